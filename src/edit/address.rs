@@ -1,4 +1,4 @@
-//! Which record of a layout is meant.
+//! Addresses of records in a layout.
 
 use std::fmt;
 
@@ -11,19 +11,19 @@ pub enum List {
     Regions,
     /// Places to stand.
     Stances,
-    /// Controls and groups, also those of a group or a page.
+    /// Controls and groups, including those of a group or a page.
     Widgets,
-    /// Materials underfoot, also those of a page.
+    /// Materials underfoot, including those of a page.
     Grounds,
-    /// Pages that take turns.
+    /// Pages, one of which is on the floor at a time.
     Pages,
 }
 
 impl List {
-    /// All of them, in the order in which layouts write them.
+    /// All lists, in the order in which layouts write them.
     pub const ALL: [Self; 5] = [Self::Regions, Self::Stances, Self::Widgets, Self::Grounds, Self::Pages];
 
-    /// The field that holds it.
+    /// The field that holds the list.
     #[must_use]
     pub const fn field(self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl List {
     }
 }
 
-/// Where a record is: entry by entry from the layout itself, which has the empty address.
+/// The path to a record: entry by entry from the layout itself, which has the empty address.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Address(Vec<(List, usize)>);
 
@@ -58,26 +58,26 @@ impl Address {
         Self(steps)
     }
 
-    /// The record that has the list it is in, the list, and its place there; `None` for the layout itself.
+    /// The record that contains its list, the list, and its index there; `None` for the layout itself.
     #[must_use]
     pub fn split(&self) -> Option<(Self, List, usize)> {
         let (&(list, index), parents) = self.0.split_last()?;
         Some((Self(parents.to_vec()), list, index))
     }
 
-    /// The list that it is in; `None` for the layout itself.
+    /// The list that contains it; `None` for the layout itself.
     #[must_use]
     pub fn list(&self) -> Option<List> {
         self.0.last().map(|(list, _)| *list)
     }
 
-    /// The number of the page that it is, or is part of; `None` for what is on all pages.
+    /// The index of the page that it is, or is part of; `None` for a record outside all pages.
     #[must_use]
     pub fn page(&self) -> Option<usize> {
         self.0.first().filter(|(list, _)| *list == List::Pages).map(|(_, index)| *index)
     }
 
-    /// Whether it is `other`, or part of it.
+    /// Whether it is `other` or a part of it.
     #[must_use]
     pub fn is_within(&self, other: &Self) -> bool {
         self.0.starts_with(&other.0)
@@ -90,7 +90,7 @@ impl Address {
         })
     }
 
-    /// All records of a layout, each after the one that it is part of.
+    /// All records of a layout; each comes after the record that contains it.
     pub(super) fn all(layout: &Outline) -> Vec<(Self, &Outline)> {
         let mut found = vec![(Self::LAYOUT, layout)];
         let mut next = 0;
@@ -106,14 +106,14 @@ impl Address {
     }
 }
 
-/// The list of `record`, if it is written.
+/// The list of `record`, if it is present.
 pub(super) fn list_of(record: &Outline, list: List) -> Option<&Outline> {
     let value = &record.field(list.field())?.value;
     (value.shape == OutlineShape::List).then_some(value)
 }
 
 impl fmt::Display for Address {
-    /// As diagnostics name it: `pages[1].widgets[0]`; nothing for the layout itself.
+    /// The notation of diagnostics: `pages[1].widgets[0]`; empty for the layout itself.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (at, (list, index)) in self.0.iter().enumerate() {
             let dot = if at > 0 { "." } else { "" };

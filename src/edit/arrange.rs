@@ -1,10 +1,10 @@
-//! Several things put in order: in line, at equal distances.
+//! Arranges several areas: alignment and equal distances.
 
 use glam::Vec2;
 
 use crate::floor::Rect;
 
-/// What is put in line.
+/// The reference line of an alignment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     /// Western edges, on the westernmost one.
@@ -22,11 +22,11 @@ pub enum Align {
 }
 
 impl Align {
-    /// All of them.
+    /// All variants.
     pub const ALL: [Self; 6] = [Self::West, Self::Centre, Self::East, Self::South, Self::Middle, Self::North];
 }
 
-/// `areas` in line; sizes stay.
+/// Aligns `areas`; sizes stay.
 #[must_use]
 pub fn align(areas: &[Rect], how: Align) -> Vec<Rect> {
     let Some(all) = super::item::around(areas.iter().copied()) else { return Vec::new() };
@@ -44,8 +44,8 @@ pub fn align(areas: &[Rect], how: Align) -> Vec<Rect> {
     areas.iter().map(moved).collect()
 }
 
-/// `areas` with equal gaps between them, from west to east (`axis` 0) or from south to north (1); the outermost two
-/// stay. Fewer than three stay as they are.
+/// Distributes `areas` with equal gaps, from west to east (`axis` 0) or from south to north (1); the two outermost
+/// ones stay. Fewer than three areas stay unchanged.
 #[must_use]
 pub fn distribute(areas: &[Rect], axis: usize) -> Vec<Rect> {
     let axis = axis.min(1);
@@ -102,7 +102,7 @@ mod tests {
     fn gaps_become_equal_and_the_outermost_stay() {
         let placed = distribute(&areas(), 0);
         assert_eq!((placed[0], placed[1]), (areas()[0], areas()[1]));
-        // 1.1 m less 0.6 m of controls leaves two gaps of 25 cm.
+        // 1.1 m minus 0.6 m of controls leaves two gaps of 25 cm.
         assert!((placed[2].min.x - 0.45).abs() < 1e-6, "{placed:?}");
         assert_eq!(placed[2].min.y, areas()[2].min.y);
         assert_eq!(distribute(&areas()[..2], 1), areas()[..2]);

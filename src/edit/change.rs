@@ -1,56 +1,56 @@
-//! What can be done to a layout, and what that changes in its text.
+//! Edits of a layout, and the changes of its text that they cause.
 
 use super::address::{Address, List, list_of};
 use super::refusal::Refusal;
 use super::splice::{Lines, Piece, Splice, spliced};
 use crate::format::outline::{Outline, OutlineShape};
 
-/// One change of a layout. Several are done one after the other: each names records as those before it left them.
+/// One change of a layout. In a sequence, each edit addresses the records as the edits before it left them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Edit {
-    /// Write a field, in place of what it says or behind the others.
+    /// Write a field: replace its value, or add it behind the others.
     Set {
-        /// Whose field.
+        /// The record of the field.
         record: Address,
-        /// Its name; that of a field within a field as `look.face`.
+        /// Its name; dotted for a field within a field, such as `look.face`.
         field: String,
-        /// What is written behind the colon.
+        /// The text behind the colon.
         value: String,
     },
-    /// Take a field out: what it says comes from the kind again. One that is not written is left at that.
+    /// Remove a field, so that its value comes from the kind again. No effect on an absent field.
     Unset {
-        /// Whose field.
+        /// The record of the field.
         record: Address,
         /// Its name, as in [`Edit::Set`].
         field: String,
     },
-    /// Put a record into a list, which is begun if there is none.
+    /// Insert a record into a list; creates the list if necessary.
     Insert {
-        /// Where it will be; behind the last one if that is further on.
+        /// Its future address; an index beyond the end puts it last.
         at: Address,
         /// Its text, with its comments before and behind it.
         text: String,
     },
-    /// Take a record out. Comments above it stay; the one behind it on its line goes.
+    /// Delete a record. Comments above it stay; the one behind it on its line is deleted.
     Delete {
-        /// Which one.
+        /// The record.
         record: Address,
     },
-    /// Take a record out to put it in elsewhere: the comments directly above it go with it.
+    /// Remove a record to insert it elsewhere, with the comments directly above it.
     Take {
-        /// Which one.
+        /// The record.
         record: Address,
     },
-    /// Put a record elsewhere in its list, with its comments.
+    /// Move a record within its list, with its comments.
     Reorder {
-        /// Which one.
+        /// The record.
         record: Address,
-        /// Its new place in the list, counted without it.
+        /// Its new index in the list, counted without the record.
         to: usize,
     },
-    /// Give a record another id, also where others refer to it: neighbours in its list, buttons that show a page.
+    /// Give a record another id, and update the references to it: neighbours in its list, buttons that show a page.
     Rename {
-        /// Which one.
+        /// The record.
         record: Address,
         /// Its new id.
         id: String,
@@ -70,7 +70,7 @@ impl Edit {
         Self::Unset { record: record.clone(), field: field.into() }
     }
 
-    /// `text` after the edit; `root` is its outline.
+    /// Returns `text` after the edit; `root` is its outline.
     pub(super) fn done(&self, text: &str, root: &Outline) -> Result<String, Refusal> {
         let lines = Lines(text);
         let splices = match self {
@@ -104,7 +104,7 @@ fn find<'o>(root: &'o Outline, address: &Address) -> Result<&'o Outline, Refusal
     address.find(root).ok_or_else(|| Refusal::Missing(address.clone()))
 }
 
-/// The list that holds the record at `address`, and its place there.
+/// The list that contains the record at `address`, and its index there.
 fn in_list<'o>(root: &'o Outline, address: &Address) -> Result<(&'o Outline, usize), Refusal> {
     let missing = || Refusal::Missing(address.clone());
     find(root, address)?;
@@ -137,7 +137,7 @@ fn reorder(lines: Lines<'_>, root: &Outline, record: &Address, to: usize) -> Res
     Ok(spliced(&without, splices))
 }
 
-/// Fields in which one entry of a list names another.
+/// Fields by which one entry of a list refers to another.
 pub(super) const NEIGHBOURS: [&str; 4] = ["right_of", "left_of", "above", "below"];
 
 fn rename(root: &Outline, record: &Address, id: &str) -> Result<Vec<Splice>, Refusal> {
@@ -165,13 +165,13 @@ fn rename(root: &Outline, record: &Address, id: &str) -> Result<Vec<Splice>, Ref
     Ok(splices)
 }
 
-/// `text` in quotes, as files write it.
+/// `text` in quotes, with the escapes of the file format.
 #[must_use]
 pub fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
 }
 
-/// Whether `text` is one record, such as can be put into a list.
+/// Whether `outline` is one record, which a list can hold.
 pub(super) fn is_record(outline: &Outline) -> bool {
     outline.shape == OutlineShape::Record
 }

@@ -11,8 +11,8 @@ use crate::format::outline::Outline;
 use crate::format::source::MAX_BYTES;
 
 impl Document {
-    /// The text of these records with their comments, one below the other, to be kept in a clipboard; those that don't
-    /// exist are left out.
+    /// The text of these records with their comments, one below the other, for a clipboard; ignores records that do
+    /// not exist.
     #[must_use]
     pub fn copy(&self, records: &[Address]) -> String {
         self.listed(records, true)
@@ -29,8 +29,8 @@ impl Document {
         texts.collect()
     }
 
-    /// What puts the records that `text` holds where such records belong on the page numbered `page`, moved by `by`
-    /// metres, and where they will be: controls and grounds on the page, regions and places to stand in the layout.
+    /// The edits that paste the records in `text` onto the page with index `page`, moved by `by` metres, and their
+    /// future addresses: controls and grounds go onto the page, regions and places to stand into the layout.
     ///
     /// # Errors
     /// As [`Document::pasting`].
@@ -48,10 +48,11 @@ impl Document {
         })
     }
 
-    /// What puts the records that `text` holds into `list` of `parent`, moved by `by` metres, and where they will be.
+    /// The edits that paste the records in `text` into `list` of `parent`, moved by `by` metres, and their future
+    /// addresses.
     ///
-    /// `text` is what [`Document::copy`] gave, or what a person copied out of a file: records with commas between
-    /// them. Ids that are taken get numbers.
+    /// `text` comes from [`Document::copy`] or from a file: records with commas between them. Ids that are already in
+    /// use get numbers.
     ///
     /// # Errors
     /// [`Refusal::NotARecord`], [`Refusal::TooLong`].
@@ -65,7 +66,7 @@ impl Document {
         self.pasted(text, by, |_| (parent.clone(), list))
     }
 
-    /// As [`Document::pasting`], each record into the list that `home` names.
+    /// As [`Document::pasting`], but `home` selects the list for each record.
     fn pasted(
         &self,
         text: &str,
@@ -75,7 +76,7 @@ impl Document {
         if text.len() > MAX_BYTES {
             return Err(Refusal::TooLong);
         }
-        // What ends in a comment must not close the bracket.
+        // A comment at the end of the text must not hide the bracket.
         let text = format!("[\n{}\n]", text.trim());
         let entries = Outline::parse(&text).ok_or(Refusal::NotARecord)?;
         let (mut edits, mut places, mut taken) = (Vec::new(), Vec::<Address>::new(), Vec::new());
@@ -95,7 +96,7 @@ impl Document {
         if edits.is_empty() { Err(Refusal::NotARecord) } else { Ok((edits, places)) }
     }
 
-    /// Gives the record `text` free ids, also those within a group, and moves it.
+    /// Gives the record `text` and the records of its group free ids, and moves it.
     fn renew(&self, text: &mut String, by: Vec2, taken: &mut Vec<String>) -> Option<()> {
         let count = Address::all(&Outline::parse(text)?).len();
         for number in 0..count {
@@ -122,8 +123,8 @@ impl Document {
         Some(())
     }
 
-    /// What puts a copy of each of `records`, without comments, behind the last one of its list, moved by `by` metres,
-    /// and where those will be.
+    /// The edits that add a copy of each of `records`, without comments, at the end of its list, moved by `by`
+    /// metres, and the future addresses of the copies.
     ///
     /// # Errors
     /// As [`Document::pasting`].
@@ -145,14 +146,15 @@ impl Document {
         Ok((edits, places))
     }
 
-    /// What takes `records` out, and what is in them; the last of a list first, so that addresses stay true.
+    /// The edits that delete `records` and their contents; the last of a list comes first, so that addresses stay
+    /// valid.
     #[must_use]
     pub fn deleting(&self, records: &[Address]) -> Vec<Edit> {
         let records = last_first(records).into_iter();
         records.map(|record| Edit::Delete { record: record.clone() }).collect()
     }
 
-    /// The same with the comments that belong to them, which are in what [`Document::copy`] gives: to cut them out.
+    /// The edits that delete `records` with their comments, which [`Document::copy`] includes: for cutting.
     #[must_use]
     pub fn taking(&self, records: &[Address]) -> Vec<Edit> {
         let records = last_first(records).into_iter();
@@ -160,7 +162,7 @@ impl Document {
     }
 }
 
-/// The records that are in none of the others, the last one first.
+/// The records outside all others of the list, the last one first.
 fn last_first(records: &[Address]) -> Vec<&Address> {
     let is_inner = |one: &Address| records.iter().any(|other| other != one && one.is_within(other));
     let mut outer: Vec<&Address> = records.iter().filter(|one| !is_inner(one)).collect();
@@ -169,7 +171,7 @@ fn last_first(records: &[Address]) -> Vec<&Address> {
     outer
 }
 
-/// The list that a record belongs to, by what is written in it.
+/// The list for a record, judging by its fields.
 fn list_for(record: &Outline) -> List {
     let has = |field: &str| record.field(field).is_some();
     match record.name.as_deref() {

@@ -1,4 +1,4 @@
-//! Comments are kept by everything that moves a record.
+//! All edits that move a record keep its comments.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::{Address, Document, Edit, Item, List};
 use crate::floor::Floor;
 use crate::schema::Kinds;
 
-/// A control and what stands around it in the text.
+/// A control and the comments around it in the text.
 #[derive(Clone, Debug)]
 struct Written {
     above: Vec<String>,
@@ -28,7 +28,7 @@ fn written() -> impl Strategy<Value = Written> {
     })
 }
 
-/// A layout of such controls, one beside the other.
+/// A layout of such controls, side by side.
 fn layout(controls: &[Written]) -> String {
     let mut text = String::from(
         "Layout(version: 1, regions: [(id: \"r\", at: (0, 0), size: (6, 6))], widgets: [ // all\n",
@@ -64,7 +64,7 @@ fn words(document: &Document) -> Vec<String> {
     words
 }
 
-/// What is on the floor, by id.
+/// The areas on the floor, by id.
 fn placed(document: &Document) -> Vec<(String, [i32; 4])> {
     let round = |at: Vec2| [at.x, at.y].map(|part| (1000.0 * part).round() as i32);
     let widgets = document.layout().widgets.iter();
@@ -113,7 +113,7 @@ proptest! {
 
         let copied = document.copy(&records);
         let edits = document.taking(&records);
-        // A layout without any control is none.
+        // A layout must have at least one control.
         if document.edit(&edits).is_ok() {
             let (edits, _) = document.pasting_on(&copied, 0, Vec2::ZERO).unwrap();
             document.edit(&edits).unwrap();

@@ -14,13 +14,13 @@ use crate::format::outline::Outline;
 use crate::layout::Layout;
 use crate::schema::{Diagnostics, Kinds, Loaded, parse_layout};
 
-/// What a file may begin with that is not part of its text.
+/// The byte-order mark, with which a file may begin; it is not part of the text.
 const MARK: &str = "\u{feff}";
 
-/// A layout that is being edited: its text, which alone counts, and what the reader makes of it.
+/// A layout that is being edited: its text, which is authoritative, and the result of reading it.
 ///
-/// Each edit changes the text where it must and is read again as a file is: the layout is always what the file would
-/// say. An edit after which the layout could not be used is refused.
+/// Each edit changes only the necessary bytes, and the text is then parsed like a file: the layout always equals the
+/// content of the file. An edit with an invalid result is refused.
 #[derive(Clone, Debug)]
 pub struct Document {
     name: String,
@@ -32,15 +32,15 @@ pub struct Document {
     history: History,
     kinds: Arc<Kinds>,
     floor: Arc<Floor>,
-    /// Counts the texts that it has had.
+    /// The number of texts so far.
     revision: u64,
 }
 
 impl Document {
-    /// The layout that `file` describes, made of `kinds` and placed on `floor`; `name` is what messages call it.
+    /// Reads the layout in `file`, made of `kinds` and placed on `floor`; `name` is its name in messages.
     ///
     /// # Errors
-    /// Everything wrong with the text.
+    /// All problems of the text.
     pub fn read(name: &str, file: &str, kinds: &Arc<Kinds>, floor: &Arc<Floor>) -> Result<Self, Diagnostics> {
         let bare = file.strip_prefix(MARK).unwrap_or(file);
         let (loaded, root) = read(name, bare, kinds, floor)?;
@@ -57,24 +57,24 @@ impl Document {
         })
     }
 
-    /// What messages call it.
+    /// Its name in messages.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Calls it `name` from now on.
+    /// Changes its name in messages to `name`.
     pub fn rename(&mut self, name: &str) {
         name.clone_into(&mut self.name);
     }
 
-    /// Its text, without a byte-order mark; all places count from its start.
+    /// Its text, without a byte-order mark; all offsets count from its start.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Whether its file is to hold exactly `text`.
+    /// Whether its file must hold exactly `text`.
     #[must_use]
     pub fn is_written_as(&self, text: &str) -> bool {
         match text.strip_prefix(MARK) {
@@ -83,31 +83,31 @@ impl Document {
         }
     }
 
-    /// What its file is to hold: the text, behind a byte-order mark if it had one.
+    /// The content for its file: the text, behind a byte-order mark if it had one.
     #[must_use]
     pub fn file_text(&self) -> String {
         if self.marked { format!("{MARK}{}", self.text) } else { self.text.to_string() }
     }
 
-    /// The layout it describes.
+    /// The layout in the text.
     #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.loaded.layout
     }
 
-    /// What the reader finds odd about it.
+    /// The warnings of the reader.
     #[must_use]
     pub fn warnings(&self) -> &Diagnostics {
         &self.loaded.warnings
     }
 
-    /// What feet or eyes will have trouble with.
+    /// The problems of the layout that affect feet or eyes.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
         ergonomics::review(self.layout(), &self.floor)
     }
 
-    /// Everything that `underfoot check` would warn of, with its places.
+    /// All warnings of `underfoot check`, with their places.
     #[must_use]
     pub fn review(&self) -> Diagnostics {
         let mut all = self.warnings().clone();
@@ -115,22 +115,22 @@ impl Document {
         all
     }
 
-    /// A warning for each text of which some letters can't be drawn; `missing` tells which those are.
+    /// A warning for each text with letters that cannot be drawn; `missing` returns those letters.
     #[must_use]
     pub fn undrawn(&self, missing: impl FnMut(&str) -> Vec<char>) -> Diagnostics {
         self.loaded.places.undrawn(missing)
     }
 
-    /// The kinds that its controls can be made of.
+    /// The kinds of which its controls can be made.
     #[must_use]
     pub fn kinds(&self) -> &Arc<Kinds> {
         &self.kinds
     }
 
-    /// Makes its controls of other kinds from now on; whether they differ.
+    /// Replaces the kinds of its controls; returns whether the new ones differ.
     ///
     /// # Errors
-    /// What is wrong with the layout when it is made of them; nothing is changed then.
+    /// The problems of the layout with the new kinds; nothing changes then.
     pub fn make_of(&mut self, kinds: &Arc<Kinds>) -> Result<bool, Diagnostics> {
         if *self.kinds == **kinds {
             return Ok(false);
@@ -147,13 +147,13 @@ impl Document {
         &self.floor
     }
 
-    /// Grows with every change of the text, also one that is taken back.
+    /// A counter that increases with every change of the text, undo included.
     #[must_use]
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Counts from `revision` on: what belonged to another document's texts is not taken for this one's.
+    /// Sets the counter to `revision`, so that no revision of another document equals one of this document.
     pub fn begin_at(&mut self, revision: u64) {
         self.revision = revision;
     }
@@ -166,32 +166,32 @@ impl Document {
         &self.loaded
     }
 
-    /// Does `edits`, as one step.
+    /// Applies `edits` as one undo step.
     ///
     /// # Errors
-    /// [`Refusal`]; nothing is changed then.
+    /// [`Refusal`]; nothing changes then.
     pub fn edit(&mut self, edits: &[Edit]) -> Result<(), Refusal> {
         self.edit_in(edits, None)
     }
 
-    /// Does `edits`, as one step with all others that have the same `stroke` and follow each other: a drag.
+    /// Applies `edits`; consecutive edits with the same `stroke`, such as those of a drag, are one undo step.
     ///
     /// # Errors
-    /// [`Refusal`]; nothing is changed then.
+    /// [`Refusal`]; nothing changes then.
     pub fn edit_in(&mut self, edits: &[Edit], stroke: Option<u64>) -> Result<(), Refusal> {
         let text = self.edited(edits)?;
         self.take(text, stroke).map_err(Refusal::Unreadable)
     }
 
-    /// Takes `text` in place of its own, as one step with the others of the same `stroke`.
+    /// Replaces the text by `text`; consecutive changes with the same `stroke` are one undo step.
     ///
     /// # Errors
-    /// Everything wrong with the text; nothing is changed then.
+    /// All problems of the text; nothing changes then.
     pub fn write(&mut self, text: &str, stroke: Option<u64>) -> Result<(), Diagnostics> {
         self.take(text.strip_prefix(MARK).unwrap_or(text).to_owned(), stroke)
     }
 
-    /// What would come of `edits`.
+    /// The layout that `edits` would produce.
     ///
     /// # Errors
     /// [`Refusal`], as [`Document::edit`].
@@ -214,7 +214,7 @@ impl Document {
             text = edit.done(&text, root.as_ref().unwrap_or(&self.root))?;
             match Outline::parse(&text) {
                 Some(outline) => root = Some(outline),
-                // The reader says why.
+                // The reader reports the reason.
                 None => break,
             }
         }
@@ -236,22 +236,22 @@ impl Document {
         self.revision += 1;
     }
 
-    /// Whether there is a step to take back.
+    /// Whether there is a step to undo.
     #[must_use]
     pub fn can_undo(&self) -> bool {
         self.history.last().is_some()
     }
 
-    /// Whether there is a step to do again.
+    /// Whether there is a step to redo.
     #[must_use]
     pub fn can_redo(&self) -> bool {
         self.history.next().is_some()
     }
 
-    /// Takes the last step back; whether there was one.
+    /// Undoes the last step; returns whether there was one.
     ///
     /// # Errors
-    /// What is wrong with the older text, which can only be if kinds changed; nothing is changed then.
+    /// The problems of the older text, which are only possible after a change of kinds; nothing changes then.
     pub fn undo(&mut self) -> Result<bool, Diagnostics> {
         let Some(text) = self.history.last().map(|step| step.undone(&self.text)) else { return Ok(false) };
         let read = read(&self.name, &text, &self.kinds, &self.floor)?;
@@ -260,7 +260,7 @@ impl Document {
         Ok(true)
     }
 
-    /// Does the step again that was taken back last; whether there was one.
+    /// Redoes the last undone step; returns whether there was one.
     ///
     /// # Errors
     /// As [`Document::undo`].
@@ -272,19 +272,20 @@ impl Document {
         Ok(true)
     }
 
-    /// How many records the list of `parent` has.
+    /// The number of records in the list of `parent`.
     #[must_use]
     pub fn count(&self, parent: &Address, list: List) -> usize {
         parent.find(&self.root).and_then(|parent| list_of(parent, list)).map_or(0, |list| list.elements.len())
     }
 
-    /// Where the record is written; `None` if there is none.
+    /// The bytes of a record; `None` if there is no such record.
     #[must_use]
     pub fn span(&self, record: &Address) -> Option<Range<usize>> {
         Some(record.find(&self.root)?.span.clone())
     }
 
-    /// What is written for a field of a record, that of a field within a field as `look.face`; `None` if nothing is.
+    /// The written value of a field, with a dotted name for a field within a field, such as `look.face`; `None` if
+    /// absent.
     #[must_use]
     pub fn written(&self, record: &Address, field: &str) -> Option<&str> {
         let record = record.find(&self.root)?;
@@ -295,7 +296,7 @@ impl Document {
 
 fn read(name: &str, text: &str, kinds: &Kinds, floor: &Floor) -> Result<(Loaded, Outline), Diagnostics> {
     let loaded = parse_layout(text, name, kinds, &floor.geometry)?;
-    // What the reader could read has an outline; should it not, nothing of it can be edited.
+    // A text that the reader accepts has an outline; otherwise its records could not be edited.
     let root = Outline::parse(text).or_else(|| Outline::parse("()"));
     root.map(|root| (loaded, root)).ok_or_else(Diagnostics::default)
 }

@@ -8,98 +8,98 @@ use crate::format::file::read_bounded;
 use crate::format::source::MAX_BYTES;
 use crate::schema::{SaveError, save_text, write_over};
 
-/// What a draft is called that belongs to no file yet.
+/// Name of the draft of a layout without a file.
 const UNTITLED: &str = "untitled.ron";
 
-/// Where a layout is kept, and what was last known of that.
+/// The file of a layout, and its last known content.
 ///
-/// Beside the file stands a draft with what has not been saved: `.mine.ron.draft`. It is there after a crash.
+/// A draft with the unsaved text stands beside the file: `.mine.ron.draft`. It remains after a crash.
 #[derive(Clone, Debug)]
 pub struct LayoutFile {
-    /// `None` until it has a name.
+    /// `None` for a layout without a file.
     path: Option<PathBuf>,
-    /// The folder of the draft while there is no name.
+    /// The folder of the draft of a layout without a file.
     folder: PathBuf,
-    /// What the file held when it was read or written last; nothing once it was seen to be gone.
+    /// The content of the file when it was last read or written; empty once the file was found missing.
     base: String,
-    /// Whether it is to be written for the first time; `base` is then what it would begin with.
+    /// Whether the file has not been written yet; `base` is then its initial text.
     is_new: bool,
-    /// What the draft holds.
+    /// The content of the draft.
     draft: Option<String>,
 }
 
-/// What saving came to.
+/// The result of saving.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Saving {
     /// The file holds the text.
     Saved,
-    /// Another program has changed the file, and both changes are in this text, which is not saved: it is to be read,
-    /// and saved again.
+    /// Another program has changed the file, and this text contains both changes. It is not saved: the caller parses
+    /// it and saves again.
     Merged(String),
-    /// Another program has changed the same. The file is as that program left it.
+    /// Another program has changed the same lines or records. The file stays as that program left it.
     Conflict {
-        /// What the file holds.
+        /// The content of the file.
         theirs: String,
-        /// The records that both have changed; none where it is not about records.
+        /// The records that both have changed; empty if the conflict is outside records.
         records: Vec<String>,
     },
 }
 
 impl LayoutFile {
-    /// A layout without a file, such as a shipped one; its draft is in `folder`. `text` is what counts as saved.
+    /// A layout without a file, such as a built-in one, with its draft in `folder`. `text` counts as saved.
     #[must_use]
     pub fn untitled(folder: &Path, text: &str) -> Self {
         Self { path: None, folder: folder.into(), base: text.into(), is_new: false, draft: None }
     }
 
-    /// The file at `path`, which is not there yet, or empty, and begins with `text`; that counts as saved.
+    /// A new or empty file at `path` with the initial text `text`, which counts as saved.
     #[must_use]
     pub fn begun(path: &Path, text: &str) -> Self {
         Self { path: Some(path.into()), is_new: true, ..Self::untitled(Path::new(""), text) }
     }
 
-    /// The file at `path`, and what it holds; a draft is to be asked for with [`LayoutFile::left_over`].
+    /// Opens the file at `path` and returns its content; [`LayoutFile::left_over`] returns the draft, if any.
     ///
     /// # Errors
-    /// What the system says; [`ErrorKind::InvalidData`] for what is not UTF-8.
+    /// The error of the system; [`ErrorKind::InvalidData`] for a text that is not UTF-8.
     pub fn open(path: &Path) -> io::Result<(Self, String)> {
         let text = read_bounded(path, MAX_BYTES as u64)?;
         let file = Self { path: Some(path.into()), ..Self::untitled(Path::new(""), &text) };
         Ok((file, text))
     }
 
-    /// Its path, once it has one.
+    /// Its path; `None` for a layout without a file.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// Whether it is to be written for the first time.
+    /// Whether the file has not been written yet.
     #[must_use]
     pub fn is_new(&self) -> bool {
         self.is_new
     }
 
-    /// What people call it.
+    /// Its name for users.
     #[must_use]
     pub fn name(&self) -> String {
         let name = self.path.as_deref().and_then(Path::file_name);
         name.map_or_else(|| UNTITLED.to_owned(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// What the file is known to hold.
+    /// The last known content of the file.
     #[must_use]
     pub fn known(&self) -> &str {
         &self.base
     }
 
-    /// Whether `text` is what the file is known to hold.
+    /// Whether `text` equals the last known content of the file.
     #[must_use]
     pub fn holds(&self, text: &str) -> bool {
         self.base == text
     }
 
-    /// Where its draft is.
+    /// The path of its draft.
     #[must_use]
     pub fn draft_path(&self) -> PathBuf {
         let folder = match &self.path {
@@ -109,10 +109,10 @@ impl LayoutFile {
         folder.join(format!(".{}.draft", self.name()))
     }
 
-    /// What was being edited when a window ended without saving; `None` if nothing was, or the file holds the same.
+    /// The draft of a window that ended without saving; `None` without a draft, or if the file holds the same text.
     ///
     /// # Errors
-    /// What the system says of a draft that is there and can't be read.
+    /// The error of the system for a draft that cannot be read.
     pub fn left_over(&self) -> io::Result<Option<String>> {
         match read_bounded(&self.draft_path(), MAX_BYTES as u64) {
             Ok(text) => Ok(Some(text).filter(|text| *text != self.base)),
@@ -121,10 +121,11 @@ impl LayoutFile {
         }
     }
 
-    /// Keeps `text` in the draft; a text that is saved needs none. Writes only what changed since the last call.
+    /// Saves `text` in the draft, and removes the draft of a text that is saved. Writes only after a change since the
+    /// last call.
     ///
     /// # Errors
-    /// [`SaveError`]; the older draft is then still there.
+    /// [`SaveError`]; the older draft remains then.
     pub fn keep_draft(&mut self, text: &str) -> Result<(), SaveError> {
         if self.holds(text) {
             if self.draft.is_some() {
@@ -139,21 +140,23 @@ impl LayoutFile {
         Ok(())
     }
 
-    /// Removes the draft: it was taken up, or is not wanted.
+    /// Removes the draft, after it was restored or discarded.
     pub fn drop_draft(&mut self) {
-        // One that can't be removed is offered again next time: nothing is lost.
+        // A draft that cannot be removed is offered again next time: no data is lost.
         let _ = std::fs::remove_file(self.draft_path());
         self.draft = None;
     }
 
-    /// What another program has written into the file since it was read or saved last.
+    /// The text that another program has written to the file since it was last read or saved; `None` without a
+    /// change.
     ///
     /// # Errors
-    /// What the system says; a file that is gone has not been written into, and holds nothing of the layout any more.
+    /// The error of the system; a missing file is not an error, counts as unchanged, and its known content becomes
+    /// empty.
     pub fn outside(&mut self) -> io::Result<Option<String>> {
         let Some(path) = &self.path else { return Ok(None) };
         match read_bounded(path, MAX_BYTES as u64) {
-            // An empty file is a layout that is begun.
+            // An empty file is a new layout.
             Ok(text) if self.is_new && text.trim().is_empty() => Ok(None),
             Ok(text) => Ok(Some(text).filter(|text| *text != self.base)),
             Err(error) if error.kind() == ErrorKind::NotFound => {
@@ -166,8 +169,8 @@ impl LayoutFile {
         }
     }
 
-    /// What becomes of `mine` together with `theirs`, which is now in the file and counts as known from here on,
-    /// unless it is a conflict.
+    /// Merges `mine` with `theirs`, the present content of the file, which becomes the known content unless there is
+    /// a conflict.
     pub fn take_in(&mut self, mine: &str, theirs: String) -> Saving {
         match merge(&self.base, mine, &theirs) {
             Merge::Merged(text) => {
@@ -178,18 +181,18 @@ impl LayoutFile {
         }
     }
 
-    /// Says that what the file holds is known and may be replaced: the person has chosen.
+    /// Sets the known content of the file, so that it may be replaced: the user has decided.
     pub fn know(&mut self, theirs: String) {
         (self.base, self.is_new) = (theirs, false);
     }
 
-    /// Writes `text` to the file, unless another program has changed that meanwhile.
+    /// Writes `text` to the file, unless another program has changed it.
     ///
-    /// After a crash or power loss at any moment it holds the old text or the new one, and the draft what was not
-    /// saved.
+    /// After a crash or power loss at any moment, the file holds the old text or the new one, and the draft holds the
+    /// unsaved text.
     ///
     /// # Errors
-    /// [`SaveError`]; the file is then as it was. Without a path nothing is done: [`LayoutFile::save_as`] gives it one.
+    /// [`SaveError`]; the file is unchanged then. Without a path, this does nothing: [`LayoutFile::save_as`] sets it.
     pub fn save(&mut self, text: &str) -> Result<Saving, SaveError> {
         let Some(path) = self.path.clone() else { return Ok(Saving::Saved) };
         let failed =
@@ -203,10 +206,10 @@ impl LayoutFile {
         Ok(Saving::Saved)
     }
 
-    /// Writes `text` to `path`, which is its file from now on; what was there before is kept as a backup.
+    /// Writes `text` to `path`, which becomes its file; the previous content of `path` stays as a backup.
     ///
     /// # Errors
-    /// [`SaveError`]; its file is then the one it was.
+    /// [`SaveError`]; its file is unchanged then.
     pub fn save_as(&mut self, text: &str, path: &Path) -> Result<(), SaveError> {
         save_text(text, path)?;
         self.drop_draft();
@@ -324,10 +327,10 @@ mod tests {
         assert_eq!(untitled.name(), "new.ron");
     }
 
-    /// Where the child below works; without it that does nothing.
+    /// Names the folder of the child process below; without this variable the child does nothing.
     const FOLDER: &str = "UNDERFOOT_SAVING_IN";
 
-    /// A text that is only whole if it is of one piece.
+    /// A text that reveals a mix of two versions.
     fn numbered(number: usize) -> String {
         format!("Layout(\n{}  a: {number},\n)\n", format!("  // {number}\n").repeat(400))
     }
@@ -338,7 +341,8 @@ mod tests {
         number
     }
 
-    /// Drafts and saves until it is killed, and says what is done. A process of the test below.
+    /// Writes drafts and saves until it is killed, and reports each completed step. The test below runs it as a
+    /// process.
     #[test]
     fn saving_child() {
         let Some(folder) = std::env::var_os(FOLDER) else { return };
@@ -378,7 +382,7 @@ mod tests {
                     saved = number;
                 }
             };
-            // Once it works, however slowly; then at a moment of its work.
+            // Wait until it works, however slow it is; then kill it at a random moment.
             for line in said.by_ref().take(rng.random_range(1..=4)) {
                 note(&line.unwrap());
             }

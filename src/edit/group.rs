@@ -1,4 +1,4 @@
-//! Records put into a group, and taken out of it: nothing moves on the floor.
+//! Moves records into a group and out of it; their areas on the floor stay.
 
 use glam::DVec2;
 
@@ -12,8 +12,8 @@ use super::splice::{Lines, Piece, comments, spliced};
 use crate::format::outline::Outline;
 
 impl Document {
-    /// What makes one group of `items`, and where that will be: in place of the first of them, its place their
-    /// south-west corner.
+    /// The edits that make one group of `items`, and its address: it replaces the first of them, and its place is
+    /// their south-west corner.
     ///
     /// # Errors
     /// [`Refusal::Apart`] for records of several lists, or that are not controls; [`Refusal::PlacedByGroup`] as
@@ -44,10 +44,10 @@ impl Document {
         Ok((edits, at))
     }
 
-    /// What takes the group apart, and where its records will be: in its place.
+    /// The edits that dissolve the group, and the addresses of its records, which replace it.
     ///
     /// # Errors
-    /// [`Refusal::Apart`] for what is not a group; [`Refusal::PlacedByGroup`] as [`Document::placing`].
+    /// [`Refusal::Apart`] for a record that is not a group; [`Refusal::PlacedByGroup`] as [`Document::placing`].
     pub fn ungrouping(&self, items: &[Item], group: &Item) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
         let (parent, list, index) = group.record.split().ok_or(Refusal::Apart)?;
         let corner = self.place_of(group)?;
@@ -70,7 +70,7 @@ impl Document {
         if places.is_empty() { Err(Refusal::Apart) } else { Ok((edits, places)) }
     }
 
-    /// The comments of a group that go with none of the pieces it holds, line by line.
+    /// The comments of a group that do not belong to any of `pieces`, line by line.
     fn comments_beside(&self, group: &Address, pieces: &[Piece]) -> Vec<String> {
         let piece = group.split().and_then(|(parent, list, index)| {
             Lines(self.text()).piece(list_of(parent.find(self.root())?, list)?, index)
@@ -79,7 +79,7 @@ impl Document {
         let mut all: Vec<&str> = comments(&whole);
         let inner: Vec<String> = pieces.iter().map(|piece| piece.listed("")).collect();
         for taken in inner.iter().flat_map(|piece| comments(piece)) {
-            // A comment may have been closed, and further in.
+            // Moving may have turned it into a block comment and changed its indentation.
             let words = |comment: &str| {
                 let words = comment.split(|letter: char| letter.is_whitespace() || "/*".contains(letter));
                 words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
@@ -91,7 +91,7 @@ impl Document {
         all.into_iter().flat_map(|comment| comment.lines().map(|line| line.trim().to_owned())).collect()
     }
 
-    /// Where it is written to be in its list, or would be if it were written.
+    /// Its written place in its list, or the place that it would have if it were written.
     fn place_of(&self, item: &Item) -> Result<DVec2, Refusal> {
         match self.pair(&item.record, "at") {
             Some(written) => Ok(written),
@@ -100,7 +100,7 @@ impl Document {
         }
     }
 
-    /// The text of a record as it would be written `at` a place of its own.
+    /// The text of a record with the place `at` of its own.
     fn placed_piece(&self, item: &Item, at: DVec2) -> Result<Piece, Refusal> {
         let missing = || Refusal::Missing(item.record.clone());
         let (parent, list, index) = item.record.split().ok_or_else(missing)?;

@@ -1,17 +1,17 @@
-//! Changes of a text, to take back and to do again.
+//! Changes of a text, with undo and redo.
 
-/// One step: at one place of the text, what stood there and what came in its place.
+/// One step: an offset in the text, with the old and the new content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Step {
     at: usize,
     old: String,
     new: String,
-    /// Steps of one drag, or of one stretch of typing, are one.
+    /// Steps with the same stroke, from one drag or one stretch of typing, are merged.
     pub(super) stroke: Option<u64>,
 }
 
 impl Step {
-    /// What differs between two texts.
+    /// The difference between two texts.
     pub(super) fn between(before: &str, after: &str, stroke: Option<u64>) -> Self {
         let same = |(a, b): &(u8, u8)| a == b;
         let head = before.bytes().zip(after.bytes()).take_while(same).count();
@@ -34,27 +34,27 @@ impl Step {
         [head, into, rest.strip_prefix(out).unwrap_or(rest)].concat()
     }
 
-    /// The text without this step.
+    /// The text before this step.
     pub(super) fn undone(&self, text: &str) -> String {
         self.put(text, &self.new, &self.old)
     }
 
-    /// The text with this step.
+    /// The text after this step.
     pub(super) fn redone(&self, text: &str) -> String {
         self.put(text, &self.old, &self.new)
     }
 }
 
-/// The steps of a text, up to the present one and beyond.
+/// The steps of a text, both done and undone ones.
 #[derive(Clone, Debug, Default)]
 pub(super) struct History {
     steps: Vec<Step>,
-    /// How many of them are done.
+    /// The number of steps that are done.
     done: usize,
 }
 
 impl History {
-    /// Notes that `before` became `after`; what had been taken back can't be done again then.
+    /// Records that `before` became `after`; clears the undone steps.
     pub(super) fn note(&mut self, before: &str, after: &str, stroke: Option<u64>) {
         let last = self.last().filter(|last| stroke.is_some() && last.stroke == stroke);
         let (keep, step) = match last {
@@ -69,12 +69,12 @@ impl History {
         self.done = self.steps.len();
     }
 
-    /// The step that is taken back next.
+    /// The next step to undo.
     pub(super) fn last(&self) -> Option<&Step> {
         self.steps.get(self.done.checked_sub(1)?)
     }
 
-    /// The step that is done again next.
+    /// The next step to redo.
     pub(super) fn next(&self) -> Option<&Step> {
         self.steps.get(self.done)
     }
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(history.last().unwrap().undone("4"), "3");
         history.go_back();
         assert_eq!(history.last().unwrap().undone("3"), "0");
-        // A drag that comes back to where it began is not a step.
+        // A drag that returns to its start is not a step.
         history.note("3", "0", Some(7));
         assert!(history.last().is_none() && history.next().is_none());
     }

@@ -1,4 +1,4 @@
-//! What can be said of a record: its fields with what they say now, and where that comes from.
+//! Describes records: their fields with the present values and the origin of each.
 
 use super::address::{Address, List};
 use super::change::Edit;
@@ -12,38 +12,38 @@ use crate::format::{Record, Variants};
 use crate::layout::Widget;
 use crate::schema::Diagnostic;
 
-/// Where the value of a field comes from.
+/// The origin of a field's value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// It is written in the record.
     Written,
-    /// The control's kind, of this name, says it.
+    /// The control's kind of this name defines it.
     Kind(String),
-    /// Nobody says it: it is the format's default, or nothing.
+    /// It is the format's default, or absent.
     Default,
-    /// Of several records each says something else.
+    /// Several records have different values.
     Several,
 }
 
 /// A field of a record, as an inspector shows it.
 #[derive(Clone, Debug)]
 pub struct Property {
-    /// Its name, that of a field within a field as `look.face`.
+    /// Its name; dotted for a field within a field, such as `look.face`.
     pub name: String,
-    /// What it is.
+    /// Its description.
     pub about: String,
-    /// What may be written: type, range and unit in words.
+    /// The permitted values: type, range and unit in words.
     pub told: String,
-    /// What may be written.
+    /// The permitted values.
     pub shape: FieldType,
-    /// What it says now, as it is or would be written; empty for nothing.
+    /// Its present value, as it is or would be written; empty if absent.
     pub value: String,
-    /// Where that comes from.
+    /// The origin of the value.
     pub origin: Origin,
 }
 
 impl Property {
-    /// Its name alone: that of a field within a field without the outer one.
+    /// Its last name: for a field within a field, without the outer one.
     #[must_use]
     pub fn short(&self) -> &str {
         self.name.rsplit('.').next().unwrap_or_default()
@@ -56,36 +56,36 @@ impl Property {
     }
 }
 
-/// Fields that each control has for itself.
+/// Fields that differ between controls.
 const OWN: [&str; 4] = ["id", "label", "at", "size"];
 
 impl Property {
-    /// Becomes what can be said of its own record and another one at once.
+    /// Merges the description of another record's field into this one.
     fn meet(&mut self, other: &Self) {
         if self.value != other.value {
             (self.value, self.origin) = (String::new(), Origin::Several);
         } else if self.origin != other.origin && self.origin != Origin::Several {
-            // As written, it can be left out where it is.
+            // A field that is written in one of the records can be removed there.
             let is_written = [&self.origin, &other.origin].contains(&&Origin::Written);
             self.origin = if is_written { Origin::Written } else { Origin::Default };
         }
     }
 }
 
-/// Fields that belong together.
+/// A group of related fields.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// What they are about.
+    /// Its subject.
     pub title: String,
     /// The fields.
     pub properties: Vec<Property>,
 }
 
-/// A width that suits a shoe, in metres; rule U101.
+/// A width that suits a shoe, in metres (rule U101).
 const GOOD_M: f32 = 0.12;
 
 impl Document {
-    /// Everything that can be said of `record`.
+    /// All fields of `record`.
     #[must_use]
     pub fn properties(&self, record: &Address, item: Option<&Item>) -> Vec<Section> {
         let text = |what: &str| FieldType::Text(what.into());
@@ -136,8 +136,8 @@ impl Document {
         sections
     }
 
-    /// What can be said of several controls at once: the fields that all of them have, but for their names and places.
-    /// A field that is not the same in all has [`Origin::Several`] and no value.
+    /// The common fields of several controls: the fields that all of them have, except their names and places. A
+    /// field with different values has [`Origin::Several`] and an empty value.
     #[must_use]
     pub fn common(&self, controls: &[&Item]) -> Vec<Section> {
         let mut all = controls.iter().map(|item| self.properties(&item.record, Some(item)));
@@ -162,7 +162,7 @@ impl Document {
         common
     }
 
-    /// The controls in a group, also those of groups within; the record itself if it is a control.
+    /// The controls in a group, including those of nested groups; the record itself if it is a control.
     #[must_use]
     pub fn controls_in<'i>(&self, items: &'i [Item], record: &Address) -> Vec<&'i Item> {
         let controls =
@@ -207,7 +207,7 @@ impl Document {
         ]
     }
 
-    /// A field; `entries` are what the resolved control says of it, be it written in the record or in its kind.
+    /// One field; `entries` are the values of the resolved control, from its record or from its kind.
     fn property(
         &self,
         record: &Address,
@@ -226,22 +226,22 @@ impl Document {
         Property { name, about: field.about.clone(), told, shape: field.shape.clone(), value, origin }
     }
 
-    /// The record that a finding is about.
+    /// The record to which a finding refers.
     #[must_use]
     pub fn found_in(&self, finding: &Finding) -> Option<Address> {
         self.record_of(finding.widget)
     }
 
-    /// The record that a message of the reader is about.
+    /// The record to which a message of the reader refers.
     #[must_use]
     pub fn told_of(&self, problem: &Diagnostic) -> Option<Address> {
-        // The text that it reads has no byte-order mark.
+        // The reader gets the text without a byte-order mark.
         self.record_at(problem.span.start)
     }
 
-    /// What mends a finding, and in words; `None` where only a person can say what is meant.
+    /// The repair of a finding, in words and as edits; `None` where only the user can decide.
     ///
-    /// Too small a control becomes 12 cm wide and deep; a threshold is taken back to what its kind says.
+    /// A control that is too small becomes 12 cm wide and deep; a threshold returns to the value of its kind.
     #[must_use]
     pub fn mend(&self, finding: &Finding, items: &[Item]) -> Option<(String, Vec<Edit>)> {
         let record = self.record_of(finding.widget)?;

@@ -1,4 +1,4 @@
-//! The records of a layout as things on the floor.
+//! The records of a layout as areas on the floor.
 
 use std::ops::Range;
 
@@ -12,37 +12,37 @@ use crate::format::outline::Outline;
 /// A record that covers a part of the floor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
-    /// Which record.
+    /// The address of the record.
     pub record: Address,
-    /// What it is called: an id, a label or what it is made of; may be empty.
+    /// Its name: an id, a label or a material; may be empty.
     pub name: String,
-    /// What it covers, in floor metres; for a group or a grid, what its controls cover.
+    /// Its area, in floor metres; for a group or a grid, the area around its controls.
     pub area: Rect,
-    /// Its page; `None` if it is on all of them.
+    /// Its page; `None` if it is on all pages.
     pub page: Option<usize>,
-    /// The numbers of its controls in the layout; none for a region, a stance zone or a ground.
+    /// The indices of its controls in the layout; empty for a region, a stance zone or a ground.
     pub widgets: Range<usize>,
-    /// Whether it holds other records: a group.
+    /// Whether it is a group, which contains other records.
     pub is_group: bool,
 }
 
 impl Item {
-    /// Whether it is there while the page of this number is shown.
+    /// Whether it is on the page with this index.
     #[must_use]
     pub fn is_on(&self, page: usize) -> bool {
         self.page.is_none_or(|own| own == page)
     }
 }
 
-/// The smallest rectangle around all of `areas`; `None` around none.
+/// The smallest rectangle around all of `areas`; `None` if there are none.
 #[must_use]
 pub fn around(areas: impl IntoIterator<Item = Rect>) -> Option<Rect> {
     areas.into_iter().reduce(|all, one| Rect::new(all.min.min(one.min), all.max.max(one.max)))
 }
 
 impl Document {
-    /// All records that cover a part of the floor: grounds, regions, stance zones, then controls, each in the order of
-    /// the text and a group before what is in it.
+    /// All records that cover a part of the floor: grounds, regions, stance zones, then controls; each list is in the
+    /// order of the text, with a group before its members.
     #[must_use]
     pub fn items(&self) -> Vec<Item> {
         let layout = self.layout();
@@ -76,33 +76,33 @@ impl Document {
         items
     }
 
-    /// The record of the control of this number in the layout: the innermost one that it is written in.
+    /// The record of the control with this index in the layout: the innermost one around it.
     #[must_use]
     pub fn record_of(&self, widget: usize) -> Option<Address> {
         home(&Address::all(self.root()), self.loaded().places.id_span(widget)).cloned()
     }
 
-    /// The innermost record that the byte at `offset` of the text is part of; `None` outside of all lists.
+    /// The innermost record around the byte at `offset` of the text; `None` outside all lists.
     #[must_use]
     pub fn record_at(&self, offset: usize) -> Option<Address> {
         home(&Address::all(self.root()), Some(offset..offset)).filter(|at| at.split().is_some()).cloned()
     }
 
-    /// The id written for a record.
+    /// The written id of a record.
     #[must_use]
     pub fn id_of(&self, record: &Address) -> Option<&str> {
         record.find(self.root())?.field("id")?.value.says.as_deref()
     }
 
-    /// How long one unit of the layout's places is, in metres.
+    /// The unit of the layout's places, in metres.
     #[must_use]
     pub fn unit_m(&self) -> f64 {
         let units = self.written(&Address::LAYOUT, "units");
         if units == Some("Metres") { 1.0 } else { self.floor().geometry.pitch_m().into() }
     }
 
-    /// The topmost control, stance zone, region or ground at `point` of the page numbered `page`; controls of a group
-    /// one by one, whole grounds not at all.
+    /// The topmost control, stance zone, region or ground at `point` on the page with index `page`; for a group, one
+    /// of its controls; never a ground that covers the whole floor.
     #[must_use]
     pub fn item_at(&self, items: &[Item], page: usize, point: Vec2) -> Option<Address> {
         let rank = |item: &Item| match item.record.list() {
@@ -131,7 +131,7 @@ fn item(address: &Address, record: &Outline, area: Rect, page: Option<usize>, wi
     Item { record: address.clone(), name, area, page, widgets, is_group }
 }
 
-/// The innermost of `all` records around `place`.
+/// The innermost record of `all` around `place`.
 fn home<'a>(all: &'a [(Address, &Outline)], place: Option<Range<usize>>) -> Option<&'a Address> {
     let place = place?;
     let holds =

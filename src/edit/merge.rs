@@ -1,4 +1,4 @@
-//! One layout changed by two: what the window made of it, and what another program has saved meanwhile.
+//! Merges two changes of one layout: those of the window, and those that another program has saved.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -6,22 +6,23 @@ use std::ops::Range;
 use super::address::Address;
 use crate::format::outline::Outline;
 
-/// What came of two changes of one text.
+/// The result of merging two changes of one text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Merge {
-    /// Both are in this text.
+    /// This text contains both changes.
     Merged(String),
-    /// Both changed the same; the text can't hold both. Which records, as far as it is about records.
+    /// Both changed the same part; one text cannot hold both. The records in question; empty outside records.
     Conflict(Vec<String>),
 }
 
-/// Most pairs of lines that are compared; beyond, everything between the first and last change is one change.
+/// Maximum number of pairs of lines to compare; beyond it, everything between the first and the last change is one
+/// change.
 const EFFORT: usize = 16_000_000;
 
-/// What `mine` and `theirs` make of `base`, changes of different lines put together. What both put in at one place
-/// comes one below the other. A record that both have changed, differently, is a conflict, also where lines would fit.
+/// Merges the changes from `base` to `mine` and to `theirs` line by line. Insertions of both at one place follow each
+/// other. A record with two different changes is a conflict, even where the lines do not overlap.
 ///
-/// The text is not read: whoever takes it has to see whether the layout can be used.
+/// The result is not parsed: the caller checks whether the layout is valid.
 #[must_use]
 pub fn merge(base: &str, mine: &str, theirs: &str) -> Merge {
     let twice = changed_by_both(base, mine, theirs);
@@ -36,7 +37,7 @@ pub fn merge(base: &str, mine: &str, theirs: &str) -> Merge {
             hunks.push(hunk);
         }
     }
-    // A stable order: mine before theirs, what is put in before what is replaced.
+    // A stable order: mine before theirs, insertions before replacements.
     hunks.sort_by_key(|hunk| (hunk.old.start, hunk.old.end));
     let mut merged = String::new();
     let mut from = 0;
@@ -59,7 +60,7 @@ struct Hunk<'t> {
     new: Vec<&'t str>,
 }
 
-/// What makes `new` of `old`.
+/// The hunks that turn `old` into `new`.
 fn hunks<'t>(old: &[&'t str], new: &[&'t str]) -> Vec<Hunk<'t>> {
     let head = old.iter().zip(new).take_while(|(a, b)| a == b).count();
     let tail = old[head..].iter().rev().zip(new[head..].iter().rev()).take_while(|(a, b)| a == b).count();
@@ -68,7 +69,7 @@ fn hunks<'t>(old: &[&'t str], new: &[&'t str]) -> Vec<Hunk<'t>> {
     if rows * columns > EFFORT {
         return vec![Hunk { old: head..head + old.len(), new: new.to_vec() }];
     }
-    // Length of the longest common subsequence of what is left of both.
+    // Length of the longest common subsequence of the remaining lines of both.
     let mut common = vec![0_u32; rows * columns];
     for at in (0..old.len()).rev() {
         for other in (0..new.len()).rev() {
@@ -105,7 +106,7 @@ fn hunks<'t>(old: &[&'t str], new: &[&'t str]) -> Vec<Hunk<'t>> {
     hunks
 }
 
-/// The records that both have changed, and not alike.
+/// The records that both have changed in different ways.
 fn changed_by_both(base: &str, mine: &str, theirs: &str) -> Vec<String> {
     let [base, mine, theirs] = [base, mine, theirs].map(records);
     let differs = |name: &&String| {
@@ -116,7 +117,7 @@ fn changed_by_both(base: &str, mine: &str, theirs: &str) -> Vec<String> {
     both.filter(differs).cloned().collect()
 }
 
-/// The innermost records of `text` by name: an id where there is one, otherwise a place.
+/// The innermost records of `text` by name: the id if there is one, otherwise the address.
 fn records(text: &str) -> BTreeMap<String, String> {
     let Some(root) = Outline::parse(text) else { return BTreeMap::new() };
     let all = Address::all(&root);
@@ -173,7 +174,7 @@ mod tests {
         assert_eq!(merge(BASE, &mine, &theirs), Merge::Conflict(vec!["\"b\"".into()]));
         let gone = BASE.replace("    (id: \"b\", at: 2),\n", "");
         assert_eq!(merge(BASE, &gone, &theirs), Merge::Conflict(vec!["\"b\"".into()]));
-        // Not about a record.
+        // This conflict is outside records.
         let (mine, theirs) = (BASE.replace("One", "Uno"), BASE.replace("One", "Un"));
         assert_eq!(merge(BASE, &mine, &theirs), Merge::Conflict(vec![]));
     }

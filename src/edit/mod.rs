@@ -7,7 +7,8 @@
 //! Document -file, merge-> file, draft
 //! ```
 //!
-//! The text is what counts: comments, order and line breaks stay, and an edit changes the bytes of its own record only.
+//! The text is authoritative: comments, order and line breaks stay, and an edit changes the bytes of its own record
+//! only.
 
 mod address;
 mod arrange;

@@ -1,4 +1,4 @@
-//! Places on the floor to fields of a record: moving, sizing, turning.
+//! Converts places on the floor to fields of a record: moving, sizing, turning.
 
 use glam::Vec2;
 
@@ -11,15 +11,16 @@ use crate::floor::Rect;
 use crate::format::number::plain;
 use crate::widget::{Axis, Behaviour, Track};
 
-/// Fields that say where something stands beside its neighbour.
+/// Fields that define a place relative to a neighbour.
 pub(super) const RELATIVE: [&str; 6] =
     [NEIGHBOURS[0], NEIGHBOURS[1], NEIGHBOURS[2], NEIGHBOURS[3], "gap", "align"];
 
 impl Document {
-    /// What gives `items` these areas, in floor metres. Of a group or a grid only the place counts: it keeps its size.
+    /// The edits that give `items` these areas, in floor metres. A group or a grid only moves: it keeps its size.
     ///
     /// # Errors
-    /// [`Refusal::PlacedByGroup`] for a record that stands beside a neighbour within a group that does so as well.
+    /// [`Refusal::PlacedByGroup`] for a record relative to a neighbour within a group whose own place is relative
+    /// too.
     pub fn placing(&self, moved: &[(&Item, Rect)]) -> Result<Vec<Edit>, Refusal> {
         let mut edits = Vec::new();
         for (item, area) in moved {
@@ -35,7 +36,7 @@ impl Document {
         let is_relative = NEIGHBOURS.iter().any(|side| self.written(record, side).is_some());
         let corner = |metres: Vec2| metres.as_dvec2() / unit;
         let at = match written {
-            // Only what was moved changes, and by that much: no other digit of the file is touched.
+            // Add the displacement to the written place: the other digits in the file stay unchanged.
             Some(written) => written + corner(area.min - item.area.min),
             None if item.is_group => return Err(Refusal::PlacedByGroup(record.clone())),
             None => corner(area.min) - self.origin(record)?,
@@ -53,7 +54,7 @@ impl Document {
             edits.push(Edit::set(record, "at", pair(at.x, at.y)));
         }
         let has_own_size = !item.is_group && item.widgets.len() <= 1;
-        // What took its neighbour's size needs one of its own without the neighbour.
+        // A size that came from the neighbour must be written once the neighbour no longer defines it.
         let needs_size = is_whole || (is_relative && is_moved && self.written(record, "size").is_none());
         if has_own_size && (is_resized || needs_size) {
             edits.push(Edit::set(record, "size", pair(size.x, size.y)));
@@ -61,20 +62,20 @@ impl Document {
         Ok(())
     }
 
-    /// Two numbers written for a field.
+    /// The two written numbers of a field.
     pub(super) fn pair(&self, record: &Address, field: &str) -> Option<glam::DVec2> {
         let (east, north) = self.written(record, field)?.trim_matches(['(', ')']).split_once(',')?;
         let number = |text: &str| text.trim().trim_end_matches(',').trim_end().parse::<f64>().ok();
         Some(glam::DVec2::new(number(east)?, number(north)?))
     }
 
-    /// Where the places count from of the list that `record` is in, in the layout's units.
+    /// The origin of the places in the list of `record`, in the layout's units.
     pub(super) fn origin(&self, record: &Address) -> Result<glam::DVec2, Refusal> {
         let Some((parent, List::Widgets, _)) = record.split() else { return Ok(glam::DVec2::ZERO) };
         if parent.list() != Some(List::Widgets) {
             return Ok(glam::DVec2::ZERO);
         }
-        // Anything of the group with a place of its own tells where the group is.
+        // Any member of the group with a written place reveals the place of the group.
         let items = self.items();
         let unit = self.unit_m();
         let siblings = items.iter().filter(|item| item.record.split().is_some_and(|(of, ..)| of == parent));
@@ -84,7 +85,7 @@ impl Document {
         told.ok_or_else(|| Refusal::PlacedByGroup(record.clone()))
     }
 
-    /// What turns `items` by a quarter: width and depth change places, and what has a direction gets the other one.
+    /// The edits that turn `items` by a quarter: width and depth are exchanged, and an axis changes to the other one.
     ///
     /// # Errors
     /// As [`Document::placing`].
@@ -114,7 +115,7 @@ impl Document {
         Ok(edits)
     }
 
-    /// The text of a control of this kind in this area, in floor metres, with an id that no other has.
+    /// The text of a control of this kind on this area, in floor metres, with a unique id.
     #[must_use]
     pub fn new_control(&self, kind: &str, area: Rect) -> String {
         let id = self.free_id(kind, &[]);
@@ -133,7 +134,7 @@ impl Document {
         format!("at: {}, size: {}", pair(at.x, at.y), pair(size.x, size.y))
     }
 
-    /// `wish`, or the same with a number behind it, such that no record and none of `taken` has this id.
+    /// `wish`, or `wish` with a number, such that no record and none of `taken` has this id.
     #[must_use]
     pub fn free_id(&self, wish: &str, taken: &[String]) -> String {
         let written: Vec<&str> = Address::all(self.root())
@@ -155,7 +156,7 @@ impl Document {
         numbered.unwrap_or_default()
     }
 
-    /// What all of `items` cover.
+    /// The area around all of `records`.
     #[must_use]
     pub fn bounds_of(&self, items: &[Item], records: &[Address]) -> Option<Rect> {
         around(items.iter().filter(|item| records.contains(&item.record)).map(|item| item.area))
@@ -169,7 +170,7 @@ fn other(axis: Axis) -> &'static str {
     }
 }
 
-/// Two numbers as files write them: to a ten-thousandth of a unit, which is below 0.1 mm.
+/// Two numbers in the file's notation: to a ten-thousandth of a unit, which is below 0.1 mm.
 pub(super) fn pair(east: f64, north: f64) -> String {
     let written = |value: f64| {
         let value = (value * 1e4).round() / 1e4;

@@ -1,14 +1,14 @@
-//! A generated text put into one that a person has written: what stands between the values stays.
+//! Updates the values in a hand-written text from a generated one; the text between the values stays.
 
 use super::splice::{Lines, Splice, spliced};
 use crate::format::outline::{Element, Outline, OutlineShape};
 
-/// Most values that are put in one by one; a file that differs in more is another file.
+/// Maximum number of values to update one by one; a file with more differences is a different file.
 const MOST: usize = 2000;
 
-/// `old` made to say what `new` says: comments, order and line breaks stay, and only what differs is written.
+/// `old` with the values of `new`: comments, order and line breaks stay, and only differing values are written.
 ///
-/// Both are RON. Where `old` can't be read, or has too little in common with it, `new` is taken as it is.
+/// Both are RON. If `old` cannot be parsed or differs too much, the result is `new`.
 #[must_use]
 pub fn refit(old: &str, new: &str) -> String {
     let Some(wanted) = Outline::parse(new) else { return new.to_owned() };
@@ -29,7 +29,7 @@ struct Fit<'t> {
 }
 
 impl Fit<'_> {
-    /// What makes the first value alike that differs; `None` if none does.
+    /// The splices for the first value that differs; `None` if all are equal.
     fn next(&self, old: &Outline, wanted: &Outline) -> Option<Vec<Splice>> {
         let text = |value: &Outline| self.new.get(value.span.clone()).unwrap_or_default();
         let is_same = old.shape == wanted.shape && old.name == wanted.name;

@@ -1,35 +1,35 @@
-//! Why a layout was not changed.
+//! Reasons why an edit is refused.
 
 use thiserror::Error;
 
 use super::address::Address;
 use crate::schema::Diagnostics;
 
-/// Why a layout was not changed; it is as it was.
+/// The reason why an edit is refused; the layout is unchanged then.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Refusal {
-    /// The layout could not be used any more.
+    /// The resulting layout would be invalid.
     #[error("{0}")]
     Unreadable(Diagnostics),
     /// There is no such record.
     #[error("there is no {0} in this layout")]
     Missing(Address),
-    /// What was to be put in is not a record.
+    /// The text to insert is not a record.
     #[error("this is not a record such as (id: \"home\", kind: \"button\", at: (1, 1), size: (1, 1))")]
     NotARecord,
-    /// What was to be put in is longer than a layout may be.
+    /// The text to insert exceeds the maximum length of a layout.
     #[error("this is longer than a layout may be")]
     TooLong,
-    /// What is to be one group stands in several lists, such as those of two pages.
+    /// The records for a group stand in several lists, such as those of two pages.
     #[error("only what stands in one list can be one group, and regions, places to stand and grounds can't")]
     Apart,
-    /// Where it is follows from a neighbour in a group that has no place of its own.
+    /// Its place follows from a neighbour, in a group without a place of its own.
     #[error("{0} stands where its group stands; give the group a place of its own first")]
     PlacedByGroup(Address),
 }
 
 impl Refusal {
-    /// The first thing that is wrong, in one line: what, and what to do.
+    /// The first error in one line: the problem and its remedy.
     #[must_use]
     pub fn short(&self) -> String {
         match self {

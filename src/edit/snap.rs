@@ -1,20 +1,20 @@
-//! Places that fit: on tiles, half tiles, full five centimetres, in line with neighbours.
+//! Snapping of places: to tiles, half tiles, multiples of five centimetres, and neighbours.
 
 use glam::Vec2;
 
 use crate::floor::{Geometry, Rect};
 
-/// The finest grid, in metres: half of the 10 cm that a target should at least be wide.
+/// The finest grid, in metres: half of 10 cm, the recommended minimum width of a target.
 pub const FINE_M: f32 = 0.05;
 
-/// What a line that something was put on belongs to; the first one that is near enough wins.
+/// The origin of a guide line; among the lines within reach, the first variant wins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reason {
     /// An edge of a neighbour.
     Edge,
     /// The middle of a neighbour.
     Centre,
-    /// Where two tiles meet.
+    /// The seam between two tiles.
     Tile,
     /// The middle of a tile.
     HalfTile,
@@ -22,18 +22,18 @@ pub enum Reason {
     Fine,
 }
 
-/// A line that something was put on.
+/// A line to which an area snapped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
     /// Whether it runs from south to north; otherwise from west to east.
     pub is_upright: bool,
-    /// Where it is, in metres from the west or south side of the floor.
+    /// Its position, in metres from the west or south side of the floor.
     pub at_m: f32,
-    /// What it belongs to.
+    /// Its origin.
     pub reason: Reason,
 }
 
-/// Which edges of a rectangle are being dragged; all of them when it is moved as a whole.
+/// The edges of a rectangle that are dragged; all of them if it moves as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edges {
     /// The western one.
@@ -50,7 +50,7 @@ impl Edges {
     /// The whole rectangle.
     pub const ALL: Self = Self { west: true, east: true, south: true, north: true };
 
-    /// `area` with these edges moved by `by`; an edge stops `least` short of the one opposite.
+    /// `area` with these edges moved by `by`; an edge stops `least` before the opposite one.
     #[must_use]
     pub fn moved(self, area: Rect, by: Vec2, least: f32) -> Rect {
         if self == Self::ALL {
@@ -73,30 +73,30 @@ impl Edges {
     }
 }
 
-/// What there is to be in line with.
+/// The lines for snapping.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid<'a> {
     /// The floor.
     pub geometry: &'a Geometry,
     /// Neighbours, in floor metres.
     pub neighbours: &'a [Rect],
-    /// How far away a line may be, in metres.
+    /// Maximum distance of a line, in metres.
     pub reach_m: f32,
 }
 
 impl Grid<'_> {
-    /// `area` put on the best lines near it, and those lines: one upright and one level at most.
+    /// `area` snapped to the best lines in reach, and those lines: at most one upright and one level line.
     #[must_use]
     pub fn snap(&self, area: Rect, edges: Edges) -> (Rect, Vec<Guide>) {
         let x = self.along(0, area, edges.west, edges.east);
         let y = self.along(1, area, edges.south, edges.north);
         let by = |found: Option<(f32, Guide)>| found.map_or(0.0, |(by, _)| by);
-        // What was already short enough stays so: lines are nearer than any target is wide.
+        // This cannot make the area too small: lines are nearer than any target is wide.
         let moved = edges.moved(area, Vec2::new(by(x), by(y)), 0.0);
         (moved, [x, y].into_iter().flatten().map(|(_, guide)| guide).collect())
     }
 
-    /// How far to move along one axis, and onto which line.
+    /// The displacement along one axis, and its guide line.
     fn along(&self, axis: usize, area: Rect, low: bool, high: bool) -> Option<(f32, Guide)> {
         let (min, max) = (area.min[axis], area.max[axis]);
         let mut own = Vec::with_capacity(3);

@@ -1,16 +1,16 @@
-//! Changes of a text at single places: fields and list entries put in, replaced and cut out.
+//! Local changes of a text: inserts, replaces and cuts out fields and list entries.
 //!
-//! Everything else keeps its bytes: comments, the order of fields, line breaks, blanks.
+//! All other bytes stay: comments, the order of fields, line breaks, blanks.
 
 use std::ops::Range;
 
 use crate::format::outline::{Element, Outline, OutlineShape};
 use crate::format::scan::scan;
 
-/// What stands deeper by one step.
+/// One step of indentation.
 const STEP: &str = "    ";
 
-/// A place of a text and what is to stand there.
+/// A range of a text and its replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Splice {
     pub(super) at: Range<usize>,
@@ -41,12 +41,12 @@ pub(super) fn spliced(text: &str, mut splices: Vec<Splice>) -> String {
     result
 }
 
-/// An entry that was cut out, to be put in elsewhere, with the comments that belong to it.
+/// An entry with its comments, for insertion elsewhere.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Piece {
     /// The comments on the lines above it, line by line.
     pub(super) above: Vec<String>,
-    /// Its text; further lines as far from the margin as if it stood there.
+    /// Its text; the further lines have the indentation of an entry at the margin.
     pub(super) text: String,
     /// The comment behind it on its line.
     pub(super) comment: String,
@@ -57,7 +57,7 @@ impl Piece {
         Self { text: text.into(), ..Self::default() }
     }
 
-    /// The one entry that `text` holds, with the comments before and behind it; `None` for no entry or several.
+    /// The single entry in `text`, with the comments before and behind it; `None` for no entry or several.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let list = format!("[\n{}\n]", text.trim());
         let root = Outline::parse(&list)?;
@@ -65,7 +65,7 @@ impl Piece {
         let mut piece = Lines(&list).piece(&root, 0)?;
         let before = list.get(2..element.start())?;
         let rest = list.get(element.end()..list.len() - 2)?;
-        // All comments, also such as have an empty line between them.
+        // All comments, including those with an empty line between them.
         piece.above = comments(before).into_iter().flat_map(lines_of).collect();
         let before_comma = comments(list.get(element.value.span.end..element.end())?);
         let mut behind: Vec<String> = before_comma.into_iter().map(closed).collect();
@@ -76,7 +76,7 @@ impl Piece {
         Some(piece)
     }
 
-    /// Its lines as they stand in a list of records, comments and all, behind `indent`.
+    /// Its lines in a list of records, including comments, each behind `indent`.
     pub(super) fn listed(&self, indent: &str) -> String {
         let mut listed: String = self.above.iter().map(|line| format!("{indent}{line}\n")).collect();
         let line_break = format!("\n{indent}");
@@ -88,7 +88,8 @@ impl Piece {
         listed
     }
 
-    /// Its comments for an entry that shares its line with others, before and behind it: none may end the line.
+    /// Its comments for an entry that shares its line, before and behind it, as block comments: none may end the
+    /// line.
     fn inline(&self) -> (String, String) {
         let all_closed = |text: &str| -> Vec<String> { comments(text).into_iter().map(closed).collect() };
         let above = all_closed(&self.above.join("\n"));
@@ -109,7 +110,7 @@ fn lines_of(comment: &str) -> Vec<String> {
     comment.lines().map(|line| line.trim_end().to_owned()).collect()
 }
 
-/// A comment that does not end its line.
+/// The comment as a block comment.
 fn closed(comment: &str) -> String {
     match comment.strip_prefix("//") {
         Some(line) => format!("/* {} */", line.trim().replace("*/", "* /").replace("/*", "/ *")),
@@ -117,7 +118,7 @@ fn closed(comment: &str) -> String {
     }
 }
 
-/// A text with its lines.
+/// A text, split into lines.
 #[derive(Clone, Copy)]
 pub(super) struct Lines<'t>(pub(super) &'t str);
 
@@ -126,14 +127,14 @@ impl<'t> Lines<'t> {
         self.0[..at].rfind('\n').map_or(0, |line_break| line_break + 1)
     }
 
-    /// Where the line ends that holds `at`, before its line break.
+    /// The end of the line around `at`, before its line break.
     fn end(self, at: usize) -> usize {
         let rest = &self.0[at..];
         let line = rest.split('\n').next().unwrap_or_default();
         at + line.strip_suffix('\r').unwrap_or(line).len()
     }
 
-    /// What the line begins with that holds `at`.
+    /// The indentation of the line around `at`.
     fn indent(self, at: usize) -> &'t str {
         let line = &self.0[self.start(at)..at];
         &line[..line.len() - line.trim_start().len()]
@@ -147,7 +148,7 @@ impl<'t> Lines<'t> {
         self.0[self.start(at)..at].trim().is_empty()
     }
 
-    /// The comments that are all that follows `at` on its line, or nothing; `None` if something else follows.
+    /// The rest of the line after `at` if it is empty or holds only comments; otherwise `None`.
     fn only_comment(self, at: usize) -> Option<&'t str> {
         let rest = self.0[at..self.end(at)].trim();
         let mut left = 0;
@@ -158,13 +159,13 @@ impl<'t> Lines<'t> {
         rest.get(left..).is_some_and(|after| after.trim().is_empty()).then_some(rest)
     }
 
-    /// Whether `element` has its lines to itself, but for a comment behind it.
+    /// The comment behind `element`, or an empty text, if no other code shares its lines; otherwise `None`.
     fn owns_lines(self, element: &Element) -> Option<&'t str> {
         self.only_comment(element.end()).filter(|_| self.is_first(element.start()))
     }
 
-    /// The element number `index` of `parent` with the comments that belong to it: those on the lines directly above
-    /// it, and the one behind it. `None` if there is no such element.
+    /// The element number `index` of `parent` with its comments: those on the lines directly above it, and the one
+    /// behind it. `None` if there is no such element.
     pub(super) fn piece(self, parent: &Outline, index: usize) -> Option<Piece> {
         let element = parent.elements.get(index)?;
         let indent = self.indent(element.start());
@@ -186,14 +187,15 @@ impl<'t> Lines<'t> {
         Some(Piece { above, text: dedented.replace("\r\n", "\n"), comment: behind.join(" ") })
     }
 
-    /// Where the comments begin that belong to the element number `index` of `parent`: those before it on its line, and
-    /// those on the lines directly above, without an empty line between; where it begins itself if there are none.
+    /// The start of the comments that belong to the element number `index` of `parent`: those before it on its line,
+    /// and those on the lines directly above, without an empty line between; without comments, the start of the
+    /// element.
     fn above(self, parent: &Outline, index: usize) -> usize {
         let Some(element) = parent.elements.get(index) else { return 0 };
         let before = index.checked_sub(1).and_then(|before| parent.elements.get(before));
         let limit = before.map(Element::end).or(parent.inside.as_ref().map(|inside| inside.start));
         let limit = limit.unwrap_or(element.start());
-        // What is behind the entry before, on its line, belongs to that; but on one line, to what follows.
+        // A comment behind the previous entry, on its line, belongs to that entry; on a shared line, to the next one.
         let rest = self.0.get(limit..element.start()).unwrap_or_default();
         let limit = limit + rest.find('\n').map_or(0, |line_break| line_break + 1);
         let Some(between) = self.0.get(limit..element.start()) else { return element.start() };
@@ -221,7 +223,7 @@ impl<'t> Lines<'t> {
         indented
     }
 
-    /// Puts `piece` in as the element number `index` of `parent`, a record or a list, written as its neighbours are.
+    /// Inserts `piece` as the element number `index` of `parent`, a record or a list, in the style of its neighbours.
     pub(super) fn insert(self, parent: &Outline, index: usize, piece: &Piece) -> Vec<Splice> {
         let own_line = |indent: &str| {
             let line_break = self.line_break();
@@ -238,7 +240,7 @@ impl<'t> Lines<'t> {
             (format!("{above}{}", self.indented(&piece.text, indent)), comment)
         };
         let Some(inside) = &parent.inside else {
-            // A name alone gets brackets.
+            // A bare name gets brackets.
             return vec![Splice::insert(parent.span.end, format!("({})", inline().0))];
         };
         let before = index.min(parent.elements.len()).checked_sub(1).and_then(|at| parent.elements.get(at));
@@ -283,7 +285,7 @@ impl<'t> Lines<'t> {
         }
     }
 
-    /// Takes the element number `index` of `parent` out, with its comma and the comment behind it.
+    /// Removes the element number `index` of `parent`, with its comma and the comment behind it.
     pub(super) fn cut(self, parent: &Outline, index: usize) -> Vec<Splice> {
         let Some(element) = parent.elements.get(index) else { return Vec::new() };
         if self.owns_lines(element).is_some() {
@@ -298,24 +300,24 @@ impl<'t> Lines<'t> {
             return vec![Splice::new(element.start()..element.end() + blanks, "")];
         };
         let between = &self.0[before.end()..element.start()];
-        // An entry of a list leaves the line of the one before it as it is; fields are all of one record.
+        // Removing an entry of a list leaves the previous entry's line unchanged; fields belong to one record.
         let shares_line = !between.contains('\n') || parent.shape != OutlineShape::List;
         let joins = between.trim().is_empty() && shares_line;
         let start = if joins { before.end() } else { element.start() };
-        // The last one leaves no comma behind where it had none.
+        // The last element leaves no comma behind if it had none itself.
         let comma = before.comma.clone().filter(|comma| element.comma.is_none() && comma.end == start);
         let start = comma.map_or(start, |comma| comma.start);
         vec![Splice::new(start..element.end(), "")]
     }
 
-    /// Takes the element number `index` of `parent` out as [`Lines::cut`] does, with the comments above it: they go where
-    /// it goes.
+    /// Removes the element number `index` of `parent` as [`Lines::cut`] does, together with the comments above it,
+    /// which move with it.
     pub(super) fn take(self, parent: &Outline, index: usize) -> Vec<Splice> {
         let mut splices = self.cut(parent, index);
         let above = self.above(parent, index);
         if let [splice] = &mut splices[..] {
             splice.at.start = splice.at.start.min(above);
-            // A line with nothing else goes as a whole.
+            // Also remove the line if nothing else is on it.
             let start = self.start(splice.at.start);
             let is_begin_blank = self.0[start..splice.at.start].trim().is_empty();
             let (end, is_whole) = (self.end(splice.at.end), splice.at.end == self.start(splice.at.end));
@@ -330,7 +332,7 @@ impl<'t> Lines<'t> {
         splices
     }
 
-    /// Writes `value` for the field at `path` of `record`: what is written already is replaced, as little as will do.
+    /// Writes `value` for the field at `path` of `record`, with the smallest possible change of the text.
     pub(super) fn set(self, record: &Outline, path: &[&str], value: &str) -> Vec<Splice> {
         let Some((name, rest)) = path.split_first() else { return self.replace(record, value) };
         match record.field(name) {
@@ -347,7 +349,7 @@ impl<'t> Lines<'t> {
         }
     }
 
-    /// Writes `value` in place of a value, as little as will do.
+    /// Replaces a value by `value`, with the smallest possible change of the text.
     pub(super) fn replace(self, old: &Outline, value: &str) -> Vec<Splice> {
         let written = &self.0[old.span.clone()];
         let number = |text: &str| text.trim().parse::<f64>().ok();
@@ -367,7 +369,7 @@ impl<'t> Lines<'t> {
         vec![Splice::new(old.span.clone(), self.indented(value, self.indent(old.span.start)))]
     }
 
-    /// Takes the field at `path` of `record` out, with a record that has no other field.
+    /// Removes the field at `path` of `record`, and a record that has no other field.
     pub(super) fn unset(self, record: &Outline, path: &[&str]) -> Vec<Splice> {
         let Some((name, rest)) = path.split_first() else { return Vec::new() };
         let is_called = |element: &Element| element.field.as_ref().is_some_and(|(own, _)| own == name);
@@ -382,7 +384,7 @@ impl<'t> Lines<'t> {
     }
 }
 
-/// `value` as the field at `path` of nothing yet.
+/// `value` as the field at `path` of a new record.
 fn nested(path: &[&str], value: &str) -> String {
     path.iter().rev().fold(value.to_owned(), |value, name| format!("({name}: {value})"))
 }

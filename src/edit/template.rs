@@ -1,8 +1,8 @@
-//! Layouts to begin with.
+//! Templates of layouts.
 
 use crate::floor::Geometry;
 
-/// A layout to begin with, made for the floor at hand.
+/// A template for a new layout on the given floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Template {
     /// A region and a place to stand.
@@ -14,10 +14,10 @@ pub enum Template {
 }
 
 impl Template {
-    /// All of them.
+    /// All templates.
     pub const ALL: [Self; 3] = [Self::Empty, Self::FourButtons, Self::TwoPages];
 
-    /// What people call it.
+    /// Its name for users.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -31,7 +31,7 @@ impl Template {
     #[must_use]
     pub fn text(self, geometry: &Geometry) -> String {
         let (columns, rows) = (geometry.columns(), geometry.rows());
-        // A small floor is worked from beside it.
+        // People use a small floor from beside it.
         let has_stance = rows >= 3 && columns >= 2;
         let south = u16::from(has_stance);
         let stance = match has_stance {

@@ -1,4 +1,4 @@
-//! Whole layouts edited at random: bytes that stay, steps that are taken back and done again.
+//! Random edits of whole layouts: unrelated bytes stay, and steps can be undone and redone.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ fn shipped() -> impl Iterator<Item = Document> {
 
 const KINDS: [&str; 6] = ["button", "switch", "slider", "hold", "stepper", "round_button"];
 
-/// A layout that can be used, written as nobody would: comments anywhere, any line breaks, groups, grids and pages.
+/// A valid layout in an unusual style: comments anywhere, any line breaks, groups, grids and pages.
 fn random_layout(rng: &mut Pcg32) -> String {
     let mut places: Vec<(u32, u32)> = (0..6).flat_map(|x| (0..6).map(move |y| (x, y))).collect();
     let mut next = 0;
@@ -93,7 +93,7 @@ fn random_layout(rng: &mut Pcg32) -> String {
     text
 }
 
-/// Bytes of the lines that `span` touches.
+/// The bytes of the lines that `span` touches.
 fn lines(text: &str, span: &Range<usize>) -> Range<usize> {
     let start = text[..span.start].rfind('\n').map_or(0, |at| at + 1);
     start..text[span.end..].find('\n').map_or(text.len(), |at| span.end + at + 1)
@@ -133,7 +133,7 @@ fn random_edit(rng: &mut Pcg32, document: &Document) -> Option<(Vec<Edit>, Range
         9 if controls.len() > 1 => document.deleting(std::slice::from_ref(record)),
         10 => {
             let to = rng.random_range(0..=index + 1);
-            // Comments above records go along.
+            // The comments above records move with them.
             let parent = document.span(&parent)?;
             return Some((vec![Edit::Reorder { record: record.clone(), to }], parent));
         }
@@ -181,7 +181,7 @@ fn every_layout_keeps_its_bytes_and_one_edit_changes_the_lines_of_its_record_onl
     assert!(done > 600 && refused < 350, "{done} done, {refused} refused");
 }
 
-/// So many random edits, drags and texts typed in, all taken back and done again.
+/// Makes `count` random edits, drags and typed changes, undoes all of them and redoes them.
 fn undone_and_redone(count: usize) {
     let mut rng = Pcg32::seed_from_u64(count as u64);
     let mut document = open("map", builtin_layout("map").unwrap());
@@ -269,7 +269,7 @@ fn an_id_is_renamed_where_neighbours_and_buttons_refer_to_it() {
     let expected = text.replace("\"a\"", "\"z\"").replace("\"p\"", "\"front\"");
     assert_eq!(document.text(), expected);
 
-    // Moved by hand, it no longer stands beside the other one, and keeps the size that it had from it.
+    // After a move it has a place of its own, and keeps the size that it had from its neighbour.
     let items = document.items();
     let b = items.iter().find(|item| item.name == "b").unwrap();
     let by = Vec2::new(0.152, 0.0);

@@ -1,4 +1,4 @@
-//! When a control counts as pressed, set from elsewhere than its text.
+//! Sets the thresholds of a control from measurements instead of its text.
 
 use super::address::Address;
 use super::change::Edit;
@@ -7,13 +7,14 @@ use crate::format::number::plain;
 use crate::units::Newtons;
 use crate::widget::Thresholds;
 
-/// Most of the press force at which a control may let go without chattering under a foot that sways, as the reader
-/// warns.
+/// Maximum ratio of release force to press force without chatter under a swaying foot, as the reader's warning
+/// states.
 const RELEASE_MOST: f32 = 0.8;
 
 impl Document {
-    /// What makes the controls of `record` take `press` newtons, `now` being what they take: both thresholds in whole
-    /// newtons, the lower one in the same proportion as before and so that it stays below.
+    /// The edits that set the press threshold of `record`'s controls to `press` newtons; `now` holds the present
+    /// thresholds. Both become whole newtons; the release threshold keeps its ratio to the press threshold, at most
+    /// 0.8.
     #[must_use]
     pub fn pressing(record: &Address, now: Thresholds, press: Newtons) -> Vec<Edit> {
         let press = press.0.round();
@@ -23,7 +24,8 @@ impl Document {
         vec![set("press_n", press), set("release_n", release)]
     }
 
-    /// What makes them let go below `release` newtons and leaves the press as it is: at most 0.8 of that.
+    /// The edits that set the release threshold to `release` newtons; at most 0.8 of the press threshold, which
+    /// stays.
     #[must_use]
     pub fn releasing(record: &Address, now: Thresholds, release: Newtons) -> Vec<Edit> {
         let most = (RELEASE_MOST * now.press.0).floor().max(1.0);

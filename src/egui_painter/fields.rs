@@ -2,11 +2,11 @@
 
 use egui::{Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
 
-/// The pictures of a scene's fields, which stay with the graphics card until they change.
+/// The images of a scene's fields, which stay on the graphics card until they change.
 #[derive(Default)]
 pub(super) struct Fields {
     shown: Vec<Field>,
-    /// How many of them the frame at hand has needed so far.
+    /// Number of fields that the present frame has used so far.
     used: usize,
 }
 
@@ -21,12 +21,13 @@ impl Fields {
         self.used = 0;
     }
 
-    /// Ends a frame: fields that it did not have are dropped.
+    /// Ends a frame: drops fields that it did not use.
     pub(super) fn end(&mut self) {
         self.shown.truncate(self.used);
     }
 
-    /// The next field, `size` dots wide and high; sent to the graphics card if it has changed since the last frame.
+    /// The next field, `size` pixels wide and high; uploaded to the graphics card if it has changed since the last
+    /// frame.
     pub(super) fn show(
         &mut self,
         ctx: &egui::Context,

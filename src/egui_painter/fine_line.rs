@@ -5,36 +5,35 @@ use egui::{
     self, Color32, ColorImage, Pos2, Stroke, TextureHandle, TextureId, TextureOptions, Vec2, pos2, vec2,
 };
 
-/// Widest line that is drawn this way, in points.
+/// Maximum width of a line that is drawn as a textured strip, in points.
 const WIDEST: f32 = 3.0;
 
-/// How far the picture of a line reaches beyond its edges, in points: as far as soft edges do.
+/// Margin of the texture beyond the edges of a line, in points: the reach of soft edges.
 const SOFT: f32 = 1.0;
 
-/// Dots across the picture of a line, and widths that there are pictures of.
+/// Texture size: pixels across a line, and number of different widths.
 const ACROSS: usize = 32;
 const WIDTHS: usize = 16;
 
-/// The farthest that a corner sticks out, in half widths.
+/// Mitre limit: maximum distance of a corner's tip, in half widths.
 const MITRE: f32 = 2.0;
 
-/// Draws fine lines as one strip of triangles each, with the picture of a line on it.
+/// Draws each fine line as one strip of triangles with the texture of a line.
 ///
-/// egui makes soft edges of triangles of their own, side by side with the line's. For lines hardly wider
-/// than their edges that is two to three times the work, which counts where thousands of them are drawn
-/// without a graphics card.
+/// egui draws soft edges as separate triangles beside those of the line. For lines hardly wider than their edges,
+/// that is two to three times the work, which matters for thousands of lines without a graphics card.
 #[derive(Default)]
 pub(super) struct FineLine {
     profile: Option<TextureHandle>,
 }
 
 impl FineLine {
-    /// Whether lines of this width, in points, look well this way.
+    /// Whether lines of this width, in points, look good as a textured strip.
     pub(super) fn suits(width: f32) -> bool {
         width > 0.0 && width <= WIDEST
     }
 
-    /// An open line through `points`; nothing for less than two.
+    /// An open line through `points`; empty for less than two points.
     pub(super) fn mesh(&mut self, ctx: &egui::Context, points: &[Pos2], stroke: Stroke) -> Mesh {
         let profile = self
             .profile
@@ -43,13 +42,13 @@ impl FineLine {
     }
 }
 
-/// How much of a dot, `away` from the middle of a line of this width, the line covers.
+/// The share of a pixel at the distance `away` from the middle of a line of this width that the line covers.
 fn coverage(width: f32, away: f32) -> f32 {
     let (half, low, high) = (0.5 * width, away - 0.5, away + 0.5);
     (high.min(half) - low.max(-half)).clamp(0.0, 1.0)
 }
 
-/// Across a line from left to right, and from no width to the widest from top to bottom.
+/// The texture: across a line from left to right, and from width 0 to the maximum width from top to bottom.
 fn profile() -> ColorImage {
     let dots = (0..WIDTHS).flat_map(|row| {
         let width = WIDEST * row as f32 / (WIDTHS - 1) as f32;
@@ -88,11 +87,12 @@ fn strip(profile: TextureId, points: &[Pos2], Stroke { width, color }: Stroke) -
     mesh
 }
 
-/// Which way the edge lies from a corner between two ways, as far as the edges of both are 1 away from them.
+/// The offset from a corner to its edge, for edges at distance 1 from both directions: of length 1 / cos(half the
+/// turn), at most `MITRE`.
 fn mitre(before: Vec2, after: Vec2) -> Vec2 {
     let along = (before + after).normalized();
     let across = vec2(-along.y, along.x);
-    // The cosine of half the turn; a way of no length counts as straight on.
+    // The cosine of half the turn; a direction of length zero counts as straight on.
     let straight = along.dot(if before == Vec2::ZERO { after } else { before });
     if across == Vec2::ZERO { vec2(-before.y, before.x) } else { across / straight.max(1.0 / MITRE) }
 }

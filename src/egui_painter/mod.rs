@@ -1,4 +1,4 @@
-//! Draws a scene with egui: for the window, and for the widget that the crate `underfoot-egui` has for other apps.
+//! Draws a scene with egui: for the window, and for the widget that the crate `underfoot-egui` offers to other apps.
 
 mod fields;
 mod fine_line;
@@ -23,10 +23,10 @@ use crate::floor;
 use crate::layout::Colour;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Piece, Scene, Stroke, outline_of, pieces};
 
-/// Radius up to which egui has pictures of discs, in points: two triangles each.
+/// Maximum radius for which egui has textures of discs, in points: two triangles each.
 const LARGEST_DISC: f32 = 8.0;
 
-/// What is kept from frame to frame: one for each place where a scene is drawn.
+/// The cached textures from frame to frame: one palette for each place where a scene is drawn.
 #[derive(Default)]
 pub struct Palette {
     line: FineLine,
@@ -34,7 +34,7 @@ pub struct Palette {
     patches: Patches,
 }
 
-/// Draws `scene` where `map` says.
+/// Draws `scene`, placed by `map`.
 pub fn paint(painter: &egui::Painter, palette: &mut Palette, scene: &Scene, map: ScreenFromFloor) {
     palette.fields.begin();
     let mut brush = Brush { painter, palette, map, points: Vec::new(), texts: Vec::new() };
@@ -46,13 +46,13 @@ pub fn paint(painter: &egui::Painter, palette: &mut Palette, scene: &Scene, map:
     brush.palette.fields.end();
 }
 
-/// egui's colour for one of ours.
+/// Converts a colour to egui's type.
 #[must_use]
 pub fn color(colour: Colour) -> Color32 {
     Color32::from_rgb(colour.red, colour.green, colour.blue)
 }
 
-/// egui's colour for ink that lets something through.
+/// Converts an ink with its opacity to egui's colour.
 fn ink_color(ink: Ink) -> Color32 {
     let alpha = (ink.opacity.clamp(0.0, 1.0) * 255.0).round() as u8;
     Color32::from_rgba_unmultiplied(ink.colour.red, ink.colour.green, ink.colour.blue, alpha)
@@ -69,13 +69,13 @@ struct Brush<'a> {
     palette: &'a mut Palette,
     map: ScreenFromFloor,
     points: Vec<Pos2>,
-    /// What is still to be written, and where: letters are on a texture of their own, and going from one to another and
-    /// back for each control takes longer than to draw it.
+    /// Texts that wait to be drawn, with their areas: letters use a texture of their own, and switching textures for
+    /// each control takes longer than drawing it.
     texts: Vec<(Rect, TextShape)>,
 }
 
 impl Brush<'_> {
-    /// Writes what is still to be written if `mark` might lie over some of it.
+    /// Draws the waiting texts if `mark` might cover one of them.
     fn write_under(&mut self, scene: &Scene, mark: &Mark) {
         if self.texts.is_empty() || matches!(mark, Mark::Text { .. }) {
             return;
@@ -90,7 +90,7 @@ impl Brush<'_> {
         self.painter.extend(self.texts.drain(..).map(|(_, text)| text.into()));
     }
 
-    /// What `mark` may cover, at least.
+    /// An area that contains all of `mark`.
     fn covered(&self, scene: &Scene, mark: &Mark) -> Rect {
         let line = |paint: &Paint| paint.stroke.map_or(0.0, |stroke| self.stroke(&stroke).width);
         let around = |points: &[Vec2]| {
@@ -101,7 +101,7 @@ impl Brush<'_> {
             Mark::Ellipse { centre, radii, paint } => {
                 (self.map.rect(floor::Rect::from_centre_size(*centre, 2.0 * *radii)), line(paint))
             }
-            // A sharp corner's tip is some widths long.
+            // The tip of a sharp corner is some line widths long.
             Mark::Path { points, paint, .. } => (around(scene.points(*points)), 4.0 * line(paint)),
             Mark::Field { area, .. } => (self.map.rect(*area), 0.0),
             Mark::Band { points, reach, .. } => {
@@ -177,7 +177,7 @@ impl Brush<'_> {
         self.painter.ctx().pixels_per_point()
     }
 
-    /// A box with round corners; with endless ones it is a circle.
+    /// A box with round corners; an infinite radius makes a circle.
     fn rounded(&mut self, rect: Rect, radius: f32, paint: &Paint) {
         let (fill, stroke) = (fill(paint), self.plain_stroke(paint));
         let is_round = radius == f32::INFINITY;
@@ -204,19 +204,19 @@ impl Brush<'_> {
         }
     }
 
-    /// A rectangle of changing colour: a picture of one dot for each point of its grid, drawn large.
+    /// A rectangle of varying colour: an image with one pixel for each point of its grid, scaled up.
     fn field(&mut self, area: floor::Rect, columns: u32, inks: &[Ink]) {
         let size = [columns as usize, inks.len() / columns as usize];
         let colors = inks.iter().map(|ink| ink_color(*ink));
         let texture = self.palette.fields.show(self.painter.ctx(), size, colors);
-        // From the middle of the outermost dots; rows begin in the south.
+        // From the middle of the outermost pixels; rows begin in the south.
         let margin = vec2(0.5 / size[0] as f32, 0.5 / size[1] as f32);
         let (west, east, south, north) = (margin.x, 1.0 - margin.x, margin.y, 1.0 - margin.y);
         let uv = Rect::from_min_max(pos2(west, north), pos2(east, south));
         self.painter.image(texture, self.map.rect(area), uv, Color32::WHITE);
     }
 
-    /// Lines and the same lines further off, with what lies between.
+    /// The area between a line and the same line moved by `reach`.
     fn band(&self, points: &[Vec2], reach: Vec2, near: Color32, far: Color32) {
         let mut mesh = Mesh::default();
         for (at, point) in (0..).zip(points) {
@@ -231,7 +231,7 @@ impl Brush<'_> {
         self.painter.add(Shape::mesh(mesh));
     }
 
-    /// The inside of a path, as triangles around the mean of its points.
+    /// The interior of a path, as triangles around the mean of its points.
     fn fan(&self, color: Color32) {
         let count = self.points.len() as u32;
         let sum = self.points.iter().fold(egui::Vec2::ZERO, |sum, point| sum + point.to_vec2());
@@ -245,11 +245,11 @@ impl Brush<'_> {
     }
 
     fn stroke(&self, stroke: &Stroke) -> egui::Stroke {
-        // Below this a line would dissolve.
+        // A thinner line would fade away.
         egui::Stroke::new((stroke.width_m * self.map.scale()).max(0.7), ink_color(stroke.ink))
     }
 
-    /// The outline, if it is not broken.
+    /// The outline, unless it is dashed.
     fn plain_stroke(&self, paint: &Paint) -> egui::Stroke {
         match &paint.stroke {
             Some(stroke) if stroke.dash.is_none() => self.stroke(stroke),
@@ -257,7 +257,7 @@ impl Brush<'_> {
         }
     }
 
-    /// The outline, if it is broken.
+    /// Draws the outline if it is dashed.
     fn dashes(&mut self, scene: &Scene, mark: &Mark, paint: &Paint) {
         let Some((stroke, (on, off))) = paint.stroke.and_then(|stroke| Some((stroke, stroke.dash?))) else {
             return;
@@ -279,7 +279,7 @@ impl Brush<'_> {
         let font = FontId::new(size, FontFamily::Proportional);
         let set = |piece: Piece<'_>| {
             let galley = self.painter.layout_no_wrap(piece.text.into_owned(), font.clone(), color);
-            // Each piece may have a font of its own; they share a base line.
+            // Each piece may have its own font; all share one base line.
             let base = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(size, |it| it.pos.y);
             (galley, base)
         };
@@ -290,7 +290,7 @@ impl Brush<'_> {
             Anchor::Middle => -0.5 * width,
             Anchor::End => -width,
         };
-        // egui turns clockwise and about the upper left corner.
+        // egui rotates clockwise and about the upper left corner.
         let turn = epaint::emath::Rot2::from_angle(-lettering.turn_rad);
         for (galley, base) in pieces {
             let corner = turn * vec2(along, -base);
@@ -299,7 +299,7 @@ impl Brush<'_> {
             shape.angle = -lettering.turn_rad;
             let area = shape.visual_bounding_rect();
             if lettering.strong {
-                // The font has one weight; printed twice, its soft edges get heavier.
+                // The font has one weight; drawing the text twice makes its soft edges heavier.
                 self.texts.push((area, shape.clone()));
             }
             self.texts.push((area, shape));
@@ -315,7 +315,7 @@ fn fill(paint: &Paint) -> Color32 {
 mod tests {
     use super::*;
 
-    /// The texts that are painted for one line, from left to right, and the places of their base lines.
+    /// The texts that are drawn for one line, from left to right, with the positions of their base lines.
     fn painted(text: &str, lettering: Lettering) -> Vec<(String, Pos2)> {
         let mut scene = Scene::new();
         scene.clear(floor::Rect::from_min_size(Vec2::ZERO, Vec2::ONE), Colour::rgb(0, 0, 0));

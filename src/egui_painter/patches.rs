@@ -1,24 +1,24 @@
-//! Boxes with round corners as nine pieces of a small picture each.
+//! Boxes with round corners as nine pieces of a small texture each.
 //!
-//! Without a graphics card a triangle costs as much as a hundred pixels, and the soft edge of a round corner takes
-//! dozens of them. As a picture it takes two. A box's corners, and one dot of each side and of its inside that is drawn
-//! long, are kept in one texture for all boxes that look alike, whatever their size.
+//! Without a graphics card, a triangle costs as much as a hundred pixels, and the soft edge of a round corner takes
+//! dozens of triangles. As a textured piece it takes two. One texture holds a box's corners, one pixel of each side
+//! and one of its inside, which are stretched, for all boxes with the same look, whatever their size.
 
 use std::collections::HashMap;
 
 use egui::epaint::Mesh;
 use egui::{Color32, ColorImage, Context, Rect, Stroke, TextureHandle, TextureOptions, pos2, vec2};
 
-/// Side of the texture, in dots.
+/// Side of the texture, in pixels.
 const SIDE: usize = 512;
 
-/// The largest corner that is kept as a picture, in pixels; few things have larger ones.
+/// Maximum side of a corner in the texture, in pixels; few boxes have larger ones.
 const LARGEST: usize = 48;
 
-/// Parts of a pixel that radii and widths are told apart by.
+/// Resolution of radii and widths, in parts of a pixel.
 const PARTS: f32 = 16.0;
 
-/// How a box looks, whatever its size. Lengths are in parts of a pixel.
+/// The look of a box, independent of its size. Lengths are in parts of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Look {
     radius: u16,
@@ -27,31 +27,32 @@ pub(super) struct Look {
     color: Color32,
 }
 
-/// What goes around a box, in parts of a pixel.
+/// The edge of a box, in parts of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Line {
     /// A line of this width along the edge, half of it on each side; 0 for none.
     Stroke(u16),
-    /// A shade that fades away within so much.
+    /// A shade that fades out linearly over this distance.
     Halo(u16),
 }
 
-/// Where the picture of a look is: its upper left corner, and the side of one of its corners, in dots.
+/// The place of a look in the texture: its upper left corner, and the side of one of its corners, in pixels.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     at: [usize; 2],
     corner: usize,
 }
 
-/// The pictures of boxes, in one texture.
+/// The images of boxes, in one texture.
 #[derive(Default)]
 pub(super) struct Patches {
     texture: Option<TextureHandle>,
     places: HashMap<Look, Place>,
-    /// Where the next picture goes, and the height of the row that it is in.
+    /// The place of the next image, and the height of its row.
     next: [usize; 2],
     row: usize,
-    /// The first frame that found no room. What that frame has drawn must stay: it is painted at its end.
+    /// The first frame in which the texture was full. The images of that frame must stay, because it is painted at
+    /// its end.
     full_in: Option<u64>,
 }
 
@@ -68,7 +69,7 @@ impl Look {
         Self { radius: parts(radius * pixels_per_point), line, fill: Color32::TRANSPARENT, color }
     }
 
-    /// How far ink reaches beyond the edge, and how far inside of it nothing changes any more, in pixels.
+    /// The reach of ink outside the edge, and the depth inside it beyond which the colour is constant, in pixels.
     fn reach(&self) -> (f32, f32) {
         let radius = f32::from(self.radius) / PARTS;
         match self.line {
@@ -80,7 +81,7 @@ impl Look {
         }
     }
 
-    /// The colour of a dot whose middle lies so many pixels outside the edge.
+    /// The colour of a pixel with its middle `off` pixels outside the edge.
     fn ink(&self, off: f32) -> Color32 {
         let scaled = |color: Color32, share: f32| color.gamma_multiply(share.clamp(0.0, 1.0));
         match self.line {
@@ -88,7 +89,8 @@ impl Look {
             Line::Halo(reach) => scaled(self.color, 1.0 - off * PARTS / f32::from(reach.max(1))),
             Line::Stroke(width) => {
                 let width = f32::from(width) / PARTS;
-                // As much ink as the line has, highest in its middle.
+                // A triangular profile over `half` pixels on each side, with the peak min(width / half, 1): up to one
+                // pixel, it has the line's total ink.
                 let half = 0.5 * (width + 1.0);
                 let line = if width <= 0.0 {
                     0.0
@@ -103,11 +105,11 @@ impl Look {
         }
     }
 
-    /// Its picture: two corners and one dot between them to each side.
+    /// The image: two corners, and between them one pixel for each side.
     fn picture(&self, corner: usize, edge: f32) -> ColorImage {
         let side = 2 * corner + 1;
         let radius = f32::from(self.radius) / PARTS;
-        // From the outside in, the same from either side.
+        // The distance from the outer edge, the same from both sides.
         let inwards = |at: usize| at.min(side - 1 - at) as f32 + 0.5 - edge;
         let dots = (0..side * side).map(|dot| {
             let (x, y) = (inwards(dot % side), inwards(dot / side));
@@ -122,7 +124,7 @@ impl Look {
     }
 }
 
-/// `above` on `below`.
+/// Composites `above` over `below`.
 fn over(below: Color32, above: Color32) -> Color32 {
     let left = 1.0 - f32::from(above.a()) / 255.0;
     let mixed = |below: u8, above: u8| (f32::from(above) + left * f32::from(below)).round() as u8;
@@ -140,12 +142,12 @@ fn parts(pixels: f32) -> u16 {
 }
 
 impl Patches {
-    /// A box around `rect`, whose sides lie on whole pixels or all in their middles; `None` for one that is drawn
-    /// otherwise.
+    /// A box around `rect`, with its sides all on pixel edges or all on pixel centres; `None` if it needs another
+    /// method.
     pub(super) fn mesh(&mut self, ctx: &Context, rect: Rect, look: Look) -> Option<Mesh> {
         let scale = ctx.pixels_per_point();
         let (beyond, within) = look.reach();
-        // On whole pixels or in their middles, whatever was rounded on the way.
+        // Round to pixel edges or centres, which removes earlier rounding errors.
         let on_halves = |x: f32| 0.5 * (2.0 * x * scale).round();
         let outer = |x: f32| (on_halves(x) - beyond).floor();
         let (left, top) = (outer(rect.left()), outer(rect.top()));
@@ -175,7 +177,7 @@ impl Patches {
         Some(mesh)
     }
 
-    /// Where the picture of this look is; it is made if need be.
+    /// The place of the image of this look; creates the image if necessary.
     fn place(&mut self, ctx: &Context, look: Look, corner: usize, edge: f32) -> Option<Place> {
         let frame = ctx.cumulative_frame_nr();
         if self.full_in.is_some_and(|full| full != frame) {
@@ -185,7 +187,7 @@ impl Patches {
         if let Some(place) = self.places.get(&look) {
             return Some(*place);
         }
-        // A dot between neighbours keeps them apart where a picture is drawn askew.
+        // One pixel between neighbours keeps them apart where an image is drawn with an offset.
         let side = 2 * corner + 2;
         if self.next[0] + side > SIDE {
             self.next = [0, self.next[1] + self.row];
@@ -209,10 +211,10 @@ impl Patches {
     }
 }
 
-/// Along one side of a box `length` pixels long: where its first corner, the stretch between, and its last corner begin
-/// and end, in pixels and in the picture's dots, which begin at `start`.
+/// The three pieces along one side of a box `length` pixels long: the ends of its first corner, of the part between,
+/// and of its last corner, in pixels and in the image's pixels, which begin at `start`.
 fn pieces(length: f32, corner: f32, start: f32) -> [[f32; 4]; 3] {
-    // Of a box smaller than its two corners each gives half.
+    // A box smaller than its two corners shows half of each.
     let (first, last) = (corner.min((0.5 * length).ceil()), corner.min((0.5 * length).floor()));
     let (middle, end) = (start + corner + 0.5, start + 2.0 * corner + 1.0);
     [
@@ -231,7 +233,7 @@ mod tests {
 
     const FILL: Color32 = Color32::from_rgb(40, 90, 160);
 
-    /// What a box covers, in square pixels of full ink, drawn as pieces.
+    /// The ink of a box drawn as pieces, in square pixels of full opacity.
     fn ink(mesh: &Mesh, picture: &ColorImage, at: [usize; 2]) -> f32 {
         let dot = |uv: Pos2| {
             let at = [0, 1].map(|side| (uv[side] * SIDE as f32 - at[side] as f32) as usize);
@@ -258,7 +260,7 @@ mod tests {
         (ctx, Patches::default())
     }
 
-    /// Ends a frame; egui wants the textures of each to be taken.
+    /// Ends a frame; egui requires that the textures of each frame are taken.
     fn frame(ctx: &Context) {
         ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
     }

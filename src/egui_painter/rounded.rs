@@ -1,17 +1,18 @@
 //! Boxes with round corners as few triangles.
 //!
-//! Without a graphics card each triangle costs as much as a hundred pixels. egui gives every quarter of a corner eight
-//! steps and every edge a soft border of its own; on a page of a hundred controls that is more than half of the frame.
+//! Without a graphics card, each triangle costs as much as a hundred pixels. egui draws each quarter circle in eight
+//! steps and each edge with a separate soft border; on a page of a hundred controls that is more than half of the
+//! frame.
 
 use std::f32::consts::FRAC_PI_2;
 
 use egui::epaint::{Color32, Mesh};
 use egui::{Pos2, Rect, Stroke, Vec2, pos2};
 
-/// A rounded box about to be drawn.
+/// The outline of a rounded box.
 pub(super) struct Rounded {
-    /// Clockwise from the right end of its upper side, for each point of the outline: the middle of its corner's
-    /// circle, the way from there out over the corner, and the way to the point.
+    /// Clockwise from the right end of its upper side, for each point of the outline: the centre of its corner's
+    /// circle, the outward direction of the corner, and the direction from the centre to the point.
     rim: Vec<(Pos2, Vec2, Vec2)>,
     radius: f32,
     /// Width of a soft edge, in points: one pixel.
@@ -19,7 +20,7 @@ pub(super) struct Rounded {
 }
 
 impl Rounded {
-    /// A box with corners of `radius` points, on a screen with so many pixels per point.
+    /// A box with corners of `radius` points, on a screen with `pixels_per_point`.
     pub(super) fn new(rect: Rect, radius: f32, pixels_per_point: f32) -> Self {
         let soft = 1.0 / pixels_per_point;
         let radius = radius.clamp(0.0, 0.5 * rect.size().min_elem().max(0.0));
@@ -35,22 +36,23 @@ impl Rounded {
         Self { rim: rim.collect(), radius, soft }
     }
 
-    /// The outline, so many points further out.
+    /// The outline, moved outwards by `off` points.
     fn at(&self, off: f32) -> impl Iterator<Item = Pos2> {
         let reach = self.radius + off;
-        // Further in than its circle's middle a corner is a sharp one.
+        // Inside the centre of its circle, a corner is a sharp one.
         self.rim.iter().map(move |(corner, out, way)| *corner + reach.max(0.0) * *way + reach.min(0.0) * *out)
     }
 
-    /// Its inside. A line along the edge that hides it makes a soft edge of its own needless.
+    /// Fills the box. A line along the edge makes a soft edge of the filling unnecessary.
     pub(super) fn fill(&self, mesh: &mut Mesh, color: Color32, edge_is_hidden: bool) {
         let inset = if edge_is_hidden { 0.0 } else { -0.5 * self.soft };
         let first = mesh.vertices.len() as u32;
         self.at(inset).for_each(|point| mesh.colored_vertex(point, color));
-        // Across from right to left and on downwards: slivers from one point would touch every pixel several times.
+        // In strips from right to left, from top to bottom: slivers from one point would touch every pixel several
+        // times.
         let count = self.rim.len() as u32;
         let half = count / 2;
-        // The rim's first half runs down the right side, its second half back up the left.
+        // The first half of the rim goes down the right side, the second half up the left side.
         for row in 0..half - 1 {
             let (right, below) = (first + row, first + row + 1);
             let (left, left_below) = (first + count - 1 - row, first + count - 2 - row);
@@ -62,12 +64,13 @@ impl Rounded {
         }
     }
 
-    /// A line along its edge, half of it on each side.
+    /// Draws a line along the edge, half of it on each side.
     pub(super) fn stroke(&self, mesh: &mut Mesh, stroke: Stroke) {
         let Stroke { width, color } = stroke;
         let clear = Color32::TRANSPARENT;
         if width <= 1.6 * self.soft {
-            // As much ink as the line has, highest in its middle.
+            // A triangular profile over `half` on each side, with the peak min(width / half, 1): up to one pixel, it
+            // has the line's total ink.
             let half = 0.5 * (width + self.soft);
             let peak = color.gamma_multiply((width / half).min(1.0));
             self.ring(mesh, (-half, clear), (0.0, peak));
@@ -80,12 +83,13 @@ impl Rounded {
         }
     }
 
-    /// A shade around it that fades away within `reach` points.
+    /// Draws a shade around the box that fades out linearly within `reach` points.
     pub(super) fn halo(&self, mesh: &mut Mesh, reach: f32, color: Color32) {
         self.ring(mesh, (0.0, color), (reach, Color32::TRANSPARENT));
     }
 
-    /// What lies between two lines along the edge, each so many points outside it and of its own colour.
+    /// Draws the area between two lines along the edge, each at its distance outside the edge and with its own
+    /// colour.
     fn ring(&self, mesh: &mut Mesh, inner: (f32, Color32), outer: (f32, Color32)) {
         let first = mesh.vertices.len() as u32;
         for (near, far) in self.at(inner.0).zip(self.at(outer.0)) {
@@ -101,17 +105,17 @@ impl Rounded {
     }
 }
 
-/// The ways out over the corners, clockwise from the upper right.
+/// The outward directions of the corners, clockwise from the upper right.
 const OUT: [Vec2; 4] =
     [Vec2::new(1.0, -1.0), Vec2::new(1.0, 1.0), Vec2::new(-1.0, 1.0), Vec2::new(-1.0, -1.0)];
 
-/// Steps of a quarter circle that stay within a seventh of a pixel of it.
+/// Number of steps of a quarter circle for a deviation of at most a seventh of a pixel.
 fn steps(radius_px: f32) -> usize {
     // The sagitta of an arc of pi / 2n is r (1 - cos(pi / 4n)), about 0.31 r / n^2.
     ((0.31 * radius_px / 0.14).sqrt().ceil() as usize).clamp(1, 24)
 }
 
-/// `rect` with its sides on whole pixels, or in their middles under a line of an odd number of pixels.
+/// `rect` with its sides on pixel edges, or on pixel centres under a line of an odd number of pixels.
 pub(super) fn on_pixels(rect: Rect, stroke: f32, pixels_per_point: f32) -> Rect {
     let is_odd = (stroke * pixels_per_point).round() as u32 % 2 == 1;
     let shift = if is_odd { 0.5 } else { 0.0 };
@@ -123,7 +127,7 @@ pub(super) fn on_pixels(rect: Rect, stroke: f32, pixels_per_point: f32) -> Rect 
 mod tests {
     use super::*;
 
-    /// What a mesh covers, in square points of full ink.
+    /// The ink of a mesh, in square points of full opacity.
     fn ink(mesh: &Mesh) -> f32 {
         let area = |corners: &[u32]| {
             let [a, b, c] = [0, 1, 2].map(|at| mesh.vertices[corners[at] as usize]);

@@ -1,16 +1,16 @@
-//! Floor metres to screen points and back.
+//! The transform from floor metres to screen points and back.
 
 use egui::{Pos2, Rect, pos2, vec2};
 use glam::Vec2;
 
 use crate::floor;
 
-/// From floor metres to screen points and back: north is up.
+/// The transform from floor metres to screen points and back: north is up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenFromFloor {
-    /// Where the floor's south-west corner is on the screen.
+    /// The floor's south-west corner on the screen.
     origin: Pos2,
-    /// Points to a metre.
+    /// Points per metre.
     scale: f32,
 }
 
@@ -19,38 +19,38 @@ impl ScreenFromFloor {
     #[must_use]
     pub fn fit(bounds: floor::Rect, screen: Rect) -> Self {
         let size = bounds.size().max(Vec2::splat(1e-3));
-        // A window made as small as it goes still has something to divide by.
+        // A minimal window must not reduce the scale to zero.
         let scale = (screen.width() / size.x).min(screen.height() / size.y).max(1.0);
         let middle = bounds.centre();
         let origin = screen.center() - vec2(middle.x * scale, -middle.y * scale);
         Self { origin, scale }
     }
 
-    /// Points to a metre.
+    /// Points per metre.
     #[must_use]
     pub fn scale(self) -> f32 {
         self.scale
     }
 
-    /// A place in floor metres, in points.
+    /// Converts a position from floor metres to points.
     #[must_use]
     pub fn point(self, floor: Vec2) -> Pos2 {
         pos2(self.origin.x + floor.x * self.scale, self.origin.y - floor.y * self.scale)
     }
 
-    /// An area in floor metres, in points.
+    /// Converts an area from floor metres to points.
     #[must_use]
     pub fn rect(self, floor: floor::Rect) -> Rect {
         Rect::from_two_pos(self.point(floor.min), self.point(floor.max))
     }
 
-    /// A place in points, in floor metres.
+    /// Converts a position from points to floor metres.
     #[must_use]
     pub fn floor(self, screen: Pos2) -> Vec2 {
         Vec2::new(screen.x - self.origin.x, self.origin.y - screen.y) / self.scale
     }
 
-    /// A way in points, in floor metres.
+    /// Converts a displacement from points to floor metres.
     #[must_use]
     pub fn floor_vector(self, screen: egui::Vec2) -> Vec2 {
         Vec2::new(screen.x, -screen.y) / self.scale

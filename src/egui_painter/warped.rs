@@ -1,4 +1,4 @@
-//! Scenes drawn through a warp, as a projector needs them.
+//! Draws scenes through a warp, for projectors.
 
 use egui::epaint::{ClippedShape, Primitive};
 use egui::{LayerId, Order, Painter, Pos2, Rect, Shape};
@@ -6,10 +6,11 @@ use egui::{LayerId, Order, Painter, Pos2, Rect, Shape};
 use super::{Palette, ScreenFromFloor, paint};
 use crate::scene::Scene;
 
-/// Draws `scene` where `map` says and then moves every corner of every shape by `warp`.
+/// Draws `scene`, placed by `map`, and then moves every vertex by `warp`.
 ///
-/// Shapes are cut into triangles first, finely for `map`; so `map` should be about as large as the picture. The inside
-/// of a triangle is drawn evenly: letters and outlines are exact, the shading of a large field of colours only nearly.
+/// Shapes become triangles first, with the resolution of `map`; so `map` must be about as large as the picture.
+/// Inside a triangle, the warp is linear: letters and outlines are exact, the shading of a large field of colours is
+/// approximate.
 pub fn paint_warped(
     painter: &Painter,
     palette: &mut Palette,
@@ -18,7 +19,7 @@ pub fn paint_warped(
     warp: impl Fn(Pos2) -> Pos2,
 ) {
     let ctx = painter.ctx();
-    // A layer of its own, emptied before anybody sees it.
+    // A separate layer, emptied before it is displayed.
     let layer = LayerId::new(Order::Background, painter.layer_id().id.with("flat"));
     paint(&Painter::new(ctx.clone(), layer, Rect::EVERYTHING), palette, scene, map);
     let flat = ctx.graphics_mut(|graphics| std::mem::take(graphics.entry(layer)));

@@ -1,4 +1,4 @@
-//! Which font has a letter.
+//! Finds the font for a letter.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -6,11 +6,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use epaint::text::{FallbackRequest, FontData, FontDefinitions, FontFamily, FontProvider};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
-/// Fonts that lines are set in: those within the program, then those that it may ask the system for.
+/// The fonts for lines: those within the program, then those of the system if enabled.
 ///
-/// A font is looked for once for each letter, and kept.
+/// The lookup of a letter runs once; its result is cached.
 pub struct Fonts {
-    /// Of the system, or none.
+    /// The fonts of the system, if enabled.
     others: Option<Box<dyn FontProvider>>,
     found: Mutex<Found>,
 }
@@ -18,7 +18,7 @@ pub struct Fonts {
 #[derive(Default)]
 struct Found {
     faces: Vec<Arc<Face>>,
-    /// The face of each letter that was looked for; `None` for one that no font has.
+    /// The font of each letter so far; `None` for a letter that no font has.
     of: HashMap<char, Option<Arc<Face>>>,
 }
 
@@ -44,7 +44,7 @@ impl std::fmt::Debug for Fonts {
     }
 }
 
-/// What windows and pictures are set in: the usual fonts of egui, and one with more signs, such as arrows.
+/// The fonts of windows and pictures: the default fonts of egui, and one with more signs, such as arrows.
 pub(crate) fn definitions() -> FontDefinitions {
     let mut all = FontDefinitions::default();
     if let Some(family) = all.families.get_mut(&FontFamily::Proportional) {
@@ -60,7 +60,7 @@ impl Fonts {
         Self::of(None)
     }
 
-    /// Those, and for what they lack the fonts of this computer, which are looked up when the first such letter comes.
+    /// The fonts within the program, then the fonts of this computer, which are listed at the first missing letter.
     #[cfg(feature = "system_fonts")]
     #[must_use]
     pub fn of_this_computer() -> Self {
@@ -73,7 +73,7 @@ impl Fonts {
         Self { others, found: Mutex::new(Found { faces, of: HashMap::new() }) }
     }
 
-    /// Those within the program, and for what they lack a few letters of Hebrew, Arabic and Devanagari.
+    /// The fonts within the program, then a few letters of Hebrew, Arabic and Devanagari.
     #[cfg(test)]
     pub(crate) fn for_tests() -> Self {
         let fonts = Self::built_in();
@@ -87,14 +87,14 @@ impl Fonts {
         fonts
     }
 
-    /// The letters of `text` that no font has, each once, in their order; a box is drawn for each of them. Signs that
-    /// are never seen, such as those that join letters, are not asked about.
+    /// The letters of `text` that no font has, each once, in their order; each of them is drawn as a box. Skips
+    /// invisible signs, such as joiners.
     #[must_use]
     pub fn missing(&self, text: &str) -> Vec<char> {
         missing_by(text, |letter| self.face_of(letter.encode_utf8(&mut [0; 4])).is_some())
     }
 
-    /// The font for a letter with its marks; `None` if none has the letter.
+    /// The font for a letter with its marks; `None` if no font has the letter.
     pub(super) fn face_of(&self, cluster: &str) -> Option<Arc<Face>> {
         let letter = cluster.chars().next()?;
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
@@ -113,13 +113,13 @@ impl Fonts {
         face
     }
 
-    /// The font that boxes for missing letters come from.
+    /// The font that draws the boxes for missing letters.
     pub(super) fn first(&self) -> Option<Arc<Face>> {
         self.found.lock().unwrap_or_else(PoisonError::into_inner).faces.first().cloned()
     }
 }
 
-/// The letters of `text` that `has` does not know, each once, as [`Fonts::missing`] tells them.
+/// The letters of `text` for which `has` returns false, each once, as in [`Fonts::missing`].
 pub(crate) fn missing_by(text: &str, mut has: impl FnMut(char) -> bool) -> Vec<char> {
     let mut missing = Vec::new();
     for letter in text.chars().filter(|letter| !is_unseen(*letter)) {
@@ -130,7 +130,7 @@ pub(crate) fn missing_by(text: &str, mut has: impl FnMut(char) -> bool) -> Vec<c
     missing
 }
 
-/// Whether nothing is to be seen of it: control and direction characters, joiners, white space.
+/// Whether it is invisible: control and direction characters, joiners, white space.
 pub(super) fn is_unseen(letter: char) -> bool {
     use unicode_width::UnicodeWidthChar;
     letter.is_control() || letter.is_whitespace() || letter.width() == Some(0)

@@ -1,4 +1,4 @@
-//! One line of text, shaped: where each of its glyphs stands.
+//! One line of text, shaped: the position of each glyph.
 
 use std::sync::Arc;
 
@@ -13,22 +13,22 @@ use super::Fonts;
 use super::fonts::Face;
 use crate::scene::{Direction, Piece, pieces};
 
-/// One step of an outline, in em from the beginning of the base line: x to the right, y up.
+/// One step of an outline, in em from the start of the base line: x to the right, y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// Begin another outline here.
+    /// Starts another outline here.
     Move(Vec2),
-    /// A straight line to here.
+    /// A straight line to this point.
     Line(Vec2),
-    /// A curve by one point to another.
+    /// A quadratic curve: control point, end point.
     Quadratic(Vec2, Vec2),
-    /// A curve by two points to a third.
+    /// A cubic curve: two control points, end point.
     Cubic(Vec2, Vec2, Vec2),
-    /// Back to where the outline began.
+    /// Closes the outline.
     Close,
 }
 
-/// A line of text, shaped and put in order. Places are in em.
+/// A line of text, shaped and in visual order. Positions are in em.
 #[derive(Default)]
 pub struct Line {
     glyphs: Vec<Glyph>,
@@ -43,18 +43,18 @@ struct Glyph {
     at: Vec2,
 }
 
-/// A sign that has colours of its own, which an outline cannot show: an emoji of this computer's fonts.
+/// A sign with its own colours, which an outline cannot show: an emoji of this computer's fonts.
 #[derive(Clone)]
 pub struct Sign {
     /// The sign, as text.
     pub text: String,
-    /// Where it begins on the base line, in em.
+    /// Its start on the base line, in em.
     pub at: Vec2,
     face: Arc<Face>,
 }
 
 impl Sign {
-    /// The font's file, and the number of the font in it.
+    /// The font's file, and the index of the font in it.
     #[must_use]
     pub fn font(&self) -> (Arc<dyn AsRef<[u8]> + Send + Sync>, u32) {
         (Arc::clone(&self.face.data.font), self.face.data.index)
@@ -68,7 +68,7 @@ impl std::fmt::Debug for Sign {
 }
 
 impl Fonts {
-    /// The line, shaped; a letter that no font has is a box.
+    /// Shapes the line; a letter that no font has becomes a box.
     #[must_use]
     pub fn line(&self, text: &str, direction: Direction) -> Line {
         let mut line = Line::default();
@@ -87,8 +87,8 @@ impl Fonts {
         line
     }
 
-    /// Stretches of a piece that one font has, in the order in which they are read; each letter that none has by
-    /// itself.
+    /// Splits a piece into parts with one font each, in reading order; each letter without a font is a part of its
+    /// own.
     fn parts<'t>(&self, piece: &'t Piece<'_>) -> Vec<(&'t str, Option<Arc<Face>>)> {
         let mut parts: Vec<(std::ops::Range<usize>, Option<Arc<Face>>)> = Vec::new();
         for (at, cluster) in piece.text.grapheme_indices(true) {
@@ -111,25 +111,25 @@ impl Line {
         self.width
     }
 
-    /// The signs that have colours of their own.
+    /// The signs with their own colours.
     #[must_use]
     pub fn signs(&self) -> &[Sign] {
         &self.signs
     }
 
-    /// Tells `draw` the outlines of all glyphs, in em; each is filled where it winds around.
+    /// Passes the outlines of all glyphs to `draw`, in em; they are filled by the non-zero winding rule.
     pub fn outline(&self, draw: impl FnMut(Step)) {
         let mut pen = Pen { draw, at: Vec2::ZERO, scale: 1.0 };
         for glyph in &self.glyphs {
             let Some(font) = glyph.face.font() else { continue };
             let Some(outline) = font.outline_glyphs().get(glyph.id) else { continue };
             (pen.at, pen.scale) = (glyph.at, glyph.face.scale());
-            // A glyph whose outline is damaged is left out.
+            // A glyph with a damaged outline is left out.
             let _ = outline.draw(DrawSettings::unhinted(Size::unscaled(), LocationRef::default()), &mut pen);
         }
     }
 
-    /// Appends what one font shapes of `text`.
+    /// Shapes `text` with one font and appends it.
     fn set(&mut self, text: &str, face: &Arc<Face>, right_to_left: bool) {
         let Some(font) = face.font() else { return };
         let data = ShaperData::new(&font);
@@ -158,7 +158,7 @@ impl Line {
         }
     }
 
-    /// Appends a box in place of a letter, unless nothing would be seen of the letter anyway.
+    /// Appends a box for a missing letter, unless the letter is invisible.
     fn set_box(&mut self, cluster: &str, face: Option<Arc<Face>>) {
         let is_seen = cluster.chars().next().is_some_and(|letter| !super::fonts::is_unseen(letter));
         let Some(face) = face.filter(|_| is_seen) else { return };
@@ -172,7 +172,7 @@ impl Line {
 }
 
 impl Face {
-    /// From the font's units to em, with the share of an em that its glyphs are drawn at.
+    /// The factor from the font's units to em, including the font's scale tweak.
     fn scale(&self) -> f32 {
         let units = self
             .font()
@@ -181,7 +181,7 @@ impl Face {
     }
 }
 
-/// Whether the glyph is a picture, or layers of colours.
+/// Whether the glyph is a bitmap, or has coloured layers.
 fn has_colours(font: &skrifa::FontRef<'_>, id: GlyphId) -> bool {
     font.color_glyphs().get(id).is_some()
         || font.bitmap_strikes().glyph_for_size(Size::unscaled(), id).is_some()

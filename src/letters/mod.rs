@@ -1,8 +1,8 @@
-//! Lines of text as outlines, and which characters no font has.
+//! Lines of text as outlines, and the characters that no font has.
 //!
-//! The fonts within the program come first, so that Latin, Greek, Cyrillic and emoji look the same everywhere. What
-//! they lack is looked for among the fonts of this computer, with the feature `system_fonts`; the window asks the same
-//! fonts in the same order.
+//! The fonts within the program come first, so that Latin, Greek, Cyrillic and emoji look the same everywhere. With
+//! the feature `system_fonts`, missing letters come from the fonts of this computer; the window uses the same fonts
+//! in the same order.
 
 mod fonts;
 mod line;

@@ -1,4 +1,4 @@
-//! The fonts of this computer, one of which is chosen for a letter that the program's own fonts lack.
+//! The fonts of this computer, for letters that the program's own fonts lack.
 
 use std::fs;
 use std::sync::{Arc, OnceLock};
@@ -11,22 +11,22 @@ use skrifa::instance::Size;
 use skrifa::{FontRef, MetadataProvider};
 use unicode_script::{Script, UnicodeScript};
 
-/// The fonts of this computer, listed when they are first needed: that takes a tenth of a second and more.
+/// The fonts of this computer, listed on first use: that takes a tenth of a second or more.
 pub(crate) struct Installed {
     fonts: OnceLock<Ranked>,
-    /// What the system says its language is, such as `ja-JP`.
+    /// Returns the language of the system, such as `ja-JP`.
     language: fn() -> Option<String>,
 }
 
-/// Fonts, those first that suit labels best.
+/// The fonts, sorted by their suitability for labels.
 struct Ranked {
     all: Database,
     order: Vec<ID>,
-    /// The end of the names of fonts for the Chinese letters of this language, such as `JP`.
+    /// The suffix in the names of fonts with the Chinese letters of this language, such as `JP`.
     han: &'static str,
 }
 
-/// Beginnings of the names of families that are made for the screen, in the usual systems.
+/// Prefixes of the names of families for screens, on the common systems.
 const FOR_SCREENS: [&str; 20] = [
     "Noto Sans",
     "Segoe UI",
@@ -50,7 +50,7 @@ const FOR_SCREENS: [&str; 20] = [
     "Twemoji",
 ];
 
-/// Parts of the names of families that are made for something else than labels.
+/// Parts of the names of families that do not suit labels.
 const FOR_OTHERS: [&str; 9] =
     ["Serif", "Mono", "Nastaliq", "Kufi", "Rashi", "Looped", "Display", "Condensed", "Unjoined"];
 
@@ -80,7 +80,7 @@ impl FontProvider for Installed {
 }
 
 impl Ranked {
-    /// `all` in their order, for a computer whose language is `language`.
+    /// Sorts `all` for a computer with the language `language`.
     fn new(all: Database, language: &str) -> Self {
         let mut ranked: Vec<_> = all.faces().filter_map(|face| Some((rank(face)?, face.id))).collect();
         ranked.sort();
@@ -88,7 +88,7 @@ impl Ranked {
         Self { all, order, han: han(language) }
     }
 
-    /// The best font that has the letter, with a name for it.
+    /// The best font with the letter, and a name for the font.
     fn font_for(&self, letter: char) -> Option<(String, FontData)> {
         let wanted = match letter.script() {
             Script::Han => self.han,
@@ -106,7 +106,7 @@ impl Ranked {
         let face = self.all.face(id)?;
         let file: Arc<dyn AsRef<[u8]> + Send + Sync> = match &face.source {
             Source::Binary(file) | Source::SharedFile(_, file) => Arc::clone(file),
-            // A file that is gone since it was listed has no letters.
+            // A file that was deleted since the listing has no letters.
             Source::File(path) => Arc::new(fs::read(path).ok()?),
         };
         let name = format!("{} {}", face.post_script_name, face.index);
@@ -114,10 +114,10 @@ impl Ranked {
     }
 }
 
-/// The lower, the better; `None` for a font that draws nothing of use.
+/// Sort key, the lowest first; `None` for a font without useful glyphs.
 fn rank(face: &FaceInfo) -> Option<(u8, bool, u16, bool, String, u32)> {
     let family = family(face);
-    // Such as the one of macOS that has a box for every letter.
+    // An example is the font of macOS that has a box for every letter.
     if family.starts_with('.') || family.contains("LastResort") || family.contains("Blank") {
         return None;
     }
@@ -127,7 +127,7 @@ fn rank(face: &FaceInfo) -> Option<(u8, bool, u16, bool, String, u32)> {
         () if family.contains("Sans") => 1,
         () => 2,
     };
-    // Of the usual weight: the program's own font is a light one, but few others have that.
+    // The regular weight: the program's own font is light, but few other fonts have a light variant.
     let weight = face.weight.0.abs_diff(400);
     let is_odd = face.style != Style::Normal || face.stretch != Stretch::Normal;
     Some((made_for, is_odd, weight, face.monospaced, family.to_owned(), face.index))
@@ -137,8 +137,8 @@ fn family(face: &FaceInfo) -> &str {
     face.families.first().map_or("", |(name, _)| name)
 }
 
-/// The end of the names of fonts whose Chinese letters are as in `language`; simplified ones where it is no such
-/// language.
+/// The suffix in the names of fonts with the Chinese letters of `language`; that of simplified letters for all other
+/// languages.
 fn han(language: &str) -> &'static str {
     let parts: Vec<&str> = language.split(['-', '_', '.']).collect();
     let has = |part: &str| parts.iter().any(|own| own.eq_ignore_ascii_case(part));
@@ -151,7 +151,7 @@ fn han(language: &str) -> &'static str {
     }
 }
 
-/// Whether the font has an outline or a picture of the letter.
+/// Whether the font has an outline or a bitmap of the letter.
 fn can_draw(file: &[u8], index: u32, letter: char) -> bool {
     let Ok(font) = FontRef::from_index(file, index) else { return false };
     let Some(glyph) = font.charmap().map(letter).filter(|glyph| glyph.to_u32() != 0) else { return false };

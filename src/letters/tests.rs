@@ -1,4 +1,4 @@
-//! What is drawn, and in which order.
+//! Drawn glyphs and their order.
 
 use glam::Vec2;
 
@@ -24,7 +24,7 @@ fn points(line: &Line, from: f32) -> Vec<[i32; 2]> {
     all
 }
 
-/// Whether `text` is drawn as `parts` beside each other, the leftmost first.
+/// Whether `text` is drawn as `parts` side by side, the leftmost first.
 fn is_drawn_as(fonts: &Fonts, text: &str, parts: &[&str]) -> bool {
     let mut wanted = Vec::new();
     let mut along = 0.0;
@@ -65,7 +65,7 @@ fn arabic_letters_join_and_its_words_are_drawn_from_the_right() {
 #[test]
 fn a_vowel_sign_of_devanagari_is_drawn_before_the_letter_that_it_follows() {
     let fonts = Fonts::for_tests();
-    // "mi" is written m, i, and the i stands to the left of the m.
+    // "मि" is stored as m, i, and the i is drawn to the left of the m.
     let (mi, m) = (line(&fonts, "मि"), line(&fonts, "म"));
     let shift = mi.width() - m.width();
     assert!(shift > 0.2, "{shift}");
@@ -73,7 +73,7 @@ fn a_vowel_sign_of_devanagari_is_drawn_before_the_letter_that_it_follows() {
     assert!(
         m.iter().all(|point| mi.iter().any(|other| (point[0] - other[0]).abs() <= 1 && point[1] == other[1]))
     );
-    // Also behind a Latin word, which has another script.
+    // The same after a Latin word, which has another script.
     assert!(is_drawn_as(&fonts, "Go मि", &["Go ", "मि"]));
 }
 
@@ -83,7 +83,7 @@ fn the_programs_own_fonts_have_latin_greek_cyrillic_arrows_and_emoji() {
     assert_eq!(fonts.missing("Žluť, Дом, Σ, 12 %, →, ●, 🏠👣"), Vec::<char>::new());
     assert!(line(&fonts, "🏠").signs().is_empty(), "an outline, in the ink of the label");
     assert_eq!(fonts.missing("首页 首"), ['首', '页'], "each once");
-    // What is never seen is not missing.
+    // Invisible characters do not count as missing.
     assert_eq!(fonts.missing("a\u{200d}\u{200f}b\tc\u{301}"), Vec::<char>::new());
 }
 

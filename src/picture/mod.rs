@@ -17,37 +17,37 @@ use thiserror::Error;
 use crate::letters::Fonts;
 use crate::scene::Scene;
 
-/// Widths that a picture may have, in pixels.
+/// Permitted widths of a picture, in pixels.
 pub const WIDTHS: RangeInclusive<u32> = 16..=16_384;
 
-/// Why a drawing could not become a picture.
+/// The reason why a drawing could not become a picture.
 #[derive(Debug, Error)]
 pub enum PictureError {
-    /// The picture would be too small or too large for memory; ask for another width.
+    /// The picture would be too small, or too large for memory; another width solves this.
     #[error("a picture is {} to {} pixels wide and at most as high, not {width} x {height}", WIDTHS.start(), WIDTHS.end())]
     Size {
-        /// Width asked for.
+        /// The requested width.
         width: u32,
-        /// Height that follows from it.
+        /// The height that follows from it.
         height: u32,
     },
-    /// The drawing has no extent, or one that is not a number.
+    /// The drawing has no extent, or a NaN extent.
     #[error("the drawing cannot be painted: {0}")]
     Drawing(String),
     /// The file cannot be written.
     #[error("cannot write {path}: {source}")]
     File {
-        /// Which file.
+        /// The path.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         #[source]
         source: std::io::Error,
     },
 }
 
-/// The drawing as a PNG file's bytes, `width_px` pixels wide and as high as its shape asks.
+/// The bytes of a PNG file of the drawing, `width_px` pixels wide, with the height by the drawing's aspect ratio.
 ///
-/// The same drawing gives the same bytes on every computer, unless it has letters that only the fonts of one computer
+/// The same drawing gives the same bytes on every computer, except with letters that only the fonts of one computer
 /// have.
 ///
 /// # Errors
@@ -77,7 +77,7 @@ pub fn png(scene: &Scene, fonts: &Fonts, width_px: u32) -> Result<Vec<u8>, Pictu
 /// Writes the drawing to `path`: as SVG if its name ends in `.svg`, otherwise as a PNG `width_px` wide.
 ///
 /// # Errors
-/// Those of [`png`], and [`PictureError::File`] if the file cannot be written.
+/// As [`png`], and [`PictureError::File`] if the file cannot be written.
 pub fn write(scene: &Scene, fonts: &Fonts, path: &Path, width_px: u32) -> Result<(), PictureError> {
     let is_svg = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
     let bytes = if is_svg { svg(scene, fonts).into_bytes() } else { png(scene, fonts, width_px)? };

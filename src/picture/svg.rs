@@ -9,10 +9,10 @@ use crate::floor::Rect;
 use crate::letters::Fonts;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke};
 
-/// The drawing as a stand-alone SVG document, one user unit to a millimetre of floor.
+/// The drawing as a stand-alone SVG document; one user unit is a millimetre of floor.
 ///
-/// Printed at its own size it is as large as the floor. Text is drawn as outlines of `fonts`, so that it looks the same
-/// in every viewer; the words are in `aria-label` for screen readers and search.
+/// Printed at 100 %, it is as large as the floor. Text is drawn as outlines of `fonts`, so that it looks the same in
+/// every viewer; `aria-label` holds the words for screen readers and search.
 #[must_use]
 pub fn svg(scene: &Scene, fonts: &Fonts) -> String {
     let size = mm(scene.bounds().size());
@@ -29,7 +29,7 @@ pub fn svg(scene: &Scene, fonts: &Fonts) -> String {
     page.out
 }
 
-/// Metres in the document's millimetres.
+/// Converts metres to the document's millimetres.
 fn mm(metres: Vec2) -> Vec2 {
     metres * 1000.0
 }
@@ -38,16 +38,16 @@ struct Page<'f> {
     out: String,
     bounds: Rect,
     fonts: &'f Fonts,
-    /// Gradients so far, each of which needs a name.
+    /// Number of gradients so far, for their unique names.
     gradients: u32,
-    /// Signs with colours of their own so far; names in them begin with their number.
+    /// Number of signs with their own colours so far; the names inside each begin with its number.
     signs: usize,
 }
 
-/// Height of the strips that a field is made of, in millimetres: what changes from one to the next is not seen.
+/// Maximum height of the strips of a field, in millimetres: the steps between strips are invisible.
 const STRIP_MM: f32 = 5.0;
 
-/// Layers that make a band fade out.
+/// Number of layers of a band that fades out.
 const LAYERS: u16 = 4;
 
 impl Page<'_> {
@@ -66,7 +66,7 @@ impl Page<'_> {
         self.out.write_str("</svg>\n")
     }
 
-    /// A floor point on the page: x to the right, y down, in millimetres.
+    /// Converts a floor point to the page: x to the right, y down, in millimetres.
     fn place(&self, point: Vec2) -> Vec2 {
         mm(Vec2::new(point.x - self.bounds.min.x, self.bounds.max.y - point.y))
     }
@@ -115,7 +115,7 @@ impl Page<'_> {
         }
     }
 
-    /// Lines around the edge, one over the other, each wider than the last.
+    /// Lines around the edge, one over the other, each wider than the previous one.
     fn halo(&mut self, area: Rect, radius_m: f32, reach_m: f32, ink: Ink) -> fmt::Result {
         const LINES: u8 = 3;
         for line in 1..=LINES {
@@ -128,7 +128,7 @@ impl Page<'_> {
         Ok(())
     }
 
-    /// Strips that each change from west to east.
+    /// Horizontal strips with a gradient from west to east each.
     fn field(&mut self, area: Rect, columns: usize, inks: &[Ink]) -> fmt::Result {
         let rows = inks.len() / columns;
         let (at, size) = (self.place(Vec2::new(area.min.x, area.max.y)), mm(area.size()));
@@ -136,7 +136,7 @@ impl Page<'_> {
         let each = (cell / STRIP_MM).ceil().clamp(1.0, 64.0) as usize;
         let strips = (rows - 1) * each;
         for strip in 0..strips {
-            // From the north down.
+            // From north to south.
             let from_south = ((strips - 1 - strip) as f32 + 0.5) / each as f32;
             let (row, share) = (from_south as usize, from_south.fract());
             let ink =
@@ -145,7 +145,7 @@ impl Page<'_> {
             let name = self.gradients;
             write!(self.out, "<linearGradient id=\"g{name}\">")?;
             for column in 0..columns {
-                // What is as its neighbours need not be said.
+                // A stop that equals both neighbours is redundant.
                 let is_plain = column > 0
                     && column + 1 < columns
                     && ink(column) == ink(column - 1)
@@ -171,13 +171,13 @@ impl Page<'_> {
         Ok(())
     }
 
-    /// Layers that end ever further out, which together fade.
+    /// Layers of increasing width, which together fade out.
     fn band(&mut self, points: &[Vec2], reach: Vec2, near: Ink, far: Ink) -> fmt::Result {
         for layer in 1..=LAYERS {
             let share = f32::from(layer) / f32::from(LAYERS);
             let Ink { colour, opacity } = near.mix(far, share - 0.5 / f32::from(LAYERS));
             let beyond = near.mix(far, share + 0.5 / f32::from(LAYERS)).opacity;
-            // Where layers lie on each other, what they let through multiplies.
+            // Where layers overlap, their transmissions multiply: own = 1 - (1 - opacity) / (1 - beyond).
             let beyond = if layer == LAYERS { 0.0 } else { beyond };
             let own = 1.0 - (1.0 - opacity) / (1.0 - beyond).max(1e-3);
             if own <= 0.0 {
@@ -196,7 +196,7 @@ impl Page<'_> {
         Ok(())
     }
 
-    /// The attributes that say how a mark is drawn, and the end of its element.
+    /// The attributes for filling and stroke of a mark, and the end of its element.
     fn paint(&mut self, paint: &Paint) -> fmt::Result {
         match paint.fill {
             Some(ink) => {
@@ -238,7 +238,7 @@ impl Page<'_> {
         escape(&mut self.out, letters)?;
         self.out.write_str("\"")?;
         if lettering.turn_rad != 0.0 {
-            // The page's y axis points down: what is counter-clockwise on the floor is negative here.
+            // The page's y axis points down: a counter-clockwise turn on the floor is negative here.
             let degrees = -lettering.turn_rad.to_degrees();
             write!(self.out, " transform=\"rotate({degrees:.1} {:.2} {:.2})\"", at.x, at.y)?;
         }
@@ -246,7 +246,7 @@ impl Page<'_> {
         write!(self.out, "><path fill=\"{colour}\"")?;
         self.opacity("fill-opacity", lettering.ink.opacity)?;
         if lettering.strong {
-            // The font has one weight; an outline makes it heavier.
+            // The font has one weight; a stroke makes it heavier.
             write!(self.out, " stroke=\"{colour}\" stroke-width=\"{:.2}\"", STRONG_EM * em)?;
             self.opacity("stroke-opacity", lettering.ink.opacity)?;
         }
@@ -263,7 +263,7 @@ impl Page<'_> {
     }
 }
 
-/// How much wider strong letters' strokes are, in em.
+/// Stroke width of strong letters, in em.
 const STRONG_EM: f32 = 0.028;
 
 #[cfg(test)]
@@ -305,7 +305,7 @@ mod tests {
         scene.add_text(lettering, format_args!("<Salt & \"Pepper\">"));
         let text = svg(&scene, &Fonts::built_in());
         assert!(text.contains("aria-label=\"&lt;Salt &amp; &quot;Pepper&quot;&gt;\"><path fill"), "{text}");
-        // A viewer with other fonts, or none, shows the same.
+        // A viewer with other fonts, or without fonts, shows the same.
         assert!(!text.contains("<text") && !text.contains("font-family"), "{text}");
         assert!(text.matches('Z').count() >= 15, "{text}");
     }

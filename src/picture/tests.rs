@@ -1,4 +1,4 @@
-//! Pictures as files, pixel by pixel where it matters.
+//! Pictures as files, with checks of single pixels.
 
 use std::path::Path;
 
@@ -59,7 +59,7 @@ fn a_pressed_button_is_seen_in_the_pixels() {
 
 #[test]
 fn letters_are_as_wide_as_the_scene_takes_them_for() {
-    // Text is made to fit by a table; this holds the table against the font itself.
+    // A table of widths makes text fit; this compares the table with the font.
     let fonts = Fonts::built_in();
     for text in ["Zoom in", "Names of places", "0123456789", "WAVE 12.5 %", "Größe – façade"] {
         let seen = 100.0 * fonts.line(text, Direction::OfItsLetters).width();
@@ -71,7 +71,7 @@ fn letters_are_as_wide_as_the_scene_takes_them_for() {
             crate::scene::Ink::solid(Theme::LIGHT.ink),
         );
         let taken = scene.add_text(lettering, format_args!("{text}"));
-        // Some pairs of letters stand closer together than their widths say.
+        // Kerning moves some pairs of letters closer together than their widths.
         assert!((0.94..=1.01).contains(&(seen / taken)), "{text}: {seen} seen, {taken} taken");
     }
 }
@@ -128,7 +128,7 @@ fn fields_and_bands_change_smoothly_in_the_pixels() {
     assert!(fading.windows(2).all(|pair| pair[0] > pair[1]), "{fading:?}");
     assert!(fading[0] > 220 && fading[3] < 165, "{fading:?}");
     assert_eq!(red(0.5, 0.55), 128, "nothing between the two");
-    // What makes no field or band leaves nothing behind.
+    // Calls with invalid input for a field or band add no marks.
     let marks = scene.marks().len();
     scene.add_field(south, 3, inks);
     scene.add_band([Vec2::ONE], Vec2::X, inks[0], inks[1]);

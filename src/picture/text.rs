@@ -1,4 +1,4 @@
-//! Lines of text in an SVG document: as outlines, so that they look the same wherever it is shown.
+//! Lines of text in an SVG document: as outlines, so that they look the same in every viewer.
 
 use std::fmt::{self, Write};
 use std::sync::Arc;
@@ -9,12 +9,12 @@ use resvg::usvg::{Options, Tree, WriteOptions};
 
 use crate::letters::{Sign, Step};
 
-/// How a line is placed on the page, in the page's units with y downwards.
+/// The placement of a line on the page, in the page's units with y downwards.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placing {
-    /// Where its base line begins.
+    /// The start of its base line.
     pub(super) start: Vec2,
-    /// Length of an em.
+    /// The length of an em.
     pub(super) em: f32,
 }
 
@@ -23,7 +23,7 @@ impl Placing {
         self.start + Vec2::new(point.x, -point.y) * self.em
     }
 
-    /// One step of a path, as its attribute `d` says it.
+    /// Appends one step of a path in the syntax of the attribute `d`.
     pub(super) fn step(self, out: &mut String, step: Step) -> fmt::Result {
         let (letter, points) = match step {
             Step::Move(to) => ('M', [Some(to), None, None]),
@@ -40,11 +40,11 @@ impl Placing {
         Ok(())
     }
 
-    /// A sign with colours of its own, as an element; nothing for one that can't be drawn. `number` keeps the names
-    /// within apart from those of other signs.
+    /// Appends a sign with its own colours as an element; nothing if it cannot be drawn. `number` makes the names
+    /// inside unique among signs.
     pub(super) fn sign(self, out: &mut String, sign: &Sign, number: usize) -> fmt::Result {
         let Some(drawn) = drawn(sign, number) else { return Ok(()) };
-        // The drawing is 3 em wide and high, and the sign begins in its middle.
+        // The drawing is 3 em wide and high, and the sign starts in its middle.
         let corner = self.place(sign.at) - Vec2::splat(1.5 * self.em);
         let head = format!(
             "<svg xmlns:xlink=\"http://www.w3.org/1999/xlink\" x=\"{:.2}\" y=\"{:.2}\"",
@@ -56,7 +56,7 @@ impl Placing {
     }
 }
 
-/// The sign as a document of its own, one unit to the em.
+/// The sign as a separate document, with one unit per em.
 fn drawn(sign: &Sign, number: usize) -> Option<String> {
     let mut fonts = Database::new();
     let (file, index) = sign.font();
@@ -65,7 +65,7 @@ fn drawn(sign: &Sign, number: usize) -> Option<String> {
     let family = family.families.first()?.0.clone();
     let mut text = String::new();
     escape(&mut text, &sign.text).ok()?;
-    // A font's pictures are some hundred dots high; in the smallest letters usvg would take the smallest ones.
+    // A font's bitmaps are some hundred pixels high; for very small letters usvg would choose the smallest ones.
     let page = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"3\" height=\"3\" viewBox=\"0 0 300 300\">\
          <text x=\"150\" y=\"150\" font-size=\"100\" font-family=\"'{family}'\">{text}</text></svg>"
@@ -76,7 +76,7 @@ fn drawn(sign: &Sign, number: usize) -> Option<String> {
     Some(tree.to_string(&WriteOptions { id_prefix, ..WriteOptions::default() }))
 }
 
-/// A font's file, as the database of fonts takes it.
+/// A font's file, in the form for the font database.
 struct Bytes(Arc<dyn AsRef<[u8]> + Send + Sync>);
 
 impl AsRef<[u8]> for Bytes {
@@ -85,7 +85,7 @@ impl AsRef<[u8]> for Bytes {
     }
 }
 
-/// Appends `text` with what means something in XML escaped.
+/// Appends `text` with the special characters of XML escaped.
 pub(super) fn escape(out: &mut String, text: &str) -> fmt::Result {
     for letter in text.chars() {
         match letter {

@@ -1,4 +1,4 @@
-//! The window's contents, from one picture to the next.
+//! The window's contents, frame by frame.
 
 use eframe::egui;
 use std::sync::Arc;
@@ -41,27 +41,27 @@ use crate::scene::{self, Scene, Shoe, Show, Theme};
 /// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);
 
-/// Time between frames while nothing moves but the lines of plots.
+/// Time between frames while only the lines of plots move.
 const PLOT: Duration = Duration::from_millis(50);
 
-/// The window's contents and what they remember from one frame to the next.
+/// The window's contents and their state from one frame to the next.
 pub(super) struct App {
     pub(super) floor: Arc<Floor>,
     pub(super) source: String,
-    /// `None` unless a server's floor is shown.
+    /// `None` unless the floor belongs to a server.
     pub(super) server_feed: Option<ServerFeed>,
-    /// How it was at this frame.
+    /// The state of the server in this frame.
     pub(super) server: Option<ServerState>,
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
     pub(super) messages: Messages,
     pub(super) scopes: Scopes,
     pub(super) feet: Option<(MouseFeet, Box<dyn FootSink>)>,
-    /// The feet on the floor, as the floor has them.
+    /// The feet on the floor, as the floor reports them.
     pub(super) shoe_feed: Option<ShoeFeed>,
     pub(super) shoes: Vec<Shoe>,
     pub(super) grip: Grip,
     pub(super) zoom: Zoom,
-    /// `None` unless a recording is shown.
+    /// `None` unless a recording is on display.
     pub(super) time_line: Option<TimeLine>,
     pub(super) keyboard: Keyboard,
     pub(super) selection: Selection,
@@ -71,26 +71,26 @@ pub(super) struct App {
     pub(super) scene: Scene,
     pub(super) palette: Palette,
     pub(super) theme: Theme,
-    /// What is drawn over the floor.
+    /// The layers over the floor.
     pub(super) show: Show,
     pub(super) trails: Trails,
-    /// `None` unless the floor is a simulated one.
+    /// `None` unless the floor is simulated.
     pub(super) rehearsal: Option<Rehearsal>,
-    /// `None` unless people can be sent onto the floor.
+    /// `None` where people cannot be sent onto the floor.
     pub(super) walks: Option<Walks>,
     pub(super) choices: Vec<String>,
-    /// `None` where there are no effects to tune.
+    /// `None` without effects to tune.
     pub(super) tuner: Option<Tuner>,
     pub(super) projection: Projection,
-    /// Whether somebody wants the side panel; `None` while the window's width decides.
+    /// Whether the user has opened or closed the side panel; `None` while the window's width decides.
     pub(super) panel_wanted: Option<bool>,
     pub(super) lists_warnings: bool,
-    /// What lines of the list of events have to contain; empty for all.
+    /// The text that lines of the list of events must contain; empty for all.
     pub(super) wanted_events: String,
     pub(super) appearance: Appearance,
-    /// `None` where the floor can't be checked.
+    /// `None` where the floor cannot be checked.
     pub(super) floor_check: Option<FloorCheck>,
-    /// `None` where nothing can be designed.
+    /// `None` where the layout cannot be edited.
     pub(super) designer: Option<Designer>,
     pub(super) closing: Closing,
     /// The program's name in the window's title, and the title that the window has.
@@ -104,7 +104,7 @@ pub(super) struct App {
     pub(super) packets: Rate,
     pub(super) latency: Latency,
     frame_count: u64,
-    /// When the next frame is due.
+    /// Time of the next frame.
     due: Instant,
     /// Height of the side panel's other parts at the last frame, in points.
     pub(super) other_parts: f32,
@@ -169,12 +169,12 @@ impl App {
         }
     }
 
-    /// Whether the drawing board is open.
+    /// Whether Design mode is open.
     pub(super) fn is_designing(&self) -> bool {
         self.designer.as_ref().is_some_and(|designer| designer.is_open)
     }
 
-    /// One frame.
+    /// Draws one frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
         self.follow_check(ui);
@@ -238,8 +238,8 @@ impl App {
         self.packets.observe(now_s, snapshot.counters.packets);
     }
 
-    /// Draws 60 times a second while something moves that nobody else tells of, also where the display does not pace
-    /// frames; otherwise the next frame comes with news from the floor ([`super::lookout`]) or from the mouse.
+    /// Draws 60 times a second while something moves without messages about it, also where the display does not pace
+    /// frames; otherwise the next frame comes with news from the floor ([`super::lookout`]) or with input.
     fn request_next_frame(&mut self, ui: &Ui) {
         let now = Instant::now();
         self.due = (self.due + PICTURE).max(now);
@@ -253,12 +253,12 @@ impl App {
         let is_held = ui.input(|i| i.pointer.any_down() || !i.keys_down.is_empty());
         let fades = self.show.trails && !self.trails.all().is_empty();
         if is_held || fades || self.scopes.are_moving() {
-            // Never zero: that would ask for two frames.
+            // A delay of zero would request two frames.
             ui.ctx().request_repaint_after((self.due - now).max(Duration::from_micros(100)));
         }
     }
 
-    /// Whether something is on the screen that goes away by itself.
+    /// Whether the screen shows a message that disappears after a while.
     fn shows_for_a_while(&self) -> bool {
         let snapshot = self.snapshots.output_buffer();
         let ignored = snapshot.ignored.last();
@@ -266,7 +266,7 @@ impl App {
             || self.messages.file.as_ref().is_some_and(|file| self.now_s - file.at_s < 2.0 * TELL_S)
     }
 
-    /// Tells the program; one that hung up does not want to know.
+    /// Sends a command to the program; drops it if the program has hung up.
     pub(super) fn command(&self, command: PreviewCommand) {
         if let Err(error) = self.commands.try_send(command) {
             tracing::debug!("the program takes no command of the window: {error}");

@@ -1,5 +1,5 @@
-//! How the window and the projection look: colours and size of the text, as people have chosen, and the file that
-//! remembers it.
+//! Appearance of the window and the projection: colours and text size from the user's choice, and the file that
+//! stores it.
 
 use std::path::PathBuf;
 
@@ -18,10 +18,10 @@ use crate::schema::save_text;
 /// The file's first line.
 const HEAD: &str = "underfoot window 1";
 
-/// Longest file that is read, in bytes.
+/// Maximum length of the file, in bytes.
 const LONGEST: u64 = 4096;
 
-/// Least and greatest size of the text, in tenths of the usual one.
+/// Minimum and maximum size of the text, in tenths of the usual size.
 const TENTHS: (u8, u8) = (7, 20);
 
 /// The usual size of the text, in tenths.
@@ -29,30 +29,30 @@ const USUAL: u8 = 10;
 
 const BLACK: Colour = Colour::rgb(0, 0, 0);
 
-/// What people choose.
+/// The user's choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Choice {
     window: Theme,
-    /// The theme whose like is thrown onto the floor.
+    /// The theme from which that of the projection is derived.
     projected: Theme,
-    /// Size of the text, in tenths of the usual one.
+    /// Size of the text, in tenths of the usual size.
     text: u8,
 }
 
-/// How everything looks.
+/// The appearance of the window and the projection.
 pub(super) struct Appearance {
     choice: Choice,
-    /// Where it is remembered; `None` to forget it.
+    /// The file that stores the choice; `None` to store nothing.
     file: Option<PathBuf>,
-    /// By how much the window's own size has enlarged everything.
+    /// Enlargement due to the size of the window.
     enlarged: f32,
-    /// What egui was told last, in all.
+    /// The zoom factor that egui received last.
     applied: Option<f32>,
 }
 
 impl Appearance {
-    /// With the window in the colours of `theme` unless `file` says otherwise; a sentence for the person at the window
-    /// if the file can't be used.
+    /// Uses the colours of `theme` for the window unless `file` holds others; also returns a message for the user if
+    /// the file cannot be used.
     pub(super) fn new(theme: Theme, file: Option<PathBuf>) -> (Self, Option<String>) {
         let usual = Choice { window: theme, projected: Theme::DARK, text: USUAL };
         let read = file.as_deref().map_or(Ok(None), |file| match read_bounded(file, LONGEST) {
@@ -72,8 +72,8 @@ impl Appearance {
         self.choice.window
     }
 
-    /// What is thrown onto the floor. Beyond the floor no light falls, and in a dark theme none on its plates, which
-    /// are there already.
+    /// The theme of the projection. It throws no light beyond the floor, and a dark theme none on the plates, which
+    /// are real ones.
     pub(super) fn projected(&self) -> Theme {
         let theme = self.choice.projected;
         if theme.is_dark() {
@@ -83,12 +83,12 @@ impl Appearance {
         }
     }
 
-    /// Large windows get larger letters and panels: what is seen of them is farther away. On top of that comes the size
-    /// that people have chosen.
+    /// Enlarges letters and panels in large windows, because people see those from farther away. The user's text size
+    /// multiplies the result.
     pub(super) fn enlarge(&mut self, ctx: &egui::Context) {
         let points = ctx.content_rect().size() * ctx.zoom_factor();
         let wanted = (0.85 * (points.x / 1280.0).min(points.y / 800.0)).clamp(1.0, 2.0);
-        // By tenths, or text would be laid out anew with each pixel.
+        // Round to tenths: otherwise each pixel of a resize would lay out the text again.
         self.enlarged = (10.0 * wanted).round() / 10.0;
         let all = self.enlarged * f32::from(self.choice.text) / f32::from(USUAL);
         if self.applied != Some(all) {
@@ -105,7 +105,7 @@ impl Choice {
         format!("{HEAD}\nwindow {window}\nprojected {projected}\ntext {}\n", self.text)
     }
 
-    /// Itself with what `text` says.
+    /// This choice with the settings in `text`.
     fn read(mut self, text: &str) -> Result<Self, &'static str> {
         let mut lines = text.lines();
         if lines.next() != Some(HEAD) {
@@ -127,7 +127,7 @@ impl Choice {
                     let tenths: u8 = tenths.parse().map_err(|_| "the size of the text is no number")?;
                     self.text = tenths.clamp(TENTHS.0, TENTHS.1);
                 }
-                // What a later version may have to say.
+                // Settings of a later version.
                 _ => {}
             }
         }
@@ -136,7 +136,7 @@ impl Choice {
 }
 
 impl App {
-    /// A menu of colours and sizes; it stays open while they are tried.
+    /// A menu of colours and sizes; it stays open after a click.
     pub(super) fn appearance_menu(&mut self, ui: &mut Ui) {
         let before = self.appearance.choice;
         let mut choice = before;
@@ -177,7 +177,7 @@ impl App {
         self.choose(ui.ctx(), choice);
     }
 
-    /// Ctrl with plus, minus and zero sizes the text, also while something is typed.
+    /// Ctrl with plus, minus and zero sizes the text, during typing too.
     pub(super) fn handle_text_keys(&mut self, ui: &Ui) {
         let mut choice = self.appearance.choice;
         let count = |key: Key| {

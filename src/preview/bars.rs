@@ -1,4 +1,4 @@
-//! The strips at the window's edges: what runs, how to work it, what is wrong.
+//! The bars at the window's edges: state, buttons, help and problems.
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
@@ -18,14 +18,14 @@ use crate::wire::LinkState;
 /// Width of the window below which the top bar takes two lines, in points.
 const TWO_LINES: f32 = 1010.0;
 
-/// Height of the window below which its place is worth more than help, in points.
+/// Height of the window below which the help bar is hidden, in points.
 const HELP: f32 = 560.0;
 
-/// How long the window tells that a saved file was loaded, in seconds.
+/// Time for which the window reports that a saved file was loaded, in seconds.
 pub(super) const TELL_S: f64 = 6.0;
 
 impl App {
-    /// Title, file and what can be clicked on.
+    /// Shows the title, the file and the buttons.
     pub(super) fn top_bar(&mut self, ui: &mut Ui) {
         let frame = panel_frame(&self.theme, Margin::symmetric(14, 7));
         Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {
@@ -41,11 +41,11 @@ impl App {
             }
             ui.horizontal(|ui| {
                 ui.set_min_height(26.0);
-                // From the right first: the title gives way.
+                // Lay out from the right first: the title shrinks.
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     self.link_state(ui);
                     self.buttons(ui);
-                    // Left of what is clicked on, which stays where it is.
+                    // Left of the buttons, so that those keep their places.
                     self.mutes(ui);
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| self.heading(ui));
                 });
@@ -76,7 +76,7 @@ impl App {
             }
         }
         self.file_name(ui);
-        // The drawing board has its own count, which leads to each.
+        // In Design mode, the design bar shows its own count, which leads to each problem.
         let count = self.messages.warnings.count;
         if count > 0 && !self.is_designing() {
             let text = if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") };
@@ -103,7 +103,7 @@ impl App {
         }
     }
 
-    /// What is not as it would be: faults that are rehearsed, what is muted.
+    /// Shows the number of simulated faults and the muted parts.
     fn mutes(&self, ui: &mut Ui) {
         let theme = &self.theme;
         let rehearsed = self.rehearsal.as_ref().map_or(0, Rehearsal::count);
@@ -124,7 +124,7 @@ impl App {
         }
     }
 
-    /// Whether the floor is there; of a recording, how it was.
+    /// Shows the state of the link; for a recording, the state at the time on display.
     fn link_state(&self, ui: &mut Ui) {
         let theme = &self.theme;
         let state = self.snapshots.output_buffer().link;
@@ -180,14 +180,14 @@ impl App {
             } else {
                 let floor = self.floor.geometry.bounds();
                 let place = self.messages.layout.stances.first().map(|stance| stance.area);
-                // Where people stand if the layout does not say: in the middle of the south side.
+                // The usual place to stand without one in the layout: the middle of the south side.
                 let south = floor.min + floor.size() * glam::Vec2::new(0.5, 0.12);
                 feet.stand(place.map_or(south, |area| area.centre()).clamp(floor.min, floor.max));
             }
         }
     }
 
-    /// What is laid over the floor, to be switched on and off; the menu stays open meanwhile.
+    /// A menu of the layers over the floor; it stays open after a click.
     fn layers_menu(&mut self, ui: &mut Ui) {
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         MenuButton::new("Layers").config(config).ui(ui, |ui| {
@@ -207,7 +207,7 @@ impl App {
         });
     }
 
-    /// Mutes everything, or nothing any more, where nobody is writing.
+    /// Mutes or unmutes everything, unless a text field has the focus.
     pub(super) fn handle_mute_key(&self, ui: &Ui) {
         let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
         if is_free && self.scopes.is_fed() && ui.input(|i| i.key_pressed(Key::M)) {
@@ -215,7 +215,7 @@ impl App {
         }
     }
 
-    /// How to work the floor, where there is room to say it.
+    /// Shows how to use the floor, if the window is tall enough.
     pub(super) fn help_bar(&self, ui: &mut Ui) {
         if ui.ctx().content_rect().height() < HELP {
             return;
@@ -270,10 +270,10 @@ impl App {
             } else if self.scopes.is_fed() {
                 &[("Click", "look at a tile"), ("Arrows", "the next one"), ("M", "mute")]
             } else {
-                // What is not felt here can't be muted here.
+                // Without rendering there is nothing to mute.
                 &[("Click", "look at a tile"), ("Arrows", "the next one")]
             };
-            // A narrow window tells the first ones only; the rest is in the documentation.
+            // A narrow window shows the first ones only; the documentation lists the rest.
             let told = if ui.available_width() < TWO_LINES { 4 } else { steps.len() };
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 5.0;
@@ -286,7 +286,7 @@ impl App {
         });
     }
 
-    /// What `underfoot check` would say of the layout, while somebody wants to see it.
+    /// Shows the warnings of `underfoot check` about the layout, if they are switched on.
     pub(super) fn warnings(&mut self, ui: &mut Ui) {
         let warnings = &self.messages.warnings;
         if !self.lists_warnings || warnings.count == 0 {
@@ -306,7 +306,7 @@ impl App {
         });
     }
 
-    /// Sentences from the program, until they are put away.
+    /// Shows messages of the program until the user closes them.
     pub(super) fn notices(&mut self, ui: &mut Ui) {
         if self.messages.notes.is_empty() {
             return;
@@ -336,7 +336,7 @@ impl App {
         }
     }
 
-    /// What is wrong with the layout file, under the floor that still shows the last good one.
+    /// Shows the problems of the layout file, under the floor with the last good layout.
     pub(super) fn problems(&mut self, ui: &mut Ui) {
         let Some(file) = &self.messages.file else { return };
         let Some(diagnostics) = &file.diagnostics else { return };

@@ -1,16 +1,16 @@
-//! What goes between the window and the program that serves its floor.
+//! Channels between the window and the program that provides its floor.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use super::feed::{EventNews, LayoutNews, PreviewCommand};
 
-/// Events that may wait for the window; it takes them 60 times a second.
+/// Capacity for events; the window takes them 60 times a second.
 const EVENTS_WAITING: usize = 4096;
 
-/// Layouts and sentences that may wait for the window: more come only while it is covered, and draws nothing.
+/// Capacity for layouts and for notices: more arrive only while the window is covered and does not draw.
 const NEWS_WAITING: usize = 64;
 
-/// Commands that may wait for the program: seconds of a mouse that drags.
+/// Capacity for commands: seconds of a dragging mouse.
 const COMMANDS_WAITING: usize = 256;
 
 /// The window's ends.
@@ -18,28 +18,28 @@ const COMMANDS_WAITING: usize = 256;
 pub struct WindowChannels {
     /// Every event, in order.
     pub events: Receiver<EventNews>,
-    /// What became of changes to the layout file.
+    /// The results of changes to the layout file.
     pub layouts: Receiver<LayoutNews>,
-    /// Sentences for the person at the window, such as why there is no sound.
+    /// Messages for the user of the window, such as the reason why there is no sound.
     pub notices: Receiver<String>,
-    /// What the person at the window wants; 256 may wait.
+    /// The commands of the user; at most 256 wait.
     pub commands: SyncSender<PreviewCommand>,
 }
 
-/// The program's ends. What is sent to a window that is closed is not a fault.
+/// The program's ends. Sending to a closed window is not a fault.
 #[derive(Debug)]
 pub struct ProgramChannels {
-    /// Takes events; 4096 may wait.
+    /// Sends events; at most 4096 wait.
     pub events: SyncSender<EventNews>,
-    /// Takes what became of changes to the layout file; 64 may wait.
+    /// Sends results of changes to the layout file; at most 64 wait.
     pub layouts: SyncSender<LayoutNews>,
-    /// Takes sentences for the person at the window; 64 may wait.
+    /// Sends messages for the user of the window; at most 64 wait.
     pub notices: SyncSender<String>,
-    /// What the person at the window wants; hangs up with the window.
+    /// The commands of the user; the channel closes with the window.
     pub commands: Receiver<PreviewCommand>,
 }
 
-/// Channels between a window and its program.
+/// Creates the channels between a window and its program.
 #[must_use]
 pub fn channels() -> (WindowChannels, ProgramChannels) {
     let (event_sender, events) = sync_channel(EVENTS_WAITING);

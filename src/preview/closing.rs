@@ -1,27 +1,27 @@
-//! The window's title, saving from either mode, and what is asked before the window closes.
+//! The window's title, saving from either mode, and the question before the window closes.
 
 use eframe::egui::{self, Context, Key, Modal, Modifiers, Ui, ViewportCommand};
 
 use super::app::App;
 use super::style::pill;
 
-/// How far the window is on its way to be closed.
+/// The state of closing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Closing {
-    /// Nobody wants that.
+    /// No request to close.
     #[default]
     No,
-    /// So many frames are left for what is being typed to get into the layout.
+    /// Waits this many frames for the text of a field to get into the layout.
     Settling(u8),
-    /// The person is asked what to do with what is not saved.
+    /// Asks the user about unsaved edits.
     Asks,
-    /// It closes once the layout is saved.
+    /// Closes once the layout is saved.
     Saves,
-    /// It closes.
+    /// Closes.
     Granted,
 }
 
-/// Frames in which a field that has lost the keyboard hands over what was typed.
+/// Frames after which the text of a field that has lost the focus is in the layout.
 const SETTLES: u8 = 3;
 
 impl App {
@@ -29,8 +29,8 @@ impl App {
         self.closing == Closing::Granted
     }
 
-    /// Lets the window close, unless something would be lost; whether the window manager, a key or a button wanted
-    /// that, and also while the window is covered and not drawn.
+    /// Lets the window close, unless edits would be lost. The request may come from the window manager, a key or a
+    /// button, also while the window is covered and not drawn.
     pub(super) fn handle_close(&mut self, ctx: &Context) {
         if !ctx.input(|i| i.viewport().close_requested()) || self.closing == Closing::Granted {
             return;
@@ -53,12 +53,12 @@ impl App {
         ctx.request_repaint();
     }
 
-    /// Ctrl+Q closes the window, as its frame does; Ctrl+S saves, also while the layout is tried.
+    /// Ctrl+Q closes the window, as its frame does; Ctrl+S saves, also in Try mode.
     pub(super) fn handle_file_keys(&mut self, ui: &Ui) {
         if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::Q)) {
             ui.ctx().send_viewport_cmd(ViewportCommand::Close);
         }
-        // The drawing board looks for them behind what is typed there.
+        // In Design mode, `Designer::keys_anywhere` handles them, after the text fields.
         if !self.is_designing()
             && let Some(designer) = &mut self.designer
         {
@@ -66,7 +66,7 @@ impl App {
         }
     }
 
-    /// What is asked while the layout is tried: a path to save under.
+    /// Shows the path dialogue in Try mode.
     pub(super) fn ask_for_path(&mut self, ui: &mut Ui) {
         let theme = self.theme;
         if let Some(designer) = &mut self.designer {
@@ -74,7 +74,7 @@ impl App {
         }
     }
 
-    /// The window's title: the layout's file, with a dot while it is not saved, or the recording.
+    /// Sets the window's title: the layout's file, with a dot while it is unsaved, or the recording.
     pub(super) fn show_title(&mut self, ctx: &Context) {
         let title = match (&self.designer, &self.time_line) {
             (Some(designer), _) => format!("{} - {}", designer.title(), self.name),
@@ -87,7 +87,7 @@ impl App {
         }
     }
 
-    /// The layout's file with its dot, and what was last done with it.
+    /// Shows the layout's file with its dot, and the last message about it.
     pub(super) fn file_name(&self, ui: &mut Ui) {
         let Some(designer) = &self.designer else { return };
         let theme = &self.theme;
@@ -102,13 +102,13 @@ impl App {
         }
     }
 
-    /// Goes on with closing: asks what to do with what is not saved, and does it.
+    /// Advances the state of closing: asks about unsaved edits and carries out the answer.
     pub(super) fn ask_before_closing(&mut self, ctx: &Context) {
         let Some(designer) = &mut self.designer else { return };
         self.closing = match self.closing {
             Closing::Settling(0) if designer.is_saved() => Closing::Granted,
             Closing::Settling(0) => {
-                // The question's own buttons get the keyboard.
+                // The buttons of the question get the keyboard focus.
                 designer.finish_typing(ctx);
                 Closing::Asks
             }
@@ -117,7 +117,7 @@ impl App {
                 Closing::Settling(frames - 1)
             }
             Closing::Saves if designer.is_saved() => Closing::Granted,
-            // What stands in the way is on the screen.
+            // The screen shows the obstacle.
             Closing::Saves if !designer.is_asking() => Closing::No,
             other => other,
         };
@@ -138,7 +138,7 @@ impl App {
     }
 }
 
-/// The question, and what the person has decided so far.
+/// Shows the question; returns the next state.
 fn ask(ctx: &Context, name: &str) -> Closing {
     let mut decided = Closing::Asks;
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(18);

@@ -1,4 +1,4 @@
-//! The mouse's way to a control, all of it without a display: pointer, foot, floor, sensing, slider.
+//! The path from mouse to control without a display: pointer, foot, floor, sensing, slider.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -37,7 +37,7 @@ impl FootSink for Mouse {
     }
 }
 
-/// Keeps what it is told.
+/// Records its reports.
 #[derive(Clone, Default)]
 struct Told(Arc<Mutex<(Vec<WidgetEvent>, Vec<LinkState>)>>);
 
@@ -52,7 +52,7 @@ impl EventSink for Told {
     }
 }
 
-/// A simulated floor at work, the mouse on it, and a window that draws so many frames a second.
+/// A running simulated floor, the mouse on it, and a window with a fixed number of frames per second.
 struct Table {
     server: Server,
     host: ByHand,
@@ -61,7 +61,7 @@ struct Table {
     told: Told,
     snapshot: Snapshot,
     frame_s: f32,
-    /// The frame's end on the floor's clock, in seconds.
+    /// The end of the frame on the floor's clock, in seconds.
     frame_end_s: f64,
     most_contacts: usize,
     pointer: Vec2,
@@ -92,12 +92,12 @@ impl Table {
             pointer: Vec2::ZERO,
             down: false,
         };
-        // The tare is measured and the sensors have settled.
+        // By now the tare has been measured and the sensors have settled.
         table.rest(1.0);
         table
     }
 
-    /// One frame of the window: what the mouse did in it, once it is over.
+    /// One frame of the window: the actions of the mouse are applied at its end.
     fn frame(&mut self, moves: Vec<Move>) {
         self.frame_end_s += f64::from(self.frame_s);
         while self.server.engine().now().secs() < self.frame_end_s {
@@ -131,7 +131,7 @@ impl Table {
         self.frame(vec![Move::Release(self.pointer)]);
     }
 
-    /// Moves the mouse to `to` at `speed` metres a second; it reports 125 times a second.
+    /// Moves the mouse to `to` at `speed` metres per second; it reports 125 times a second.
     fn drag(&mut self, to: Vec2, speed: f32) {
         let from = self.pointer;
         let length_s = from.distance(to) / speed;
@@ -180,7 +180,7 @@ fn number(value: Option<Value>) -> f32 {
     }
 }
 
-/// Drags each slider of the shipped layouts there and back at each speed, at `frames_per_s`.
+/// Drags each slider of the built-in layouts there and back at each speed, at `frames_per_s`.
 fn drag_all(frames_per_s: f32) {
     let mut dragged = 0;
     for name in builtin_layouts() {
@@ -213,7 +213,7 @@ fn drag_all(frames_per_s: f32) {
                     crate::widget::Mapping::Absolute => {
                         let wanted = slider.scale.at(to);
                         let off = (after - wanted).abs() / slider.scale.range();
-                        // A tenth of a slider is some 3 cm, the place error of a foot across seams.
+                        // A tenth of a slider is about 3 cm, the position error of a foot across seams.
                         assert!(off < 0.1, "{what}: {after} for {wanted}");
                     }
                     _ => assert_ne!(before, after, "{what}"),

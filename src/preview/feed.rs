@@ -1,4 +1,4 @@
-//! What the program hands to the window and takes from it.
+//! Data and commands that pass between the program and the window.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,61 +21,61 @@ use crate::sink::{AreaNews, LatencyStages};
 use crate::source::FaultSwitch;
 use crate::widget::{Value, WidgetEvent, WidgetId};
 
-/// A shoe that the window moves; its `length_m` is the sole's, a centimetre more than the bare foot's.
+/// A shoe that the window moves; its `length_m` is the length of the sole, one centimetre more than the bare foot.
 pub type PreviewFoot = Shoe;
 
-/// Everything the window shows and everything it can do, filled in by the program.
+/// Everything that the window shows and everything that it can do; the program fills it in.
 ///
-/// The window only looks: sensing, sound and outputs run on other threads and
-/// go on while it is covered. A sender that hangs up is not a fault; what it sent
-/// last stays.
+/// The window only displays: sensing, sound and outputs run on other threads and continue while the window is
+/// covered. A sender that hangs up is not a fault; the last value that it sent stays.
 pub struct PreviewInput {
-    /// The floor that is shown.
+    /// The floor on display.
     pub floor: Arc<Floor>,
-    /// The layout to begin with.
+    /// The initial layout.
     pub layout: Arc<Layout>,
-    /// Its warnings.
+    /// The warnings of that layout.
     pub warnings: Warnings,
-    /// What the floor is, in a few words: `simulated floor`, `walk.mcap`, `port 9000`.
+    /// The source of the floor in a few words: `simulated floor`, `walk.mcap`, `port 9000`.
     pub source: String,
-    /// The server whose floor is shown; `None` for a floor of this program's own or a recording.
+    /// The server that provides the floor; `None` for a floor of this program or a recording.
     pub server: Option<ServerFeed>,
     /// The latest state, written by the sensing thread.
     pub snapshots: triple_buffer::Output<Snapshot>,
     /// Every event, in order.
     pub events: Receiver<EventNews>,
-    /// What became of changes to the layout file.
+    /// The results of changes to the layout file.
     pub layouts: Receiver<LayoutNews>,
-    /// Sentences for the person at the window, such as why there is no sound.
+    /// Messages for the user of the window, such as the reason why there is no sound.
     pub notices: Receiver<String>,
-    /// What the actuators do; `None` where nothing is rendered.
+    /// The signals of the actuators; `None` without rendering.
     pub scopes: Option<Box<dyn ScopeFeed>>,
-    /// How long it takes from a packet to what is felt; `None` where nobody measures it.
+    /// The latency from a packet to the actuator; `None` if it is not measured.
     pub latency: Option<LatencyStages>,
-    /// The feet of a simulated floor; `None` for a real floor or a recording, which nobody can step on with a mouse.
+    /// The feet of a simulated floor; `None` for a real floor or a recording, where the mouse cannot step.
     pub feet: Option<Box<dyn FootSink>>,
-    /// What leads the recording that is shown; `None` for a floor.
+    /// Playback control of the recording; `None` for a floor.
     pub playback: Option<Box<dyn Playback>>,
-    /// What breaks a simulated floor; `None` for a real one or a recording.
+    /// Fault injection for a simulated floor; `None` for a real floor or a recording.
     pub faults: Option<FaultSwitch>,
-    /// Sends people onto a simulated floor; `None` for a real one or a recording.
+    /// Sends people onto a simulated floor; `None` for a real floor or a recording.
     pub people: Option<ArrivalHandle>,
-    /// The feet on a simulated floor, whoever moves them; `None` for a real floor or a recording.
+    /// All feet on a simulated floor, from every source; `None` for a real floor or a recording.
     pub shoes: Option<ShoeFeed>,
-    /// Names of layouts that can be opened from the window; empty if there is no choice.
+    /// Names of the layouts that the window can open; empty if there is no choice.
     pub choices: Vec<String>,
-    /// The effects that can be tuned, by name; empty if there is no tuner.
+    /// The effects that the tuner can edit, by name; empty without a tuner.
     pub effects: Vec<NamedEffect>,
-    /// What the boards send, for checks of the floor; `None` where it can't be checked, such as a recording.
+    /// The packets of the boards, for checks of the floor; `None` where a check is impossible, such as for a
+    /// recording.
     pub packets: Option<TappedPackets>,
-    /// The layout as text, to be designed in the window; `None` where that can't be done.
+    /// The layout as text for Design mode; `None` where it cannot be edited.
     pub design: Option<DesignInput>,
-    /// What the person at the window wants.
+    /// The commands of the user.
     pub commands: SyncSender<PreviewCommand>,
 }
 
 impl PreviewInput {
-    /// A floor that is only looked at: nothing is rendered, nobody steps on it, nothing can be chosen or designed.
+    /// A floor for display only: no rendering, no simulated feet, no choice of layouts and no Design mode.
     #[must_use]
     pub fn new(
         floor: Arc<Floor>,
@@ -111,63 +111,63 @@ impl PreviewInput {
     }
 }
 
-/// Puts the shoes on or above the floor, as they are now, in place of those of the last call.
+/// Replaces the content of the list by the shoes that are now on or above the floor.
 pub type ShoeFeed = Box<dyn FnMut(&mut Vec<Shoe>)>;
 
-/// How it is with the server, to be asked for each frame.
+/// Returns the state of the server; called for each frame.
 pub type ServerFeed = Box<dyn FnMut() -> ServerState + Send>;
 
-/// A server whose floor is shown.
+/// The state of the server that provides the floor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServerState {
-    /// Where it is, or what its lines are read from: `127.0.0.1:9002`, `standard input`.
+    /// The address of the server, or the source of its lines: `127.0.0.1:9002`, `standard input`.
     pub address: String,
-    /// Whether it is there.
+    /// The state of the connection.
     pub link: ServerLink,
-    /// Whether it takes layouts that are designed in the window.
+    /// Whether the server accepts layouts from Design mode.
     pub takes_layouts: bool,
-    /// Packets that it could not tell.
+    /// Number of packets that the server dropped on the way to this program.
     pub left_out: u64,
-    /// How the areas stand of a floor that several computers serve; empty for one that one computer serves.
+    /// The state of each area of a floor that several computers serve; empty for a floor that one computer serves.
     pub areas: Vec<AreaNews>,
 }
 
 impl ServerState {
-    /// Whether only lines tell of the floor, and neither packets nor forces are known.
+    /// Whether the floor is known from lines only, without packets and forces.
     #[must_use]
     pub const fn tells_by_lines(&self) -> bool {
         matches!(self.link, ServerLink::Followed | ServerLink::Ended(_))
     }
 }
 
-/// Whether a server is there.
+/// The state of the connection to a server.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ServerLink {
-    /// What its boards send comes here as well.
+    /// Connected: the packets of its boards arrive here as well.
     Joined,
-    /// It is gone, for this reason; it is tried again each second.
+    /// Disconnected for this reason; a new attempt follows each second.
     Lost(String),
-    /// What it tells is heard: its lines, not its packets.
+    /// Connected by lines only: reports arrive, packets do not.
     Followed,
-    /// What it tells has ended, for this reason; nothing more is to come.
+    /// The lines have ended for this reason; no more will arrive.
     Ended(String),
 }
 
-/// What happened on the floor.
+/// An event on the floor.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EventNews {
     /// A control's event.
     Event(WidgetEvent),
-    /// A recording begins anew, with the layout that it has at its beginning: what was told so far is past.
+    /// A recording starts again with its initial layout; earlier events no longer apply.
     Restarted(Arc<Layout>),
 }
 
-/// What feet and eyes will have trouble with in a layout.
+/// Problems of a layout that affect feet or eyes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warnings {
-    /// How many there are.
+    /// Number of warnings and errors.
     pub count: usize,
-    /// All of them, as the program would print them.
+    /// All of them, in the program's output format.
     pub text: String,
 }
 
@@ -178,140 +178,140 @@ impl From<&Diagnostics> for Warnings {
     }
 }
 
-/// Why there is another layout on the floor.
+/// The reason for a new layout on the floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LayoutCause {
-    /// Somebody chose it in the window.
+    /// The user chose it in the window.
     Opened,
-    /// Its file was saved by another program.
+    /// Another program saved its file.
     Saved,
-    /// Somebody designs it in the window, who need not be told.
+    /// The user edits it in the window and needs no message.
     Designed,
-    /// The recording goes on with it.
+    /// The recording switches to it.
     Recorded,
-    /// The server has put it on its floor.
+    /// The server put it on its floor.
     Served,
 }
 
-/// What became of a layout file that changed.
+/// The result of a change to a layout file.
 #[derive(Clone, Debug)]
 pub enum LayoutNews {
-    /// Its file, or that of a kind or an effect, was saved: the window, which has the text, takes it in.
+    /// Its file, or that of a kind or an effect, was saved: the window, which holds the text, reads it again.
     Changed,
-    /// The engine was given this one.
+    /// The engine received this layout.
     Loaded {
         /// The layout.
         layout: Arc<Layout>,
-        /// The [`Snapshot::layout_revision`] from which on snapshots belong to it. The window
-        /// shows it from then on, so that controls and their states always match.
+        /// The first [`Snapshot::layout_revision`] of snapshots that belong to it. The window shows the layout from
+        /// then on, so that controls and their states always match.
         revision: u64,
-        /// What to say about it: `map.ron`.
+        /// Its name in messages: `map.ron`.
         name: String,
-        /// Why it came.
+        /// The reason for the change.
         cause: LayoutCause,
-        /// What the program would print of it as warnings; empty if nothing.
+        /// Its warnings in the program's output format; empty if there are none.
         warnings: Warnings,
     },
-    /// It has problems; the last good layout stays.
+    /// It has errors; the last good layout stays.
     Refused {
-        /// What to say about it: `map.ron`.
+        /// Its name in messages: `map.ron`.
         name: String,
-        /// All problems, as the program would print them.
+        /// All problems, in the program's output format.
         diagnostics: String,
     },
 }
 
-/// What the person at the window wants from the program.
+/// A command of the user to the program.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PreviewCommand {
-    /// Open the layout at this place in [`PreviewInput::choices`].
+    /// Open the layout with this index in [`PreviewInput::choices`].
     Open(usize),
-    /// Put the layout on the floor that is being designed.
+    /// Put the layout that is being edited on the floor.
     Try {
         /// The layout.
         layout: Arc<Layout>,
-        /// What to say about it: `map.ron`.
+        /// Its name in messages: `map.ron`.
         name: String,
-        /// What feet and eyes will have trouble with in it.
+        /// Its problems that affect feet or eyes.
         warnings: Warnings,
-        /// Why it comes.
+        /// The reason for the change.
         cause: LayoutCause,
     },
-    /// Tell of changes to this file from now on, and to those of its kinds and effects; `None` for a layout that has
-    /// no file.
+    /// From now on, report changes to this file and to those of its kinds and effects; `None` for a layout without a
+    /// file.
     Watch(Option<PathBuf>),
     /// Switch a control on or off, as an app would.
     Enable {
-        /// Which control.
+        /// The control.
         id: WidgetId,
-        /// Whether it shall work.
+        /// Whether the control is to be enabled.
         enabled: bool,
     },
     /// Give a control a value, as an app would.
     Set {
-        /// Which control.
+        /// The control.
         id: WidgetId,
-        /// What it shall hold.
+        /// The new value.
         value: Value,
     },
-    /// Let nothing be felt or heard, or everything again.
+    /// Mute all sound and vibration, or unmute it.
     Mute(bool),
-    /// Let the actuator of one tile not be felt, or again.
+    /// Mute the actuator of one tile, or unmute it.
     MuteTile {
-        /// Which tile.
+        /// The tile.
         tile: TileId,
-        /// Whether to.
+        /// Whether to mute it.
         on: bool,
     },
-    /// Play an effect on a tile, in place of what was being played so.
+    /// Play an effect on a tile, in place of the effect that this command started before.
     Feel {
-        /// What is felt.
+        /// The effect.
         effect: Arc<Effect>,
-        /// What an imagined foot does.
+        /// The gesture of an imagined foot.
         gesture: Gesture,
         /// Index of the tile.
         tile: usize,
     },
-    /// Switch all controls off that are on, or those on again.
+    /// Disable all controls that are enabled, or enable those again.
     TurnControlsOff(bool),
-    /// Keep the floor in a file; what that held before is kept beside it.
+    /// Save the floor to a file; the previous content stays as a copy beside it.
     SaveFloor {
         /// The floor.
         floor: Box<Floor>,
         /// The file.
         path: PathBuf,
     },
-    /// Keep an effect in the folder `effects`.
+    /// Save an effect in the folder `effects`.
     SaveEffect {
-        /// Its name, which is that of its file.
+        /// Its name, which is also the name of its file.
         name: String,
         /// The file's text.
         text: String,
     },
 }
 
-/// What each actuator channel did lately.
+/// The recent signal of each actuator channel.
 pub trait ScopeFeed {
-    /// Takes in what happened since the last call; called once for each frame.
+    /// Takes in the samples since the last call; called once for each frame.
     fn update(&mut self) {}
 
-    /// Lowest and highest sample of short stretches of `channel`, oldest first, in full scales:
-    /// about 128 of them over 100 ms. Empty for a channel that does not exist.
+    /// Lowest and highest sample of short stretches of `channel`, oldest first, in full scales: about 128 stretches
+    /// over 100 ms. Empty for a channel that does not exist.
     fn scope(&mut self, channel: usize) -> &[(f32, f32)];
 }
 
-/// A simulated floor's feet.
+/// The feet of a simulated floor.
 pub trait FootSink {
-    /// Leads each foot along its path, which took the hand `over_s` seconds; called for each frame.
+    /// Moves each foot along its path, which the hand covered in `over_s` seconds; called for each frame.
     ///
-    /// The sink makes steps and slides of it, with the force and the speed of a leg. A foot's place in the list is
-    /// its identity; one without a path is lifted where it is.
+    /// The sink turns the paths into steps and slides with the force and the speed of a leg. The index of a foot in
+    /// the list is its identity; a foot without a path is lifted where it is.
     fn lead(&mut self, over_s: f32, paths: &[Vec<PreviewFoot>]);
 
-    /// Where the force of `foot` acts, in floor metres: the window puts that point under the mouse.
+    /// Point of action of the force of `foot`, in floor metres: the window puts that point under the mouse.
     ///
-    /// As it stands, a straight line from 36 % of the sole's length behind its
-    /// middle (heel) to 32 % before it (toes).
+    /// This default moves along a straight line from 36 % of the sole's length behind its middle (heel) to 32 %
+    /// before it (toes).
     fn centre_of_pressure(&self, foot: &PreviewFoot) -> Vec2 {
         let forward = Vec2::from_angle(foot.heading_rad).rotate(Vec2::Y);
         let roll = foot.roll.clamp(0.0, 1.0);

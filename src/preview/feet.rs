@@ -1,4 +1,5 @@
-//! The mouse as a foot, the foot that stands, and those of fingers: no egui here, only floor metres and seconds.
+//! Feet from input devices: the mouse as a working foot, a standing foot, and the feet of fingers. This module does
+//! not use egui, only floor metres and seconds.
 
 use std::f32::consts::{PI, TAU};
 
@@ -8,73 +9,73 @@ use super::feed::{FootSink, PreviewFoot};
 use super::touches::{Fingers, Touch};
 use crate::units::Newtons;
 
-/// What a foot that works presses with, until the wheel says otherwise: enough for every built-in control.
+/// Initial force of a working foot, until the wheel changes it: enough for every built-in control.
 const WORKING: Newtons = Newtons(150.0);
 
-/// What a foot presses with that a person stands on, the other one working.
+/// Force of a foot that carries a person while the other foot works.
 const STANDING: Newtons = Newtons(600.0);
 
-/// The least and the most the wheel can ask for.
+/// Minimum and maximum force that the wheel can set.
 const FORCES: (f32, f32) = (5.0, 1500.0);
 
-/// A mean adult's shoe.
+/// Length of a mean adult's shoe.
 const LENGTH_M: f32 = 0.28;
 
-/// A foot that works a control does it with its ball.
+/// Roll of a working foot: it presses controls with the ball.
 const WORKING_ROLL: f32 = 0.75;
 
-/// A foot that stands rests on all of its sole.
+/// Roll of a standing foot: it rests on the whole sole.
 const STANDING_ROLL: f32 = 0.40;
 
-/// What the person at the mouse does, from one frame to the next.
+/// Input of one frame from mouse, fingers and pens.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Hand {
-    /// What the mouse did since the last frame, in order.
+    /// Actions of the mouse since the last frame, in order.
     pub(super) moves: Vec<Move>,
-    /// What fingers and pens did since the last frame, in order.
+    /// Actions of fingers and pens since the last frame, in order.
     pub(super) touches: Vec<Touch>,
-    /// Where the pointer is over the floor, in floor metres; `None` if it is elsewhere.
+    /// Position of the pointer over the floor, in floor metres; `None` elsewhere.
     pub(super) pointer: Option<Vec2>,
     /// Whether the button is still down.
     pub(super) down: bool,
     /// Notches of the wheel, away from the user positive.
     pub(super) wheel: f32,
-    /// Turn asked for, counter-clockwise in radians.
+    /// Requested turn, counter-clockwise in radians.
     pub(super) turn_rad: f32,
     /// Whether the pointer is on the standing foot's handle.
     pub(super) on_handle: bool,
-    /// How far the standing foot is dragged, in floor metres.
+    /// Drag of the standing foot, in floor metres.
     pub(super) drag: Vec2,
     /// Seconds since the last frame.
     pub(super) elapsed_s: f32,
 }
 
-/// One thing that the mouse did, in floor metres.
+/// One action of the mouse, in floor metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Move {
-    /// It came here.
+    /// It moved here.
     To(Vec2),
-    /// Its button went down here, on the bare floor.
+    /// Its button was pressed here, on the bare floor.
     Press(Vec2),
-    /// Its button came up here.
+    /// Its button was released here.
     Release(Vec2),
 }
 
-/// The mouse's foot, the standing one, and those of fingers.
+/// The foot of the mouse, the standing foot, and those of fingers.
 #[derive(Debug)]
 pub(super) struct MouseFeet {
     working: MouseFoot,
     standing: Option<MouseFoot>,
     fingers: Fingers,
-    /// Where the working foot's force acts: under the pointer.
+    /// Point of action of the working foot's force: under the pointer.
     at: Option<Vec2>,
-    /// Whether the button holds it down.
+    /// Whether the button presses it down.
     held: bool,
-    /// The feet as they were led last.
+    /// The feet in their last position.
     all: Vec<PreviewFoot>,
 }
 
-/// One foot, with the force it presses with when it is down.
+/// One foot, with its force while it is down.
 #[derive(Debug)]
 struct MouseFoot {
     shoe: PreviewFoot,
@@ -95,7 +96,7 @@ impl MouseFoot {
     }
 
     fn turn(&mut self, turn_rad: f32) {
-        // Kept within half a turn either way, for the read-out.
+        // Wrap to half a turn either way, for the read-out.
         self.shoe.heading_rad = (self.shoe.heading_rad + turn_rad + PI).rem_euclid(TAU) - PI;
     }
 }
@@ -112,7 +113,7 @@ impl MouseFeet {
         }
     }
 
-    /// Leads the feet by what the hand does; the sink makes steps and slides of it.
+    /// Moves the feet by the input of one frame; the sink turns the paths into steps and slides.
     pub(super) fn step(&mut self, hand: &Hand, sink: &mut dyn FootSink) {
         match (&mut self.standing, hand.on_handle && !self.held) {
             (Some(standing), true) => {
@@ -131,7 +132,7 @@ impl MouseFeet {
         let is_touched = self.fingers.are_down() || !hand.touches.is_empty();
         let usual = PreviewFoot { force: self.working.wanted, ..self.working.shoe };
         let touched = self.fingers.step(&hand.touches, usual, sink);
-        // The system tells the first finger as a mouse as well.
+        // The system reports the first finger as a mouse too.
         let (moves, pointer) = if is_touched { (&[][..], None) } else { (&hand.moves[..], hand.pointer) };
         let mut path = Vec::with_capacity(moves.len() + 1);
         for step in moves {
@@ -148,7 +149,7 @@ impl MouseFeet {
                 }
             }
         }
-        // A pointer that is gone, or a button whose release nobody told, lifts the foot where it was.
+        // A pointer outside the floor, or a button whose release went unreported, lifts the foot where it was.
         self.held &= hand.down && pointer.is_some();
         self.at = pointer;
         match pointer {
@@ -156,7 +157,7 @@ impl MouseFeet {
             None => path.clear(),
         }
         self.all.clear();
-        // Over the standing foot's handle the hand holds that foot.
+        // Over the handle of the standing foot, the mouse moves that foot.
         self.all.extend((self.at.is_some() && (self.held || !hand.on_handle)).then_some(self.working.shoe));
         self.all.extend(self.standing.as_ref().map(|foot| foot.shoe));
         self.all.extend(touched.iter().filter_map(|path| path.last()).filter(|foot| foot.force.0 > 0.0));
@@ -165,7 +166,7 @@ impl MouseFeet {
         sink.lead(hand.elapsed_s, &paths);
     }
 
-    /// The working foot with its pressure under `at`, pressing if the button holds it down.
+    /// The working foot with its centre of pressure at `at`, pressing while the button is down.
     fn working_at(&mut self, at: Vec2, sink: &dyn FootSink) -> PreviewFoot {
         let shoe = &mut self.working.shoe;
         shoe.force = if self.held { self.working.wanted } else { Newtons::ZERO };
@@ -174,7 +175,7 @@ impl MouseFeet {
         *shoe
     }
 
-    /// The feet as they were led last; the working one first.
+    /// The feet in their last position; the working one first.
     pub(super) fn shoes(&self) -> &[PreviewFoot] {
         &self.all
     }
@@ -184,7 +185,7 @@ impl MouseFeet {
         self.standing.as_ref().map(|foot| &foot.shoe)
     }
 
-    /// Stands a foot with its middle at `position`, in place of one that stood elsewhere.
+    /// Places the standing foot with its middle at `position`, or moves it there.
     pub(super) fn stand(&mut self, position: Vec2) {
         match &mut self.standing {
             Some(standing) => standing.shoe.position = position,
@@ -196,23 +197,23 @@ impl MouseFeet {
         }
     }
 
-    /// Takes the standing foot off the floor.
+    /// Removes the standing foot from the floor.
     pub(super) fn lift_standing(&mut self) {
         self.standing = None;
     }
 
-    /// Lifts the feet that work, as when the window loses the keyboard in mid-press.
+    /// Lifts the working feet, for example when the window loses the focus in mid-press.
     pub(super) fn lift_working(&mut self) {
         self.held = false;
         self.fingers.lift();
     }
 
-    /// Whether the button holds the working foot down.
+    /// Whether the button presses the working foot down.
     pub(super) fn is_pressing(&self) -> bool {
         self.held
     }
 
-    /// What the foot under the hand presses with once it is down, and where its toes point.
+    /// The force of the foot under the pointer once it is down, and its heading in radians.
     pub(super) fn wanted(&self, on_handle: bool) -> (Newtons, f32) {
         let foot = self.standing.as_ref().filter(|_| on_handle && !self.held).unwrap_or(&self.working);
         (foot.wanted, foot.shoe.heading_rad)
@@ -223,7 +224,7 @@ impl MouseFeet {
 mod tests {
     use super::*;
 
-    /// Keeps where it was led last.
+    /// Records the last paths.
     #[derive(Default)]
     struct Given(Vec<Vec<PreviewFoot>>);
 

@@ -29,17 +29,17 @@ const TURN_PER_POINT: f32 = 0.012;
 /// Turn while Q or E is held, in radians per second.
 const TURN_PER_S: f32 = 1.8;
 
-/// What the mouse is doing to the standing foot.
+/// The state of the mouse on the standing foot.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Grip {
-    /// Whether it is being dragged.
+    /// Whether the mouse drags it.
     held: bool,
-    /// Where its handle is, while the pointer is near enough to want it.
+    /// The position of its handle, while the pointer is near.
     handle: Option<Pos2>,
 }
 
 impl App {
-    /// Fills what is left of the window with the floor.
+    /// Fills the remaining part of the window with the floor.
     pub(super) fn floor_view(&mut self, ui: &mut Ui) {
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::drag());
@@ -72,7 +72,7 @@ impl App {
         }
     }
 
-    /// The shoes that press, as the floor has them, and the mouse's own while it is in the air.
+    /// The shoes that press, as the floor reports them, and the mouse's own while it is in the air.
     fn visible_shoes(&mut self) {
         let Some((feet, _)) = &self.feet else { return };
         if self.shoe_feed.is_none() {
@@ -109,7 +109,7 @@ impl App {
             return;
         };
         let (by, panned) = ui.input(|i| {
-            // Fingers on the floor are feet, also two of them.
+            // Fingers on the floor are feet, even two of them.
             let zoomed = if i.any_touches() { 1.0 } else { i.zoom_delta() };
             (zoomed, way_while_down(i, PointerButton::Middle))
         });
@@ -131,7 +131,7 @@ impl App {
         }
     }
 
-    /// Chooses the tile and the control that the side panel shows.
+    /// Selects the tile and the control for the side panel.
     fn look_at_tiles(&mut self, ui: &Ui, canvas: &Response, map: ScreenFromFloor) {
         let (pressed, shift, pointer) =
             ui.input(|i| (i.pointer.primary_pressed(), i.modifiers.shift, i.pointer.interact_pos()));
@@ -167,7 +167,7 @@ impl App {
         }
     }
 
-    /// Moves the simulated feet; the answer is whether the pointer is on the standing foot's handle.
+    /// Moves the simulated feet; returns whether the pointer is on the standing foot's handle.
     fn move_feet(&mut self, ui: &mut Ui, canvas: &Response, map: ScreenFromFloor) -> bool {
         let draws_walks = self.draws_walks();
         let Some((feet, sink)) = &mut self.feet else { return false };
@@ -196,7 +196,7 @@ impl App {
         on_handle || self.grip.held
     }
 
-    /// A disc with a cross of arrows: the standing foot can be moved.
+    /// Draws a disc with a cross of arrows: the standing foot can be moved.
     fn draw_handle(&self, ui: &Ui, rect: Rect, at: Pos2) {
         let (painter, theme) = (ui.painter_at(rect), &self.theme);
         let edge = egui::Stroke::new(1.5, color(if self.grip.held { theme.accent } else { theme.ink }));
@@ -210,7 +210,7 @@ impl App {
         }
     }
 
-    /// Force and turn of the foot in hand, beside the pointer.
+    /// Draws force and heading of the foot under the pointer, beside the pointer.
     fn read_out(&self, ui: &Ui, rect: Rect, on_handle: bool) {
         let (Some((feet, _)), Some(pointer)) = (&self.feet, ui.input(|i| i.pointer.hover_pos())) else {
             return;
@@ -228,7 +228,7 @@ impl App {
         let painter = ui.painter_at(rect);
         let galley = painter.layout_no_wrap(text, FontId::proportional(13.0), color(ink));
         let size = galley.size() + vec2(14.0, 6.0);
-        // South-east of the pointer, or on the other side where the view ends.
+        // South-east of the pointer, or on the other side at the edge of the view.
         let x = if pointer.x + 18.0 + size.x > rect.right() {
             pointer.x - 18.0 - size.x
         } else {
@@ -241,7 +241,7 @@ impl App {
         painter.galley(plate.min + vec2(7.0, 3.0), galley, color(ink));
     }
 
-    /// Tells screen readers and tests what is on the floor and how it is.
+    /// Gives screen readers and tests the name and state of each control on the floor.
     fn name_controls(&mut self, ui: &Ui, map: ScreenFromFloor) {
         let mut focused = None;
         let snapshot = self.snapshots.output_buffer();
@@ -255,7 +255,7 @@ impl App {
             let off = why_off(snapshot, index);
             if node.has_focus() {
                 focused = Some(index);
-                // Arrows slide the foot instead of leaving the control.
+                // Arrow keys slide the foot; they must not move the focus.
                 let filter =
                     EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
                 ui.memory_mut(|memory| memory.set_focus_lock_filter(node.id, filter));
@@ -281,7 +281,7 @@ impl App {
     }
 }
 
-/// Puts the standing foot down where Space is hit, and drags it by its handle or, with Alt, by its sole.
+/// Places or lifts the standing foot at the pointer on Space, and drags it by its handle or, with Alt, by its sole.
 fn stand_and_drag(
     ui: &mut Ui,
     canvas: &Response,
@@ -324,7 +324,7 @@ fn stand_and_drag(
     let drag = if grip.held { map.floor_vector(way) } else { Vec2::ZERO };
     let was_held = grip.held;
     grip.held &= ui.input(|i| i.pointer.primary_down());
-    // Its middle stays on the floor, however far the mouse goes.
+    // Its middle stays on the floor, even if the mouse leaves it.
     let drag = (shoe.position + drag).clamp(floor.min, floor.max) - shoe.position;
     (over || was_held, drag)
 }
@@ -333,7 +333,7 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
     let inside = canvas.contains_pointer();
     let keys = ui.ctx().memory(|memory| memory.focused().is_none());
     let events = ui.input(|i| i.events.clone());
-    // Where a press counts: a window that draws seldom may have it long before the pointer came to where it is.
+    // A press counts by its own position: with slow frames it may be much older than the pointer's present position.
     let is_floor = |at: Pos2| {
         canvas.rect.contains(at) && ui.ctx().layer_id_at(at).is_none_or(|layer| layer == ui.layer_id())
     };
@@ -353,7 +353,7 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
     let touches = events.iter().filter_map(|event| Touch::of(event, |at| map.floor(at), is_floor)).collect();
     ui.input(|i| {
         let down = i.pointer.primary_down();
-        // A press that began on the floor goes on beyond its edge, as a foot would.
+        // A press that began on the floor continues beyond its edge, as a foot would.
         let pointer = i.pointer.latest_pos().filter(|_| inside || down);
         let turned = if inside { way_while_down(i, PointerButton::Secondary).x } else { 0.0 };
         let key = |key: Key| f32::from(u8::from(keys && i.key_down(key)));
@@ -375,12 +375,12 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
     })
 }
 
-/// How far the wheel was turned, in notches.
+/// The turn of the wheel, in notches.
 fn notches(events: &[Event]) -> f32 {
     let notches = |event: &Event| match event {
-        // What a touch pad adds after the fingers are gone is not meant as a harder press.
+        // The momentum of a touch pad after the fingers have left is not a change of force.
         Event::MouseWheel { source: MouseWheelSource::Momentum, .. } => 0.0,
-        // That zooms.
+        // The zoom uses these.
         Event::MouseWheel { modifiers, .. } if modifiers.command || modifiers.ctrl => 0.0,
         Event::MouseWheel { unit, delta, .. } => match unit {
             // A notch is about 50 points on a touch pad.
@@ -393,7 +393,7 @@ fn notches(events: &[Event]) -> f32 {
     events.iter().map(notches).sum::<f32>().clamp(-20.0, 20.0)
 }
 
-/// A strip across the floor that cannot be overlooked; a narrow one at its top where the floor still works.
+/// Draws a prominent strip across the floor; a narrow one at its top if the floor still works.
 fn show_banner(ui: &Ui, rect: Rect, theme: &Theme, banner: &Banner) {
     let colour = match banner.weight {
         Weight::Hint => theme.warning,
@@ -416,7 +416,7 @@ fn show_banner(ui: &Ui, rect: Rect, theme: &Theme, banner: &Banner) {
     if banner.weight == Weight::Hint {
         write(middle, 13.5, &spoken);
     } else {
-        // A narrow view gets smaller letters rather than cut ones.
+        // A narrow view gets smaller letters instead of clipped ones.
         let size = (rect.width() / 26.0).clamp(13.0, 24.0);
         write(middle - vec2(0.0, 14.0), size, &banner.headline);
         write(middle + vec2(0.0, 18.0), (0.62 * size).max(12.0), &banner.detail);

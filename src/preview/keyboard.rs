@@ -1,4 +1,4 @@
-//! Controls worked by the keyboard: the one that has the focus is under a foot.
+//! Use of controls by keyboard: the control with the focus is under a foot.
 
 use eframe::egui::{Key, Ui};
 use glam::Vec2;
@@ -7,26 +7,26 @@ use super::feet::{Hand, Move};
 use crate::layout::Layout;
 use crate::widget::Behaviour;
 
-/// How fast arrow keys slide the foot, in metres per second.
+/// Speed at which arrow keys slide the foot, in metres per second.
 const SLIDE_M_S: f32 = 0.25;
 
-/// The foot that keys press with.
+/// The foot of the keyboard.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Keyboard {
-    /// Where it presses.
+    /// The position at which it presses.
     at: Option<Vec2>,
-    /// The control that has the focus.
+    /// The control with the focus.
     focused: Option<usize>,
 }
 
 impl Keyboard {
-    /// Says which control has the focus, if any.
+    /// Sets the control with the focus, if any.
     pub(super) fn focus(&mut self, control: Option<usize>) {
         self.focused = control;
     }
 
-    /// What the foot does by the keyboard: Enter or Space presses the control that has the focus for as long as it is
-    /// held, arrows meanwhile slide the foot over it. `None` while the mouse has the foot.
+    /// The input of the foot from the keyboard: Enter or Space presses the control with the focus while held, and the
+    /// arrow keys slide the foot over it. `None` while the mouse moves the foot.
     pub(super) fn hand(&mut self, ui: &Ui, layout: &Layout, elapsed_s: f32) -> Option<Hand> {
         let widget = self.focused.and_then(|index| layout.widgets.get(index));
         let held = widget.is_some() && ui.input(|i| i.key_down(Key::Enter) || i.key_down(Key::Space));
@@ -34,7 +34,7 @@ impl Keyboard {
         match (self.at, widget.filter(|_| held)) {
             (None, None) => return None,
             (None, Some(widget)) => {
-                // Where it begins, a slider keeps its value if it goes by the way, and takes the middle otherwise.
+                // From there, a relative slider keeps its value, and an absolute one takes the middle.
                 let at = widget.area.centre();
                 hand.moves = vec![Move::Press(at)];
                 self.at = Some(at);

@@ -1,4 +1,4 @@
-//! Looks at the floor for the window, so that the window draws only when there is something new to draw.
+//! Watches the floor for the window, so that the window draws only after a visible change.
 
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread;
@@ -12,30 +12,30 @@ use crate::engine::{Snapshot, TileState, WidgetState};
 use crate::sense::Contact;
 use crate::wire::LinkState;
 
-/// Time between looks: one for each frame of a window.
+/// Time between checks: one for each frame of a window.
 const EVERY: Duration = Duration::from_nanos(16_666_667);
 
-/// Time without news after which the looks are half as many: each wakes a processor that may sleep.
+/// Time without news after which checks come half as often: each one wakes a processor that may sleep.
 const QUIET: Duration = Duration::from_secs(2);
 
-/// How often the window draws although nothing has changed: figures such as rates go on.
+/// Interval at which the window draws without any change: figures such as rates continue.
 const AT_LEAST: Duration = Duration::from_secs(15);
 
-/// The same while something is wrong, such as a lost link, of which the window counts the tenths of seconds.
+/// The same interval during a fault, such as a lost link, for which the window counts tenths of seconds.
 const IN_TROUBLE: Duration = Duration::from_millis(100);
 
-/// Silence of the sensing thread from which on something is wrong.
+/// Time without a snapshot that counts as a fault.
 const SILENCE: Duration = Duration::from_millis(400);
 
-/// Differences that nobody sees: of a sensor's force (the noise of an idle one), of a contact's force as a share, of
-/// a place in metres (a third of a pixel), and of a press on its way to the threshold.
+/// Invisible differences: of a sensor's force (the noise of an idle one), of a contact's force as a share, of a place
+/// in metres (a third of a pixel), and of a press as a share of the threshold.
 const UNSEEN_N: f32 = 1.5;
 const UNSEEN_SHARE: f32 = 0.01;
 const UNSEEN_M: f32 = 0.001;
 const UNSEEN_PRESS: f32 = 0.01;
 
-/// Puts a thread between the floor and the window that passes on whatever comes and wakes the window when it has
-/// something to draw. It ends with the window.
+/// Puts a thread between the floor and the window that passes on all messages and wakes the window when there is
+/// something to draw. The thread ends with the window.
 pub(super) fn start(mut input: PreviewInput, ctx: &egui::Context) -> PreviewInput {
     let (mut passed, shown) = triple_buffer(input.snapshots.read());
     let mut snapshots = std::mem::replace(&mut input.snapshots, shown);
@@ -60,12 +60,12 @@ pub(super) fn start(mut input: PreviewInput, ctx: &egui::Context) -> PreviewInpu
                 news |= some;
             }
             if pace.is_due(snapshot, is_fresh, news, now) {
-                // Not at once, which would ask for two frames.
+                // A delay of zero would request two frames.
                 ctx.request_repaint_after(Duration::from_micros(100));
             }
         }
     };
-    // Without this thread the window would stand still; it is as vital as the window itself.
+    // Without this thread the window would not update; it is as essential as the window itself.
     thread::Builder::new()
         .name("lookout".into())
         .spawn(look)
@@ -73,7 +73,7 @@ pub(super) fn start(mut input: PreviewInput, ctx: &egui::Context) -> PreviewInpu
     input
 }
 
-/// When the window is to draw.
+/// Decides when the window draws.
 struct Pace {
     drawn: Snapshot,
     drawn_at: Instant,
@@ -85,7 +85,7 @@ impl Pace {
         Self { drawn, drawn_at: now, fresh_at: now }
     }
 
-    /// Time until the next look.
+    /// Time until the next check.
     fn pause(&self, now: Instant) -> Duration {
         if now.duration_since(self.drawn_at) > QUIET { 2 * EVERY } else { EVERY }
     }
@@ -107,14 +107,14 @@ impl Pace {
     }
 }
 
-/// What may wait behind a relay, for one frame of the window; more waits before it.
+/// Capacity behind a relay, for one frame of the window; further messages wait before the relay.
 const PASSED_ON: usize = 1024;
 
-/// Passes on what comes.
+/// Passes messages on.
 struct Relay<T> {
     from: Receiver<T>,
     to: SyncSender<T>,
-    /// What found no room.
+    /// The message for which the channel had no room.
     late: Option<T>,
 }
 
@@ -125,7 +125,7 @@ impl<T> Relay<T> {
         Self { from: std::mem::replace(receiver, after), to, late: None }
     }
 
-    /// Whether anything came; `None` once nobody takes it any more.
+    /// Returns whether a message arrived; `None` once the receiver is closed.
     fn pass_on(&mut self) -> Option<bool> {
         let mut some = false;
         while let Some(one) = self.late.take().or_else(|| self.from.try_recv().ok()) {
@@ -142,7 +142,7 @@ impl<T> Relay<T> {
     }
 }
 
-/// Whether a person could see a difference.
+/// Whether the difference is visible.
 fn differ(one: &Snapshot, other: &Snapshot) -> bool {
     one.link != other.link
         || one.link_cause != other.link_cause

@@ -1,4 +1,4 @@
-//! What other threads tell the window.
+//! Messages from other threads to the window.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -11,13 +11,13 @@ use crate::layout::Layout;
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
 
-/// Events that are kept for the list: some minutes of busy feet.
+/// Maximum number of lines in the list of events: some minutes with busy feet.
 const KEPT: usize = 500;
 
-/// Notices that are kept; a program that says more says the same again.
+/// Maximum number of notices; a program with more of them repeats itself.
 const NOTICES: usize = 4;
 
-/// Pause after which ground that gives way begins a new line.
+/// Pause after which the next ground event starts a new line.
 const SAME_WALK: Duration = Duration::from_secs(2);
 
 /// One line of the list of events.
@@ -27,15 +27,15 @@ pub(super) enum Happened {
     Event(WidgetEvent),
     /// A control did not answer a press.
     Ignored(IgnoredPress),
-    /// Ice cracked, or other ground gave way.
+    /// A ground event: ice cracked, or other ground yielded.
     GroundEvent {
-        /// Which of the layout's grounds.
+        /// Index of the ground in the layout.
         ground: usize,
-        /// What it is made of.
+        /// Its material.
         material: &'static str,
-        /// How often it gave way.
+        /// Number of its events.
         count: u64,
-        /// When it did last.
+        /// Time of the last event.
         at: Instant,
     },
 }
@@ -50,47 +50,46 @@ impl Happened {
     }
 }
 
-/// What other threads said, sorted.
+/// The messages from other threads, sorted.
 pub(super) struct Messages {
     events: Receiver<EventNews>,
     layouts: Receiver<LayoutNews>,
     notices: Receiver<String>,
-    /// What happened, newest first.
+    /// The list of events, newest first.
     pub(super) recent: VecDeque<Happened>,
-    /// What each ground had counted at the last frame.
+    /// The event counter of each ground in the last frame.
     counted: Vec<u64>,
-    /// Events since the window opened: those of controls, presses that no control answered, and grounds that began to
-    /// give way.
+    /// Events since the window opened: events of controls, ignored presses, and lines of ground events.
     pub(super) event_count: u64,
-    /// The layout that snapshots belong to.
+    /// The layout to which snapshots belong.
     pub(super) layout: Arc<Layout>,
-    /// Layouts that the engine was given and no snapshot shows yet.
+    /// Layouts that the engine has received, before the first snapshot of each.
     coming: VecDeque<(Arc<Layout>, u64)>,
-    /// What became of the layout file last.
+    /// The result of the last change to the layout file.
     pub(super) file: Option<FileNote>,
-    /// Whether files have changed that the layout is made of.
+    /// Whether files of the layout have changed.
     pub(super) files_changed: bool,
-    /// What feet and eyes will have trouble with in the layout.
+    /// The problems of the layout that affect feet or eyes.
     pub(super) warnings: Warnings,
-    /// Sentences for the person at the window, oldest first.
+    /// Messages for the user, oldest first.
     pub(super) notes: VecDeque<String>,
 }
 
-/// What became of the layout file last.
+/// The result of the last change to the layout file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FileNote {
     /// The file's name.
     pub(super) name: String,
-    /// When it was reported, on the window's clock.
+    /// Time of the report, on the window's clock.
     pub(super) at_s: f64,
     /// All problems; `None` if it was loaded.
     pub(super) diagnostics: Option<String>,
-    /// Why it came; `None` if it did not.
+    /// The reason for the new layout; `None` if it was refused.
     pub(super) cause: Option<LayoutCause>,
 }
 
 impl FileNote {
-    /// Whether nobody asked for it who would want to be told.
+    /// Whether the layout changed by editing or by the recording, so that the user needs no message.
     pub(super) fn came_by_itself(&self) -> bool {
         matches!(self.cause, Some(LayoutCause::Designed | LayoutCause::Recorded))
     }
@@ -119,7 +118,7 @@ impl Messages {
         }
     }
 
-    /// Writes on controls what apps have written on them; `labels` are the latest snapshot's.
+    /// Applies the labels that apps have set to the controls; `labels` come from the latest snapshot.
     pub(super) fn relabel(&mut self, labels: &[(usize, Arc<str>)]) {
         for (index, label) in labels {
             if self.layout.widgets.get(*index).is_some_and(|widget| *widget.label != **label) {
@@ -129,7 +128,7 @@ impl Messages {
         }
     }
 
-    /// Takes in everything that waits; `revision` is the latest snapshot's.
+    /// Takes in all waiting messages; `revision` is that of the latest snapshot.
     pub(super) fn receive(&mut self, now_s: f64, revision: u64) {
         for event in self.events.try_iter() {
             let event = match event {
@@ -144,7 +143,7 @@ impl Messages {
             };
             self.event_count += 1;
             match self.recent.front_mut() {
-                // A slider on its way is one line that follows it, or it would push out everything else.
+                // A moving slider updates one line; otherwise it would displace all other lines.
                 Some(Happened::Event(newest)) if follows(newest, &event) => *newest = event,
                 _ => {
                     self.recent.truncate(KEPT - 1);
@@ -176,7 +175,7 @@ impl Messages {
         }
     }
 
-    /// Lists what has given way on the grounds since the last frame; steps of one walk are one line for each ground.
+    /// Lists the ground events since the last frame; the steps of one walk are one line for each ground.
     pub(super) fn note_grounds(&mut self, snapshot: &Snapshot) {
         let counts = snapshot.grounds.iter().map(|ground| ground.counters.events);
         let before = std::mem::replace(&mut self.counted, counts.collect());
@@ -184,7 +183,7 @@ impl Messages {
             return;
         }
         for (index, (before, now)) in before.into_iter().zip(&self.counted).enumerate() {
-            // Another layout's ground counts anew.
+            // The counter of a new layout's ground starts at zero.
             let count = now.saturating_sub(before);
             let Some(ground) = self.layout.grounds.get(index).filter(|_| count > 0) else { continue };
             match self.recent.front_mut() {
@@ -208,7 +207,7 @@ impl Messages {
         }
     }
 
-    /// Lists presses that no control answered, each behind what happened after it: events may have come before.
+    /// Inserts ignored presses in order of time: they may arrive after later events.
     pub(super) fn note_ignored(&mut self, presses: Vec<IgnoredPress>) {
         for press in presses {
             self.event_count += 1;
@@ -218,7 +217,7 @@ impl Messages {
         }
     }
 
-    /// Says something to the person at the window, unless that is being said.
+    /// Shows a message to the user, unless the same message is already on display.
     pub(super) fn note(&mut self, note: String) {
         if !self.notes.contains(&note) {
             self.notes.push_back(note);
@@ -229,7 +228,7 @@ impl Messages {
     }
 }
 
-/// Whether `next` only says how far a slider has moved on since `last`.
+/// Whether `next` only updates the position of the slider in `last`.
 fn follows(last: &WidgetEvent, next: &WidgetEvent) -> bool {
     let moves =
         |event: &WidgetEvent| matches!(event.kind, EventKind::Changed(Value::Number(_) | Value::Pair(_)));

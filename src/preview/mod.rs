@@ -1,8 +1,7 @@
-//! The window: a simulated or real floor, drawn and played with the mouse.
+//! The window: a simulated or real floor, drawn on the screen and used with the mouse.
 //!
-//! [`run`] shows whatever its [`PreviewInput`] brings in; sensing, sound and
-//! outputs run on other threads and never wait for it. Only this module and [`crate::egui_painter`] know
-//! egui.
+//! [`run`] shows the content of its [`PreviewInput`]; sensing, sound and outputs run on other threads and never wait
+//! for the window. Only this module and [`crate::egui_painter`] depend on egui.
 
 mod app;
 mod appearance;
@@ -59,16 +58,16 @@ use thiserror::Error;
 
 use crate::scene::Theme;
 
-/// How the window looks at first.
+/// The initial state of the window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PreviewOptions {
-    /// What the window's title bar says.
+    /// The text of the window's title bar.
     pub title: String,
     /// Width and height of the inside, in points.
     pub size: (f32, f32),
-    /// The colours, unless somebody has chosen others.
+    /// The colours, unless the settings hold others.
     pub theme: Theme,
-    /// File that remembers which colours and which size of the text people choose; `None` to forget it.
+    /// File that stores the user's colours and text size; `None` to store nothing.
     pub settings: Option<PathBuf>,
     /// The window for a projector.
     pub projection: ProjectionOptions,
@@ -86,17 +85,17 @@ impl Default for PreviewOptions {
     }
 }
 
-/// Why there is no window.
+/// The reason why the window could not open.
 #[derive(Debug, Error)]
 pub enum PreviewError {
-    /// The window could not be opened: no display, or one without OpenGL. What needs no window still works.
+    /// The window could not be opened: no display, or one without OpenGL. Commands without a window still work.
     #[error(
         "no window can be opened ({0}): start it on a desktop with OpenGL, or use the commands that need no window"
     )]
     NoWindow(String),
 }
 
-/// Shows the window until it is closed; to be called on the main thread.
+/// Shows the window until the user closes it; must be called on the main thread.
 ///
 /// # Errors
 /// [`PreviewError::NoWindow`] if there is no display or no OpenGL on it.
@@ -106,12 +105,12 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         .with_app_id("underfoot")
         .with_inner_size([options.size.0, options.size.1])
         .with_min_inner_size([640.0, 420.0]);
-    // No gradients here that dithering would help, and without a graphics card it costs a tenth of each frame.
+    // There are no gradients that need dithering, and without a graphics card it takes a tenth of each frame.
     let native = eframe::NativeOptions {
         viewport,
         renderer: eframe::Renderer::Glow,
         dithering: false,
-        // Ours chooses the same fonts for pictures, and does without any.
+        // Our fallback uses the same fonts as pictures do, and works without installed fonts.
         system_font_fallback: false,
         ..Default::default()
     };
@@ -121,9 +120,9 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         let app = app::App::new(lookout::start(input, &context.egui_ctx), &options);
         style::apply(&context.egui_ctx, &app.theme);
         context.egui_ctx.set_fonts(crate::letters::definitions());
-        // What they lack comes from the fonts of this computer, as pictures have it.
+        // Missing letters come from the fonts of this computer, as in pictures.
         context.egui_ctx.add_font_provider(std::sync::Arc::new(crate::letters::Installed::new()));
-        // The size of the text is the window's own: it is remembered.
+        // The window has its own text size, which it stores.
         context.egui_ctx.options_mut(|options| options.zoom_with_keyboard = false);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
@@ -131,17 +130,17 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         .map_err(|error| PreviewError::NoWindow(reason(&error.to_string()).to_owned()))
 }
 
-/// Lets freed memory stay with the program, for the next frame.
+/// Keeps freed memory in the process, for the next frame.
 ///
-/// A graphics driver without a graphics card takes and frees some megabytes for each frame. The C library of
-/// Linux would give them back to the system each time, and the page faults cost a sixth of the frame; once a
-/// large block was freed it takes this for the custom, and keeps up to twice as much (mallopt(3), "dynamic mmap
-/// threshold", at most 32 MiB). Elsewhere this does nothing.
+/// A graphics driver without a graphics card allocates and frees some megabytes for each frame. The C library of
+/// Linux would return them to the system each time, and the page faults take a sixth of the frame. Once a large block
+/// has been freed, the library raises its threshold and keeps up to twice as much (mallopt(3), "dynamic mmap
+/// threshold", at most 32 MiB). On other systems this has no effect.
 fn keep_memory() {
     drop(std::hint::black_box(Vec::<u8>::with_capacity(31 << 20)));
 }
 
-/// What a person can use of winit's message: the part after the source line that it names.
+/// The useful part of winit's message: the text after the source line in it.
 fn reason(message: &str) -> &str {
     let after_line = message.rsplit_once(".rs:").and_then(|(_, line)| line.split_once(": "));
     after_line.map_or(message, |(_, reason)| reason).trim_end_matches('.')

@@ -1,34 +1,34 @@
-//! A recording that is shown, as the window sees and leads it.
+//! Playback of a recording: its state, and the commands of the window.
 
 use std::sync::Arc;
 
-/// A recording on its way through the sensing. Times are seconds since its first moment.
+/// A recording that plays through the sensing. Times are seconds since its first moment.
 pub trait Playback {
-    /// How it is now.
+    /// The present state.
     fn state(&mut self) -> PlaybackState;
 
-    /// Asks for something else; a time before the first moment or after the last counts as that one, NaN as the first.
+    /// Sends a command; a time before the first moment or after the last is clamped, NaN counts as the first.
     fn lead(&mut self, order: PlaybackOrder);
 }
 
-/// How a recording is on its way.
+/// The state of playback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaybackState {
-    /// The moment that is shown.
+    /// The time on display.
     pub at_s: f64,
-    /// The last moment that is known of; it grows while the file is being read.
+    /// The last known time; it grows while the file is being read.
     pub length_s: f64,
-    /// Whether it is held still.
+    /// Whether playback is paused.
     pub is_paused: bool,
-    /// How many times as fast it goes as it was recorded; infinite for as fast as can be.
+    /// Speed relative to the recording; infinite for the maximum speed.
     pub speed: f64,
-    /// The moment that it hurries to.
+    /// The target of a seek in progress.
     pub goes_to_s: Option<f64>,
-    /// The stretch that it plays again and again.
+    /// The part that is repeated.
     pub repeats: Option<(f64, f64)>,
-    /// What people look for, in the order of time.
+    /// Marks of interest, in order of time.
     pub marks: Arc<Vec<PlaybackMark>>,
-    /// Why it breaks off, if it does.
+    /// Why the recording breaks off, if it does.
     pub broken: Option<String>,
 }
 
@@ -47,37 +47,37 @@ impl Default for PlaybackState {
     }
 }
 
-/// A moment that people look for.
+/// A mark of interest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaybackMark {
-    /// When.
+    /// The time of the mark.
     pub at_s: f64,
-    /// What: `zoom pressed`.
+    /// The text of the mark: `zoom pressed`.
     pub what: String,
-    /// How much it matters.
+    /// Its importance.
     pub weight: MarkWeight,
 }
 
-/// How much a mark matters.
+/// The importance of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkWeight {
-    /// All is well.
+    /// A normal event.
     Usual,
-    /// Somebody did not get what they wanted.
+    /// A failed attempt of a user.
     Odd,
-    /// The floor did not work.
+    /// A fault of the floor.
     Fault,
 }
 
-/// What the person at the window wants of a recording.
+/// A command of the user for a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlaybackOrder {
-    /// Hold it still, or go on.
+    /// Pause, or continue.
     Pause(bool),
-    /// Go so many times as fast as it was recorded.
+    /// Play at this speed relative to the recording.
     Speed(f64),
-    /// Show this moment.
+    /// Show this time.
     GoTo(f64),
-    /// Play this stretch again and again; `None` for no more.
+    /// Repeat this part; `None` to stop repeating.
     Repeat(Option<(f64, f64)>),
 }

@@ -1,18 +1,18 @@
-//! What the pointer does between two frames, in the order in which it came.
+//! The movement of the pointer between two frames, in the order of its events.
 //!
-//! A window that draws seldom gets the way to a thing, the press on it and the drag at once. Only what comes between
-//! press and release is the drag.
+//! A window with slow frames gets the approach, the press and the drag at once. Only the movement between press and
+//! release is the drag.
 
 use eframe::egui::{Event, InputState, PointerButton, Pos2, Vec2};
 
-/// How far the pointer went while `button` was down, in points.
+/// The movement of the pointer while `button` was down, in points.
 pub(super) fn way_while_down(input: &InputState, button: PointerButton) -> Vec2 {
     let pointer = &input.pointer;
     let begin = pointer.latest_pos().map(|at| at - pointer.delta());
     way(&input.events, begin, pointer.button_down(button), button)
 }
 
-/// Where `button` went down since the last frame; `None` if it did not.
+/// The position of the last frame's first press of `button`, if any.
 pub(super) fn pressed_at(input: &InputState, button: PointerButton) -> Option<Pos2> {
     input.events.iter().find_map(|event| match event {
         Event::PointerButton { pos, button: own, pressed: true, .. } if *own == button => Some(*pos),
@@ -20,10 +20,10 @@ pub(super) fn pressed_at(input: &InputState, button: PointerButton) -> Option<Po
     })
 }
 
-/// From where the pointer was, with the button as it is in the end.
+/// The movement from `begin`, with the state of the button after the events.
 fn way(events: &[Event], begin: Option<Pos2>, is_down_after: bool, button: PointerButton) -> Vec2 {
     let is_own = |own: &PointerButton| *own == button;
-    // The first change tells how it was before.
+    // The first change implies the state before it.
     let first = events.iter().find_map(|event| match event {
         Event::PointerButton { button, pressed, .. } if is_own(button) => Some(!pressed),
         _ => None,
@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn only_the_way_between_press_and_release_counts() {
         let way = |events: &[Event], down| way(events, Some(at(0.0)), down, PointerButton::Primary).x;
-        // All within one frame: there, down, on, up, away.
+        // All within one frame: approach, press, drag, release, departure.
         let all =
             [moved(100.0), button(at(100.0), true), moved(130.0), button(at(135.0), false), moved(500.0)];
         assert_eq!(way(&all, false), 35.0);

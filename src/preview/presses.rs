@@ -1,4 +1,4 @@
-//! How hard people have pressed each control, answered or not.
+//! The forces of presses on each control, answered or ignored.
 
 use std::collections::{HashMap, VecDeque};
 
@@ -7,31 +7,31 @@ use crate::sense::ContactId;
 use crate::units::{Instant, Newtons};
 use crate::widget::WidgetId;
 
-/// Presses that are kept, of all controls: some minutes of busy feet.
+/// Maximum number of stored presses, of all controls: some minutes with busy feet.
 const KEPT: usize = 400;
 
-/// Contacts whose person is remembered: their presses are told when they are gone.
+/// Number of contacts whose person is stored: their presses are reported after the contact has ended.
 const CONTACTS: usize = 64;
 
 /// One press of one control.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Press {
-    /// When it ended.
+    /// Time of its end.
     pub(super) at: Instant,
     pub(super) id: WidgetId,
-    /// The greatest force.
+    /// Its maximum force.
     pub(super) force: Newtons,
-    /// Why it was not answered; `None` if it was.
+    /// Why it was ignored; `None` if it was answered.
     pub(super) why: Option<Ignored>,
-    /// Whose foot it was, as the floor tells people apart; `None` if it was not told.
+    /// The person, as tracked on the floor; `None` if unknown.
     pub(super) person: Option<u32>,
-    /// Whether it counts as one that was meant.
+    /// Whether it counts as intended.
     pub(super) counts: bool,
 }
 
 impl Press {
-    /// Whether a person pressed as they meant to, as far as its end tells: other reasons than force and time say that
-    /// the foot was not there to press, or that it could not be known how hard it did.
+    /// Whether the press was intended, judging from its end: any reason other than force or time indicates that the
+    /// foot pressed for another purpose, or that its force was unknown.
     fn is_meant(why: Option<Ignored>) -> bool {
         matches!(why, None | Some(Ignored::TooLight | Ignored::TooShort))
     }
@@ -42,30 +42,30 @@ impl Press {
 pub(super) struct Presses {
     /// Oldest first.
     all: VecDeque<Press>,
-    /// Whether they are recorded ones, which come again each time an earlier moment is shown.
+    /// Whether they come from a recording, which repeats them each time it shows an earlier moment.
     are_recorded: bool,
-    /// The last that made room for another, and the moment up to which those of a control were forgotten: recorded
-    /// presses up to then have been counted.
+    /// The time of the last press that was dropped for a newer one, and per control the time up to which the presses
+    /// were cleared: recorded presses up to then have been counted.
     dropped_at: Option<Instant>,
     forgotten_at: HashMap<WidgetId, Instant>,
-    /// The last snapshot's moment.
+    /// The time of the last snapshot.
     seen_at: Instant,
-    /// What the last snapshot had listed.
+    /// The lists of the last snapshot.
     ignored: Vec<IgnoredPress>,
     answered: Vec<AnsweredPress>,
     people: VecDeque<(ContactId, u32)>,
-    /// What became of the last threshold that was set here.
+    /// The message about the last threshold that was set here.
     pub(super) told: Option<(WidgetId, String)>,
 }
 
 impl Presses {
-    /// Those of a recording, each of which is noted once, however often its moment is shown.
+    /// For a recording: counts each press once, however often its moment is shown.
     pub(super) fn recorded() -> Self {
         Self { are_recorded: true, ..Self::default() }
     }
 
-    /// Takes in what a snapshot lists that was not listed before; gives back the newly listed presses that were
-    /// ignored. After a snapshot of an earlier moment, all of them are newly listed.
+    /// Takes in the presses that a snapshot lists for the first time; returns those of them that were ignored. After
+    /// a snapshot of an earlier moment, all of them count as new.
     pub(super) fn update(&mut self, snapshot: &Snapshot) -> Vec<IgnoredPress> {
         if snapshot.at < self.seen_at {
             self.ignored.clear();
@@ -107,7 +107,7 @@ impl Presses {
         if self.all.len() == KEPT {
             self.dropped_at = self.all.pop_front().map(|oldest| oldest.at);
         }
-        // Between the others, where a recording is shown from an earlier moment than before.
+        // A recording may show an earlier moment than before, so insert the press in order of time.
         let place = if self.are_recorded {
             self.all.partition_point(|other| other.at <= press.at)
         } else {
@@ -131,12 +131,12 @@ impl Presses {
         self.all.back().map(|press| &press.id)
     }
 
-    /// Those of one control, the latest first.
+    /// The presses of one control, the latest first.
     pub(super) fn of(&self, id: &WidgetId) -> impl Iterator<Item = &Press> {
         self.all.iter().rev().filter(move |press| press.id == *id)
     }
 
-    /// Forces of those of one control that count, and of how many people they are.
+    /// The forces of the presses of one control that count, and the number of people who made them.
     pub(super) fn counted(&self, id: &WidgetId) -> (Vec<Newtons>, usize) {
         let forces = self.of(id).filter(|press| press.counts).map(|press| press.force).collect();
         let mut people: Vec<u32> =
@@ -146,7 +146,7 @@ impl Presses {
         (forces, people.len())
     }
 
-    /// Lets one press of a control count or not; `number` counts from the latest.
+    /// Sets whether one press of a control counts; `number` counts from the latest.
     pub(super) fn let_count(&mut self, id: &WidgetId, number: usize, counts: bool) {
         let mut of = self.all.iter_mut().rev().filter(|press| press.id == *id);
         if let Some(press) = of.nth(number) {
@@ -154,7 +154,7 @@ impl Presses {
         }
     }
 
-    /// Forgets the presses of one control: another person begins.
+    /// Clears the presses of one control, for example before another person begins.
     pub(super) fn forget(&mut self, id: &WidgetId) {
         let latest = self.of(id).next().map(|latest| latest.at);
         self.forgotten_at.extend(latest.map(|at| (id.clone(), at)));
@@ -191,7 +191,7 @@ mod tests {
         let mut presses = Presses::default();
         let mut snapshot = Snapshot { feet: vec![foot(1, 5), foot(2, 6)], ..Snapshot::default() };
         presses.update(&snapshot);
-        // Told once the feet are gone.
+        // The lists report the presses once the feet are gone.
         snapshot.feet.clear();
         snapshot.answered = vec![answered(100, 1, 120.0), answered(200, 2, 90.0)];
         snapshot.ignored =
@@ -201,14 +201,15 @@ mod tests {
         let (mut forces, people) = presses.counted(&id("home"));
         forces.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert_eq!((forces, people), (vec![Newtons(40.0), Newtons(90.0), Newtons(120.0)], 2));
-        // The same press again at another time is another one, and lists that are cut at their old end say nothing new.
+        // The same press at another time is a different one; lists that lose their oldest entries contain nothing
+        // new.
         snapshot.answered = vec![answered(200, 2, 90.0), answered(300, 2, 90.0)];
         presses.update(&snapshot);
         assert_eq!(presses.of(&id("home")).count(), 5);
         assert_eq!(presses.of(&id("zoom")).count(), 0);
     }
 
-    /// What the window sees of a recording, moment by moment.
+    /// The snapshot of one moment of a recording.
     fn shown(at_ms: u64, answered_so_far: Vec<AnsweredPress>, ignored_so_far: Vec<IgnoredPress>) -> Snapshot {
         let at = Instant::from_millis(at_ms);
         Snapshot { at, answered: answered_so_far, ignored: ignored_so_far, ..Snapshot::default() }

@@ -1,6 +1,6 @@
-//! How often something happens a second.
+//! Rates of events.
 
-/// Counts how often something happens a second, over the last half second.
+/// Measures a rate per second over the last half second.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rate {
     since_s: f64,
@@ -8,14 +8,14 @@ pub(super) struct Rate {
     per_second: Option<f32>,
 }
 
-/// How often the figure changes: slow enough to be read.
+/// Interval between updates of the figure: slow enough to read.
 const WINDOW_S: f64 = 0.5;
 
-/// Pause after which what was counted says nothing of the present: a window that has nothing to draw pauses for less.
+/// Pause after which the old count is discarded: a window without changes pauses for less.
 const LONGEST_S: f64 = 30.0;
 
 impl Rate {
-    /// Takes the `count` of it so far at `now_s`; a count that went down starts anew.
+    /// Takes the total `count` at `now_s`; a decrease restarts the measurement.
     pub(super) fn observe(&mut self, now_s: f64, count: u64) {
         let passed = now_s - self.since_s;
         if count < self.count_then || passed > LONGEST_S {
@@ -26,7 +26,7 @@ impl Rate {
         }
     }
 
-    /// How often a second; `None` until half a second is counted.
+    /// The rate per second; `None` during the first half second.
     pub(super) fn per_second(self) -> Option<f32> {
         self.per_second
     }
@@ -39,7 +39,7 @@ mod tests {
     #[test]
     fn counts_over_half_a_second_and_survives_a_restart() {
         let mut rate = Rate::default();
-        // A window that opens late on its clock does not count the time before.
+        // A window that opens late on its clock ignores the time before.
         rate.observe(100.0, 5000);
         assert_eq!(rate.per_second(), None);
         for frame in 1..=60 {

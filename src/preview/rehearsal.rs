@@ -1,4 +1,4 @@
-//! Faults that somebody at the window switches on, to see what becomes of them.
+//! Faults that the user switches on in the window, to watch their effect.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -8,43 +8,43 @@ use crate::sim::SensorFault;
 use crate::source::{FaultSwitch, Faults, Outage};
 use crate::units::Instant;
 
-/// What is wrong with the simulated floor on purpose.
+/// The faults of the simulated floor.
 pub(super) struct Rehearsal {
     switch: FaultSwitch,
-    /// How many boards the floor has.
+    /// Number of boards of the floor.
     pub(super) boards: u16,
-    /// What goes wrong with the packets.
+    /// The faults of the packets.
     pub(super) packets: PacketFaults,
-    /// The sensors that are broken.
+    /// The faults of sensors.
     sensors: Vec<(SensorId, SensorFault)>,
 }
 
-/// What goes wrong with packets, as it is chosen in the window.
+/// Faults of packets, as chosen in the window.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PacketFaults {
-    /// Of 100 packets, how many are lost.
+    /// Percentage of packets that are lost.
     pub(super) lost_percent: f64,
-    /// Of 100 packets, how many have a damaged number.
+    /// Percentage of packets with a damaged number.
     pub(super) damaged_percent: f64,
-    /// By how much half of the packets are late at most, in milliseconds.
+    /// Maximum delay of the late half of the packets, in milliseconds.
     pub(super) late_ms: f64,
-    /// Whether nothing arrives at all.
+    /// Whether no packet arrives at all.
     pub(super) silent: bool,
-    /// Boards that are unplugged.
+    /// The unplugged boards.
     pub(super) unplugged: BTreeSet<u16>,
 }
 
-/// Share of packets that are late, where some are.
+/// Share of late packets, if there are any.
 const LATE: f64 = 0.5;
 
 impl Rehearsal {
     pub(super) fn new(switch: FaultSwitch, floor: &Floor) -> Self {
-        // More boards than numbers there can't be: the floor file numbers them by u16.
+        // The floor file numbers boards by u16, so there cannot be more.
         let boards = u16::try_from(floor.boards.len()).unwrap_or(u16::MAX);
         Self { switch, boards, packets: PacketFaults::default(), sensors: Vec::new() }
     }
 
-    /// How many things are wrong.
+    /// The number of faults that are switched on.
     pub(super) fn count(&self) -> usize {
         let PacketFaults { lost_percent, damaged_percent, late_ms, silent, unplugged } = &self.packets;
         let shares = [*lost_percent, *damaged_percent, *late_ms];
@@ -54,24 +54,24 @@ impl Rehearsal {
             + self.sensors.len()
     }
 
-    /// What is wrong with `sensor`.
+    /// The fault of `sensor`.
     pub(super) fn of_sensor(&self, sensor: SensorId) -> Option<SensorFault> {
         self.sensors.iter().find(|(broken, _)| *broken == sensor).map(|(_, fault)| *fault)
     }
 
-    /// Breaks a sensor, or mends it.
+    /// Sets or clears the fault of a sensor.
     pub(super) fn set_sensor(&mut self, sensor: SensorId, fault: Option<SensorFault>) {
         self.sensors.retain(|(broken, _)| *broken != sensor);
         self.sensors.extend(fault.map(|fault| (sensor, fault)));
         tell(self.switch.set_sensor(sensor, fault));
     }
 
-    /// Lets happen what was chosen for the packets.
+    /// Applies the chosen faults of packets.
     pub(super) fn apply(&self) {
         tell(self.switch.set_packets(Faults::from(&self.packets)));
     }
 
-    /// Mends everything.
+    /// Clears all faults.
     pub(super) fn mend(&mut self) {
         self.packets = PacketFaults::default();
         self.apply();

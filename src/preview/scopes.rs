@@ -4,17 +4,17 @@ use super::feed::ScopeFeed;
 use crate::engine::Snapshot;
 use crate::floor::{Floor, TileId};
 
-/// Scopes that are shown at once.
+/// Number of scopes on display at once.
 pub(super) const SLOTS: usize = 3;
 
-/// How fast the level shown on a tile falls, as a share left after a second: a click of 20 ms is seen.
+/// Decay of the level shown on a tile, as the share left after one second: a click of 20 ms remains visible.
 const FALL: f32 = 1e-3;
 
-/// What the actuators do: a level for every tile, and waveforms for some.
+/// The signals of the actuators: a level for every tile, and waveforms for some.
 pub(super) struct Scopes {
     feed: Option<Box<dyn ScopeFeed>>,
     levels: Vec<f32>,
-    /// The tiles whose waveforms are shown, and how long ago a foot was on each, in frames.
+    /// The tiles with a waveform on display, each with the number of frames since a foot was on it.
     slots: [Option<(TileId, u32)>; SLOTS],
 }
 
@@ -23,22 +23,22 @@ impl Scopes {
         Self { feed, levels: vec![0.0; floor.geometry.tile_count()], slots: [None; SLOTS] }
     }
 
-    /// Whether there is anything to show at all.
+    /// Whether there is a signal source.
     pub(super) fn is_fed(&self) -> bool {
         self.feed.is_some()
     }
 
-    /// Peak of each tile's actuator, in tile-index order, 0 to 1: rising at once, falling softly.
+    /// Peak of each tile's actuator, in tile-index order, 0 to 1: it rises at once and decays exponentially.
     pub(super) fn levels(&self) -> &[f32] {
         &self.levels
     }
 
-    /// Whether any actuator moves, or did a moment ago.
+    /// Whether any actuator moves, or moved a moment ago.
     pub(super) fn are_moving(&self) -> bool {
         self.levels.iter().any(|level| *level > 0.0)
     }
 
-    /// Takes in what the actuators did since the last frame, `elapsed_s` ago.
+    /// Takes in the signals since the last frame, which was `elapsed_s` ago.
     pub(super) fn update(&mut self, floor: &Floor, snapshot: &Snapshot, selected: TileId, elapsed_s: f32) {
         let Some(feed) = &mut self.feed else { return };
         feed.update();
@@ -54,7 +54,7 @@ impl Scopes {
         self.choose(snapshot, selected);
     }
 
-    /// Keeps waveforms in their places: a tile that comes under a foot takes the place unused for longest.
+    /// Assigns waveforms to slots: a tile that comes under a foot takes the slot unused for longest; the others stay.
     fn choose(&mut self, snapshot: &Snapshot, selected: TileId) {
         for (_, age) in self.slots.iter_mut().flatten() {
             *age = age.saturating_add(1);
@@ -65,7 +65,7 @@ impl Scopes {
             if let Some((_, age)) = self.slots.iter_mut().flatten().find(|(shown, _)| *shown == tile) {
                 *age = 0;
             } else if let Some(slot) =
-                // The first of those unused for longest: empty places fill from the top.
+                // The first of the slots unused for longest: empty slots fill from the top.
                 self
                     .slots
                     .iter_mut()
@@ -77,7 +77,7 @@ impl Scopes {
         }
     }
 
-    /// Calls `show` for each place, with its tile and waveform; the waveform is empty where the tile has no actuator.
+    /// Calls `show` for each slot, with its tile and waveform; the waveform is empty for a tile without an actuator.
     pub(super) fn for_each(&mut self, floor: &Floor, mut show: impl FnMut(Option<TileId>, &[(f32, f32)])) {
         for slot in self.slots {
             let tile = slot.map(|(tile, _)| tile);
@@ -92,7 +92,7 @@ impl Scopes {
     }
 }
 
-/// The greatest absolute sample; 0 for none, NaN left out.
+/// The maximum absolute sample, at most 1; 0 for no samples; ignores NaN.
 pub(super) fn peak(wave: &[(f32, f32)]) -> f32 {
     wave.iter().fold(0.0_f32, |peak, (low, high)| peak.max(-low).max(*high)).min(1.0)
 }
@@ -144,7 +144,7 @@ mod tests {
         scopes.update(&floor, &one, selected, 0.016);
         let before = tiles(&scopes);
         assert!(before.contains(&Some((0, 0))) && before.contains(&Some((3, 3))));
-        // The foot is lifted: nothing jumps.
+        // After the foot is lifted, all waveforms stay in their slots.
         scopes.update(&floor, &empty, selected, 0.016);
         assert_eq!(tiles(&scopes), before);
     }

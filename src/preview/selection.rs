@@ -1,12 +1,12 @@
-//! Which tile and which control the side panel shows.
+//! The tile and the control that the side panel shows.
 
 use crate::engine::Snapshot;
 use crate::floor::{Geometry, TileId};
 use crate::layout::{Layout, Widget};
 use crate::widget::WidgetId;
 
-/// What the side panel shows: the tile under the foot that works and the control that was pressed last, or those that
-/// were pinned.
+/// The content of the side panel: the tile under the working foot and the control that was pressed last, or pinned
+/// ones.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Selection {
     tile: TileId,
@@ -15,14 +15,14 @@ pub(super) struct Selection {
 }
 
 impl Selection {
-    /// The middle of the floor, until a foot comes.
+    /// The tile in the middle of the floor, until a foot steps on another one.
     pub(super) fn new(geometry: &Geometry) -> Self {
         let TileId { column, row } = geometry.first();
         let tile = TileId::new(column + geometry.columns() / 2, row + geometry.rows() / 2);
         Self { tile, control: None, pinned: false }
     }
 
-    /// Goes along with the cursor's heaviest tile, or the heaviest contact's, unless pinned.
+    /// Follows the heaviest tile of the cursor, or of the heaviest contact, unless pinned.
     pub(super) fn follow(&mut self, snapshot: &Snapshot) {
         if self.pinned {
             return;
@@ -38,7 +38,7 @@ impl Selection {
         }
     }
 
-    /// Goes along with the control that was pressed last, unless pinned to another one.
+    /// Follows the control that was pressed last, unless another one is pinned.
     pub(super) fn follow_press(&mut self, control: Option<&WidgetId>) {
         if control.is_some() && (!self.pinned || self.control.is_none()) && self.control.as_ref() != control {
             self.control = control.cloned();
@@ -49,7 +49,7 @@ impl Selection {
         (self.tile, self.pinned) = (tile, true);
     }
 
-    /// Shows this control until somebody wants another one.
+    /// Shows this control until the user selects another one.
     pub(super) fn pin_control(&mut self, control: WidgetId) {
         (self.control, self.pinned) = (Some(control), true);
     }
@@ -59,7 +59,7 @@ impl Selection {
         self.control.as_ref()
     }
 
-    /// The control in `layout`, or the first one while none was pressed that is there.
+    /// The selected control, or the first control of `layout` if the selected one is not in it.
     pub(super) fn control_of<'l>(&self, layout: &'l Layout) -> Option<&'l Widget> {
         let chosen = self.control.as_ref().and_then(|id| layout.widget_index(id.as_str()));
         layout.widgets.get(chosen.unwrap_or(0))

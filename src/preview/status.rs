@@ -1,4 +1,4 @@
-//! One quiet line at the window's lower edge: what runs, where it comes from, how fast, and what was lost.
+//! The status bar at the window's lower edge: mode, source, rates and losses.
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
@@ -12,17 +12,17 @@ use crate::egui_painter::color;
 use crate::layout::Colour;
 use crate::sink::{LatencyMeter, LatencyStages};
 
-/// How often latencies are summed up, in seconds: slow enough to be read.
+/// Interval at which latencies are summarised, in seconds: slow enough to read.
 const EVERY_S: f64 = 0.5;
 
-/// Size of the letters.
+/// Size of the letters, in points.
 const LETTERS: f32 = 12.0;
 
-/// Width of the mode, and least width of the source, in points.
+/// Width of the mode, and minimum width of the source, in points.
 const MODE: f32 = 66.0;
 const SOURCE: f32 = 90.0;
 
-/// One figure of the line: a place of fixed width, so that nothing moves when it gets longer.
+/// One figure of the bar: a fixed width, so that nothing moves when its text gets longer.
 struct Figure {
     /// Width, in points.
     width: f32,
@@ -31,12 +31,12 @@ struct Figure {
     meaning: String,
 }
 
-/// How long it takes from the foot to what follows, as far as that is known.
+/// Latency from the foot to the result, as far as it is known.
 #[derive(Default)]
 pub(super) struct Latency {
     stages: Option<LatencyStages>,
     summed_s: Option<f64>,
-    /// Until an event is decided, until samples go to the device, and until they sound by its own account; medians in
+    /// Latency of the event, of the samples for the device, and of the sound as the device reports it; medians in
     /// milliseconds.
     event_ms: Option<f64>,
     felt_ms: Option<f64>,
@@ -48,7 +48,7 @@ impl Latency {
         Self { stages, ..Self::default() }
     }
 
-    /// Sums up what was measured, now and then.
+    /// Summarises the measurements at the interval of `EVERY_S`.
     pub(super) fn update(&mut self, now_s: f64) {
         let Some(stages) = &self.stages else { return };
         if self.summed_s.is_some_and(|at| (0.0..EVERY_S).contains(&(now_s - at))) {
@@ -61,7 +61,7 @@ impl Latency {
         self.sounding_ms = median(&stages.sounding);
     }
 
-    /// In a few words; `plays` if a device does.
+    /// A short text; `plays` if a device plays the output.
     fn text(&self, plays: bool) -> String {
         let ms = |ms: Option<f64>| ms.map_or_else(|| "–".to_owned(), |ms| format!("{ms:.1} ms"));
         let felt = self.sounding_ms.or(self.felt_ms).filter(|_| plays);
@@ -83,7 +83,7 @@ impl Latency {
 }
 
 impl App {
-    /// The line; what it has no room for is left out, from the right.
+    /// Shows the bar; figures that do not fit are left out, from the right.
     pub(super) fn status_bar(&mut self, ui: &mut Ui) {
         self.latency.update(self.now_s);
         let theme = self.theme;
@@ -104,7 +104,7 @@ impl App {
                         meaning: "F2 changes between trying and designing, F11 projects".into(),
                     },
                 );
-                // As many figures as have room, at the right; the source gets the rest.
+                // Show as many figures as fit, at the right; the source gets the remaining width.
                 let gap = ui.spacing().item_spacing.x;
                 let mut left = room - MODE - SOURCE - 2.0 * gap;
                 let fits = |one: &Figure| {
@@ -125,7 +125,7 @@ impl App {
         });
     }
 
-    /// Where the floor comes from, and what is wrong with that.
+    /// The source of the floor, with any problem of it.
     fn said_source(&self) -> (String, Colour) {
         let theme = &self.theme;
         let Some(ServerState { address, link, left_out, .. }) = &self.server else {
@@ -160,7 +160,7 @@ impl App {
         let (lost, refused) = (counters.lost, counters.refused());
         let seen = |bad: bool| if bad { theme.warning } else { theme.quiet };
         let drawn = match self.window_frames.per_second() {
-            // A window that has nothing new to show draws nothing.
+            // A window without news does not draw.
             Some(rate) if rate < 2.0 => "at rest".to_owned(),
             drawn => format!("{} fps", rate(drawn)),
         };
@@ -257,7 +257,7 @@ mod tests {
         assert!(
             latency.text(true).ends_with("felt 11.0 ms") && latency.meaning(true).contains("own account")
         );
-        // What only a file or nobody hears is not felt.
+        // Output that only goes to a file, or nowhere, is not felt.
         assert_eq!(latency.text(false), "event 1.2 ms, felt –");
         assert!(latency.meaning(false).contains("no device"));
     }

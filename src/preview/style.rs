@@ -1,4 +1,4 @@
-//! egui's look, made from the scene's theme, and the few pieces that all panels share.
+//! The style of egui, derived from the scene's theme, and the few widgets that all panels share.
 
 use eframe::egui;
 use eframe::egui::epaint::FontColorTransferFunction;
@@ -37,7 +37,7 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
     let (ink, line) = (color(theme.ink), color(theme.line));
     let panel = panel_colour(theme);
     if !theme.is_dark() {
-        // The font is a light one: on a light ground it needs a little more ink.
+        // The font is light: on a light background it needs a little more ink.
         visuals.text_options.color_transfer_function = FontColorTransferFunction::Gamma(0.72);
     }
     visuals.panel_fill = color(panel);
@@ -54,8 +54,8 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
     visuals.selection.stroke = Stroke::new(1.0, color(theme.accent));
     visuals.striped = false;
     visuals.collapsing_header_frame = false;
-    // The largest for which a corner takes four steps instead of eight: without a graphics card buttons cost as much as
-    // the floor's controls.
+    // The largest radius for which a corner takes four steps instead of eight: without a graphics card, buttons cost
+    // as much as the floor's controls.
     let radius = CornerRadius::same(5);
     let states = &mut visuals.widgets;
     let faces = [
@@ -74,13 +74,13 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
         face.corner_radius = radius;
         face.expansion = 0.0;
     }
-    // What has the focus of the keyboard looks as what is under the mouse; on a panel a hairline would not be seen.
+    // A widget with the keyboard focus looks like one under the mouse; a hairline would be invisible on a panel.
     visuals.widgets.hovered.bg_stroke = Stroke::new(2.0, color(theme.accent));
-    // Boxes to tick have to be seen on the panel.
+    // Check boxes must be visible on the panel.
     visuals.widgets.inactive.bg_fill = color(panel.mix(theme.ink, 0.10));
 }
 
-/// What panels are filled with: between canvas and plate.
+/// The background of panels: between canvas and plate.
 pub(super) fn panel_colour(theme: &Theme) -> Colour {
     theme.plate.mix(theme.canvas, 0.35)
 }
@@ -90,7 +90,7 @@ pub(super) fn panel_frame(theme: &Theme, margin: Margin) -> egui::Frame {
     egui::Frame::new().fill(color(panel_colour(theme))).inner_margin(margin)
 }
 
-/// A heading over a part of the side panel, with something short at its right end; gives back its line's place.
+/// A heading over a part of the side panel, with a short item at its right end; returns the area of its line.
 pub(super) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnce(&mut Ui)) -> egui::Rect {
     ui.add_space(10.0);
     let heading = ui.horizontal(|ui| {
@@ -104,7 +104,7 @@ pub(super) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnc
     heading.response.rect
 }
 
-/// A button that plots what stands beside it, called `name`; whether it was clicked.
+/// A button that plots the value beside it, called `name`; returns whether it was clicked.
 pub(super) fn plot_button(ui: &mut Ui, name: &str) -> bool {
     let button = ui.small_button("Plot");
     button.widget_info(|| {
@@ -113,7 +113,7 @@ pub(super) fn plot_button(ui: &mut Ui, name: &str) -> bool {
     button.on_hover_text("Plot it over time").clicked()
 }
 
-/// A button that stays down while `is_on`; whether it was clicked.
+/// A button that stays down while `is_on`; returns whether it was clicked.
 pub(super) fn selectable<'a>(ui: &mut Ui, is_on: bool, text: impl egui::IntoAtoms<'a>, hint: &str) -> bool {
     let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
     ui.add(button).on_hover_text(hint).clicked()
@@ -124,20 +124,20 @@ pub(super) fn toggle<'a>(ui: &mut Ui, is_on: &mut bool, text: impl egui::IntoAto
     *is_on ^= selectable(ui, *is_on, text, hint);
 }
 
-/// Text that need not be read at once.
+/// Text of low priority.
 pub(super) fn quiet(theme: &Theme, text: impl Into<String>) -> RichText {
     RichText::new(text).color(color(theme.quiet))
 }
 
-/// `text` on a small rounded ground of `colour`.
+/// `text` on a small rounded background of `colour`.
 pub(super) fn pill(ui: &mut Ui, colour: Colour, theme: &Theme, text: &str) -> egui::Response {
     let ground = color(panel_colour(theme).mix(colour, 0.16));
     let frame = egui::Frame::new().fill(ground).corner_radius(9).inner_margin(Margin::symmetric(8, 2));
     frame.show(ui, |ui| ui.label(RichText::new(text).color(color(colour)))).inner
 }
 
-/// Whether Enter has just ended the typing in `field`: what the dialog is for shall be done. To be asked before the field
-/// is given the keyboard again.
+/// Whether Enter has just ended the typing in `field`, so that the dialog acts. Call it before the field regains the
+/// focus.
 pub(super) fn is_entered(ui: &Ui, field: &egui::Response) -> bool {
     field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter))
 }
@@ -150,7 +150,7 @@ pub(super) struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Writes from `share` of the width to the right, at most up to `end` of it.
+    /// Draws from `share` of the width to the right, at most up to `end` of it.
     pub(super) fn left(&self, share: f32, end: f32, text: &str, color: Color32) {
         let x = self.rect.left() + share * self.rect.width();
         let clip =
@@ -160,7 +160,7 @@ impl Row<'_> {
         painter.text(egui::pos2(x, self.rect.center().y), egui::Align2::LEFT_CENTER, text, font, color);
     }
 
-    /// Writes so that the text ends at `share` of the width.
+    /// Draws so that the text ends at `share` of the width.
     pub(super) fn right(&self, share: f32, text: &str, color: Color32) {
         let at = egui::pos2(self.rect.left() + share * self.rect.width(), self.rect.center().y);
         let font = FontId::proportional(self.size);
@@ -168,7 +168,7 @@ impl Row<'_> {
     }
 }
 
-/// Space for one line of a table, the full width, with what a screen reader says of it.
+/// Allocates one line of a table over the full width, with `spoken` for screen readers.
 pub(super) fn row<'a>(ui: &'a mut Ui, height: f32, size: f32, spoken: &str) -> Row<'a> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, spoken));

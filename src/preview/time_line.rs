@@ -1,4 +1,4 @@
-//! The time line under a recorded floor: pause, scrub, speed, a stretch again and again.
+//! The time line under a recorded floor: pause, seek, speed, and repeating a part.
 
 use std::time::Duration;
 
@@ -16,30 +16,30 @@ use crate::egui_painter::color;
 use crate::layout::Colour;
 use crate::scene::Theme;
 
-/// Time between pictures while it moves: the head goes a pixel in more than that.
+/// Time between frames during playback: the head takes longer than that for a pixel.
 const PICTURE: Duration = Duration::from_millis(33);
 
 /// The speeds to choose from, slowest first.
 const SPEEDS: [(f64, &str); 6] =
     [(0.1, "1/10"), (0.25, "1/4"), (0.5, "1/2"), (1.0, "1 ×"), (4.0, "4 ×"), (f64::INFINITY, "fastest")];
 
-/// How far the arrow keys go, and the keys of single steps, in seconds.
+/// Step of the arrow keys, and of the keys for single steps, in seconds.
 const FAR_S: f64 = 1.0;
 const NEAR_S: f64 = 0.05;
 
-/// The shortest stretch that is played again and again, in seconds.
+/// Minimum length of a repeated part, in seconds.
 const SHORTEST_S: f64 = 0.2;
 
-/// How near to a mark the pointer must be to be told of it, in points.
+/// Distance from a mark within which the pointer shows its text, in points.
 const NEAR_MARK: f32 = 5.0;
 
-/// A recording and what is being done to its time line.
+/// A recording and the state of the mouse on its time line.
 pub(super) struct TimeLine {
     playback: Box<dyn Playback>,
     state: PlaybackState,
-    /// Where the mouse holds the head.
+    /// The time at which the mouse holds the head.
     held_s: Option<f64>,
-    /// Where the mouse began to draw a stretch.
+    /// The time at which the mouse began to mark a part.
     stretch_from_s: Option<f64>,
 }
 
@@ -52,14 +52,14 @@ impl TimeLine {
         self.playback.lead(PlaybackOrder::GoTo(at_s.clamp(0.0, self.state.length_s)));
     }
 
-    /// The moment that the person thinks of: where the head is going.
+    /// The time that the user sees as the present: the target of the head.
     fn here_s(&self) -> f64 {
         self.held_s.or(self.state.goes_to_s).unwrap_or(self.state.at_s)
     }
 }
 
 impl App {
-    /// The strip with the time line, where a recording is shown.
+    /// Shows the bar with the time line, if there is a recording.
     pub(super) fn time_line(&mut self, ui: &mut Ui) {
         let Some(line) = &mut self.time_line else { return };
         line.state = line.playback.state();
@@ -71,7 +71,7 @@ impl App {
                 ui.set_min_height(28.0);
                 line.pause_button(ui);
                 line.clock(ui, &theme);
-                // From the right first: the line takes what is left.
+                // Lay out from the right first: the line takes the remaining width.
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     line.repeat_button(ui);
                     line.speed_menu(ui);
@@ -152,7 +152,7 @@ impl TimeLine {
         response.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Speed"));
     }
 
-    /// The line itself, as wide as there is room.
+    /// The line itself, over the remaining width.
     fn track(&mut self, ui: &mut Ui, theme: &Theme) {
         let size = vec2(ui.available_width() - 10.0, 28.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
@@ -172,7 +172,7 @@ impl TimeLine {
         }
     }
 
-    /// A drag holds the head until it is let go; with Shift it draws a stretch.
+    /// A drag holds the head until release; with Shift it marks a part.
     fn drag(&mut self, ui: &Ui, response: &Response, scale: Scale) {
         let Some(at_s) = response.interact_pointer_pos().map(|pointer| scale.time_at(pointer.x)) else {
             return;
@@ -243,7 +243,7 @@ impl TimeLine {
     }
 }
 
-/// Where times are on the screen.
+/// The mapping of times to the screen.
 #[derive(Clone, Copy)]
 struct Scale {
     x: Rangef,
@@ -261,7 +261,7 @@ impl Scale {
     }
 }
 
-/// The colour of a mark, and how far it reaches above and below the line.
+/// The colour of a mark, and its extent above and below the line.
 fn mark_look(weight: MarkWeight, theme: &Theme) -> (Colour, f32) {
     match weight {
         MarkWeight::Usual => (theme.quiet, 7.0),
@@ -270,9 +270,9 @@ fn mark_look(weight: MarkWeight, theme: &Theme) -> (Colour, f32) {
     }
 }
 
-/// A time as people read it: `1:04.2`.
+/// A time in minutes and seconds: `1:04.2`.
 fn minutes(at_s: f64) -> String {
-    // A float becomes the nearest integer of its range.
+    // The cast from float saturates at the range of the integer.
     let tenths = (10.0 * at_s.max(0.0)).round() as u64;
     format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }

@@ -1,4 +1,4 @@
-//! Fingers and pens as feet: each puts one down where it touches the floor.
+//! Fingers and pens as feet: each presses one foot where it touches the floor.
 
 use eframe::egui::{Event, TouchPhase};
 use glam::Vec2;
@@ -6,36 +6,36 @@ use glam::Vec2;
 use super::feed::{FootSink, PreviewFoot};
 use crate::units::Newtons;
 
-/// Fingers that are feet at one time; a further one is left alone.
+/// Maximum number of fingers that are feet at one time; further ones are ignored.
 const MOST: usize = 8;
 
-/// What a finger or a pen does, in floor metres.
+/// An action of a finger or a pen, in floor metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Touch {
-    /// Which screen, and which finger on it.
+    /// The screen, and the finger on it.
     pub(super) finger: (u64, u64),
-    /// Where.
+    /// The position.
     pub(super) at: Vec2,
-    /// How hard, from 0 to 1, where the screen or the pen tells.
+    /// The pressure from 0 to 1, if the screen or the pen measures it.
     pub(super) pressure: Option<f32>,
-    /// What it does there.
+    /// The phase of the touch.
     pub(super) phase: Phase,
 }
 
-/// What a finger does.
+/// The phase of a touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Phase {
-    /// It comes down on the bare floor.
+    /// It starts on the bare floor.
     Down,
-    /// It is there.
+    /// It continues.
     On,
-    /// It is taken away.
+    /// It ends.
     Up,
 }
 
 impl Touch {
-    /// What `event` says of a finger. `floor` gives the place on the floor; `is_floor` says whether a point of the
-    /// screen is the bare floor, where a foot may be put down.
+    /// The touch in `event`, if it is one. `floor` converts a point of the screen to floor metres; `is_floor` returns
+    /// whether a point of the screen is the bare floor, where a foot may start.
     pub(super) fn of(
         event: &Event,
         floor: impl Fn(eframe::egui::Pos2) -> Vec2,
@@ -48,13 +48,13 @@ impl Touch {
             TouchPhase::Move => Phase::On,
             TouchPhase::End | TouchPhase::Cancel => Phase::Up,
         };
-        // Screens that can't tell say 0.
+        // Screens that do not measure pressure report 0.
         let pressure = force.filter(|force| *force > 0.0);
         Some(Self { finger: (device_id.0, id.0), at: floor(*pos), pressure, phase })
     }
 }
 
-/// The feet that fingers put down, each at a place of its own in the list as long as it is down.
+/// The feet of fingers; each keeps its index in the list while it is down.
 #[derive(Debug, Default)]
 pub(super) struct Fingers(Vec<Option<Finger>>);
 
@@ -66,13 +66,13 @@ struct Finger {
 }
 
 impl Fingers {
-    /// Whether a finger is a foot.
+    /// Whether at least one finger is a foot.
     pub(super) fn are_down(&self) -> bool {
         self.0.iter().any(Option::is_some)
     }
 
-    /// The path of each foot since the last call. `foot` is one that presses with the usual force, which half of a
-    /// finger's pressure stands for.
+    /// The path of each foot since the last call. `foot` has the usual force, which corresponds to half of a finger's
+    /// maximum pressure.
     pub(super) fn step(
         &mut self,
         touches: &[Touch],
@@ -94,7 +94,7 @@ impl Fingers {
             let lands = known.is_none();
             let path = &mut paths[place];
             if lands {
-                // From above: a foot that is put down does not slide there.
+                // Start above the floor: otherwise the foot would slide there.
                 path.push(under(touch.at, Newtons::ZERO, foot, sink));
             }
             path.push(under(touch.at, force, foot, sink));
@@ -104,7 +104,7 @@ impl Fingers {
                 self.0[place] = None;
             }
         }
-        // A finger that keeps still keeps its foot where it is.
+        // The foot of a finger that keeps still stays in its place.
         for (path, finger) in paths.iter_mut().zip(&self.0) {
             if let (true, Some(finger)) = (path.is_empty(), finger) {
                 path.push(under(finger.at, finger.force, foot, sink));
@@ -116,7 +116,7 @@ impl Fingers {
         paths
     }
 
-    /// Takes all fingers away, as when the window is left in mid-touch.
+    /// Lifts all fingers, for example when the window loses the focus in mid-touch.
     pub(super) fn lift(&mut self) {
         self.0.clear();
     }
@@ -132,7 +132,7 @@ impl Fingers {
     }
 }
 
-/// `foot` with its pressure at `at`.
+/// `foot` with its centre of pressure at `at`.
 fn under(at: Vec2, force: Newtons, foot: PreviewFoot, sink: &dyn FootSink) -> PreviewFoot {
     let foot = PreviewFoot { force, position: Vec2::ZERO, ..foot };
     PreviewFoot { position: at - sink.centre_of_pressure(&foot), ..foot }
@@ -163,7 +163,7 @@ mod tests {
         Touch { finger: (0, finger), at: Vec2::new(x, 0.6), pressure, phase }
     }
 
-    /// Where each foot is at last and what it presses with; `None` for a place without a foot.
+    /// The last position and force of each foot; `None` for an index without a foot.
     fn ends(paths: &[Vec<PreviewFoot>]) -> Vec<Option<(f32, f32)>> {
         let end = |path: &Vec<PreviewFoot>| {
             path.last().map(|foot| (Floor.centre_of_pressure(foot).x, foot.force.0.round()))

@@ -1,4 +1,4 @@
-//! An effect as the window draws it: rendered, measured and thinned out.
+//! The drawing of an effect in the window: rendered, analysed and decimated.
 
 use std::sync::Arc;
 
@@ -9,23 +9,23 @@ use crate::egui_painter::color;
 use crate::feel::{Analysis, Effect, Gesture, analyse, audition};
 use crate::scene::Theme;
 
-/// Samples per second that are enough for what actuators move.
+/// Sample rate that covers the band of the actuators.
 const RATE: u32 = 12_000;
 
 /// Columns of the waveform.
 const COLUMNS: usize = 280;
 
-/// The spectrum's reach, in hertz, and its floor, in decibels.
+/// The spectrum's upper limit, in hertz, and its lower limit, in decibels.
 const HERTZ: f32 = 1000.0;
 const FLOOR_DB: f32 = -50.0;
 
-/// What is drawn of one effect.
+/// The data for drawing one effect.
 #[derive(Clone, Debug)]
 pub(super) struct Trace {
-    /// Lowest and highest newtons of each column.
+    /// Minimum and maximum of each column, in newtons.
     wave: Vec<(f32, f32)>,
     length_s: f32,
-    /// Decibels at every ten hertz.
+    /// Level at every ten hertz, in decibels.
     spectrum: Vec<f32>,
     pub(super) analysis: Option<Analysis>,
     band: (f32, f32),
@@ -45,7 +45,7 @@ impl Trace {
         Self { wave, length_s: samples.len() as f32 / RATE as f32, spectrum, analysis, band }
     }
 
-    /// The waveform over time; `played` is how much of it has been played, in seconds.
+    /// Draws the waveform over time; `played` is the duration played so far, in seconds.
     pub(super) fn wave(&self, painter: &Painter, theme: &Theme, rect: Rect, played: Option<f32>) {
         ground(painter, theme, rect);
         let inner = rect.shrink2(eframe::egui::vec2(8.0, 8.0));
@@ -84,7 +84,7 @@ impl Trace {
         corner(length, rect.right_bottom() + eframe::egui::vec2(-7.0, -5.0), Align2::RIGHT_BOTTOM);
     }
 
-    /// The spectrum with the band it is to keep to.
+    /// Draws the spectrum with its permitted band.
     pub(super) fn spectrum(&self, painter: &Painter, theme: &Theme, rect: Rect) {
         ground(painter, theme, rect);
         let inner = Rect::from_min_max(
@@ -127,7 +127,7 @@ fn ground(painter: &Painter, theme: &Theme, rect: Rect) {
     painter.rect_filled(rect, CornerRadius::same(6), color(theme.plate));
 }
 
-/// Power per ten hertz, the greatest at 0 dB.
+/// Power per ten hertz, with the maximum at 0 dB.
 fn decibels(analysis: &Analysis) -> Vec<f32> {
     let per_bin = (10.0 / analysis.bin_hz).max(1.0);
     let power: Vec<f32> = (0..=(HERTZ / 10.0) as usize)

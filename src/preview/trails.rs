@@ -1,31 +1,31 @@
-//! Where contacts have been of late.
+//! Trails of contacts.
 
 use crate::engine::Snapshot;
 use crate::scene::Trail;
 use crate::sense::ContactId;
 
-/// How long a place is remembered, in seconds.
+/// Lifetime of a point, in seconds.
 const KEPT_S: f64 = 2.0;
 
-/// A contact that stays within this adds no place, in metres: sway is not a way.
+/// Minimum distance between two points of a trail, in metres: it ignores sway.
 const STEP_M: f32 = 0.004;
 
-/// Most places of one contact: a mouse at 60 frames a second leaves no more.
+/// Maximum number of points of one trail: 60 frames a second give at most 120 in two seconds.
 const MOST: usize = 128;
 
-/// Most contacts that leave a trail: a crowd's feet within two seconds.
+/// Maximum number of trails: a crowd's feet within two seconds.
 const MOST_CONTACTS: usize = 512;
 
-/// The latest places of each contact.
+/// The recent positions of each contact.
 #[derive(Debug, Default)]
 pub(super) struct Trails {
-    /// Of each contact its name and the moments of its trail's places.
+    /// The contact of each trail, and the times of its points.
     of: Vec<(ContactId, Vec<f64>)>,
     trails: Vec<Trail>,
 }
 
 impl Trails {
-    /// Takes in where contacts are at `now_s`.
+    /// Adds the positions of the contacts at `now_s`, and removes old points.
     pub(super) fn update(&mut self, now_s: f64, snapshot: &Snapshot) {
         for contact in &snapshot.contacts {
             let known = self.of.iter().position(|(id, _)| *id == contact.id);
@@ -56,7 +56,7 @@ impl Trails {
         self.trails.retain(|trail| !trail.points.is_empty());
     }
 
-    /// What is left of them.
+    /// The remaining trails.
     pub(super) fn all(&self) -> &[Trail] {
         &self.trails
     }

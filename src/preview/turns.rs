@@ -1,22 +1,22 @@
-//! Keys and clicks one after the other, however seldom the window draws.
+//! Splits keys and clicks over frames, so that slow frames keep their order.
 //!
-//! egui hands all that came since the last frame to the widgets at once. Two steps of Tab are then one, and letters
-//! that were typed before a Tab go into the field behind it: a window that draws slowly loses what is typed quickly.
-//! What came after a key that leads elsewhere therefore waits for the next frame.
+//! egui passes all events since the last frame to the widgets at once. Two Tab keys are then one step, and letters
+//! typed before a Tab go into the field behind it: a window with slow frames loses fast input. Events after a key
+//! that moves the focus therefore wait for the next frame.
 
 use eframe::egui::{Event, Key};
 
-/// What waits for the next frame.
+/// The events that wait for the next frame.
 #[derive(Debug, Default)]
 pub(super) struct Turns {
     waiting: Vec<Event>,
 }
 
 impl Turns {
-    /// Leaves in `events` what one frame can take, in the order in which it came; whether some is left for the next.
+    /// Leaves in `events` those that one frame can take, in order; returns whether others remain for the next.
     ///
-    /// With `parts_clicks` a turn ends where a button goes down or up, and the pointer is there when that is looked at.
-    /// Simulated feet follow the whole path themselves.
+    /// With `parts_clicks`, a turn ends at a press or release of a button, so that the frame sees the pointer at that
+    /// place. Simulated feet follow the whole path themselves.
     pub(super) fn take(&mut self, events: &mut Vec<Event>, parts_clicks: bool) -> bool {
         self.waiting.append(events);
         let count = first_turn(&self.waiting, parts_clicks);
@@ -25,13 +25,13 @@ impl Turns {
     }
 }
 
-/// How many of `events` one frame can take.
+/// The number of `events` that one frame can take.
 fn first_turn(events: &[Event], parts_clicks: bool) -> usize {
     let mut has_input = false;
     let mut has_click = false;
     for (at, event) in events.iter().enumerate() {
         let (leads, clicks, types) = (leads_elsewhere(event), is_click(event), is_typed(event));
-        // A click may lead to the field that is typed into.
+        // A click may move the focus to the field for the typed text.
         let is_next = match () {
             () if leads => has_input,
             () if clicks => parts_clicks && has_input,
@@ -51,8 +51,8 @@ fn first_turn(events: &[Event], parts_clicks: bool) -> usize {
     events.len()
 }
 
-/// Whether it is a key that moves the keyboard's focus or acts on what has it. A key that is held repeats as often as
-/// frames allow.
+/// Whether the event is a key that moves the keyboard focus or acts on the widget with the focus. A held key repeats
+/// as often as frames allow.
 fn leads_elsewhere(event: &Event) -> bool {
     let Event::Key { key, pressed: true, repeat: false, .. } = event else { return false };
     matches!(
@@ -109,7 +109,7 @@ mod tests {
         text.chars().map(|letter| Event::Text(letter.into())).collect()
     }
 
-    /// The events of each frame if all come within the first.
+    /// The events of each frame if all arrive within the first.
     fn turns(events: Vec<Event>, parts_clicks: bool) -> Vec<Vec<Event>> {
         let (mut queue, mut frame, mut all) = (Turns::default(), events, Vec::new());
         while queue.take(&mut frame, parts_clicks) {
@@ -147,7 +147,7 @@ mod tests {
         assert_eq!(turns(typed, false).len(), 2, "the field that is clicked on is typed into");
     }
 
-    /// The fault that this is for: a window that gets everything at once.
+    /// The defect that this module prevents: a window that gets all events at once.
     #[test]
     fn fields_are_filled_however_many_keys_come_at_once() {
         let (ctx, mut queue) = (egui::Context::default(), Turns::default());

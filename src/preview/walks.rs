@@ -1,4 +1,4 @@
-//! Walks drawn with the mouse, for people who are sent onto the simulated floor.
+//! Walks that the mouse draws, for people who are sent onto the simulated floor.
 
 use std::time::Duration;
 
@@ -15,34 +15,34 @@ use crate::scene::in_drawn_order;
 use crate::sim::{ArrivalHandle, DrawnWalk, Script};
 use crate::widget::WidgetId;
 
-/// Points of a line that are nearer than this to the last one add nothing, in metres.
+/// Minimum distance of a new point of a line from the last one, in metres.
 const STEP_M: f32 = 0.01;
 
-/// Most points of a line: 40 m of it.
+/// Maximum number of points of a line: 40 m of it.
 const MOST_POINTS: usize = 4096;
 
-/// Walks that are remembered, to be sent again and to be written down.
+/// Maximum number of stored walks, for repeating and for saving as a scenario.
 const MOST_WALKS: usize = 64;
 
-/// Who is sent onto the floor.
+/// The people sent onto the floor along drawn walks.
 pub(super) struct Walks {
     handle: ArrivalHandle,
-    /// Whether the mouse draws ways in place of being a foot.
+    /// Whether the mouse draws walks instead of being a foot.
     pub(super) are_drawn: bool,
-    /// The way that is being drawn, in floor metres.
+    /// The line that is being drawn, in floor metres.
     line: Vec<Vec2>,
-    /// What was drawn and walked, oldest first.
+    /// The walks so far, oldest first.
     sent: Vec<Sent>,
-    /// Why nobody came, after the last one was drawn.
+    /// Why the last walk was refused.
     pub(super) refused: Option<String>,
 }
 
-/// Somebody who was sent.
+/// A person who was sent along a walk.
 struct Sent {
     walk: DrawnWalk,
     script: Script,
     line: Vec<Vec2>,
-    /// When, by the window's clock, in seconds.
+    /// Time of the start on the window's clock, in seconds.
     at_s: f64,
 }
 
@@ -51,17 +51,17 @@ impl Walks {
         Self { handle, are_drawn: false, line: Vec::new(), sent: Vec::new(), refused: None }
     }
 
-    /// How many are on the floor now.
+    /// The number of people who are walking now.
     pub(super) fn walking(&self) -> usize {
         self.handle.playing()
     }
 
-    /// How many walks are remembered.
+    /// The number of stored walks.
     pub(super) fn remembered(&self) -> usize {
         self.sent.len()
     }
 
-    /// Begins, goes on with, or changes nothing of, the line.
+    /// Starts or extends the line; a point close to the last one changes nothing.
     fn draw_to(&mut self, at: Vec2) {
         let is_new = self.line.last().is_none_or(|last| last.distance(at) >= STEP_M);
         if is_new && self.line.len() < MOST_POINTS {
@@ -69,7 +69,7 @@ impl Walks {
         }
     }
 
-    /// Sends somebody along the line.
+    /// Sends a person along the line.
     fn send(&mut self, now_s: f64, page: usize, layout: &Layout, geometry: &Geometry) {
         let line = std::mem::take(&mut self.line);
         self.refused = match DrawnWalk::new(&line, page, layout, geometry) {
@@ -87,19 +87,19 @@ impl Walks {
         };
     }
 
-    /// Sends all of them again, at once.
+    /// Repeats all walks, at once.
     pub(super) fn repeat(&mut self) {
         let failed = self.sent.iter().find_map(|sent| self.handle.send(sent.script.clone()).err());
         self.refused = failed.map(|error| error.to_string());
     }
 
-    /// Forgets what was drawn; who is on the floor stays.
+    /// Clears the stored walks; people on the floor stay.
     pub(super) fn forget(&mut self) {
         self.sent.clear();
         self.refused = None;
     }
 
-    /// All walks as a scenario, each as long after the first as it was drawn.
+    /// All walks as a scenario, with the delays at which they were drawn.
     pub(super) fn scenario(&self, title: &str) -> String {
         let first_s = self.sent.first().map_or(0.0, |sent| sent.at_s);
         let after = |sent: &Sent| Duration::try_from_secs_f64(sent.at_s - first_s).unwrap_or_default();
@@ -108,14 +108,14 @@ impl Walks {
         DrawnWalk::scenario(title, &walks)
     }
 
-    /// The lines that people still walk, and the one that is being drawn, last.
+    /// The lines on which people still walk; the line that is being drawn is the last.
     fn lines(&self, now_s: f64) -> impl Iterator<Item = &[Vec2]> {
         let walked =
             self.sent.iter().filter(move |sent| now_s - sent.at_s < sent.script.duration().as_secs_f64());
         walked.map(|sent| sent.line.as_slice()).chain(std::iter::once(self.line.as_slice()))
     }
 
-    /// The control that the line ends on.
+    /// The control at the end of the line.
     fn aims_at(&self, page: usize, layout: &Layout) -> Option<WidgetId> {
         let end = self.line.last()?;
         let index = layout.widget_at(page, *end)?;
@@ -124,7 +124,7 @@ impl Walks {
 }
 
 impl App {
-    /// W changes between being a foot and drawing walks, Escape goes back; where nobody is writing.
+    /// W changes between foot and drawing, Escape returns to the foot; both only outside text fields.
     pub(super) fn handle_walk_key(&mut self, ui: &Ui) {
         let is_free = ui.ctx().memory(|memory| memory.focused().is_none()) && !self.is_designing();
         let Some(walks) = &mut self.walks else { return };
@@ -143,7 +143,7 @@ impl App {
         self.walks.as_ref().is_some_and(|walks| walks.are_drawn)
     }
 
-    /// Takes in what the mouse draws, and sends somebody when it lets go.
+    /// Records the line of the mouse, and sends a person on release.
     pub(super) fn draw_walk(&mut self, ui: &Ui, canvas: &Response, map: ScreenFromFloor) {
         let (page, now_s) = (self.snapshots.output_buffer().page, self.now_s);
         let Some(walks) = self.walks.as_mut().filter(|walks| walks.are_drawn) else { return };
@@ -161,7 +161,7 @@ impl App {
         }
     }
 
-    /// The ways that people walk, over the floor.
+    /// Draws the walks over the floor.
     pub(super) fn show_walks(&self, ui: &Ui, rect: Rect, map: ScreenFromFloor) {
         let Some(walks) = &self.walks else { return };
         let (painter, theme) = (ui.painter_at(rect), &self.theme);
@@ -187,14 +187,14 @@ impl App {
     }
 }
 
-/// A dashed line with an arrow's head.
+/// Draws a dashed line with an arrowhead.
 fn way(painter: &eframe::egui::Painter, line: &[Vec2], map: ScreenFromFloor, ink: Color32) {
     let points: Vec<_> = line.iter().map(|point| map.point(*point)).collect();
     let (Some(first), Some(end)) = (points.first(), points.last()) else { return };
     let stroke = Stroke::new(2.0, ink);
     painter.circle_filled(*first, 4.0, ink);
     painter.extend(Shape::dashed_line(&points, stroke, 7.0, 5.0));
-    // Its direction over the last stretch, not over the last pixel.
+    // Take the direction from the last 10 points of screen distance, not from the last pixel.
     let before = points.iter().rev().find(|point| point.distance(*end) > 10.0);
     if let Some(before) = before {
         let back = (*before - *end).normalized() * 11.0;

@@ -1,14 +1,14 @@
-//! Whether what is shown is still true: how long no packet and no snapshot has come.
+//! Checks whether the display is up to date: measures the time since the last packet and the last snapshot.
 
 use super::feed::{ServerLink, ServerState};
 use crate::engine::Snapshot;
 use crate::sink::{AreaNews, AreaState};
 use crate::wire::LinkState;
 
-/// Silence after which the sensing thread is taken to have stopped.
+/// Time without a snapshot after which the sensing thread counts as stopped.
 const STOPPED_S: f64 = 0.5;
 
-/// When packets and snapshots last came, on the window's clock.
+/// Times of the last packet and the last snapshot, on the window's clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Watch {
     packets: u64,
@@ -16,18 +16,18 @@ pub(super) struct Watch {
     snapshot_at_s: Option<f64>,
 }
 
-/// What has to be said across the floor.
+/// A message across the floor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Banner {
-    /// The first line: what is wrong.
+    /// The first line: the problem.
     pub(super) headline: String,
-    /// The second line: what that means, or what to do.
+    /// The second line: its meaning, or what to do.
     pub(super) detail: String,
-    /// How much of the floor it may cover.
+    /// Determines how much of the floor the banner may cover.
     pub(super) weight: Weight,
 }
 
-/// How much a banner matters.
+/// Severity of a banner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Weight {
     /// The floor works in part.
@@ -39,7 +39,7 @@ pub(super) enum Weight {
 }
 
 impl Watch {
-    /// Takes in a frame's state at `now_s`; `fresh` if the sensing thread wrote it since the last one.
+    /// Observes a frame's state at `now_s`; `fresh` if the sensing thread wrote it since the last frame.
     pub(super) fn observe(&mut self, now_s: f64, snapshot: &Snapshot, fresh: bool) {
         if snapshot.counters.packets != self.packets {
             self.packets = snapshot.counters.packets;
@@ -50,7 +50,7 @@ impl Watch {
         }
     }
 
-    /// What is wrong at `now_s`, if anything.
+    /// The problem at `now_s`, if any.
     pub(super) fn banner(
         &self,
         now_s: f64,
@@ -100,7 +100,7 @@ impl Watch {
     }
 }
 
-/// What has to be said of a floor of which lines tell.
+/// The banner for a floor that is known from lines only.
 fn told(server: &ServerState) -> Option<Banner> {
     let ServerLink::Ended(why) = &server.link else { return silent_areas(&server.areas) };
     Some(Banner {
@@ -110,7 +110,7 @@ fn told(server: &ServerState) -> Option<Banner> {
     })
 }
 
-/// What has to be said of areas that do not live.
+/// The banner for areas that are not live.
 fn silent_areas(areas: &[AreaNews]) -> Option<Banner> {
     let silent: Vec<&AreaNews> = areas.iter().filter(|news| news.state != AreaState::Live).collect();
     let is_alone = silent.len() == areas.len();

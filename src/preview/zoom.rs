@@ -1,18 +1,18 @@
-//! How near the floor is seen.
+//! Zoom and pan of the floor view.
 
 use eframe::egui::{Pos2, Rect, Vec2, vec2};
 
 use crate::egui_painter::ScreenFromFloor;
 use crate::floor;
 
-/// The nearest, in times of the whole floor: a tile fills the view of a floor of 24 x 16.
+/// Maximum zoom relative to the whole floor: a tile fills the view of a floor of 24 x 16.
 const NEAREST: f32 = 16.0;
 
-/// How near the floor is seen and which part of it; at first, all of it.
+/// Zoom factor and position of the view; initially the whole floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zoom {
     by: f32,
-    /// The middle of the view from the middle of the floor, in points of the whole floor's view.
+    /// Offset of the view's middle from the floor's middle, in points at zoom 1.
     off: Vec2,
 }
 
@@ -23,23 +23,23 @@ impl Default for Zoom {
 }
 
 impl Zoom {
-    /// How many times larger than as a whole.
+    /// The zoom factor; 1 shows the whole floor.
     pub(super) fn by(&self) -> f32 {
         self.by
     }
 
-    /// Whether less than all of it is seen.
+    /// Whether the view shows only a part of the floor.
     pub(super) fn is_closer(&self) -> bool {
         self.by > 1.001
     }
 
-    /// From floor to screen; `bounds` is what is seen as a whole.
+    /// The transform from floor to screen; `bounds` is the area at zoom 1.
     pub(super) fn map(&self, bounds: floor::Rect, screen: Rect) -> ScreenFromFloor {
         let middle = screen.center() - self.off * self.by;
         ScreenFromFloor::fit(bounds, Rect::from_center_size(middle, screen.size() * self.by))
     }
 
-    /// Sees it `by` times as large; what is under `pointer` stays there.
+    /// Multiplies the zoom by `by`; the point of the floor under `pointer` stays there.
     pub(super) fn about(&mut self, pointer: Pos2, by: f32, bounds: floor::Rect, screen: Rect) {
         if !by.is_finite() || by <= 0.0 {
             return;
@@ -50,7 +50,7 @@ impl Zoom {
         self.pan(-moved, screen);
     }
 
-    /// Moves what is seen by `way` points, as far as there is floor.
+    /// Moves the view by `way` points, limited to the floor.
     pub(super) fn pan(&mut self, way: Vec2, screen: Rect) {
         let most = 0.5 * screen.size() * (1.0 - 1.0 / self.by);
         let off = self.off - way / self.by;

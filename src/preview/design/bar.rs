@@ -1,4 +1,4 @@
-//! The strip of Design mode: files, steps, order; and the questions that only a person can answer.
+//! The bar of Design mode: files, undo, arrangement; and the questions that need the user's decision.
 
 use std::path::PathBuf;
 
@@ -14,11 +14,11 @@ use crate::preview::style::{is_entered, panel_colour, panel_frame, pill, quiet, 
 use crate::scene::Theme;
 use crate::schema;
 
-/// What a menu entry does.
+/// The action of a menu entry.
 type Action = fn(&mut Designer);
 
 impl Designer {
-    /// Files, steps, arrangement, and what is wrong, counted.
+    /// Shows files, undo, arrangement and the number of problems.
     pub(super) fn bar(&mut self, ui: &mut Ui, theme: &Theme, choices: &[String]) {
         let frame = panel_frame(theme, Margin::symmetric(14, 5));
         Panel::top("design bar").frame(frame).resizable(false).show(ui, |ui| {
@@ -172,7 +172,7 @@ impl Designer {
         }
     }
 
-    /// How much is wrong; a click goes to the next one.
+    /// Shows the number of problems; a click selects the next one.
     fn count(&mut self, ui: &mut Ui, theme: &Theme) {
         let all: Vec<Address> = self
             .findings
@@ -196,7 +196,7 @@ impl Designer {
         }
     }
 
-    /// What only the person can say.
+    /// Asks about a draft of an earlier window and about conflicting changes.
     pub(super) fn questions(&mut self, ui: &mut Ui, theme: &Theme) {
         let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
         let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
@@ -243,7 +243,7 @@ impl Designer {
         }
     }
 
-    /// Asks for a path, where one is needed.
+    /// Shows the path dialogue, if it is open.
     pub(in crate::preview) fn ask(&mut self, ui: &mut Ui, theme: &Theme) {
         let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
         let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
@@ -255,7 +255,7 @@ impl Designer {
                 ui.label(name);
                 let field = ui.add(egui::TextEdit::singleline(&mut asking.path).desired_width(420.0));
                 field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Path"));
-                // Before it gets the keyboard again: then nothing would have been lost.
+                // Check this before the field regains the focus: after that, the loss of focus would be invisible.
                 let entered = is_entered(ui, &field);
                 if ui.memory(|memory| memory.focused().is_none()) {
                     field.request_focus();
@@ -273,7 +273,7 @@ impl Designer {
         }
     }
 
-    /// Opens or saves; whether that could be done.
+    /// Opens or saves; returns whether that succeeded.
     fn answer(&mut self, asking: &Asking) -> bool {
         let path = PathBuf::from(asking.path.trim());
         match asking.to {

@@ -1,4 +1,4 @@
-//! The floor as a drawing board.
+//! The canvas: the floor with the layout, for editing.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::layout::Layout;
 use crate::scene::{self, Show, Theme, View};
 
 impl Designer {
-    /// The floor, in what is left of the window.
+    /// Shows the floor in the remaining part of the window.
     pub(super) fn canvas(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette) {
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::click_and_drag());
@@ -54,12 +54,12 @@ impl Designer {
         }
     }
 
-    /// The whole floor again.
+    /// Shows the whole floor again.
     pub(super) fn fit(&mut self) {
         self.view = crate::preview::zoom::Zoom::default();
     }
 
-    /// `layout` without what is hidden.
+    /// `layout` without the hidden records.
     fn without_hidden<'l>(&self, layout: &'l Layout) -> Cow<'l, Layout> {
         if self.hidden.is_empty() {
             return Cow::Borrowed(layout);
@@ -84,7 +84,7 @@ impl Designer {
         Cow::Owned(layout)
     }
 
-    /// Tells screen readers and tests what is where.
+    /// Gives screen readers and tests the name and place of each record.
     fn names(&self, ui: &Ui, map: ScreenFromFloor) {
         let is_seen = |item: &&Item| item.is_on(self.page) && !item.is_group && !self.is_hidden(&item.record);
         for item in self.items.iter().filter(is_seen) {
@@ -103,7 +103,7 @@ impl Designer {
     }
 }
 
-/// Leaves out those for which `is_left` says no.
+/// Removes the entries for which `is_left` returns false.
 fn keep<T>(all: &mut Vec<T>, is_left: impl Fn(usize) -> bool) {
     let mut index = 0;
     all.retain(|_| {

@@ -1,4 +1,4 @@
-//! What is done to what is selected.
+//! Commands that change the selection.
 
 use eframe::egui;
 use glam::Vec2;
@@ -8,7 +8,7 @@ use crate::edit::{Address, Edit, Item, Refusal};
 use crate::floor::Rect;
 
 impl Designer {
-    /// Gives what is selected new areas.
+    /// Moves and sizes the selection to new areas.
     pub(super) fn move_to(&mut self, areas: &[Rect]) {
         if self.holds_locked() {
             return;
@@ -30,7 +30,7 @@ impl Designer {
             items.iter().map(|item| (*item, Rect::new(item.area.min + by, item.area.max + by))).collect();
         let edits = self.document.placing(&moved);
         match edits {
-            // Steps of a key that is held are one.
+            // The steps of a held key are one undo step.
             Ok(edits) => drop(self.edit_in(&edits, Some(self.stroke))),
             Err(refusal) => self.complain(refusal.short()),
         }
@@ -57,14 +57,14 @@ impl Designer {
         }
     }
 
-    /// Copies beside what is selected: on the first side where there is room.
+    /// Puts copies beside the selection, on the first side with enough room.
     pub(super) fn duplicate(&mut self) {
         let Some(bounds) = self.document.bounds_of(&self.items, &self.selected) else { return };
         let text = |designer: &Self, by: Vec2| designer.document.duplicating(&designer.selected, by);
         self.put_beside(bounds.size(), text);
     }
 
-    /// Puts in what a clipboard holds, or says why that is nothing for a layout.
+    /// Inserts the text of the clipboard, or shows why a layout cannot hold it.
     pub(super) fn paste(&mut self, pasted: &str) {
         let page = self.page;
         if let Err(refusal) = self.document.pasting_on(pasted, page, Vec2::ZERO) {
@@ -73,7 +73,7 @@ impl Designer {
         self.put_beside(Vec2::splat(0.16), |designer, by| designer.document.pasting_on(pasted, page, by));
     }
 
-    /// Copies what is selected; what was copied before stays if nothing is.
+    /// Copies the selection; with an empty selection, the clipboard stays unchanged.
     pub(super) fn copy(&self, ctx: &egui::Context) -> bool {
         let text = self.document.copy(&self.selected);
         let is_any = !text.is_empty();
@@ -83,7 +83,7 @@ impl Designer {
         is_any
     }
 
-    /// Copies what is selected and takes it out, with its comments.
+    /// Copies the selection and removes it with its comments.
     pub(super) fn cut(&mut self, ctx: &egui::Context) {
         if self.holds_locked() || !self.copy(ctx) {
             return;
@@ -94,13 +94,13 @@ impl Designer {
         }
     }
 
-    /// Tries places one `size` and 6 cm away, and further, until one will do.
+    /// Tries places at one `size` plus 6 cm and at multiples of that, until the layout accepts one.
     pub(super) fn put_beside(
         &mut self,
         size: Vec2,
         edits: impl Fn(&Self, Vec2) -> Result<(Vec<Edit>, Vec<Address>), Refusal>,
     ) {
-        /// Half a shoe, so that a foot on one does not reach the other (rule U102).
+        /// Half a shoe, so that a foot on one control does not reach the other (rule U102).
         const GAP_M: f32 = 0.06;
         let step = size + Vec2::splat(GAP_M);
         let ways = [Vec2::ZERO, Vec2::X, Vec2::NEG_Y, Vec2::NEG_X, Vec2::Y, Vec2::ONE, Vec2::NEG_ONE];
@@ -158,7 +158,8 @@ impl Designer {
         }
     }
 
-    /// Puts what is selected behind (`first`) or in front of all else in its list: what comes later is drawn on top.
+    /// Puts the selected record behind (`first`) or in front of all others in its list: later records are drawn on
+    /// top.
     pub(super) fn reorder(&mut self, first: bool) {
         let [record] = &self.selected[..] else { return };
         let Some((parent, list, _)) = record.split() else { return };

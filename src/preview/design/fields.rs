@@ -1,4 +1,4 @@
-//! One field of the inspector: what it says, to be typed, dragged, ticked or chosen.
+//! One field of the inspector: its value can be typed, dragged, ticked or chosen.
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::text::CCursor;
@@ -14,11 +14,11 @@ use crate::format::describe::FieldType;
 use crate::format::number::plain;
 use crate::format::words::unit;
 
-/// Width of a text that is typed, in points.
+/// Width of a text field, in points.
 const TYPED_PX: f32 = 122.0;
 
 impl Designer {
-    /// What a field says, to be changed.
+    /// Shows the value of a field for editing; returns the edit, if any.
     pub(super) fn value(
         &mut self,
         ui: &mut Ui,
@@ -68,7 +68,7 @@ impl Designer {
         }
     }
 
-    /// All of one drag is one step, done here; what is typed is left to be done.
+    /// Applies the edits of one drag as one undo step; returns an edit that was typed to the caller.
     fn dragged(&mut self, drag: &Response, edit: Option<Edit>) -> Option<Edit> {
         if drag.drag_started() {
             self.stroke += 1;
@@ -82,7 +82,8 @@ impl Designer {
         None
     }
 
-    /// The two numbers of a place or a size, in the layout's unit; where it follows from a neighbour, as it came out.
+    /// The two numbers of a place or a size, in the layout's unit; the resolved area if the place depends on a
+    /// neighbour.
     fn place_of(&self, record: &Address, property: &Property) -> Option<[f64; 2]> {
         if property.origin == Origin::Written {
             let (one, other) = property.value.trim_matches(['(', ')']).split_once(',')?;
@@ -126,7 +127,7 @@ impl Designer {
         if property.origin == Origin::Written {
             return (Some(edit), first);
         }
-        // What stood beside a neighbour gets a place of its own.
+        // A control that stood beside a neighbour gets a place of its own.
         if let Some(item) = self.item(record).cloned() {
             let metres = Vec2::new((now[0] * unit) as f32, (now[1] * unit) as f32);
             let area = match is_at {
@@ -141,7 +142,7 @@ impl Designer {
         (None, first)
     }
 
-    /// What may be chosen for a field, as it would be written; `None` for one that is typed.
+    /// The choices for a field, as the file writes them; `None` for a field that is typed.
     fn choices(&self, property: &Property) -> Option<Vec<String>> {
         let quoted = |names: Vec<String>| names.into_iter().map(|name| format!("\"{name}\"")).collect();
         match (&property.shape, property.name.as_str()) {
@@ -161,9 +162,9 @@ impl Designer {
         }
     }
 
-    /// A field that is typed; what was typed, once that is done.
+    /// A text field; returns its text once the user has finished.
     fn typed(&mut self, ui: &mut Ui, property: &Property, is_text: bool) -> (Option<String>, Response) {
-        // What nobody has written is not there to be edited: it may be words.
+        // A default is shown as a hint, not as editable text: it may be words.
         let is_default = property.origin == Origin::Default;
         let shown = if is_text { property.value.trim_matches('"') } else { &property.value };
         let (shown, hint) = if is_default { ("", shown) } else { (shown, "") };
@@ -173,7 +174,7 @@ impl Designer {
         if field.gained_focus()
             && let Some(mut state) = TextEdit::load_state(ui.ctx(), field.id)
         {
-            // As in a table: what is typed takes the place of what was there.
+            // As in a table, typing replaces the whole value.
             let all = CCursorRange::two(CCursor::new(0), CCursor::new(typed.chars().count()));
             state.cursor.set_char_range(Some(all));
             state.store(ui.ctx(), field.id);
@@ -185,7 +186,7 @@ impl Designer {
     }
 }
 
-/// One of several names; the one that was chosen, as it is written.
+/// A list of names; returns the name that the user chose, as the file writes it.
 fn choice(ui: &mut Ui, name: &str, shown: &str, all: &[String]) -> (Option<String>, Response) {
     let mut chosen = None;
     let menu = ComboBox::from_id_salt(("choice", name)).selected_text(shown).width(TYPED_PX).height(360.0);
@@ -201,7 +202,7 @@ fn choice(ui: &mut Ui, name: &str, shown: &str, all: &[String]) -> (Option<Strin
     (chosen, menu.response)
 }
 
-/// A length in units of `unit_m` metres; also typed as `57 cm`, `570 mm` or `0.57 m`.
+/// Parses a length in units of `unit_m` metres; also accepts `57 cm`, `570 mm` or `0.57 m`.
 fn length(text: &str, unit_m: f64) -> Option<f64> {
     let text = text.trim().replace(',', ".");
     let scales =

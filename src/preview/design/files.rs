@@ -1,4 +1,4 @@
-//! The file that is designed: opened, saved, changed by others, kept as a draft.
+//! The file of the layout: opening, saving, changes by other programs, and drafts.
 
 use std::io;
 use std::path::Path;
@@ -8,7 +8,7 @@ use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Document, LayoutFile, Saving, Template};
 use crate::floor::Floor;
 
-/// How long a draft may be behind, in seconds.
+/// Interval between drafts, in seconds.
 const DRAFT_S: f64 = 2.0;
 
 impl Designer {
@@ -28,7 +28,7 @@ impl Designer {
         }
     }
 
-    /// Takes in what another program has written; whether that was merged.
+    /// Takes over the text of another program; returns whether it was merged.
     pub(super) fn take_in(&mut self, saving: Saving) -> bool {
         match saving {
             Saving::Saved => false,
@@ -50,15 +50,16 @@ impl Designer {
         }
     }
 
-    /// Takes in what other programs have saved: the file, and what its kinds and effects say now.
+    /// Reads the changes that other programs have saved: the file, and the current text of its kinds and effects.
     ///
     /// # Errors
-    /// What can't be read, as the program would print it; everything is as it was then.
+    /// Returns the problems of a file that cannot be read, in the program's output format; the layout is unchanged
+    /// then.
     pub(super) fn reload(&mut self) -> Result<(), String> {
         let kinds = (self.kinds_of)(self.file.path()).map_err(|problems| problems.to_string())?;
         self.document.make_of(&kinds).map_err(|problems| problems.to_string())?;
         let Some(theirs) = self.file.outside().map_err(|error| error.to_string())? else { return Ok(()) };
-        // Only what can be read can be merged with the edits made here.
+        // Only a readable text can be merged with the edits made here.
         let document = &self.document;
         Document::read(document.name(), &theirs, document.kinds(), document.floor())
             .map_err(|problems| problems.to_string())?;
@@ -66,7 +67,7 @@ impl Designer {
         match self.file.take_in(&mine, theirs) {
             Saving::Merged(text) => {
                 self.document.write(&text, None).map_err(|problems| {
-                    // It counts as new until it can be read.
+                    // The change stays new until it can be read.
                     self.file.know(known.clone());
                     problems.to_string()
                 })?;
@@ -81,7 +82,7 @@ impl Designer {
         Ok(())
     }
 
-    /// Looks after the draft.
+    /// Saves a draft at the interval of `DRAFT_S`.
     pub(super) fn keep(&mut self, now_s: f64) {
         if now_s - self.drafted_s >= DRAFT_S && self.left_over.is_none() {
             self.drafted_s = now_s;
@@ -92,7 +93,7 @@ impl Designer {
         }
     }
 
-    /// Opens a file; whether that could be done.
+    /// Opens a file; returns whether that succeeded.
     pub(super) fn open(&mut self, path: &Path) -> bool {
         match opened(path, self.document.floor(), false) {
             Ok((file, text)) => {
@@ -109,13 +110,13 @@ impl Designer {
         }
     }
 
-    /// Begins with a text that has no file yet.
+    /// Starts with a text that has no file yet.
     pub(super) fn begin_untitled(&mut self, name: &str, text: &str) -> bool {
         let (file, slot) = untitled(&self.state, text, false);
         self.begin(name, text, file, slot)
     }
 
-    /// Begins with another text: a template, a file; whether it can be read.
+    /// Starts with another text, from a template or a file; returns whether it can be read.
     pub(super) fn begin(
         &mut self,
         name: &str,
@@ -169,22 +170,22 @@ impl Designer {
     }
 }
 
-/// A layout without a file, and where its draft is kept; with `left_over`, one that an earlier window has left.
+/// A layout without a file and the slot for its draft; with `left_over`, a slot with the draft of an earlier window.
 pub(super) fn untitled(state: &Path, text: &str, left_over: bool) -> (LayoutFile, Option<shelf::Slot>) {
     let file = |slot: &shelf::Slot| LayoutFile::untitled(&slot.folder, text);
     let has_draft = |slot: &shelf::Slot| file(slot).draft_path().exists();
     let older = left_over.then(|| shelf::left_slots(state)).into_iter().flatten();
-    // All are looked at: empty ones go by that.
+    // Collect all of them: this removes the empty ones.
     let mut older: Vec<shelf::Slot> = older.filter(has_draft).collect();
     let at = older.iter().position(|slot| file(slot).left_over().ok().flatten().is_some());
     let slot = at.map(|at| older.swap_remove(at));
     let slot = slot.or_else(|| shelf::slots(state).find(|slot| !has_draft(slot)));
-    // Without such a folder keeping a draft fails, and says so.
+    // Without such a folder, saving a draft fails with a message.
     let folder = slot.as_ref().map_or_else(|| state.join("untitled"), |slot| slot.folder.clone());
     (LayoutFile::untitled(&folder, text), slot)
 }
 
-/// The layout in the file at `path`; an empty one begins with an empty floor, and with `begins` one that is not there.
+/// Opens the layout at `path`; an empty file starts with an empty floor, and with `begins` so does a missing one.
 pub(super) fn opened(path: &Path, floor: &Floor, begins: bool) -> io::Result<(LayoutFile, String)> {
     let read = LayoutFile::open(path);
     let begins = match &read {

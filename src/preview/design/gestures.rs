@@ -1,4 +1,4 @@
-//! What the pointer does on the drawing board: selects, moves, sizes, puts down.
+//! Gestures of the pointer on the canvas: selects, moves, sizes and puts down.
 
 use eframe::egui;
 use eframe::egui::{CursorIcon, Key, PointerButton, Pos2, Ui, pos2};
@@ -11,36 +11,36 @@ use crate::floor::Rect;
 use crate::layout::Layout;
 use crate::preview::pointer::way_while_down;
 
-/// Half the side of a handle, and how near the pointer must be to it, in points.
+/// Half the side of a handle, and the distance within which the pointer grabs it, in points.
 pub(super) const HANDLE: f32 = 5.0;
 const NEAR: f32 = 9.0;
 
-/// How near a line pulls, in points.
+/// Distance within which a guide line attracts, in points.
 const PULL: f32 = 7.0;
 
-/// How far the pointer goes before a press is a drag, in points.
+/// Travel of the pointer that turns a press into a drag, in points.
 const SLACK: f32 = 4.0;
 
-/// Narrowest that anything is dragged to, in metres; the format allows 0.05 tiles.
+/// Minimum width and depth from dragging, in metres; the format allows 0.05 tiles.
 const LEAST_M: f32 = 0.03;
 
-/// What the pointer is doing.
+/// The current gesture of the pointer.
 #[derive(Clone, Debug, Default)]
 pub(super) enum Gesture {
     #[default]
     None,
-    /// It went down on something, which is moved once it goes further.
+    /// Pressed on a record, which moves once the pointer goes further.
     Pressed { at: Pos2, record: Address },
-    /// What is selected follows it.
+    /// The selection follows the pointer.
     Moving { from: Vec2, edges: Edges },
-    /// It draws a rectangle around what is to be selected.
+    /// The pointer draws a rectangle around the records to select.
     Lasso { from: Vec2 },
-    /// The view follows it.
+    /// The view follows the pointer.
     Panning,
 }
 
 impl Designer {
-    /// Follows the pointer; what would come of it if it let go now.
+    /// Follows the pointer; returns the result that a release would have now.
     pub(super) fn gestures(
         &mut self,
         ui: &Ui,
@@ -71,7 +71,7 @@ impl Designer {
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         }
         if let Some(thing) = self.placing.clone() {
-            // Dragged here, the press began elsewhere.
+            // For a drag onto the canvas, the press began elsewhere.
             let dropped = released && !canvas.clicked() && !canvas.drag_stopped();
             return self.put_down(&thing, at, inside, pressed, dropped, map, alt);
         }
@@ -113,20 +113,20 @@ impl Designer {
             return;
         }
         match self.touched(at) {
-            // A region is behind everything: a drag across it selects, a click takes it.
+            // A region is behind everything: a drag across it selects with a rectangle, a click selects the region.
             Some(record) if record.list() == Some(List::Regions) && !self.selected.contains(&record) => {
                 self.gesture = Gesture::Lasso { from: at };
             }
             Some(record) if shift => self.toggle(record),
             Some(record) => self.gesture = Gesture::Pressed { at: pointer, record },
-            // What is locked is chosen in the list.
+            // Locked records are selected in the list.
             None => self.gesture = Gesture::Lasso { from: at },
         }
     }
 
     fn end_gesture(&mut self, trial: &Trial, shift: bool, map: ScreenFromFloor) {
         match std::mem::take(&mut self.gesture) {
-            // A second click on a group takes what is in it.
+            // A second click on a group selects the member under the pointer.
             Gesture::Pressed { record, at } if self.selected == [record.clone()] => {
                 let inner = self.document.item_at(&self.items, self.page, map.floor(at));
                 self.select_only(inner.filter(|inner| inner.is_within(&record)).unwrap_or(record));
@@ -166,8 +166,8 @@ impl Designer {
         }
     }
 
-    /// What is taken hold of at `point`: a group as a whole, unless something in it is selected. What is locked or
-    /// hidden is let be.
+    /// The record to grab at `point`: the whole outermost group, unless a member of it is selected. Ignores locked
+    /// and hidden records.
     fn touched(&self, point: Vec2) -> Option<Address> {
         let free = |item: &&Item| !self.is_locked(&item.record) && !self.is_hidden(&item.record);
         let free: Vec<Item> = self.items.iter().filter(free).cloned().collect();
@@ -184,7 +184,7 @@ impl Designer {
         }
     }
 
-    /// Which edges a handle of the selected thing under the pointer drags.
+    /// The edges that the handle under the pointer drags, for a single selected record.
     fn handle_under(&self, pointer: Pos2, map: ScreenFromFloor) -> Option<Edges> {
         let [item] = self.selected_items()[..] else { return None };
         if !can_be_sized(item) || self.is_locked(&item.record) {
@@ -206,7 +206,7 @@ impl Designer {
         ui.ctx().set_cursor_icon(icon);
     }
 
-    /// What comes of moving what is selected by `by`.
+    /// The result of moving the given edges of the selection by `by`.
     fn moving(&self, by: Vec2, edges: Edges, map: ScreenFromFloor, alt: bool) -> Trial {
         let items = self.selected_items();
         let Some(all) = crate::edit::around(items.iter().map(|item| item.area)) else {
@@ -261,7 +261,7 @@ impl Designer {
         let size = thing.size(&self.document.floor().geometry);
         let area = Rect::from_centre_size(at, size);
         let (area, guides) = self.snapped(area, Edges::ALL, map, alt);
-        // Dragged here, it is put down where the button comes up; after a click, where it goes down.
+        // After a drag onto the canvas, the thing is put down on release; after a click, on the press.
         if pressed || dropped {
             if self.put(thing, area) || dropped {
                 self.placing = None;
@@ -272,20 +272,20 @@ impl Designer {
     }
 }
 
-/// What would come of a gesture if it ended now.
+/// The result that a gesture would have if it ended now.
 #[derive(Default)]
 pub(super) struct Trial {
-    /// The layout; `None` where it is refused, or nothing is changed.
+    /// The layout; `None` where it is refused or unchanged.
     pub(super) layout: Option<Layout>,
-    /// Why it would be refused.
+    /// The reason for a refusal.
     pub(super) refused: Option<String>,
-    /// The areas of what is selected, or of what is put down.
+    /// The areas of the selection, or of the thing that is put down.
     pub(super) areas: Vec<Rect>,
     pub(super) guides: Vec<Guide>,
     pub(super) lasso: Option<Rect>,
 }
 
-/// The outermost group that it is in; itself where it is in none.
+/// The outermost group of a record; the record itself outside any group.
 fn group_of(record: &Address) -> Address {
     let mut outermost = record.clone();
     while let Some((parent, ..)) =
@@ -304,7 +304,7 @@ fn around(a: Vec2, b: Vec2) -> Rect {
     Rect::new(a.min(b), a.max(b))
 }
 
-/// The handles around `shown`, with what each drags.
+/// The handles around `shown`, each with the edges that it drags.
 pub(super) fn handles(shown: egui::Rect) -> [(Pos2, Edges); 8] {
     let (x, y) = (shown.center().x, shown.center().y);
     let edges = |west, east, south, north| Edges { west, east, south, north };

@@ -1,4 +1,4 @@
-//! What is selected, field by field: made from the same descriptions that its file is read by.
+//! The fields of the selection: made from the descriptions by which its file is read.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,42 +17,42 @@ use crate::preview::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet, section};
 use crate::scene::{Theme, in_drawn_order};
 
-/// The inspector's own memory.
+/// The state of the inspector.
 #[derive(Default)]
 pub(super) struct Inspector {
-    /// Fields in which something is being typed.
+    /// The text of fields in which the user is typing.
     pub(super) typed: HashMap<String, String>,
-    /// What is shown of one record, and what several have in common.
+    /// The fields of one record, and the common fields of several.
     own: Shown,
     common: Shown,
-    /// The records that an edit of the first one is for, while a common field is shown.
+    /// The records to which an edit of the first one applies, while common fields are on display.
     shared: Vec<Address>,
 }
 
-/// Fields that are shown, and for which records and revision.
+/// The fields on display, with their records and revision.
 #[derive(Default)]
 struct Shown {
     sections: Vec<Section>,
     of: Option<(Vec<Address>, u64)>,
 }
 
-/// Its width, in points.
+/// Width of the inspector, in points.
 const INSPECTOR_PX: f32 = 330.0;
 
 /// Width of a field's name, in points.
 const NAME_PX: f32 = 96.0;
 
-/// Height of a row.
+/// Height of a row, in points.
 pub(super) const ROW_PX: f32 = 24.0;
 
-/// Fields that no record does without.
+/// Fields that every record must keep.
 const KEPT: [&str; 3] = ["id", "kind", "at"];
 
 impl Designer {
-    /// The inspector.
+    /// Shows the inspector.
     pub(super) fn side_panel(&mut self, ui: &mut Ui, theme: &Theme) {
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
-        // As wide whatever it shows: the floor beside it must not move under the pointer.
+        // A fixed width, whatever the content: the floor beside the panel must not move under the pointer.
         let panel = Panel::right("inspector").frame(frame).resizable(false);
         panel.exact_size(INSPECTOR_PX).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -63,7 +63,7 @@ impl Designer {
     }
 
     fn inspector(&mut self, ui: &mut Ui, theme: &Theme) {
-        // What it remembers belongs to a revision, and so must the records that it is made from.
+        // The cached fields belong to a revision, and so must the records of which they are made.
         self.refresh();
         let is_led = self.leads_to(Pane::Fields);
         let record = match &self.selected[..] {
@@ -106,7 +106,7 @@ impl Designer {
         }
     }
 
-    /// What is in a group, and what its controls have in common.
+    /// Lists the members of a group and the common fields of its controls.
     fn members(&mut self, ui: &mut Ui, theme: &Theme, group: &Address) {
         let is_member = |item: &&Item| item.record.split().is_some_and(|(parent, ..)| parent == *group);
         let members: Vec<Item> = self.items.iter().filter(is_member).cloned().collect();
@@ -129,7 +129,7 @@ impl Designer {
         }
     }
 
-    /// The fields that all controls of `records` have, also those in groups; what is done to one is done to all.
+    /// The fields that all controls of `records` share, those in groups included; an edit applies to all of them.
     fn common_fields(&mut self, ui: &mut Ui, theme: &Theme, records: &[Address], is_led: bool) {
         let mut controls: Vec<&Item> =
             records.iter().flat_map(|record| self.document.controls_in(&self.items, record)).collect();
@@ -155,7 +155,7 @@ impl Designer {
         self.inspector.common.sections = shown;
     }
 
-    /// Does an edit of what is shown, for each of the records that it stands for.
+    /// Applies an edit of a field on display to each record that the field represents.
     pub(super) fn edit_shared(&mut self, edit: Edit, stroke: Option<u64>) {
         let shared = &self.inspector.shared;
         let edits: Vec<Edit> = match &edit {
@@ -170,7 +170,7 @@ impl Designer {
         self.edit_in(&edits, stroke);
     }
 
-    /// Sections of fields; what shall be done to one.
+    /// Shows sections of fields; returns the edit of one, if any.
     fn sections(
         &mut self,
         ui: &mut Ui,
@@ -187,7 +187,7 @@ impl Designer {
             egui::CollapsingHeader::new(heading).id_salt(id).default_open(number < 2).show(ui, |ui| {
                 for property in &part.properties {
                     let is_led = std::mem::take(&mut is_led);
-                    // What has the keyboard keeps it, also when a warning comes or goes above.
+                    // The row with the keyboard focus keeps it when a warning appears or disappears above.
                     let id = egui::Id::unique(("field", record.to_string(), &property.name, is_common));
                     let row = ui.scope_builder(egui::UiBuilder::new().scope_id(id), |ui| {
                         self.property(ui, theme, record, property, is_led)
@@ -199,7 +199,7 @@ impl Designer {
         wanted
     }
 
-    /// What is wrong with the record, in centimetres, and what mends it.
+    /// The findings about the record, in centimetres, with a button for each repair.
     fn problems_of(&mut self, ui: &mut Ui, theme: &Theme, record: &Address) {
         let mut mend = None;
         let own =
@@ -229,7 +229,7 @@ impl Designer {
         }
     }
 
-    /// One field; what shall be done to it.
+    /// Shows one field; returns its edit, if any.
     fn property(
         &mut self,
         ui: &mut Ui,
@@ -304,7 +304,7 @@ impl Designer {
         if self.document.unit_m() == 1.0 { "m" } else { "tiles" }
     }
 
-    /// A button that plays what the field stands for, on the tile under the control.
+    /// A button that plays the effect of the field on the tile under the control.
     fn hear(&mut self, ui: &mut Ui, record: &Address, property: &Property) {
         let Some(effect) = self.felt(record, property) else { return };
         let button = ui.small_button("Hear");
@@ -328,7 +328,7 @@ impl Designer {
         self.layout().widgets.get(item.widgets.start)
     }
 
-    /// The effect that a field of the feel stands for, be it written here or in the kind.
+    /// The effect of a field of the feel, from this record or from its kind.
     pub(super) fn felt(&self, record: &Address, property: &Property) -> Option<Arc<Effect>> {
         let part = property.name.strip_prefix("feel.")?;
         let Feel { press, release, step, end, stage, arm, warn, on, off, hold, drag, sound: _ } =

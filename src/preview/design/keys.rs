@@ -1,4 +1,4 @@
-//! What keys do in Design mode.
+//! The keys of Design mode.
 
 use eframe::egui::{self, Key, Modifiers, Ui};
 use glam::Vec2;
@@ -6,13 +6,13 @@ use glam::Vec2;
 use super::{Ask, Designer, Pane, gestures};
 use crate::edit::{List, Template};
 
-/// How far an arrow key moves, in metres; with Shift, and with Alt.
+/// Distance that an arrow key moves, in metres; with Shift, and with Alt.
 const NUDGE_M: [f32; 3] = [0.01, 0.05, 0.001];
 
 impl Designer {
-    /// The keys that count also while something is typed.
+    /// Handles the keys that work during typing too.
     pub(super) fn keys_anywhere(&mut self, ui: &Ui) {
-        // Several within one frame of a busy machine count each.
+        // Count each press: a slow machine may get several within one frame.
         let count = |modifiers| ui.input_mut(|i| i.count_and_consume_key(modifiers, Key::F6));
         let (back, on) = (count(Modifiers::SHIFT), count(Modifiers::NONE));
         if back + on > 0 {
@@ -20,7 +20,7 @@ impl Designer {
             panes.extend(self.text.is_open.then_some(Pane::Text));
             let count = panes.len();
             let at = self.pane.and_then(|pane| panes.iter().position(|other| *other == pane));
-            // Before the first one, or behind the last.
+            // Start before the first pane, or behind the last.
             let at = at.unwrap_or(if back > 0 { count } else { count - 1 });
             self.pane = panes.get((at + on + back * (count - 1)) % count).copied();
             self.focus = self.pane;
@@ -28,7 +28,7 @@ impl Designer {
         self.keys_to_save(ui);
     }
 
-    /// The keys that save, while the layout is designed or tried.
+    /// Handles the keys that save, in Design and in Try.
     pub(in crate::preview) fn keys_to_save(&mut self, ui: &Ui) {
         let is_typing = ui.ctx().text_edit_focused();
         if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::S)) {
@@ -47,10 +47,10 @@ impl Designer {
         }
     }
 
-    /// All of them.
+    /// Handles all keys.
     pub(super) fn keys(&mut self, ui: &Ui) {
         self.keys_anywhere(ui);
-        // What is typed into a field is meant for that.
+        // A text field with the focus takes all other keys.
         if ui.ctx().text_edit_focused() {
             return;
         }
@@ -116,7 +116,7 @@ impl Designer {
             (_, true) => NUDGE_M[2],
             _ => NUDGE_M[0],
         });
-        // A focused list or field moves by arrows itself.
+        // A list or field with the focus uses the arrows itself.
         let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
         for (key, way) in [
             (Key::ArrowLeft, Vec2::NEG_X),

@@ -1,4 +1,4 @@
-//! Small text on the drawing board.
+//! Small text on the canvas.
 
 use std::sync::Arc;
 
@@ -8,22 +8,22 @@ use eframe::egui::{Align2, Color32, FontId, Galley, Pos2, pos2, vec2};
 use crate::egui_painter::color;
 use crate::scene::Theme;
 
-/// Text beside controls that keeps clear of what is written beside others.
+/// Text beside controls that avoids the text of other controls.
 pub(super) struct Labels {
     within: egui::Rect,
     taken: Vec<egui::Rect>,
 }
 
 impl Labels {
-    /// How many lines away from its control a text may stand.
+    /// Maximum distance of a text from its control, in lines.
     const FARTHEST: u8 = 4;
 
     pub(super) fn within(within: egui::Rect) -> Self {
         Self { within, taken: Vec::new() }
     }
 
-    /// Writes the first of `texts`, the longest first, that has room under `shown` or above it; where none has, the
-    /// last one at once below.
+    /// Draws the first of `texts` that fits under `shown` or above it, from the longest to the shortest; if none
+    /// fits, draws the last one directly below.
     pub(super) fn put(
         &mut self,
         painter: &egui::Painter,
@@ -49,7 +49,7 @@ impl Labels {
         written(painter, at, galley, colour, theme);
     }
 
-    /// Where a text of this size has room beside `shown`.
+    /// A free place for a text of this size beside `shown`.
     fn free(&self, shown: egui::Rect, size: egui::Vec2) -> Option<Pos2> {
         let x = shown.left().min(self.within.right() - size.x).max(self.within.left());
         let lines = (0..Self::FARTHEST).flat_map(|line| {
@@ -63,7 +63,7 @@ impl Labels {
     }
 }
 
-/// Small text on a plate, so that it can be read on anything.
+/// Small text on a plate, legible on any background.
 pub(super) fn label(painter: &egui::Painter, at: Pos2, text: &str, colour: Color32, theme: &Theme) {
     written(painter, at, laid(painter, text, colour), colour, theme);
 }

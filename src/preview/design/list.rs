@@ -1,4 +1,4 @@
-//! The list of what is on the floor: chosen by name, locked, hidden.
+//! The list of the records on the floor: selects, locks and hides them by name.
 
 use std::mem::take;
 
@@ -14,7 +14,7 @@ use crate::preview::style::quiet;
 use crate::scene::{Theme, in_drawn_order};
 
 impl Designer {
-    /// What there is on the shown page, to be selected by name.
+    /// Lists the records of the page on display, to be selected by name.
     pub(super) fn list(&mut self, ui: &mut Ui, theme: &Theme) {
         if self.layout().pages.len() > 1 {
             let names: Vec<String> = self.layout().pages.iter().map(|page| page.id.to_string()).collect();
@@ -93,7 +93,7 @@ impl Designer {
     }
 }
 
-/// What stands behind a row of the list.
+/// The buttons at the end of a row of the list.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sign {
     Hide,
@@ -101,7 +101,7 @@ enum Sign {
 }
 
 impl Sign {
-    /// Drawn, for the window's font has neither; faint while it is off.
+    /// Draws the sign, because the window's font lacks it; faint while it is off.
     fn button(self, ui: &mut Ui, theme: &Theme, is_on: bool) -> egui::Response {
         let (rect, response) = ui.allocate_exact_size(vec2(18.0, 18.0), Sense::click());
         let is_touched = response.hovered() || response.has_focus();
@@ -133,7 +133,7 @@ impl Sign {
                     line,
                     egui::StrokeKind::Middle,
                 );
-                // An open one has its shackle aside.
+                // An open lock has its shackle to the side.
                 let aside = if is_on { 0.0 } else { 3.0 };
                 let points =
                     [(-2.5, -0.5), (-2.5, -4.0), (2.5, -4.0), (2.5, if is_on { -0.5 } else { -2.5 })];

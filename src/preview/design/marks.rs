@@ -1,4 +1,4 @@
-//! What is drawn over the drawing board: what is selected, what it snaps to, what is wrong with it, feet to scale.
+//! Marks over the canvas: the selection, guide lines, findings, and feet to scale.
 
 use eframe::egui;
 use eframe::egui::{Pos2, Stroke, StrokeKind, Ui, pos2, vec2};
@@ -15,7 +15,7 @@ use crate::scene::{Shoe, Theme};
 use crate::units::Newtons;
 
 impl Designer {
-    /// What is selected, what it snaps to, and what is wrong.
+    /// Draws the selection, its guide lines and the findings.
     pub(super) fn marks(
         &self,
         ui: &Ui,
@@ -95,11 +95,11 @@ impl Designer {
         }
     }
 
-    /// Two shoes on each place to stand, and one under the pointer, where they are asked for.
+    /// Two shoes on each place to stand and one under the pointer, if they are switched on.
     pub(super) fn shoes(&self, pointer: Option<Vec2>) -> Vec<Shoe> {
-        /// A sole that 95 of 100 people can stand on.
+        /// Length of a sole that is long enough for 95 of 100 people.
         const LENGTH_M: f32 = 0.30;
-        /// From the middle of one sole to that of the other.
+        /// Distance between the middles of the two soles.
         const APART_M: f32 = 0.20;
         if !self.seen_to_scale.shoes {
             return Vec::new();
@@ -120,7 +120,7 @@ impl Designer {
         pairs.chain(pointer.map(|at| shoe(at, false))).collect()
     }
 
-    /// How far feet reach from each place to stand, without a step and with one, where that is asked for.
+    /// Draws how far feet reach from each place to stand, without a step and with one, if that is switched on.
     pub(super) fn reach(&self, painter: &egui::Painter, map: ScreenFromFloor, theme: &Theme) {
         if !self.seen_to_scale.reach {
             return;
@@ -140,7 +140,7 @@ impl Designer {
     }
 }
 
-/// A closed line that keeps `far` from `area`.
+/// A closed line at the distance `far` around `area`.
 fn rounded(area: Rect, far: f32) -> Vec<Vec2> {
     let corners = [area.max, Vec2::new(area.min.x, area.max.y), area.min, Vec2::new(area.max.x, area.min.y)];
     let arc = |(quarter, corner): (usize, Vec2)| {

@@ -1,6 +1,7 @@
-//! Design mode: the layout on the screen is edited, by mouse, keyboard and as text.
+//! Design mode: edits the layout on the screen by mouse, by keyboard and as text.
 //!
-//! What edits mean and which bytes they change is [`crate::edit`]'s; here is only what is seen and touched.
+//! [`crate::edit`] defines the meaning of edits and the bytes that they change; this module holds the display and the
+//! input.
 
 mod bar;
 mod canvas;
@@ -42,83 +43,83 @@ use crate::schema::{Diagnostic, Diagnostics, Kinds};
 pub use crate::schema::usual_state;
 pub(super) use threshold::Threshold;
 
-/// What Design mode begins with.
+/// The initial state of Design mode.
 pub struct DesignInput {
-    /// What messages call the layout.
+    /// The name of the layout in messages.
     pub name: String,
-    /// Its text; none for a file that is to be begun.
+    /// Its text; empty for a new file.
     pub text: String,
-    /// Its file, which is there unless it is to be begun; `None` for a layout that has none, such as a shipped one.
+    /// Its file, which exists unless it is new; `None` for a layout without a file, such as a built-in one.
     pub path: Option<PathBuf>,
-    /// The kinds that controls can be made of.
+    /// Reads the kinds of which controls can be made.
     pub kinds_of: KindsOf,
-    /// Where drafts of layouts without a file and the list of recent files are kept, as [`usual_state`].
+    /// The folder for drafts of layouts without a file and for the list of recent files, as [`usual_state`].
     pub state: PathBuf,
 }
 
-/// Reads the kinds that the layout in this file can be made of; those of a layout without a file for `None`.
+/// Reads the kinds that the layout in this file can use; for `None`, those of a layout without a file.
 pub type KindsOf = Box<dyn Fn(Option<&Path>) -> Result<Arc<Kinds>, Diagnostics>>;
 
-/// The layout that is edited, and what is selected and under way.
+/// The layout that is edited, the selection and the current gesture.
 pub(super) struct Designer {
     pub(super) is_open: bool,
     document: Document,
     file: LayoutFile,
-    /// The revision that `items`, `findings` and `text` belong to.
+    /// The revision to which `items`, `findings` and `text` belong.
     seen: Option<u64>,
     items: Vec<Item>,
     findings: Vec<Finding>,
-    /// Letters that the window can't draw, and the revision that they belong to.
+    /// Letters that the fonts of the window lack, and the revision to which the list belongs.
     undrawn: Diagnostics,
     undrawn_of: Option<u64>,
     selected: Vec<Address>,
-    /// The number of the page that is shown.
+    /// The index of the page on display.
     page: usize,
     gesture: gestures::Gesture,
-    /// What is put down with the next click.
+    /// The thing that the next click puts down.
     placing: Option<palette::Thing>,
     view: Zoom,
     scene: Scene,
     stroke: u64,
-    /// What could not be done, or was.
+    /// The last message about an action or a refusal.
     message: Option<Message>,
     text: text::Editor,
-    /// The path that is asked for, while it is.
+    /// The path dialogue, while it is open.
     asking: Option<Asking>,
-    /// What is left of an earlier window, until it is taken up or put away.
+    /// The text of a draft of an earlier window, until the user restores or discards it.
     left_over: Option<String>,
-    /// What another program has written where this one has as well.
+    /// The text of another program where the file changed both outside and here.
     conflict: Option<(String, Vec<String>)>,
     drafted_s: f64,
     inspector: inspector::Inspector,
     kinds_of: KindsOf,
     state: PathBuf,
-    /// Where the draft is while there is no file.
+    /// The place of the draft while the layout has no file.
     slot: Option<shelf::Slot>,
-    /// The file that the program watches.
+    /// The file that the program watches for changes.
     watched: Option<PathBuf>,
-    /// What can't be taken hold of on the floor, and what is not drawn, by [`Designer::key_of`].
+    /// The records that are locked on the floor, and those that are hidden, by [`Designer::key_of`].
     locked: BTreeSet<String>,
     hidden: BTreeSet<String>,
     seen_to_scale: Scale,
-    /// Which part of the window F6 led to, and the one that is to get the keyboard in this frame.
+    /// The pane to which F6 led, and the pane that gets the keyboard in this frame.
     pane: Option<Pane>,
     focus: Option<Pane>,
-    /// Frames until the file is saved, and until the floor is tried: what is being typed counts first.
+    /// Frames until the file is saved, and until the floor is tried: a field that is being typed is applied first.
     saves_in: u8,
     leaves_in: u8,
-    /// What the floor is asked to do.
+    /// The command that waits to be sent to the floor.
     wish: Option<PreviewCommand>,
 }
 
-/// What else is drawn in its true size.
+/// The optional marks that are drawn to scale.
 #[derive(Clone, Copy, Debug, Default)]
 struct Scale {
     shoes: bool,
     reach: bool,
 }
 
-/// A part of the window that F6 leads to.
+/// A pane of the window that F6 can reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pane {
     Things,
@@ -127,15 +128,15 @@ enum Pane {
     Text,
 }
 
-/// A sentence about what was done.
+/// A message about an action.
 struct Message {
     text: String,
     is_bad: bool,
-    /// The revision of the layout that it is about.
+    /// The revision of the layout to which it refers.
     of: u64,
 }
 
-/// A path that is being typed.
+/// A dialogue that asks for a path.
 struct Asking {
     to: Ask,
     path: String,
@@ -148,7 +149,7 @@ enum Ask {
 }
 
 impl Designer {
-    /// `None` for a layout that can't be read: there is nothing to edit then.
+    /// Returns `None` for a layout that cannot be read, because there is nothing to edit.
     pub(super) fn new(input: DesignInput, floor: &Arc<Floor>) -> Option<Self> {
         let DesignInput { name, text, path, kinds_of, state } = input;
         let kinds = kinds_of(path.as_deref()).ok()?;
@@ -213,12 +214,12 @@ impl Designer {
         self.document.layout()
     }
 
-    /// What is odd about the text, and the letters that can't be drawn.
+    /// The warnings about the text, and the letters that cannot be drawn.
     fn told(&self) -> impl Iterator<Item = &Diagnostic> {
         self.document.warnings().iter().chain(self.undrawn.iter())
     }
 
-    /// Everything that the reader and the rules warn of, with its places.
+    /// All warnings of the reader and of the rules, with their places.
     fn review(&self) -> Diagnostics {
         let mut all = self.document.review();
         all.merge(self.undrawn.clone());
@@ -230,12 +231,12 @@ impl Designer {
         self.document.text()
     }
 
-    /// Whether everything is in the file.
+    /// Whether the file holds all edits.
     pub(super) fn is_saved(&self) -> bool {
         self.document.is_written_as(self.file.known())
     }
 
-    /// What people call the layout: its file, or what it was begun with.
+    /// The name of the layout: its file name, or the name that it began with.
     pub(super) fn name(&self) -> String {
         if self.file.path().is_some() { self.file.name() } else { self.document.name().to_owned() }
     }
@@ -248,12 +249,12 @@ impl Designer {
         self.message = Some(Message { text: text.into(), is_bad: true, of: self.document.revision() });
     }
 
-    /// The last message, unless the layout has changed since then.
+    /// The last message, unless the layout has changed since.
     fn message(&self) -> Option<&Message> {
         self.message.as_ref().filter(|message| message.of == self.document.revision())
     }
 
-    /// Does `edits`, or says why not; whether they were done.
+    /// Applies `edits` or shows the reason for a refusal; returns whether they were applied.
     fn edit(&mut self, edits: &[Edit]) -> bool {
         self.edit_in(edits, None)
     }
@@ -271,7 +272,7 @@ impl Designer {
         self.message.is_none()
     }
 
-    /// What belongs to the present text.
+    /// Updates everything that derives from the present text.
     fn refresh(&mut self) {
         if self.seen == Some(self.document.revision()) {
             return;
@@ -283,7 +284,7 @@ impl Designer {
         self.page = self.page.min(self.layout().pages.len().saturating_sub(1));
     }
 
-    /// Looks for letters of the present text that the window's fonts lack.
+    /// Looks for letters of the present text that the fonts of the window lack.
     fn refresh_undrawn(&mut self, ctx: &egui::Context) {
         if self.undrawn_of == Some(self.document.revision()) {
             return;
@@ -310,7 +311,7 @@ impl Designer {
         self.selected = vec![record];
     }
 
-    /// Whether this part of the window is to get the keyboard now.
+    /// Whether `pane` gets the keyboard now; clears the request.
     fn leads_to(&mut self, pane: Pane) -> bool {
         self.focus.take_if(|wanted| *wanted == pane).is_some()
     }

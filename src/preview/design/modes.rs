@@ -1,4 +1,4 @@
-//! Design mode beside the others: what comes in from the program and goes to the floor.
+//! The connection of Design mode to the rest of the window: input from the program, output to the floor.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,7 +11,8 @@ use crate::preview::messages::FileNote;
 use crate::schema;
 
 impl App {
-    /// Changes between Design and Try; what was designed is on the floor then, with what was just being typed.
+    /// Changes between Design and Try; the floor then gets the edited layout, with the text that was just being
+    /// typed.
     pub(in crate::preview) fn turn_mode(&mut self, ctx: &egui::Context) {
         let Some(designer) = &mut self.designer else { return };
         if designer.is_open {
@@ -22,7 +23,7 @@ impl App {
             return ctx.request_repaint();
         }
         designer.is_open = true;
-        // Nobody stands on a drawing board.
+        // No simulated foot stands on the canvas in Design mode.
         if let Some((feet, sink)) = &mut self.feet {
             feet.lift_working();
             feet.lift_standing();
@@ -30,7 +31,7 @@ impl App {
         }
     }
 
-    /// Closes the drawing board once what was typed is in the layout, and in the file if it was to be saved.
+    /// Leaves Design mode once the typed text is in the layout, and in the file if a save is pending.
     fn leave(&mut self, ctx: &egui::Context) {
         let Some(designer) = self.designer.as_mut().filter(|designer| designer.leaves_in > 0) else { return };
         if designer.saves_in == 0 {
@@ -43,9 +44,9 @@ impl App {
         self.try_layout(LayoutCause::Designed);
     }
 
-    /// F2 changes the mode; files are taken in, in any mode, that are dropped on the window or saved outside.
+    /// Changes the mode on F2; in any mode, reads files that are dropped on the window or saved outside.
     pub(in crate::preview) fn handle_mode_key(&mut self, ui: &Ui) {
-        // Whoever walks over the floor to check it edits nothing.
+        // A check of the floor excludes editing.
         if self.is_checking() {
             return;
         }
@@ -76,7 +77,7 @@ impl App {
         }
     }
 
-    /// Takes in what was saved outside, and puts it on the floor.
+    /// Reads the files that were saved outside and puts the layout on the floor.
     fn take_in_files(&mut self) {
         let Some(designer) = &mut self.designer else { return };
         let before = designer.document.revision();
@@ -97,7 +98,7 @@ impl App {
         }
     }
 
-    /// The button that does the same.
+    /// The button that changes the mode, as F2 does.
     pub(in crate::preview) fn mode_button(&mut self, ui: &mut Ui) {
         let Some(designer) = &self.designer else { return };
         let button = egui::Button::selectable(designer.is_open, "Design").frame_when_inactive(true);
@@ -110,7 +111,7 @@ impl App {
         }
     }
 
-    /// Goes along when another layout is put on the floor by name.
+    /// Opens the layout in Design mode too when the user puts another one on the floor by name.
     pub(in crate::preview) fn design_choice(&mut self, choice: usize) {
         let (Some(designer), Some(name)) = (&mut self.designer, self.choices.get(choice)) else { return };
         let name = name.clone();
@@ -120,7 +121,7 @@ impl App {
         }
     }
 
-    /// Gives the floor the layout that is on the screen.
+    /// Puts the layout on the screen on the floor.
     pub(super) fn try_layout(&self, cause: LayoutCause) {
         let Some(designer) = &self.designer else { return };
         let layout = Arc::new(designer.layout().clone());
@@ -129,7 +130,7 @@ impl App {
         self.command(PreviewCommand::Try { layout, name, warnings, cause });
     }
 
-    /// The window in Design mode.
+    /// Draws the window in Design mode.
     pub(in crate::preview) fn design(&mut self, ui: &mut Ui) {
         let Some(mut designer) = self.designer.take() else { return };
         designer.refresh();
@@ -140,7 +141,7 @@ impl App {
         designer.bar(ui, &theme, &self.choices);
         designer.questions(ui, &theme);
         designer.ask(ui, &theme);
-        // What was done so far in this frame is shown in it: records may have changed places.
+        // This frame shows the edits so far: records may have changed places.
         designer.refresh();
         designer.palette_panel(ui, &theme, &mut self.palette);
         self.problems(ui);
@@ -154,7 +155,7 @@ impl App {
         let is_changed = designer.document.revision() != before;
         let wish = designer.wish.take();
         self.designer = Some(designer);
-        // Others' floors get what is designed only when it is to be tried.
+        // The floor of a server gets the edits only when the user tries them.
         if is_changed && self.server.is_none() {
             self.try_layout(LayoutCause::Designed);
         }

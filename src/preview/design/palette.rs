@@ -1,4 +1,4 @@
-//! What there is to put down: kinds of controls with their pictures, regions, places to stand, grounds.
+//! The palette of things to put down: kinds of controls with their pictures, regions, places to stand, grounds.
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
@@ -15,10 +15,10 @@ use crate::preview::style::{panel_frame, section};
 use crate::scene::{self, Scene, Show, Theme, View};
 use crate::widget::WidgetId;
 
-/// A tile's width of control: 16 cm and more suit a shoe (rule U101).
+/// Size of a control of about one tile: 16 cm and more suit a shoe (rule U101).
 const SMALL_M: Vec2 = Vec2::new(0.18, 0.16);
 
-/// What slides or leans needs room for it.
+/// Size of a control that needs room to slide or lean.
 const WIDE_M: Vec2 = Vec2::new(0.36, 0.18);
 
 /// Height of a picture in the palette, in points.
@@ -45,7 +45,7 @@ impl Thing {
         }
     }
 
-    /// How large it is put down, in metres: full twentieths of a tile.
+    /// Its size when it is put down, in metres: a multiple of a twentieth of a tile.
     pub(super) fn size(&self, geometry: &Geometry) -> Vec2 {
         let grid = 0.05 * geometry.pitch_m();
         let size = match self {
@@ -61,7 +61,7 @@ impl Thing {
 }
 
 impl Designer {
-    /// Everything to choose from.
+    /// Shows all things to choose from, and below them the list of records.
     pub(super) fn palette_panel(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette) {
         let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
         let panel = Panel::left("palette").frame(frame).resizable(true);
@@ -134,7 +134,7 @@ impl Designer {
             );
         }
         if response.drag_started() || response.clicked() {
-            // By keyboard there is no pointer to follow: it is put where there is room.
+            // The keyboard has no pointer position: the thing goes to the first free place.
             let by_key =
                 response.clicked() && ui.input(|i| i.key_pressed(Key::Enter) || i.key_pressed(Key::Space));
             if by_key {
@@ -148,7 +148,7 @@ impl Designer {
         )
     }
 
-    /// The kind as it is on the floor.
+    /// Draws a control of this kind as it looks on the floor.
     fn picture(&mut self, ui: &Ui, theme: &Theme, palette: &mut Palette, kind: &str, picture: egui::Rect) {
         let Some(kind) = self.document.kinds().get(kind) else { return };
         let size = Thing::Control(kind.name.clone()).size(&self.document.floor().geometry);
@@ -179,12 +179,12 @@ impl Designer {
         let mut drawn = Scene::new();
         scene::draw(&mut drawn, &view);
         let map = ScreenFromFloor::fit(area.grown(0.01), picture);
-        // Without the floor around it.
+        // Clip off the floor around the control.
         let clip = map.rect(area.grown(0.004)).intersect(ui.clip_rect());
         egui_painter::paint(&ui.painter().with_clip_rect(clip), palette, &drawn, map);
     }
 
-    /// Puts `thing` with its middle at `at`, in floor metres.
+    /// Puts `thing` on `area`, in floor metres; returns whether the layout accepts it.
     pub(super) fn put(&mut self, thing: &Thing, area: Rect) -> bool {
         let on_page = |list| {
             let page = self.layout().pages.get(self.page).map(|_| Address::of(List::Pages, self.page));
@@ -215,7 +215,7 @@ impl Designer {
         done
     }
 
-    /// Puts `thing` at the first place of a grid of half tiles where the reader lets it be.
+    /// Puts `thing` at the first place of a grid of half tiles that the reader accepts.
     fn put_somewhere(&mut self, thing: &Thing) {
         let geometry = self.document.floor().geometry;
         let size = thing.size(&geometry);
@@ -231,7 +231,7 @@ impl Designer {
             for column in 0..=steps.x as u32 {
                 let at = within.min + Vec2::new(column as f32, row as f32) * step + Vec2::splat(0.2 * step);
                 let area = Rect::from_min_size(at.min(within.max - size), size);
-                // Half a shoe of room (rule U102), where there is some.
+                // Half a shoe of room (rule U102), where possible.
                 let wide = area.grown(0.06);
                 let is_taken = |item: &crate::edit::Item| {
                     item.record.list() == Some(List::Widgets)
@@ -262,7 +262,7 @@ impl Designer {
     }
 }
 
-/// Arrows lead through a list, also to what is scrolled away, and not on to what lies below it on the screen.
+/// Arrow keys move through the whole list, scrolled-out entries included, and do not leave it at its end.
 pub(super) fn go_on(ui: &Ui, shown: &[Response]) {
     let Some(at) = shown.iter().position(Response::has_focus) else { return };
     let (up, down) = ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown)));

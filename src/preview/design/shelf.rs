@@ -1,22 +1,22 @@
-//! What outlives a window: drafts of layouts that have no file yet, and which files were open last.
+//! Files that remain after a window closes: drafts of layouts without a file, and the list of recent files.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use crate::schema::write_over;
 
-/// Most files in the list.
+/// Maximum number of files in the list.
 const RECENT: usize = 8;
 
-/// Most drafts of layouts without a file that are kept side by side.
+/// Maximum number of drafts of layouts without a file that are kept side by side.
 const SLOTS: usize = 32;
 
-/// A folder for the draft of one layout without a file; no other window uses it meanwhile. Without a draft it is removed
-/// at the end.
+/// A folder for the draft of one layout without a file, reserved for this window. Without a draft, it is removed at
+/// the end.
 #[derive(Debug)]
 pub(super) struct Slot {
     pub(super) folder: PathBuf,
-    /// Locked; a process that ends lets go of it, however it ends.
+    /// A locked file; the lock ends with the process, even after a crash.
     _lock: File,
 }
 
@@ -25,19 +25,19 @@ impl Slot {
         state.join(format!("untitled-{number}"))
     }
 
-    /// The slot in a folder that is there; `None` while another window uses it.
+    /// Locks the slot in an existing folder; `None` while another window uses it.
     fn take(folder: PathBuf) -> Option<Self> {
         let path = folder.join(LOCK);
         let lock = File::options().create(true).append(true).open(&path).ok()?;
         lock.try_lock().ok()?;
-        // Another window may have removed it since it was opened: what is locked then is nobody's.
+        // Another window may have removed the file since it was opened; such a lock protects nothing.
         is_at(&lock, &path).then_some(Self { folder, _lock: lock })
     }
 }
 
 impl Drop for Slot {
     fn drop(&mut self) {
-        // A folder with a draft is not empty, and stays.
+        // A folder with a draft is not empty, so it stays.
         let _ = fs::remove_file(self.folder.join(LOCK));
         let _ = fs::remove_dir(&self.folder);
     }
@@ -53,7 +53,7 @@ fn is_at(file: &File, path: &Path) -> bool {
         use std::os::unix::fs::MetadataExt;
         (open.dev(), open.ino()) == (there.dev(), there.ino())
     }
-    // Elsewhere a file that is open is not removed.
+    // Other systems do not remove an open file.
     #[cfg(not(unix))]
     {
         let _ = (open, there);
@@ -61,7 +61,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Folders for drafts that no window uses, each made when it is asked for.
+/// Folders for drafts that no window uses, each created on demand.
 pub(super) fn slots(state: &Path) -> impl Iterator<Item = Slot> {
     (1..=SLOTS).filter_map(move |number| {
         let folder = Slot::folder(state, number);
@@ -70,7 +70,7 @@ pub(super) fn slots(state: &Path) -> impl Iterator<Item = Slot> {
     })
 }
 
-/// Those of them that earlier windows have left; what has no draft is gone once it was looked at.
+/// The existing slots of earlier windows; dropping a slot removes its folder unless it holds a draft.
 pub(super) fn left_slots(state: &Path) -> impl Iterator<Item = Slot> {
     let there = (1..=SLOTS).map(move |number| Slot::folder(state, number)).filter(|folder| folder.is_dir());
     there.filter_map(Slot::take)
@@ -80,13 +80,13 @@ fn list(state: &Path) -> PathBuf {
     state.join("recent")
 }
 
-/// The files that were open last, the latest first; those that are gone are left out.
+/// The files that were opened last, the latest first, without those that no longer exist.
 pub(super) fn recent(state: &Path) -> Vec<PathBuf> {
     let text = fs::read_to_string(list(state)).unwrap_or_default();
     text.lines().take(RECENT).map(PathBuf::from).filter(|path| path.is_file()).collect()
 }
 
-/// Puts a file first in the list. A list that can't be kept is shorter next time, which nobody need be told of.
+/// Puts a file first in the list. A failure to save the list only makes it shorter next time, so it is merely logged.
 pub(super) fn note_recent(state: &Path, path: &Path) {
     let Ok(path) = fs::canonicalize(path) else { return };
     let mut all = recent(state);
@@ -129,7 +129,7 @@ mod tests {
         let folder = kept.folder.clone();
         drop(kept);
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "the draft");
-        // Empty folders of older versions go when they are looked at.
+        // Looking at the empty folders of older versions removes them.
         for number in 2..=SLOTS {
             fs::create_dir(Slot::folder(state.path(), number)).unwrap();
         }

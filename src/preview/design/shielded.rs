@@ -1,4 +1,4 @@
-//! What can't be taken hold of, and what is not drawn.
+//! Locked records, which the pointer cannot grab, and hidden ones, which are not drawn.
 
 use std::collections::BTreeSet;
 
@@ -6,12 +6,12 @@ use super::Designer;
 use crate::edit::Address;
 
 impl Designer {
-    /// What a record is remembered by while others come and go: its id, or its place in the text.
+    /// The key of a record while others are added and removed: its id, or its place in the text.
     pub(super) fn key_of(&self, record: &Address) -> String {
         self.document.id_of(record).map_or_else(|| record.to_string(), str::to_owned)
     }
 
-    /// Whether it, or the group it is in, is one of `keys`.
+    /// Whether `keys` contains the record or a group around it.
     pub(super) fn is_in(&self, keys: &BTreeSet<String>, record: &Address) -> bool {
         if keys.is_empty() {
             return false;
@@ -44,7 +44,7 @@ impl Designer {
         turn(&mut self.hidden, keys);
     }
 
-    /// Whether something that is selected is locked, which is said then.
+    /// Whether a selected record is locked; shows a message in that case.
     pub(super) fn holds_locked(&mut self) -> bool {
         let locked = self.selected.iter().find(|record| self.is_locked(record)).cloned();
         if let Some(record) = &locked {
@@ -54,7 +54,7 @@ impl Designer {
     }
 }
 
-/// Puts `keys` in, or takes them out if all of them are in.
+/// Adds `keys`, or removes them if the set contains all of them.
 fn turn(set: &mut BTreeSet<String>, keys: Vec<String>) {
     if keys.iter().all(|key| set.contains(key)) {
         set.retain(|key| !keys.contains(key));

@@ -1,4 +1,4 @@
-//! The layout's text beside the floor: each shows what is selected in the other.
+//! The layout's text beside the floor: the text and the floor show the same selection.
 
 use std::ops::Range;
 
@@ -14,25 +14,25 @@ use crate::egui_painter::color;
 use crate::preview::style::{panel_frame, quiet};
 use crate::scene::Theme;
 
-/// The text as it is being typed.
+/// The text editor.
 #[derive(Default)]
 pub(super) struct Editor {
     pub(super) is_open: bool,
     text: String,
-    /// The revision of the document that it shows; another one if it was changed elsewhere.
+    /// The revision of the document on display; it differs from the current one after a change elsewhere.
     revision: Option<u64>,
-    /// What is wrong with it.
+    /// The problems of the text.
     problems: Option<String>,
-    /// What was selected when it was last shown.
+    /// The selection when the text was last drawn.
     selected: Option<Address>,
     stroke: u64,
 }
 
-/// The first stroke of typing: drags count from 0.
+/// The first stroke number of typing, above those of drags, which count from 0.
 const TYPING: u64 = 1 << 32;
 
 impl Designer {
-    /// The text, if it is asked for.
+    /// Shows the text, if it is open.
     pub(super) fn text_panel(&mut self, ui: &mut Ui, theme: &Theme) {
         if !self.text.is_open {
             return;
@@ -83,7 +83,7 @@ impl Designer {
         if !is_same {
             return;
         }
-        // Where the cursor is put is what is selected.
+        // The record under the text cursor becomes the selection.
         if response.has_focus()
             && let Some(cursor) = shown.cursor_range
         {
@@ -119,12 +119,12 @@ impl Designer {
     }
 }
 
-/// The byte at which the character number `index` begins.
+/// The byte offset of the character number `index`.
 fn bytes(text: &str, index: usize) -> usize {
     text.char_indices().nth(index).map_or(text.len(), |(at, _)| at)
 }
 
-/// The numbers of the characters of these bytes.
+/// The range of characters that covers these bytes.
 fn characters(text: &str, span: &Range<usize>) -> Range<usize> {
     let count = |to: usize| text.get(..to).map_or(0, |text| text.chars().count());
     count(span.start)..count(span.end)

@@ -1,4 +1,4 @@
-//! Thresholds that are set from what feet have done, in any mode.
+//! Sets thresholds from recorded presses, in any mode.
 
 use super::Designer;
 use crate::edit::{Document, Edit};
@@ -7,17 +7,17 @@ use crate::preview::feed::LayoutCause;
 use crate::units::Newtons;
 use crate::widget::{Thresholds, WidgetId};
 
-/// Which threshold of a control.
+/// A threshold of a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::preview) enum Threshold {
-    /// From this force on it is pressed; the other one goes along in proportion.
+    /// The force that presses the control; the other threshold changes in proportion.
     Press,
-    /// Below this force it lets go.
+    /// The force below which the control is released.
     Release,
 }
 
 impl Threshold {
-    /// The least that it may be, in newtons.
+    /// The minimum of the threshold, in newtons.
     pub(in crate::preview) fn least(self) -> f32 {
         match self {
             Self::Press => 10.0,
@@ -27,8 +27,8 @@ impl Threshold {
 }
 
 impl Designer {
-    /// The edits that set a threshold of the control called `id`, its thresholds now, and how many other controls are
-    /// made by the same record, such as a grid's.
+    /// The edits that set a threshold of the control called `id`, its present thresholds, and the number of other
+    /// controls from the same record, such as a grid.
     fn thresholding(
         &self,
         id: &WidgetId,
@@ -55,8 +55,8 @@ impl Designer {
 }
 
 impl App {
-    /// Sets a threshold of the control called `id` in the layout's text, as one step, and tries it on the floor; what
-    /// to say about it.
+    /// Sets a threshold of the control called `id` in the layout's text as one undo step, and tries it on the floor;
+    /// returns a message about the change.
     pub(in crate::preview) fn set_threshold(
         &mut self,
         id: &WidgetId,
@@ -77,7 +77,7 @@ impl App {
         told(id, before, after, others)
     }
 
-    /// Takes back the last step of the layout and tries what it was before.
+    /// Undoes the last step of the layout and tries the result on the floor; returns whether anything changed.
     pub(in crate::preview) fn undo_design(&mut self) -> bool {
         let Some(designer) = &mut self.designer else { return false };
         let before = designer.document.revision();
@@ -90,7 +90,7 @@ impl App {
     }
 }
 
-/// What has been changed, in words.
+/// The message about a change.
 fn told(id: &WidgetId, before: Thresholds, after: Thresholds, others: usize) -> String {
     let newtons = |force: Newtons| format!("{:.0} N", force.0);
     let with = match others {

@@ -1,4 +1,4 @@
-//! What is seen on the floor while it is checked: a plate for each tile, over the controls.
+//! Marks on the floor during a check: a plate for each tile, over the controls.
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
@@ -10,12 +10,12 @@ use crate::floor::Corner;
 use crate::serve::SensorVerdict;
 
 impl App {
-    /// Covers the floor with how its tiles are.
+    /// Covers the floor with the state of its tiles.
     pub(in crate::preview) fn show_check(&self, ui: &Ui, rect: Rect, map: ScreenFromFloor) {
         let Some(check) = self.floor_check.as_ref().filter(|check| check.walk.is_some()) else { return };
         let (painter, theme) = (ui.painter_at(rect), &self.theme);
         let geometry = &self.floor.geometry;
-        // Controls are off: they are still to be seen, faintly.
+        // The controls are off, and remain faintly visible.
         let veil = color(theme.canvas).gamma_multiply(0.72);
         painter.rect_filled(map.rect(geometry.bounds()), 0.0, veil);
         for index in 0..geometry.tile_count() {
@@ -32,7 +32,7 @@ impl App {
             };
             painter.rect_filled(area, 4.0, color(ink).gamma_multiply(weight));
             painter.rect_stroke(area, 4.0, Stroke::new(edge, color(ink)), StrokeKind::Inside);
-            // Not by colour alone.
+            // Symbols tell the states apart without colour.
             let (half, stroke) = (0.13 * area.width(), Stroke::new(3.0, color(theme.ink)));
             let middle = area.center();
             match mark {
@@ -68,7 +68,7 @@ impl App {
         }
     }
 
-    /// A dot in each corner: grey, green, or a red square.
+    /// Draws a dot in each corner: grey, green, or a red square.
     fn show_sensors(&self, painter: &eframe::egui::Painter, area: Rect, sensors: [SensorVerdict; 4]) {
         let theme = &self.theme;
         let inset = 0.14 * area.width();

@@ -1,7 +1,7 @@
-//! The floor is checked by walking on it: which board reads which tiles, and whether every sensor answers.
+//! Checks the floor while a person walks on it: which board reads which tiles, and whether every sensor answers.
 //!
-//! What counts as a step or an answer is [`crate::serve::WiringWalk`]'s and [`crate::serve::WalkTest`]'s; here is only
-//! what is seen and touched. Meanwhile the floor's controls are off.
+//! [`crate::serve::WiringWalk`] and [`crate::serve::WalkTest`] decide which forces count as a step or an answer; this
+//! module holds the display and the input. The floor's controls are off during a check.
 
 mod marks;
 mod panel;
@@ -19,42 +19,42 @@ use crate::serve::{FeltLoad, SensorVerdict, WalkTest, Wiring, WiringTask, Wiring
 /// Checks a floor while the window shows it.
 pub(super) struct FloorCheck {
     packets: TappedPackets,
-    /// `None` while nothing is checked.
+    /// `None` outside a check.
     walk: Option<Walk>,
-    /// What was found of the boards by the last walk that came to its end.
+    /// The wiring that the last complete walk found.
     found: Option<Wiring>,
-    /// Where the floor is to be kept.
+    /// The file for the floor.
     path: String,
 }
 
-/// Which walk is under way.
+/// The current walk.
 enum Walk {
     Wiring(Box<WiringWalk>),
     Test(Box<WalkTest>),
 }
 
-/// Where the floor is kept unless somebody writes another name.
+/// Default name of the file for the floor.
 const KEPT: &str = "checked_floor.ron";
 
-/// How one tile is marked.
+/// The mark of one tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum TileMark {
-    /// Nothing is known of it yet.
+    /// No result yet.
     Open,
     /// Some of its sensors have answered.
     Begun,
-    /// It is as it should be.
+    /// All its sensors, or its board, are right.
     Good,
-    /// Something is wrong with it.
+    /// It has a fault.
     Bad,
-    /// It is to be stepped on.
+    /// The next tile to step on.
     Wanted,
-    /// Somebody stands on it, and it is not the one that was to be stepped on.
+    /// It carries a load, but another tile was the next one to step on.
     Felt,
 }
 
 impl TileMark {
-    /// In words, after the tile's name.
+    /// The state in words, after the tile's name.
     const fn words(self) -> &'static str {
         match self {
             Self::Open => "not yet",
@@ -72,14 +72,14 @@ impl FloorCheck {
         Self { packets, walk: None, found: None, path: KEPT.into() }
     }
 
-    /// Takes in what the boards have sent since the last frame.
+    /// Takes in the packets since the last frame.
     fn receive(&mut self) {
         match &mut self.walk {
             Some(Walk::Wiring(walk)) => self.packets.take(|packet| {
                 walk.take(packet);
             }),
             Some(Walk::Test(walk)) => self.packets.take(|packet| walk.take(packet)),
-            // What came before a walk began is not part of it.
+            // Drop packets from before the walk.
             None => self.packets.take(|_| {}),
         }
     }
@@ -90,7 +90,7 @@ impl FloorCheck {
         self.walk = walk;
     }
 
-    /// How the tile with this index is marked.
+    /// The mark of the tile with this index.
     fn mark(&self, floor: &Floor, index: usize) -> TileMark {
         let tile = floor.geometry.tile_at_index(index);
         match &self.walk {
@@ -127,18 +127,18 @@ fn test_mark(sensors: [SensorVerdict; 4]) -> TileMark {
     }
 }
 
-/// What is felt now, in words.
+/// The load on the floor now, in words.
 fn felt_words(felt: FeltLoad) -> String {
     format!("Board {} feels {:.0} N, by the floor file on tile {}.", felt.board, felt.force_n, felt.tile)
 }
 
 impl App {
-    /// Whether the floor is being checked: its controls are off, and nothing is designed.
+    /// Whether a check is running: the floor's controls are off, and Design mode is unavailable.
     pub(super) fn is_checking(&self) -> bool {
         self.floor_check.as_ref().is_some_and(|check| check.walk.is_some())
     }
 
-    /// Takes in what a walk needs.
+    /// Passes the packets to the current walk and stores its result.
     pub(super) fn follow_check(&mut self, ui: &Ui) {
         let Some(check) = &mut self.floor_check else { return };
         check.receive();
@@ -156,7 +156,7 @@ impl App {
         }
     }
 
-    /// Begins a walk, or ends it; controls are off meanwhile.
+    /// Begins or ends a walk; the controls are off during a walk.
     fn begin_check(&mut self, walk: Option<Walk>) {
         let was = self.is_checking();
         let Some(check) = &mut self.floor_check else { return };
@@ -168,7 +168,7 @@ impl App {
         }
     }
 
-    /// Keeps the floor with the boards as the walk has found them.
+    /// Saves the floor with the boards as the walk found them.
     fn save_checked(&self) {
         let Some(check) = &self.floor_check else { return };
         if let Some(found) = &check.found {

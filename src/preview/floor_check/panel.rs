@@ -1,4 +1,4 @@
-//! The panel beside the floor that is being checked: what to do, what was felt, what was found.
+//! The panel beside the floor during a check: the task, the load, the result.
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
@@ -12,7 +12,7 @@ use crate::egui_painter::color;
 use crate::layout::Colour;
 use crate::serve::{FeltTwice, STEP_N, SensorVerdict, WalkTest, WiringTask, WiringWalk};
 
-/// What a person asks for here.
+/// A request of the user in this panel.
 #[derive(Clone, Copy)]
 enum Wish {
     Wiring,
@@ -22,7 +22,7 @@ enum Wish {
 }
 
 impl App {
-    /// The button that begins it, among what is told of the sensors.
+    /// The button that begins a check, among the figures of the sensors.
     pub(in crate::preview) fn check_button(&mut self, ui: &mut Ui) {
         if self.floor_check.is_none() {
             return;
@@ -35,7 +35,7 @@ impl App {
         }
     }
 
-    /// The panel in the place of the side panel, while the floor is being checked.
+    /// The panel in place of the side panel, during a check.
     pub(in crate::preview) fn check_panel(&mut self, ui: &mut Ui) {
         let theme = self.theme;
         let mut wish = None;
@@ -96,7 +96,7 @@ impl App {
         }
     }
 
-    /// What becomes of the controls meanwhile.
+    /// The state of the controls during a check.
     fn controls_words(&self) -> &'static str {
         match &self.server {
             Some(_) => "Controls are off meanwhile, also for the server’s apps. They go on at the end.",
@@ -104,7 +104,7 @@ impl App {
         }
     }
 
-    /// The walk from board to board.
+    /// Shows the walk from board to board.
     fn wiring_words(&self, ui: &mut Ui, walk: &WiringWalk) {
         let theme = &self.theme;
         progress(ui, walk.steps().len(), walk.length(), "boards");
@@ -145,7 +145,7 @@ impl App {
         }
     }
 
-    /// What the walk from board to board has found, at its end.
+    /// Shows the result of the walk from board to board, at its end.
     fn outcome_words(&self, ui: &mut Ui, walk: &WiringWalk) {
         let theme = &self.theme;
         let (words, colour) = match walk.outcome(&self.floor) {
@@ -162,7 +162,7 @@ impl App {
         }
     }
 
-    /// Where the floor is to be kept with what was found.
+    /// Shows the path for the floor with the result of the walk.
     fn save_words(&mut self, ui: &mut Ui, wish: &mut Option<Wish>) {
         let Some(check) = &mut self.floor_check else { return };
         ui.add_space(8.0);
@@ -180,7 +180,7 @@ impl App {
         });
     }
 
-    /// The walk over every tile.
+    /// Shows the walk over every tile.
     fn test_words(&self, ui: &mut Ui, walk: &WalkTest) {
         let theme = &self.theme;
         let count = self.floor.geometry.tile_count();
@@ -222,7 +222,7 @@ impl App {
     }
 }
 
-/// Which boards have changed places, and what to do.
+/// The boards that are interchanged, and the remedy.
 fn moved_words(moved: &[(usize, usize)]) -> String {
     if let &[(one, other), (back, again)] = moved
         && (one, other) == (again, back)

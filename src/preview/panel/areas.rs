@@ -8,7 +8,7 @@ use crate::egui_painter::color;
 use crate::sink::AreaState;
 
 impl App {
-    /// How each area stands, and how sure the times of its events are; nothing on a floor of one computer.
+    /// Shows the state of each area and the uncertainty of its event times; nothing on a floor of one computer.
     pub(super) fn areas_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
         let Some(server) = self.server.as_ref().filter(|server| !server.areas.is_empty()) else { return };

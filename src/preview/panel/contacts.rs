@@ -7,21 +7,21 @@ use super::super::style::{Row, quiet, row, section};
 use crate::egui_painter::color;
 use crate::wire::LinkState;
 
-/// Lines that are always there, so that nothing below moves when feet come and go.
+/// Minimum number of lines, so that nothing below moves when feet appear and disappear.
 const LINES: usize = 3;
 
-/// Where the figures end, as shares of the width.
+/// Right ends of the figures, as shares of the width.
 const COLUMNS: [f32; 4] = [0.50, 0.68, 0.84, 1.0];
 
-/// Most contacts that are listed.
+/// Maximum number of contacts in the list.
 const MOST: usize = 8;
 
 impl App {
-    /// One line for each contact, heaviest first as they come.
+    /// Shows one line for each contact, heaviest first, as the snapshot sorts them.
     pub(super) fn contacts_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
         let snapshot = self.snapshots.output_buffer();
-        // The units stand in the heading's line, over their columns.
+        // The heading's line holds the units, over their columns.
         let rect = section(ui, theme, "Contacts", |_| {});
         let line = Row { ui, rect, size: 12.0 };
         for (column, unit) in COLUMNS.into_iter().zip(["x m", "y m", "N", "m/s"]) {

@@ -12,9 +12,9 @@ use crate::egui_painter::color;
 use crate::widget::{Behaviour, Value};
 
 impl App {
-    /// What an app can do to each control: give it a value, switch it off.
+    /// Offers the requests of an app for each control: set its value, disable it.
     pub(super) fn controls_part(&mut self, ui: &mut Ui) {
-        // What was recorded is not changed afterwards.
+        // A recording cannot change.
         if self.time_line.is_some() {
             return;
         }
@@ -69,7 +69,7 @@ impl App {
                         }
                     });
                 });
-                // That an app has switched it off, the tick says.
+                // The check box already shows that an app has disabled it.
                 if let Some(why) = why_off(snapshot, index).filter(|_| !state.disabled) {
                     ui.label(RichText::new(why).color(color(self.theme.warning)).small());
                 }

@@ -19,7 +19,7 @@ use crate::widget::{EventKind, Value, WidgetEvent};
 const LINE: f32 = 18.0;
 
 impl App {
-    /// What happened, newest first, in `height` points with its heading.
+    /// Shows the events, newest first, in `height` points with its heading.
     pub(super) fn events_part(&mut self, ui: &mut Ui, height: f32) {
         let theme = &self.theme;
         let top = ui.cursor().top();
@@ -53,7 +53,7 @@ impl App {
 }
 
 impl App {
-    /// A field that says which events are listed, and a button that copies these.
+    /// A search field for the list, and a button that copies the listed events.
     fn search_events(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let room = (ui.available_width() - 70.0).max(60.0);
@@ -69,8 +69,8 @@ impl App {
     }
 }
 
-/// Whether a line has to do with `wanted`, which is in lower case: its control, its event, the reason why a press was
-/// ignored, its material.
+/// Whether a line contains all words of `wanted`, which is in lower case: in its control, its event, the reason for
+/// an ignored press, or its material.
 fn is_wanted(happened: &Happened, wanted: &str) -> bool {
     let words = match happened {
         Happened::Event(event) => format!("{} {} {}", event.id, event.kind.name(), value(event.kind)),
@@ -80,8 +80,8 @@ fn is_wanted(happened: &Happened, wanted: &str) -> bool {
     wanted.split_whitespace().all(|word| words.to_lowercase().contains(word))
 }
 
-/// The events that are listed, as the program writes them with `--json`, oldest first; presses that were ignored, which
-/// it does not write, in the same form with the reason.
+/// The listed events in the format of `--json`, oldest first; ignored presses, which `--json` leaves out, have the
+/// same form plus the reason.
 fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
     let wanted = wanted.to_lowercase();
     let listed = recent.iter().rev().filter(|happened| is_wanted(happened, &wanted));
@@ -103,7 +103,7 @@ fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
     lines.collect()
 }
 
-/// A press that no control answered, and why: the whole sentence where it is pointed at.
+/// Shows an ignored press with its reason: the whole sentence on hover.
 fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
     let spoken = format!("{} ignored {:.0} N: {}", press.id, press.force.0, press.why);
@@ -116,7 +116,7 @@ fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
     response.on_hover_text(spoken);
 }
 
-/// Ground that gave way, so many times.
+/// Shows ground events with their number.
 fn gave_way(ui: &mut Ui, theme: &Theme, material: &str, count: u64, at: Instant) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
     let spoken = format!("{material} gave way {count}");
@@ -154,7 +154,7 @@ fn show(ui: &mut Ui, theme: &Theme, event: &WidgetEvent) {
     line.right(1.0, &end, color(theme.ink));
 }
 
-/// What a control changed to.
+/// The new value of a control.
 fn value(kind: EventKind) -> String {
     match kind {
         EventKind::Changed(Value::Switch(on)) => if on { "on" } else { "off" }.into(),
@@ -202,7 +202,7 @@ mod tests {
         assert_eq!(ids, ["0.1 home", "0.2 zoom"]);
         let ignored = &lines("ignored")[0];
         assert_eq!((ignored["why"].as_str(), ignored["force_n"].as_f64()), (Some("too light"), Some(24.0)));
-        // The names of other lines.
+        // The names are those of other lines.
         let names = |line: &serde_json::Value| line.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
         let usual = names(&lines("home")[0]);
         for name in ["t_s", "event", "id", "contact", "force_n"] {

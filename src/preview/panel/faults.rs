@@ -1,4 +1,4 @@
-//! The side panel's faults: a rehearsal of what can go wrong with a floor.
+//! The side panel's faults: simulates the faults of a real floor.
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
@@ -13,10 +13,10 @@ use crate::scene::Theme;
 use crate::sim::SensorFault;
 use crate::units::Newtons;
 
-/// The force that presses on a sensor beside its plate, as under a plate that has got stuck: a light foot's.
+/// Force on a sensor beside its plate, as under a jammed plate: that of a light foot.
 const PINCHED: Newtons = Newtons(60.0);
 
-/// What can be wrong with one sensor.
+/// The faults of one sensor.
 const SENSOR_FAULTS: [(Option<SensorFault>, &str); 5] = [
     (None, "works"),
     (Some(SensorFault::Stuck), "stuck"),
@@ -26,7 +26,7 @@ const SENSOR_FAULTS: [(Option<SensorFault>, &str); 5] = [
 ];
 
 impl App {
-    /// What can be made to go wrong, where the floor is a simulated one.
+    /// Shows the switches for faults, if the floor is simulated.
     pub(super) fn faults_part(&mut self, ui: &mut Ui) {
         let Some(rehearsal) = &mut self.rehearsal else { return };
         let (theme, tile) = (self.theme, self.selection.tile());

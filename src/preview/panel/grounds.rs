@@ -9,7 +9,7 @@ use crate::egui_painter::color;
 use crate::ground::{GroundState, Material};
 
 impl App {
-    /// What has given way on each ground that is shown, a line each until it is opened.
+    /// Shows the events of each ground on the page: one line, until the user opens it.
     pub(super) fn grounds_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
         let snapshot = self.snapshots.output_buffer();
@@ -32,7 +32,7 @@ impl App {
     }
 }
 
-/// The whole story in one line.
+/// A summary in one line.
 fn headline(material: &Material, state: &GroundState) -> String {
     let (count, what) = match material {
         Material::Ice(_) => (state.cracks.len() as u64, "pieces"),

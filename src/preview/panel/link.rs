@@ -12,7 +12,7 @@ use crate::sense::Quality;
 use crate::wire::{LinkCounters, LinkState};
 
 impl App {
-    /// How the sensors are doing, and which are in trouble.
+    /// Shows the state of the sensors, and lists those with faults.
     pub(super) fn health_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
         let snapshot = self.snapshots.output_buffer();
@@ -51,7 +51,7 @@ impl App {
         });
     }
 
-    /// How the device that moves the actuators is doing, if there is one.
+    /// Shows the state of the device that drives the actuators, if there is one.
     pub(super) fn device_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
         let Some(status) = &self.snapshots.output_buffer().device else { return };
@@ -65,7 +65,7 @@ impl App {
         ui.label(egui::RichText::new(format!("Actuators: {status}{muted}")).color(color(colour)));
     }
 
-    /// What came over the wire and what was refused, by reason.
+    /// Shows the numbers of received packets, and of refused ones by reason.
     pub(super) fn link_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
         let snapshot = self.snapshots.output_buffer();
@@ -82,12 +82,12 @@ impl App {
     }
 }
 
-/// The whole story in one line, whose length hardly changes.
+/// A summary in one line of nearly constant length.
 fn headline(counters: &LinkCounters) -> String {
     format!("Link: {} lost, {} refused", grouped(counters.lost), grouped(counters.refused()))
 }
 
-/// A name and a count on a line of its own, marked where anything but zero is a `fault`.
+/// Shows a name and a count on a line of its own, highlighted if the count is a `fault` and not zero.
 pub(super) fn figure(ui: &mut Ui, theme: &Theme, name: &str, count: u64, fault: bool) {
     let figure = grouped(count);
     let line = row(ui, 17.0, 12.5, &format!("{name}: {figure}"));
@@ -104,7 +104,7 @@ fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
     ui.spacing_mut().item_spacing.y = 5.0;
 }
 
-/// Name, count, and whether anything but zero is a fault.
+/// Name, count, and whether a non-zero count is a fault.
 fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 22] {
     [
         ("datagrams", counters.datagrams, false),
@@ -132,7 +132,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 22] {
     ]
 }
 
-/// Digits in groups of three, so that millions can be read.
+/// Digits in groups of three, so that millions are legible.
 pub(in crate::preview) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);

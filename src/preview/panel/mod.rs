@@ -22,12 +22,12 @@ use super::app::App;
 use super::feed::ServerState;
 use super::style::panel_frame;
 
-/// Least height of the list of events, in points.
+/// Minimum height of the list of events, in points.
 const EVENTS: f32 = 150.0;
 
 impl App {
-    /// Whether the panel is there in a window of this width, in points: where the floor would have no room, only if
-    /// somebody wants it.
+    /// Whether a window of this width, in points, shows the panel: a window too narrow for panel and floor shows it
+    /// only on request.
     pub(in crate::preview) fn shows_panel(&self, width: f32) -> bool {
         self.panel_wanted.unwrap_or(width >= 2.2 * 304.0)
     }
@@ -41,10 +41,10 @@ impl App {
         panel.default_size(304.0).size_range(264.0..=440.0).show(ui, |ui| {
             let height = ui.available_height();
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                // The scroll bar has its own place beside the figures.
+                // The scroll bar needs space beside the figures.
                 ui.set_width(ui.available_width() - 8.0);
                 let top = ui.cursor().top();
-                // Lines tell neither forces nor sensors, and take no requests.
+                // Lines carry neither forces nor sensors, and accept no requests.
                 let is_told = self.server.as_ref().is_some_and(ServerState::tells_by_lines);
                 self.areas_part(ui);
                 if !is_told {
@@ -53,7 +53,7 @@ impl App {
                     self.people_part(ui);
                 }
                 self.contacts_part(ui);
-                // The list takes what the other parts leave, as they were at the last frame.
+                // The list gets the height that the other parts left free in the last frame.
                 let events = (height - self.other_parts).max(EVENTS);
                 self.events_part(ui, events);
                 self.scopes_part(ui);

@@ -1,15 +1,15 @@
-//! The side panel's people: who is sent over the simulated floor.
+//! The side panel's people: the walks on the simulated floor.
 
 use eframe::egui::{Button, Label, Ui};
 
 use super::super::app::App;
 use super::super::style::{quiet, section, toggle};
 
-/// Room for what is said below: as high whatever it is.
+/// Height of the message below, in points: constant for all messages.
 const WORDS: f32 = 32.0;
 
 impl App {
-    /// Who was sent, to be sent again or written down as a scenario.
+    /// Shows the walks, to be repeated or saved as a scenario.
     pub(super) fn people_part(&mut self, ui: &mut Ui) {
         let (theme, title) = (self.theme, self.messages.layout.title.clone());
         let Some(walks) = &mut self.walks else { return };

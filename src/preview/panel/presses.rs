@@ -1,4 +1,4 @@
-//! The side panel's control: how hard people press it, and the threshold that follows from that.
+//! The side panel's control: the forces of its presses, and a threshold derived from them.
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
@@ -19,21 +19,21 @@ use crate::widget::{Thresholds, WidgetId};
 /// Height of the strip of presses, in points.
 const STRIP: f32 = 40.0;
 
-/// Presses that are listed one by one.
+/// Maximum number of presses in the list.
 const LISTED: usize = 12;
 
-/// Room for what is said below: as high whatever it is.
+/// Height of the message below, in points: constant for all messages.
 const WORDS: f32 = 34.0;
 
-/// How people are counted.
+/// Explains how people are counted.
 const PEOPLE: &str =
     "Presses that count. People as the floor tells them apart: who leaves the floor counts anew.";
 
-/// What the strip shows.
+/// Explains the strip.
 const SHOWN: &str = "Each press a dot: green was answered, orange too light or too short, hollow does not count. \
                      Grey box: from quartile to quartile, with the median. Lines: where it lets go, and what it takes.";
 
-/// What a person asks for here.
+/// A request of the user in this part.
 #[derive(Clone, Copy)]
 enum Wish {
     Use(Newtons),
@@ -139,7 +139,7 @@ impl App {
         }
     }
 
-    /// Ctrl+Z takes back what was set here, while the floor is tried and nobody is writing.
+    /// Ctrl+Z undoes the last threshold that was set here, in Try mode and outside text fields.
     pub(in crate::preview) fn handle_undo_key(&mut self, ui: &Ui) {
         let is_free = !self.is_designing() && !ui.ctx().text_edit_focused();
         if is_free && ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::Z)) {
@@ -148,7 +148,7 @@ impl App {
     }
 }
 
-/// How hard the presses were, in two lines of words.
+/// Describes the forces of the presses in two lines.
 fn lines(spread: Option<&PressSpread>, people: usize) -> [String; 2] {
     let Some(spread) = spread else { return ["no presses yet".into(), String::new()] };
     let presses = if spread.count == 1 { "1 press".into() } else { format!("{} presses", spread.count) };
@@ -166,7 +166,7 @@ fn lines(spread: Option<&PressSpread>, people: usize) -> [String; 2] {
     ]
 }
 
-/// Presses along an axis of newtons, with the thresholds.
+/// Draws presses along an axis in newtons, with the thresholds.
 fn strip(ui: &mut Ui, theme: &Theme, all: &[&Press], spread: Option<&PressSpread>, thresholds: Thresholds) {
     let Thresholds { press, release, .. } = thresholds;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STRIP), Sense::hover());
@@ -178,7 +178,7 @@ fn strip(ui: &mut Ui, theme: &Theme, all: &[&Press], spread: Option<&PressSpread
     painter.rect_filled(ground, CornerRadius::same(4), color(theme.plate));
     let heaviest =
         all.iter().map(|press| press.force.0).filter(|force| force.is_finite()).fold(0.0, f32::max);
-    // By steps, so that the strip stays as it is from press to press.
+    // In steps, so that the axis stays the same from press to press.
     let most = [100.0, 200.0, 400.0, 800.0].into_iter().find(|most| *most >= heaviest.max(1.25 * press.0));
     let most = most.unwrap_or(1600.0);
     let inner = ground.x_range().shrink(8.0);
@@ -210,14 +210,14 @@ fn strip(ui: &mut Ui, theme: &Theme, all: &[&Press], spread: Option<&PressSpread
     let write = |at: f32, anchor: Align2, text: String, colour| {
         painter.text(pos2(at, rect.bottom()), anchor, text, font.clone(), color(colour));
     };
-    // The words stand clear of the axis' ends and of each other.
+    // The labels avoid the ends of the axis and each other.
     let at = x(press).clamp(rect.left() + 66.0, rect.right() - 76.0);
     write(at - 4.0, Align2::RIGHT_BOTTOM, format!("lets go {:.0}", release.0), theme.quiet);
     write(at + 4.0, Align2::LEFT_BOTTOM, format!("takes {:.0} N", press.0), theme.accent);
     write(rect.right(), Align2::RIGHT_BOTTOM, format!("{most:.0}"), theme.quiet);
 }
 
-/// One press with a box to tick; whether it is to count, where that was changed.
+/// Shows one press with a check box; returns whether it counts, after a change.
 fn listed(ui: &mut Ui, theme: &Theme, press: &Press) -> Option<bool> {
     let why = press.why.map_or("pressed".to_owned(), |why| why.to_string());
     let person = press.person.map_or(String::new(), |person| format!("person {person}"));

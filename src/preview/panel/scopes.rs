@@ -15,10 +15,10 @@ use crate::scene::Theme;
 /// Height of one scope, in points.
 const HEIGHT: f32 = 36.0;
 
-/// Sample that reaches the scope's edge, in full scales: built-in clicks reach a third.
+/// Sample at the scope's edge, in full scales: built-in clicks reach a third.
 const RANGE: f32 = 0.5;
 
-/// Peak below which a wave is drawn as one straight line, in full scales: a tenth of a pixel.
+/// Peak below which a wave is drawn as a straight line, in full scales: a tenth of a pixel.
 const STILL: f32 = 3e-3;
 
 impl App {
@@ -66,7 +66,7 @@ fn scope(ui: &mut Ui, theme: &Theme, floor: &Floor, tile: Option<TileId>, wave: 
         FontId::proportional(11.5),
         color(theme.quiet),
     );
-    // What is still is the line that is there already.
+    // A signal at rest is the middle line.
     if wave.len() < 2 || peak(wave) < STILL {
         let ink = Stroke::new(1.2, color(if wave.is_empty() { theme.line } else { theme.haptic }));
         painter.hline(screen.x_range().shrink(4.0), middle, ink);
@@ -78,7 +78,8 @@ fn scope(ui: &mut Ui, theme: &Theme, floor: &Floor, tile: Option<TileId>, wave: 
         let sample = if sample.is_finite() { (sample / RANGE).clamp(-1.0, 1.0) } else { 0.0 };
         pos2(x, middle - 0.5 * inner.height() * sample)
     };
-    // Each stretch from its lowest to its highest sample, in turns up and down: one line that fills where it is fast.
+    // Draw each part between its lowest and highest sample, alternating upwards and downwards: one line that fills
+    // the area of fast signals.
     let points = wave
         .iter()
         .enumerate()

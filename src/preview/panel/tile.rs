@@ -15,11 +15,11 @@ use crate::layout::Colour;
 use crate::scene::Theme;
 use crate::sense::Quality;
 
-/// Force at which a sensor's bar is full: the nominal part's end of range.
+/// Force of a full bar: the end of the nominal sensor's range, in newtons.
 const FULL: f32 = 400.0;
 
 impl App {
-    /// The four sensors of the selected tile, where they are on it.
+    /// Shows the four sensors of the selected tile in their corners.
     pub(super) fn tile_part(&mut self, ui: &mut Ui) {
         let theme = self.theme;
         let tile = self.selection.tile();
@@ -79,7 +79,7 @@ impl App {
     }
 }
 
-/// One sensor: where it is, newtons, a bar, and a word if it cannot be trusted.
+/// Shows one sensor: its corner, newtons, a bar, and a word if it is unreliable.
 fn sensor(ui: &mut Ui, theme: &Theme, size: egui::Vec2, corner: Corner, state: &TileState) {
     let (force, quality) = (state.forces[corner.index()], state.quality[corner.index()]);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -112,7 +112,7 @@ fn sensor(ui: &mut Ui, theme: &Theme, size: egui::Vec2, corner: Corner, state: &
     );
     let bar = Rect::from_min_size(pos2(rect.left(), rect.top() + 23.0), vec2(rect.width(), 6.0));
     painter.rect_filled(bar, CornerRadius::same(3), color(panel_colour(theme).mix(theme.ink, 0.09)));
-    // The root, as for the dots on the floor: light touches are seen too.
+    // The square root, as for the dots on the floor, shows light touches too.
     let share = (force / FULL).clamp(0.0, 1.0).sqrt();
     if share > 0.0 {
         let filled = Rect::from_min_size(bar.min, vec2((share * bar.width()).max(6.0), bar.height()));
@@ -121,12 +121,12 @@ fn sensor(ui: &mut Ui, theme: &Theme, size: egui::Vec2, corner: Corner, state: &
     }
 }
 
-/// No minus sign before what reads as zero.
+/// Removes the minus sign of a figure that rounds to zero.
 fn clean(force: f32) -> f32 {
     if force.abs() < 0.05 { 0.0 } else { force }
 }
 
-/// What to say of a sensor that cannot be trusted.
+/// The word for an unreliable sensor.
 fn word(quality: Quality, theme: &Theme) -> Option<(&'static str, Colour)> {
     match quality {
         Quality::Live => None,

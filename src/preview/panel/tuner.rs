@@ -1,4 +1,4 @@
-//! The effect tuner: a slider for each number of an effect, seen, heard and felt at once.
+//! The effect tuner: a slider for each number of an effect; a change is drawn and played at once.
 
 use std::sync::Arc;
 
@@ -17,36 +17,36 @@ use crate::feel::{Effect, EffectKind, Gesture, Knob};
 use crate::scene::Theme;
 use crate::schema::{NamedEffect, write_named_effect};
 
-/// How long a hand rests before the effect is played again by itself, in seconds.
+/// Pause of the hand after which the effect is played automatically, in seconds.
 const RESTS_S: f64 = 0.12;
 
-/// What is being tuned.
+/// The state of the tuner.
 pub(crate) struct Tuner {
     pub(crate) is_open: bool,
     effects: Vec<NamedEffect>,
-    /// The one that was chosen, as it was.
+    /// Index of the chosen effect, in its original form.
     chosen: usize,
-    /// As it is being turned.
+    /// The effect with the present changes.
     effect: Arc<Effect>,
     trace: Option<Trace>,
-    /// Whether each change is played.
+    /// Whether each change is played automatically.
     by_itself: bool,
-    /// When the last change happened that has not been played, and when it was played last.
+    /// Time of the last change that has not been played, and time of the last play.
     changed_s: Option<f64>,
     played_s: Option<f64>,
-    /// What it will be saved as.
+    /// The name for saving.
     name: String,
 }
 
-/// Where an effect is tried.
+/// The tile on which an effect is played.
 struct Place {
     /// Column and row.
     name: String,
-    /// The most that its actuator gives, in newtons.
+    /// The maximum force of its actuator, in newtons.
     full_scale: f32,
 }
 
-/// What a frame of the tuner asks for.
+/// The requests of one frame of the tuner.
 #[derive(Default)]
 struct Wishes {
     play: bool,
@@ -110,7 +110,7 @@ impl Tuner {
             let name = self.effects.get(self.chosen).map_or("", |named| named.name.as_str());
             let menu = ComboBox::from_id_salt("effect").selected_text(name).width(190.0).height(420.0);
             let response = menu.show_ui(ui, |ui| {
-                // Those of a kind together.
+                // Effects of one kind stand together.
                 let mut order: Vec<usize> = (0..self.effects.len()).collect();
                 order.sort_by_key(|&index| {
                     let kind = self.effects[index].effect.kind.name();
@@ -139,7 +139,7 @@ impl Tuner {
         ui.add(egui::Label::new(quiet(theme, self.about()).size(12.0)).truncate());
     }
 
-    /// Waveform, spectrum and the figures that matter.
+    /// Shows the waveform, the spectrum and the important figures.
     fn picture(&mut self, ui: &mut Ui, theme: &Theme, now_s: f64, full_scale: f32) {
         let effect = &self.effect;
         let trace = self.trace.get_or_insert_with(|| Trace::of(effect, &Gesture::usual(effect)));
@@ -198,7 +198,7 @@ impl Tuner {
         });
     }
 
-    /// A slider for each number; whether one was moved.
+    /// Shows a slider for each number; returns whether one was moved.
     fn knobs(&mut self, ui: &mut Ui, theme: &Theme) -> bool {
         let mut turned = (*self.effect).clone();
         let mut changed = false;
@@ -213,7 +213,7 @@ impl Tuner {
             }
             changed |= slider(ui, knob, value);
         });
-        // Even what was only examined has been balanced anew: the same numbers.
+        // The visit rebalances even an unchanged effect, to the same numbers.
         if changed {
             self.effect = Arc::new(turned);
             self.trace = None;
@@ -222,12 +222,12 @@ impl Tuner {
     }
 }
 
-/// One slider in the unit of its name; whether it was moved.
+/// Shows one slider in the unit of its name; returns whether it was moved.
 fn slider(ui: &mut Ui, knob: &Knob, value: &mut f32) -> bool {
     let mut shown = *value * knob.scale;
     let mut moved = false;
     ui.horizontal(|ui| {
-        // The same width for every value, so that sliders end below each other.
+        // A constant width for every value aligns the ends of the sliders.
         ui.spacing_mut().interact_size.x = 56.0;
         ui.spacing_mut().slider_width = (ui.available_width() - 178.0).max(60.0);
         let (rect, _) = ui.allocate_exact_size(vec2(100.0, 18.0), Sense::hover());
@@ -250,7 +250,7 @@ fn slider(ui: &mut Ui, knob: &Knob, value: &mut f32) -> bool {
     moved
 }
 
-/// Three digits that count.
+/// A number with three significant digits.
 fn short(value: f64) -> String {
     let digits = match value.abs() {
         large if large >= 100.0 => 0,
@@ -299,7 +299,7 @@ impl App {
             let named = NamedEffect { name: tuner.name.clone(), about, effect: Arc::clone(&tuner.effect) };
             let text = write_named_effect(&named);
             self.command(PreviewCommand::SaveEffect { name: named.name.clone(), text });
-            // From now on it is there to be chosen.
+            // From now on, the list contains it.
             match tuner.effects.iter().position(|known| known.name == named.name) {
                 Some(index) => {
                     tuner.effects[index] = named;

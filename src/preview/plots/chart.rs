@@ -1,4 +1,4 @@
-//! One plot: lines of the same unit over the last seconds, and thresholds that can be dragged.
+//! One plot: lines of the same unit over the last seconds, and thresholds that the pointer can drag.
 
 use eframe::egui;
 use eframe::egui::{
@@ -13,10 +13,10 @@ use crate::scene::Theme;
 use crate::units::Newtons;
 use crate::widget::WidgetId;
 
-/// Height of what can be taken hold of about a threshold's line, in points.
+/// Height of the area around a threshold's line that the pointer can grab, in points.
 const GRIP: f32 = 11.0;
 
-/// By how much arrow keys move a threshold, in newtons; with Shift by ten.
+/// Step of the arrow keys for a threshold, in newtons; ten times as much with Shift.
 const KEY_N: f32 = 1.0;
 
 /// One line.
@@ -29,36 +29,36 @@ pub(super) struct Trace {
 /// Both thresholds of a control, each with its force.
 pub(super) type Lines = [(Threshold, Newtons); 2];
 
-/// What a plot shows.
+/// The content of a plot.
 pub(super) struct Chart<'a> {
     pub(super) theme: &'a Theme,
     pub(super) unit: Unit,
     pub(super) span_s: f64,
     pub(super) height: f32,
     pub(super) traces: Vec<Trace>,
-    /// Whose thresholds, and at what forces; whether they can be set.
+    /// The control with its thresholds and their forces, and whether they can be set.
     pub(super) thresholds: Option<(&'a WidgetId, Lines, bool)>,
-    /// Where they are while none is dragged: an axis that grew with the drag would run away from the pointer.
+    /// The thresholds without the present drag: an axis that followed the drag would move away from the pointer.
     pub(super) at_rest: Option<[Newtons; 2]>,
 }
 
-/// What is done to a threshold.
+/// The drag of a threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
-    /// It is on its way.
+    /// In progress.
     To(Threshold, Newtons),
-    /// It is let go there.
+    /// Released there.
     Done(Threshold, Newtons),
 }
 
 impl Chart<'_> {
-    /// Draws it; what is done to a threshold.
+    /// Draws the plot; returns the drag of a threshold, if any.
     pub(super) fn show(self, ui: &mut Ui) -> Option<Drag> {
         let Self { theme, unit, span_s, height, traces, thresholds, at_rest } = self;
         let lines = at_rest.into_iter().flatten().map(|force| f64::from(force.0));
         let (low, high) = bounds(unit, traces.iter().flat_map(|trace| &trace.points).map(|it| it[1]), lines);
         let spoken = traces.iter().map(|trace| told(trace, unit)).collect::<Vec<_>>().join(", ");
-        // What lies on an end of the axis is seen whole.
+        // A margin keeps lines at the ends of the axis fully visible.
         let (under, over) = (low - 0.04 * (high - low), high + 0.06 * (high - low));
         let fixed = |range: [f64; 2]| move |_: GridInput| marks(range);
         let plot = Plot::new(("plot", unit.name()))
@@ -76,7 +76,7 @@ impl Chart<'_> {
             .grid_color(color(theme.line))
             .x_grid_spacer(fixed([-span_s, 0.0]))
             .y_grid_spacer(fixed([low, high]))
-            // The ends have no room for words of their own.
+            // The ends have no space for labels.
             .x_axis_formatter(move |mark, _| match mark.value {
                 at if at == 0.0 || at <= -span_s => String::new(),
                 at => format!("{at:.0} s"),
@@ -99,7 +99,7 @@ impl Chart<'_> {
                 plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
             }
             for trace in traces {
-                // A line on each side of a gap.
+                // One line on each side of a gap.
                 for points in trace.points.split(|point| !point[1].is_finite()).filter(|it| !it.is_empty()) {
                     let points = PlotPoints::from(points.to_vec());
                     plot.line(Line::new(trace.name.as_str(), points).color(trace.colour).width(1.6));
@@ -132,7 +132,7 @@ impl Chart<'_> {
     }
 }
 
-/// A threshold that is taken hold of.
+/// The handle of a threshold.
 struct Grip<'a> {
     id: &'a WidgetId,
     which: Threshold,
@@ -161,7 +161,7 @@ impl Grip<'_> {
         let is_held = node.dragged() || node.has_focus();
         let ink = color(if is_held || node.hovered() { theme.ink } else { theme.accent });
         let text = format!("{what} {:.0} N", force.0);
-        // Side by side, so that two near lines can be read.
+        // Side by side, so that the labels of two close lines stay legible.
         let off = match which {
             Threshold::Press => 6.0,
             Threshold::Release => 96.0,
@@ -194,7 +194,7 @@ impl Grip<'_> {
     }
 }
 
-/// What a screen reader says of a line: its name and its latest figure.
+/// The text for a screen reader: the name of a line and its latest figure.
 fn told(trace: &Trace, unit: Unit) -> String {
     match trace.points.last() {
         Some([_, figure]) if figure.is_finite() => format!("{} {}", trace.name, unit.figure(*figure)),
@@ -202,7 +202,7 @@ fn told(trace: &Trace, unit: Unit) -> String {
     }
 }
 
-/// Where the axis begins and ends: by steps, so that it does not move with every figure.
+/// The limits of the axis: in steps, so that they do not move with every figure.
 fn bounds(unit: Unit, figures: impl Iterator<Item = f64>, lines: impl Iterator<Item = f64>) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let lines = lines.map(|line| 1.2 * line);
@@ -218,7 +218,7 @@ fn bounds(unit: Unit, figures: impl Iterator<Item = f64>, lines: impl Iterator<I
     }
 }
 
-/// The next of `steps` times a power of ten that is not below `value`, which is positive.
+/// The lowest of `steps` times a power of ten that is at least `value`, which is positive.
 fn next_of(steps: &[f64], value: f64) -> f64 {
     if !value.is_finite() || value <= 0.0 {
         return 1.0;
@@ -227,12 +227,12 @@ fn next_of(steps: &[f64], value: f64) -> f64 {
     steps.iter().map(|step| step * power).find(|step| *step >= value).unwrap_or(10.0 * power)
 }
 
-/// The next round figure at which an axis may end.
+/// The next round figure for an end of the axis.
 fn stepped(value: f64) -> f64 {
     next_of(&[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0], value)
 }
 
-/// Four or five lines of the grid, at round figures.
+/// Four or five grid lines at round figures.
 fn marks([low, high]: [f64; 2]) -> Vec<GridMark> {
     let step = next_of(&[1.0, 2.0, 5.0], (high - low) / 5.0);
     let first = (low / step).ceil() as i64;

@@ -1,4 +1,4 @@
-//! The last half minute of the floor, as the window saw it.
+//! The frames of the window over the last half minute of the floor.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -11,13 +11,13 @@ use crate::sense::ContactId;
 use crate::units::Instant;
 use crate::widget::{Value, WidgetId};
 
-/// How long moments are kept, in seconds.
+/// Time for which moments are kept, in seconds.
 pub(super) const LONGEST_S: f64 = 30.0;
 
-/// Most moments that are kept: those of [`LONGEST_S`] at 60 frames a second.
+/// Maximum number of moments: those of [`LONGEST_S`] at 60 frames a second.
 const MOST: usize = 1900;
 
-/// What the floor was like in one frame of the window.
+/// The state of the floor in one frame of the window.
 #[derive(Clone, Debug)]
 pub(super) struct Moment {
     pub(super) at: Instant,
@@ -45,17 +45,17 @@ pub(super) struct Foot {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Control {
-    /// Of the heaviest foot on it, in newtons.
+    /// Force of the heaviest foot on it, in newtons.
     pub(super) force: f32,
     pub(super) values: [Option<f32>; 2],
 }
 
-/// Where a control stands in the layout: looked up once for all moments of the same one.
+/// The index of a control in the layout: looked up once for all moments with the same layout.
 #[derive(Debug, Default)]
 pub(super) struct Place(Option<(Arc<Layout>, Option<usize>)>);
 
 impl Place {
-    /// The control called `id` in a moment; always asked for the same one.
+    /// The control called `id` in a moment; every call must use the same id.
     pub(super) fn control<'m>(&mut self, moment: &'m Moment, id: &WidgetId) -> Option<&'m Control> {
         let known = self.0.as_ref().filter(|(layout, _)| Arc::ptr_eq(layout, &moment.layout));
         let index = known.map_or_else(|| moment.layout.widget_index(id.as_str()), |(_, index)| *index);
@@ -107,8 +107,8 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Takes in a frame's state; one that is not later than the last is left out, and one that is earlier begins anew,
-    /// as a recording that is played again.
+    /// Records a frame's state. Skips a frame with the same time as the last; an earlier one, as from a repeated
+    /// recording, clears the history.
     pub(super) fn note(&mut self, snapshot: &Snapshot, layout: &Arc<Layout>) {
         match self.moments.back() {
             Some(last) if last.at == snapshot.at => return,
@@ -131,19 +131,19 @@ impl History {
         self.moments.push_back(moment);
     }
 
-    /// When the latest one was.
+    /// The time of the latest moment.
     pub(super) fn end(&self) -> Option<Instant> {
         self.moments.back().map(|moment| moment.at)
     }
 
-    /// Those of the last `span_s` seconds, and the one before them, oldest first.
+    /// The moments of the last `span_s` seconds, and the one before them, oldest first.
     pub(super) fn last(&self, span_s: f64) -> impl Iterator<Item = &Moment> {
         let end = self.end().unwrap_or_default();
         let from = self.moments.partition_point(|moment| end.since(moment.at).as_secs_f64() > span_s);
         self.moments.range(from.saturating_sub(1)..)
     }
 
-    /// The feet that were there in it, the latest first.
+    /// The contacts in the history, the latest first.
     pub(super) fn contacts(&self) -> Vec<ContactId> {
         let mut contacts: Vec<ContactId> = Vec::new();
         for foot in self.moments.iter().rev().flat_map(|moment| &moment.feet) {

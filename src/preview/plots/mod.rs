@@ -1,7 +1,7 @@
-//! Figures of the floor over time: which are plotted, and what of them is remembered.
+//! Plots of figures over time: the selection of lines, and their history.
 //!
-//! What actuators do within a tenth of a second is [`super::scopes`]' own; here is what sensors, tiles, feet and
-//! controls did in the last half minute, 60 times a second. Only `chart` knows egui_plot.
+//! [`super::scopes`] shows the actuators over a tenth of a second; this module shows sensors, tiles, feet and
+//! controls over the last half minute, 60 times a second. Only `chart` depends on egui_plot.
 
 mod chart;
 mod history;
@@ -22,34 +22,34 @@ use crate::layout::Layout;
 use crate::units::Newtons;
 use crate::widget::WidgetId;
 
-/// Most lines at once: as many as there are colours to tell apart.
+/// Maximum number of lines: the number of distinct colours.
 const MOST: usize = 6;
 
-/// How much can be seen at once, in seconds.
+/// The time spans to choose from, in seconds.
 const SPANS: [f64; 3] = [5.0, 10.0, history::LONGEST_S];
 
-/// Pause between two moments from which on the line goes on as it was until shortly before the later one: the window
-/// does not look while nothing changes.
+/// Minimum pause between two moments for which the line stays flat until shortly before the later one: the window
+/// records nothing without a change.
 const PAUSE_S: f64 = 0.1;
 
-/// Pause after which nothing is on its way through the plots: the floor stands still, as a recording that is paused.
+/// Pause after which the plots count as at rest: the floor sends nothing new, as a paused recording.
 const SILENCE_S: f64 = 0.5;
 
-/// What is plotted.
+/// The state of the plots.
 pub(in crate::preview) struct Plots {
     pub(in crate::preview) is_open: bool,
     chosen: Vec<Series>,
     span_s: f64,
-    /// Whether what is seen stays.
+    /// Whether the display is frozen.
     is_held: bool,
     history: History,
-    /// When a frame brought something last, on the window's clock.
+    /// Time of the last new moment, on the window's clock.
     fed_s: f64,
-    /// What the list of everything is searched for.
+    /// The search text of the list of everything.
     wanted: String,
-    /// The threshold that is being dragged, and to what force.
+    /// The threshold that is being dragged, and its force.
     dragged: Option<(Threshold, Newtons)>,
-    /// What was to say about the last one that was set, and of which control.
+    /// The message about the last threshold that was set.
     told: Option<String>,
 }
 
@@ -70,7 +70,7 @@ impl Default for Plots {
 }
 
 impl Plots {
-    /// Takes in a frame's state at `now_s`.
+    /// Records a frame's state at `now_s`.
     pub(in crate::preview) fn note(&mut self, now_s: f64, snapshot: &Snapshot, layout: &Arc<Layout>) {
         let before = self.history.end();
         if !self.is_held {
@@ -86,7 +86,7 @@ impl Plots {
         self.history.end()
     }
 
-    /// Plots these as well, in place of the oldest where there are too many.
+    /// Adds these lines, in place of the oldest ones above the maximum.
     pub(in crate::preview) fn add(&mut self, series: impl IntoIterator<Item = Series>) {
         self.is_open = true;
         for one in series {
@@ -105,7 +105,7 @@ impl Plots {
         }
     }
 
-    /// The points of a line, in seconds before the latest moment; gaps are `NaN`.
+    /// The points of a line, in seconds relative to the latest moment; gaps are `NaN`.
     fn points(&self, series: &Series, geometry: &Geometry, selected: Option<&WidgetId>) -> Vec<[f64; 2]> {
         let Some(end) = self.history.end() else { return Vec::new() };
         let (mut points, mut place) = (Vec::<[f64; 2]>::new(), Place::default());
@@ -122,7 +122,7 @@ impl Plots {
         points
     }
 
-    /// Whether lines are on their way through the plot: there is something in it beside noise that goes out by itself.
+    /// Whether lines move through the plot: it contains a change above noise that will leave it as time passes.
     pub(in crate::preview) fn are_moving(
         &self,
         now_s: f64,
@@ -141,7 +141,7 @@ impl Plots {
     }
 }
 
-/// Whether figures differ by more than noise, or are there only in part.
+/// Whether figures differ by more than noise, or are present only in part.
 fn differ(figures: impl Iterator<Item = Option<f64>>, unit: Unit) -> bool {
     let (mut low, mut high, mut gaps) = (f64::INFINITY, f64::NEG_INFINITY, false);
     for figure in figures {
@@ -207,13 +207,13 @@ mod tests {
         let moves = |forces: &[(u64, f32)]| fed(forces).are_moving(now_s(forces), &geometry, Some(&home()));
         assert!(!moves(&[(1000, 0.0), (1016, 1.0), (1032, 0.5)]), "noise");
         assert!(moves(&[(1000, 0.0), (1016, 90.0), (1032, 0.0)]));
-        // Ten seconds are seen.
+        // The plot spans ten seconds.
         let gone = [(1000, 90.0), (1016, 0.0), (6000, 0.0), (11_100, 0.0), (11_116, 0.0)];
         assert!(moves(&gone[..3]) && !moves(&gone));
         let mut closed = fed(&gone[..3]);
         closed.is_open = false;
         assert!(!closed.are_moving(6.0, &geometry, Some(&home())));
-        // A floor that stands still moves nothing, though a frame or two may bring nothing new.
+        // A floor at rest moves nothing; a frame or two without news do not count as rest.
         let mut paused = fed(&gone[..3]);
         let snapshot = Snapshot { at: Instant::from_millis(6000), ..at_rest(&map()) };
         for (now_s, moves) in [(6.05, true), (6.4, true), (6.6, false)] {

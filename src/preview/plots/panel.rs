@@ -1,4 +1,4 @@
-//! The plots under the floor: what is in them, to be chosen from everything there is.
+//! The plots under the floor, and the list from which their lines are chosen.
 
 use std::sync::Arc;
 
@@ -20,17 +20,17 @@ use crate::scene::Theme;
 use crate::units::Newtons;
 use crate::widget::WidgetId;
 
-/// Height of a line of the list of everything, in points.
+/// Height of a line of the list, in points.
 const LINE: f32 = 20.0;
 
-/// What is asked for in the strip above the plots.
+/// A request from the strip above the plots.
 enum Wish {
     Turn(Series),
     Close,
 }
 
 impl App {
-    /// The plots, while somebody wants to see them.
+    /// Shows the plots, if they are open.
     pub(in crate::preview) fn plots_panel(&mut self, ui: &mut Ui) {
         if !self.plots.is_open {
             return;
@@ -45,7 +45,7 @@ impl App {
         });
     }
 
-    /// Opens the plots or closes them, where nobody is writing.
+    /// Opens or closes the plots on P, unless a text field has the focus.
     pub(in crate::preview) fn handle_plots_key(&mut self, ui: &Ui) {
         let is_free = !self.is_designing() && ui.ctx().memory(|memory| memory.focused().is_none());
         if is_free && ui.input(|i| i.key_pressed(Key::P) && i.modifiers.is_none()) {
@@ -53,7 +53,7 @@ impl App {
         }
     }
 
-    /// What is plotted, and over which time.
+    /// Shows the chosen lines and the time span.
     fn plots_strip(&mut self, ui: &mut Ui, theme: &Theme) {
         let mut wish = None;
         ui.horizontal(|ui| {
@@ -76,7 +76,7 @@ impl App {
                 });
                 menu.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Seconds plotted"));
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    // What does not fit is cut off rather than moving what is clicked on.
+                    // Text that does not fit is cut off, so that buttons keep their places.
                     let selected = self.selection.control_of(&self.messages.layout).map(|widget| &widget.id);
                     for (series, colour) in self.plots.chosen.iter().zip(colours(theme)) {
                         if chip(ui, theme, &series.name(selected), colour) {
@@ -96,7 +96,7 @@ impl App {
         }
     }
 
-    /// A menu of everything that can be plotted, with a field to search it; it stays open while several are chosen.
+    /// A menu of everything that can be plotted, with a search field; it stays open after a choice.
     fn everything(&mut self, ui: &mut Ui, theme: &Theme) -> Option<Wish> {
         let mut wish = None;
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -177,7 +177,7 @@ impl App {
         Some([(Threshold::Press, now.press), (Threshold::Release, now.release)])
     }
 
-    /// One of them where it is being dragged to.
+    /// The thresholds, with the dragged one at its present force.
     fn dragged(&self, lines: [(Threshold, Newtons); 2]) -> [(Threshold, Newtons); 2] {
         lines.map(|(which, force)| match self.plots.dragged {
             Some((dragged, to)) if dragged == which => (which, to),
@@ -185,7 +185,7 @@ impl App {
         })
     }
 
-    /// All of a drag is one step, done where it ends.
+    /// Sets the threshold at the end of the drag, so that a drag is one undo step.
     fn drag_threshold(&mut self, id: &WidgetId, drag: Drag) {
         match drag {
             Drag::To(which, force) => self.plots.dragged = Some((which, force)),
@@ -197,7 +197,7 @@ impl App {
         }
     }
 
-    /// Plots the force on a control, and what it holds.
+    /// Plots the force on a control, and its value.
     pub(in crate::preview) fn plot_control(&mut self, id: &WidgetId) {
         let layout = Arc::clone(&self.messages.layout);
         let widget = layout.widget_index(id.as_str()).and_then(|index| layout.widgets.get(index));
@@ -207,7 +207,7 @@ impl App {
     }
 }
 
-/// A line's name with its colour; whether it is to go.
+/// Shows a line's name with its colour; returns whether to remove the line.
 fn chip(ui: &mut Ui, theme: &Theme, name: &str, colour: Color32) -> bool {
     let (mark, _) = ui.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
     ui.painter().hline(mark.x_range(), mark.center().y, eframe::egui::Stroke::new(3.0, colour));
@@ -219,8 +219,8 @@ fn chip(ui: &mut Ui, theme: &Theme, name: &str, colour: Color32) -> bool {
     button.on_hover_text("Leave it out").clicked()
 }
 
-/// Colours of the lines, in the order in which they were chosen: those of the theme that stand furthest apart, also for
-/// those who can't tell red from green.
+/// Colours of the lines, in order of their choice: the colours of the theme that differ most, also for people with
+/// red-green colour blindness.
 fn colours(theme: &Theme) -> impl Iterator<Item = Color32> {
     let all = [theme.contact, theme.cursor, theme.warning, theme.haptic, theme.ink, theme.stale];
     all.into_iter().map(color)

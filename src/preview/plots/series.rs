@@ -1,4 +1,4 @@
-//! What can be plotted: names, units, and the figure in one moment.
+//! The quantities that can be plotted: names, units, and the figure at one moment.
 
 use super::history::{Moment, Place};
 use crate::floor::{Corner, Floor, Geometry, TileId};
@@ -9,23 +9,23 @@ use crate::widget::{Behaviour, WidgetId};
 /// One line of a plot.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(in crate::preview) enum Series {
-    /// The force on the control that the side panel shows, whichever that is.
+    /// The force on the control in the side panel, whichever that is.
     Selected,
     /// The force of the foot on a control.
     Force(WidgetId),
-    /// What a control holds: a switch as 0 or 1, a choice by its number; of a pad the first number.
+    /// The value of a control: a switch as 0 or 1, a choice by its number, a pad by its first number.
     Value(WidgetId),
     /// The second number of a pad.
     SecondValue(WidgetId),
-    /// All of a tile.
+    /// The force on a tile.
     Tile(TileId),
     /// One of its sensors.
     Sensor(TileId, Corner),
-    /// A foot: that contact, or for `None` the one that works, which is the heaviest if none does.
+    /// A foot: that contact; for `None` the working foot, or the heaviest one if none works.
     Foot(Option<ContactId>, Part),
 }
 
-/// What of a foot.
+/// The quantity of a foot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::preview) enum Part {
     Force,
@@ -33,7 +33,7 @@ pub(in crate::preview) enum Part {
     North,
 }
 
-/// What a plot's axis counts.
+/// The unit of a plot's axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::preview) enum Unit {
     Newtons,
@@ -42,7 +42,7 @@ pub(in crate::preview) enum Unit {
 }
 
 impl Unit {
-    /// In the order in which their plots stand.
+    /// In the order of their plots.
     pub(super) const ALL: [Self; 3] = [Self::Newtons, Self::Metres, Self::Value];
 
     pub(super) fn name(self) -> &'static str {
@@ -53,7 +53,7 @@ impl Unit {
         }
     }
 
-    /// A difference that is nothing but noise.
+    /// Difference up to which a change counts as noise.
     pub(super) fn noise(self) -> f64 {
         match self {
             Self::Newtons => 3.0,
@@ -62,7 +62,7 @@ impl Unit {
         }
     }
 
-    /// A figure with as many digits as are worth reading.
+    /// A figure with its significant digits.
     pub(super) fn figure(self, value: f64) -> String {
         match self {
             Self::Newtons => format!("{value:.1} N"),
@@ -93,7 +93,7 @@ impl Series {
         }
     }
 
-    /// What it is called; `selected` is the control that the side panel shows.
+    /// Its name; `selected` is the control in the side panel.
     pub(super) fn name(&self, selected: Option<&WidgetId>) -> String {
         match self {
             Self::Selected => match selected {
@@ -112,8 +112,8 @@ impl Series {
         }
     }
 
-    /// Its figure in a moment; `None` where there is none, such as the place of a foot that is not there. `place` is
-    /// for this line alone.
+    /// Its figure at a moment; `None` if there is none, such as the place of an absent foot. `place` belongs to this
+    /// line alone.
     pub(super) fn at(
         &self,
         moment: &Moment,
@@ -137,7 +137,7 @@ impl Series {
                         .max_by(|a, b| a.leads.cmp(&b.leads).then(a.force.total_cmp(&b.force))),
                 };
                 match (part, foot) {
-                    // Without a foot the force is zero, and there is no place.
+                    // Without a foot, the force is zero and the place is undefined.
                     (Part::Force, None) => 0.0,
                     (Part::Force, Some(foot)) => foot.force,
                     (Part::East, foot) => foot?.at.x,

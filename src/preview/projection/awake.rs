@@ -1,13 +1,13 @@
-//! The screen is kept from going dark while the floor is projected.
+//! Keeps the screen on while the floor is projected.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
-/// Keeps the screen awake until it is dropped.
+/// Keeps the screen on until it is dropped.
 ///
-/// Systems are asked over a bus that may not answer for seconds: a thread does it, and holds what they give.
+/// The request goes over a bus that may not answer for seconds: a thread sends it and holds the result.
 pub(super) struct Awake {
-    /// The thread lets go once this is gone.
+    /// Dropping it ends the thread.
     _held: Sender<()>,
     failed: Receiver<String>,
 }
@@ -18,7 +18,7 @@ impl Awake {
         let (failure, failed) = channel();
         let keep = move || {
             if let Err(why) = keep_awake_until(&until) {
-                // A window that is closed already need not know.
+                // A window that is already closed does not need the message.
                 let _ = failure.send(why);
             }
         };
@@ -28,13 +28,13 @@ impl Awake {
         Self { _held: held, failed }
     }
 
-    /// Why the screen may go dark, once, if that became known.
+    /// The reason why the screen may go dark, returned once.
     pub(super) fn failure(&self) -> Option<String> {
         self.failed.try_recv().ok()
     }
 }
 
-/// Keeps the screen awake until the other side hangs up, or says why it can't be.
+/// Keeps the screen on until the other side hangs up; returns the reason if that is impossible.
 #[cfg(feature = "desktop")]
 fn keep_awake_until(until: &Receiver<()>) -> Result<(), String> {
     let _awake = keepawake::Builder::default()

@@ -1,20 +1,19 @@
-//! From one quadrilateral to another as a projector and a flat floor do it.
+//! Projective maps between quadrilaterals, as between a projector's picture and a flat floor.
 
 use glam::{DMat3, DVec2, DVec3};
 
-/// A projective map of the plane: straight lines stay straight, parallels may meet.
+/// A projective map of the plane: straight lines stay straight, parallel lines may meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Homography(DMat3);
 
-/// Least area of a triangle of three corners, as a share of the largest distance between two of them squared: below it
-/// nothing could be seen.
+/// Minimum cross product of two neighbouring sides, as a share of the largest squared distance between two corners: a
+/// flatter quadrilateral would be invisible.
 const FLATTEST: f64 = 1e-4;
 
 impl Homography {
-    /// The map that takes each corner of `from` to that of `to`, both in order around.
+    /// The map from each corner of `from` to the same corner of `to`, both in order around.
     ///
-    /// `None` unless both are convex, go round the same way or the other, and are finite: otherwise the picture would
-    /// be folded.
+    /// `None` unless both are convex and finite, in either direction around: otherwise the picture would be folded.
     ///
     /// # Source
     /// P. Heckbert, *Fundamentals of Texture Mapping and Image Warping* (1989), section 2.2.3: square to quadrilateral.
@@ -24,14 +23,14 @@ impl Homography {
         Some(Self(to * from.inverse()))
     }
 
-    /// Where `point` goes.
+    /// The image of `point`.
     pub(super) fn map(&self, point: DVec2) -> DVec2 {
         let mapped = self.0 * DVec3::new(point.x, point.y, 1.0);
         mapped.truncate() / mapped.z
     }
 }
 
-/// The map that takes the unit square's corners (0, 0), (1, 0), (1, 1), (0, 1) to these.
+/// The map from the unit square's corners (0, 0), (1, 0), (1, 1), (0, 1) to these.
 fn from_square(corners: [DVec2; 4]) -> Option<DMat3> {
     if !is_convex(corners) {
         return None;
@@ -82,7 +81,7 @@ mod tests {
         for (from, to) in SQUARE.into_iter().zip(to) {
             assert!(map.map(from).distance(to) < 1e-9);
         }
-        // Where the lines a-c and b-d meet, by hand: a + s (c - a) with s from the cross products.
+        // The intersection of the lines a-c and b-d, by hand: a + s (c - a) with s from the cross products.
         let (ac, bd) = (to[2] - to[0], to[3] - to[1]);
         let s = (to[1] - to[0]).perp_dot(bd) / ac.perp_dot(bd);
         assert!(map.map(DVec2::splat(0.5)).distance(to[0] + ac * s) < 1e-9);

@@ -1,8 +1,8 @@
-//! The floor for a projector: a window of its own with the controls and nothing else, laid onto the real floor by its
+//! The floor for a projector: a separate window that holds only the controls, fitted to the real floor by its
 //! corners.
 //!
-//! It only shows. Feet work the controls on the floor itself; the corners move by mouse and keys of this computer, and
-//! only while they are being adjusted.
+//! This window is an output only. Feet use the controls on the floor itself; the corners move by mouse and keys of
+//! this computer, and only in adjustment mode.
 
 mod awake;
 mod homography;
@@ -27,45 +27,46 @@ use crate::scene::{self, Scene, Show, Theme, View};
 /// Radius of a corner's handle, in points.
 const HANDLE: f32 = 22.0;
 
-/// How far an arrow key moves a corner, in points; with Shift, and without.
+/// Distance that an arrow key moves a corner, in points; with Shift, and without.
 const NUDGE: (f32, f32) = (10.0, 1.0);
 
-/// How the floor is projected at first.
+/// The initial state of the projection.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ProjectionOptions {
-    /// Whether its window is open at once, over the whole screen.
+    /// Whether its window opens at once, as full screen.
     pub open: bool,
-    /// Whether the screen is kept from going dark while the window is open.
+    /// Whether the screen stays on while the window is open.
     pub keeps_awake: bool,
-    /// The screen that it fills, as the system counts them from 0; `None` for the one it opens on.
+    /// The screen for full screen, numbered by the system from 0; `None` for the one on which it opens.
     pub monitor: Option<usize>,
-    /// The file that remembers the corners, in place of the usual one.
+    /// The file that stores the corners, in place of the usual one.
     pub corners: Option<PathBuf>,
 }
 
-/// The projector's window and what it remembers.
+/// The projector's window and its settings.
 pub(super) struct Projection {
     is_open: bool,
     is_full: bool,
     monitor: Option<usize>,
     file: Option<PathBuf>,
-    /// `None` until the picture's shape is known and no file says it.
+    /// `None` until the picture's shape is known, if no file provides it.
     placement: Option<Placement>,
-    /// Whether people have set it; else it follows the window, which is given its screen some frames after it opens.
+    /// Whether the user has set it; otherwise it follows the window, which gets its screen some frames after it
+    /// opens.
     is_set: bool,
-    /// The corner that keys move, while corners are adjusted.
+    /// The corner that keys move, in adjustment mode.
     adjusting: Option<usize>,
-    /// The corner that the mouse holds, and where it is from the pointer, in points.
+    /// The corner that the mouse holds, and its offset from the pointer, in points.
     held: Option<(usize, egui::Vec2)>,
     scene: Scene,
     palette: Palette,
     keeps_awake: bool,
-    /// While the window is open and the screen is to stay awake.
+    /// Present while the window is open and the screen must stay on.
     awake: Option<Awake>,
 }
 
 impl Projection {
-    /// As `options` say; a sentence for the person at the window if the file of corners can't be used.
+    /// Uses `options`; also returns a message for the user if the file of corners cannot be used.
     pub(super) fn new(options: &ProjectionOptions) -> (Self, Option<String>) {
         let file = options.corners.clone().or_else(usual_file);
         let read = file.as_deref().map_or(Ok(None), Placement::load);
@@ -91,7 +92,7 @@ impl Projection {
         self.is_open
     }
 
-    /// Opens the window, or closes it.
+    /// Opens or closes the window.
     pub(super) fn toggle(&mut self) {
         self.is_open = !self.is_open;
         self.adjusting = None;
@@ -109,7 +110,7 @@ impl Projection {
         }
     }
 
-    /// What keys do in this window; the answer is whether the placement has changed.
+    /// Handles the keys of this window; returns whether the placement has changed.
     fn handle_keys(&mut self, ui: &Ui, size: Vec2, floor: f32) -> bool {
         let pressed = |key: Key| ui.input(|i| i.key_pressed(key));
         if pressed(Key::Escape) && self.adjusting.is_some() {
@@ -154,7 +155,7 @@ impl Projection {
         *placement != before
     }
 
-    /// Handles at the corners; the answer is whether one was let go elsewhere.
+    /// Shows handles at the corners; returns whether a corner was moved and released.
     fn adjust(&mut self, ui: &mut Ui, theme: &Theme, picture: Rect, size: Vec2) -> bool {
         if self.adjusting.is_none() || self.placement.is_none() {
             self.held = None;
@@ -183,8 +184,8 @@ impl Projection {
         let_go
     }
 
-    /// Moves corners as the mouse does, event by event: a window that draws seldom gets press, drag and release at
-    /// once. The answer is whether one was let go.
+    /// Moves corners event by event: a window with slow frames gets press, drag and release at once. Returns whether
+    /// a corner was released.
     fn drag_corners(&mut self, events: &[Event], picture: Rect, size: Vec2) -> bool {
         let mut let_go = false;
         for event in events {
@@ -202,7 +203,7 @@ impl Projection {
             let corner = (to + beside - picture.min) / picture.size();
             let before = placement.corners.get(index).copied();
             let to = Vec2::new(corner.x, corner.y);
-            // A corner that is only touched stays where it is, to the bit.
+            // A corner that is only clicked stays unchanged, bit for bit.
             if before.is_some_and(|before| ((to - before) * size).length() > 1e-3) {
                 *placement = placement.moved(index, to);
             }
@@ -213,7 +214,7 @@ impl Projection {
         let_go
     }
 
-    /// Takes hold of the corner whose handle is at `pointer`, the topmost one.
+    /// Grabs the corner with its handle at `pointer`, the topmost one.
     fn take_corner(&mut self, pointer: Pos2, picture: Rect) {
         let Some(placement) = &self.placement else { return };
         let corners = placement.corners.map(|corner| picture.min + vec2(corner.x, corner.y) * picture.size());
@@ -229,12 +230,12 @@ impl Projection {
     }
 }
 
-/// Where a corner is taken hold of: one beyond the picture at its edge.
+/// The handle of a corner; for a corner beyond the picture, it is at the edge.
 fn handle_of(corner: Pos2, picture: Rect) -> Rect {
     Rect::from_center_size(picture.shrink(HANDLE).clamp(corner), egui::Vec2::splat(2.0 * HANDLE))
 }
 
-/// How to adjust the corners, in the middle of the picture.
+/// Shows how to adjust the corners, in the middle of the picture.
 fn help(ui: &Ui, picture: Rect) {
     let lines = [
         "Drag each corner onto the floor’s own corner",
@@ -259,12 +260,12 @@ fn help(ui: &Ui, picture: Rect) {
 }
 
 impl App {
-    /// The projector's window, while it is open; F11 opens and closes it.
+    /// Shows the projector's window while it is open; F11 opens and closes it.
     pub(super) fn projection_window(&mut self, ui: &Ui) {
         if ui.input(|i| i.key_pressed(Key::F11)) {
             self.projection.toggle();
             ui.ctx().request_repaint();
-            // Where windows can't have windows of their own, the same key would close it again.
+            // On systems without several windows, the same key event would close it again.
             return;
         }
         self.stay_awake();
@@ -274,7 +275,7 @@ impl App {
         let ctx = ui.ctx().clone();
         let window = self.projection.window();
         ctx.show_viewport_immediate(ViewportId::from_hash_of("projection"), window, |ui, _| self.project(ui));
-        // On a computer with one screen the projection covers the window that draws it.
+        // On a computer with one screen, the projection covers the window that draws it.
         ctx.send_viewport_cmd_to(ViewportId::ROOT, ViewportCommand::RequestPaintWhileHidden);
     }
 
@@ -324,7 +325,7 @@ impl App {
         };
         let Projection { palette, scene, .. } = &mut self.projection;
         egui_painter::paint_warped(&ui.painter_at(picture), palette, scene, map, onto);
-        // For tests and for whoever cannot see: where each control lies on the picture.
+        // For tests and screen readers: the place of each control on the picture.
         let snapshot = self.snapshots.output_buffer();
         for (index, widget) in self.messages.layout.widgets.iter().enumerate() {
             if snapshot.widgets.get(index).is_some_and(|state| state.hidden) {
@@ -346,7 +347,7 @@ impl App {
         }
     }
 
-    /// Nobody touches keys or mouse while feet work a projected floor: the screen would go dark.
+    /// While feet use a projected floor, keys and mouse are idle, so the screen would go dark.
     fn stay_awake(&mut self) {
         let wanted = self.projection.is_open && self.projection.keeps_awake;
         let awake = &mut self.projection.awake;

@@ -1,4 +1,4 @@
-//! Where on a projector's picture the floor lies, as people have set it, and the file that remembers it.
+//! The place of the floor on a projector's picture, as set by the user, and the file that stores it.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -10,30 +10,31 @@ use crate::floor::Rect;
 use crate::format::file::read_bounded;
 use crate::schema::save_text;
 
-/// Where the floor lies on a projector's picture.
+/// The place of the floor on a projector's picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::preview) struct Placement {
-    /// The corners of the floor on the picture, as shares of its width and height from its upper left corner: first the
-    /// one that is upper left while the picture is neither turned nor mirrored, then clockwise. They may lie beyond it.
+    /// The corners of the floor on the picture, as shares of its width and height from its upper left corner: first
+    /// the upper left one of a picture that is neither turned nor mirrored, then clockwise. They may lie beyond the
+    /// picture.
     pub(super) corners: [Vec2; 4],
-    /// Whether the picture is thrown from behind or over a mirror: east is left.
+    /// Whether the picture is projected from behind or over a mirror: east is left.
     pub(super) mirrored: bool,
-    /// By how many quarter turns clockwise the picture is turned, 0 to 3.
+    /// Number of quarter turns of the picture, clockwise, 0 to 3.
     pub(super) quarter_turns: u8,
 }
 
 /// The file's first line.
 const HEAD: &str = "underfoot projection 1";
 
-/// How far beyond the picture a corner may lie, in pictures.
+/// Maximum distance of a corner beyond the picture, in picture sizes.
 const BEYOND: f32 = 2.0;
 
-/// Longest file that is read, in bytes.
+/// Maximum length of the file, in bytes.
 const LONGEST: u64 = 4096;
 
 impl Placement {
-    /// The largest upright floor of this shape (width over height) on a picture of that one, with a margin in which the
-    /// corners can be taken hold of.
+    /// The largest upright floor with the aspect ratio `floor` (width over height) on a picture with the aspect ratio
+    /// `picture`, with a margin for the handles of the corners.
     pub(super) fn fit(floor: f32, picture: f32) -> Self {
         let share = 0.46 * Vec2::new((floor / picture).min(1.0), (picture / floor).min(1.0));
         let corners = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::ONE, Vec2::new(-1.0, 1.0)];
@@ -41,9 +42,9 @@ impl Placement {
         Self { corners, mirrored: false, quarter_turns: 0 }
     }
 
-    /// From floor metres to points of a picture of `size` points.
+    /// The map from floor metres to points of a picture of `size` points.
     ///
-    /// `None` for corners that make no picture; [`Placement::moved`] never lets them.
+    /// `None` for corners that do not form a picture; [`Placement::moved`] prevents them.
     pub(super) fn floor_to_picture(&self, floor: Rect, size: Vec2) -> Option<Homography> {
         let (min, max) = (floor.min.as_dvec2(), floor.max.as_dvec2());
         // North-west, then clockwise, as the corners on the picture.
@@ -56,7 +57,7 @@ impl Placement {
         Homography::between(from, self.corners.map(|corner| (corner * size).as_dvec2()))
     }
 
-    /// The same with the corner numbered `index` elsewhere; itself where the picture would be folded by that.
+    /// The placement with the corner numbered `index` at `to`; unchanged if that would fold the picture.
     #[must_use]
     pub(super) fn moved(mut self, index: usize, to: Vec2) -> Self {
         let before = self;
@@ -66,18 +67,18 @@ impl Placement {
         if to.is_finite() && is_convex(self.corners.map(|corner| corner.as_dvec2())) { self } else { before }
     }
 
-    /// As a file.
+    /// The text of the file.
     fn write(&self) -> String {
         let mut text = format!("{HEAD}\n");
         for corner in self.corners {
-            // Writing to a string does not fail.
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "corner {} {}", corner.x, corner.y);
         }
         let _ = writeln!(text, "mirrored {}\nquarter_turns {}", self.mirrored, self.quarter_turns);
         text
     }
 
-    /// From a file's text; the error says what is wrong with it.
+    /// Parses the text of a file; the error describes the problem.
     fn read(text: &str) -> Result<Self, String> {
         let mut lines = text.lines();
         if lines.next().map(str::trim) != Some(HEAD) {
@@ -113,7 +114,7 @@ impl Placement {
     /// The placement in the file at `path`; `None` if there is no such file.
     ///
     /// # Errors
-    /// One sentence that says what is wrong with it.
+    /// Returns a sentence that describes the problem.
     pub(super) fn load(path: &Path) -> Result<Option<Self>, String> {
         match read_bounded(path, LONGEST) {
             Ok(text) => Self::read(&text).map(Some).map_err(|wrong| format!("{}: {wrong}", path.display())),
@@ -122,10 +123,10 @@ impl Placement {
         }
     }
 
-    /// Keeps it in the file at `path`.
+    /// Saves the placement to the file at `path`.
     ///
     /// # Errors
-    /// One sentence that says what went wrong.
+    /// Returns a sentence that describes the problem.
     pub(super) fn save(&self, path: &Path) -> Result<(), String> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
@@ -134,8 +135,8 @@ impl Placement {
     }
 }
 
-/// Where the placement is kept unless told otherwise: in the folder in which egui keeps what apps remember; `None`
-/// where the system names no such folder.
+/// The default file of the placement: in the folder in which egui stores the data of apps; `None` if the system names
+/// no such folder.
 pub(super) fn usual_file() -> Option<PathBuf> {
     let of = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let folder = if cfg!(target_os = "windows") {

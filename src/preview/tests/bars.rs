@@ -1,4 +1,4 @@
-//! The strips at the edges: menus, buttons, what is said across the window.
+//! The bars at the edges: menus, buttons, and messages across the window.
 
 use eframe::egui::accesskit::Role;
 
@@ -31,7 +31,7 @@ fn a_bad_layout_is_told_while_the_last_good_one_works() {
     room.press(home);
     assert!(acts_at(&room.feet().0.unwrap()).distance(middle_of("Home")) < 0.005);
     room.release(home);
-    // Mended: another page of controls, and no more problems.
+    // After a repair: another page of controls, and no problems any more.
     let mut layout = Layout { title: "Mended".into(), ..map() };
     layout.widgets.truncate(1);
     let name = "map.ron".into();
@@ -69,7 +69,7 @@ fn the_floor_is_muted_by_button_and_key_and_says_so() {
     room.window.key_press(Key::M);
     room.run(2);
     assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Mute(false)));
-    // One tile: the selected one.
+    // A single tile: the selected one.
     snapshot.muted.all = false;
     room.write(snapshot.clone());
     let tile = Floor::default().geometry.tile_under(middle_of("Home")).unwrap();

@@ -1,4 +1,4 @@
-//! Faults that are rehearsed from the window, on a simulated floor.
+//! Faults that the window switches on, on a simulated floor.
 
 use std::time::Duration;
 
@@ -25,7 +25,7 @@ fn room() -> (Room, RehearsalSource, FootHandle) {
     (room, source, handle)
 }
 
-/// Packets of board 2 among the next 60 that would come: ten, while nothing is wrong.
+/// Number of packets of board 2 among the next 60: ten without faults.
 fn from_board_two(source: &mut RehearsalSource) -> usize {
     let next = |_| source.next(Duration::from_millis(1)).unwrap();
     (0..60).filter_map(next).filter(|packet| packet.board == 2).count()

@@ -1,4 +1,4 @@
-//! What the mouse and the keys do to the feet and to what is seen of the floor.
+//! The effect of mouse and keys on the feet and on the view of the floor.
 
 use super::*;
 
@@ -70,7 +70,7 @@ fn the_standing_foot_stays_where_space_left_it() {
     assert_eq!(room.feet().1.unwrap().position, standing.position);
     assert!(room.feet().0.unwrap().force.0 > 100.0, "both feet are down");
     room.release(home);
-    // Dragged by its handle it moves, and the working foot does not press.
+    // A drag of its handle moves it, and the working foot does not press.
     let handle = room.place("Standing foot");
     room.hover(handle);
     room.button(handle, PointerButton::Primary, true);
@@ -79,7 +79,7 @@ fn the_standing_foot_stays_where_space_left_it() {
     assert!(moved.1.unwrap().position.x > standing.position.x + 0.1);
     assert_eq!(moved.0.unwrap().force, Newtons::ZERO, "the hand holds the standing foot");
     room.button(handle + vec2(80.0, 0.0), PointerButton::Primary, false);
-    // Space on it lifts it.
+    // Space on the standing foot lifts it.
     room.window.key_press(Key::Space);
     room.run(2);
     assert!(room.feet().1.is_none());
@@ -216,7 +216,7 @@ fn two_fingers_are_two_feet_and_the_mouse_that_the_system_makes_of_the_first_is_
         force: None,
     };
     room.window.event(touch(1, egui::TouchPhase::Start, home));
-    // As the system tells the first finger of a screen.
+    // The system reports the first finger on a screen as a mouse too.
     room.window.event(Event::PointerMoved(home));
     let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
     room.window.event(Event::PointerButton { pos: home, button, pressed: true, modifiers });

@@ -1,4 +1,4 @@
-//! The floor checked by walking on it, with the boards of a simulated floor behind the window.
+//! Checks of the floor during a walk, with the boards of a simulated floor behind the window.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::sim::{SensorFault, SimConfig, SimFloor};
 use crate::source::{SensorSource, SourceError};
 use crate::wire::SensorPacket;
 
-/// A floor whose boards are read by hand, two of which may have changed places.
+/// A floor with boards that the test reads; two of them may be interchanged.
 struct Boards {
     sim: SimFloor,
     feet: Arc<Mutex<Vec<crate::sim::Foot>>>,
@@ -43,7 +43,7 @@ impl SensorSource for Boards {
     }
 }
 
-/// A window on that floor, and the floor.
+/// A window on that floor, and the source of its packets.
 struct Site {
     room: Room,
     source: TappedSource,
@@ -68,7 +68,7 @@ impl Site {
         Self { room, source, feet }
     }
 
-    /// Lets time pass with somebody at `at`.
+    /// Advances the time with a person at `at`.
     fn stand(&mut self, at: Option<Vec2>, ms: u32) {
         *self.feet.lock().unwrap() = at.iter().map(|at| foot(*at)).collect();
         for _ in 0..ms {
@@ -168,7 +168,7 @@ fn nothing_is_designed_while_the_floor_is_checked_and_feet_are_shown() {
     site.room.window.key_press(Key::F2);
     site.room.run(3);
     assert!(!site.room.window.state().is_designing());
-    // Too short for a step.
+    // This is too short for a step.
     site.stand(Some(middle(4, 4)), 120);
     assert!(
         site.room.says("Board 4 feels") && site.room.says("Tile (4, 4): feels somebody"),

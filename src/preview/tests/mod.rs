@@ -1,4 +1,4 @@
-//! The window without a display: what a person sees by name, and what the mouse does to the floor.
+//! The window without a display: its parts are found by name, and the mouse acts on the floor.
 
 mod bars;
 mod faults;
@@ -52,7 +52,7 @@ pub(super) fn event(at_ms: u64, id: &str) -> WidgetEvent {
     }
 }
 
-/// A window and everything on its other side.
+/// A window and the program's ends of its channels.
 struct Room {
     window: Harness<'static, App>,
     snapshots: triple_buffer::Input<Snapshot>,
@@ -61,7 +61,7 @@ struct Room {
     notices: SyncSender<String>,
     commands: Receiver<PreviewCommand>,
     feet: Arc<Mutex<Vec<PreviewFoot>>>,
-    /// Where the projection's corners are remembered.
+    /// The folder for the projection's corners.
     folder: tempfile::TempDir,
 }
 
@@ -73,7 +73,7 @@ impl FootSink for Feet {
     }
 }
 
-/// Where the force of a foot acts, as the window was told.
+/// Point of action of a foot, with the centre of pressure of the window's sink.
 fn acts_at(foot: &PreviewFoot) -> Vec2 {
     Feet(Arc::default()).centre_of_pressure(foot)
 }
@@ -91,7 +91,7 @@ impl Room {
         Self::of(true, 1280.0, 800.0)
     }
 
-    /// A recording, led by `playback`.
+    /// A recording that plays through `playback`.
     fn recorded(playback: Box<dyn Playback>) -> Self {
         let mut room = Self::of(false, 1280.0, 800.0);
         room.window.state_mut().time_line = Some(TimeLine::new(playback));
@@ -116,12 +116,12 @@ impl Room {
                 text: builtin_layout("map").unwrap().into(),
                 path: None,
                 kinds_of: Box::new(|_| Ok(Arc::new(Kinds::builtin()))),
-                // Where no folder can be.
+                // No folder can exist here.
                 state: "/dev/null/underfoot".into(),
             }),
             ..PreviewInput::new(Arc::new(Floor::default()), layout, "simulated floor", output, channels)
         };
-        // Nobody's own corners, and no other test's.
+        // A folder of this test alone, for the corners of the projection.
         let folder = tempfile::tempdir().unwrap();
         let corners = Some(folder.path().join("projection.txt"));
         let projection = ProjectionOptions { corners, ..ProjectionOptions::default() };
@@ -148,12 +148,12 @@ impl Room {
         self.run(2);
     }
 
-    /// Where on the screen the control called `name` is.
+    /// The position on the screen of the control called `name`.
     fn place(&self, name: &str) -> Pos2 {
         self.window.get_by_label(name).rect().center()
     }
 
-    /// Where the line that says this begins.
+    /// The position of the line with this text.
     fn place_of(&self, text: &str) -> Pos2 {
         self.window.get_by_label_contains(text).rect().min
     }
@@ -163,7 +163,7 @@ impl Room {
         self.run(1);
     }
 
-    /// All within one frame, as a window that draws seldom gets them.
+    /// Passes all events within one frame, as a window with slow frames gets them.
     fn at_once(&mut self, events: impl IntoIterator<Item = Event>) {
         self.window.input_mut().events.extend(events);
         self.run(1);
@@ -203,7 +203,7 @@ impl Room {
         self.run(1);
     }
 
-    /// The foot that works, and the one that stands.
+    /// The working foot and the standing foot.
     fn feet(&self) -> (Option<PreviewFoot>, Option<PreviewFoot>) {
         let feet = self.feet.lock().unwrap();
         let foot = |left| feet.iter().copied().find(|foot| foot.left == left);
@@ -267,7 +267,7 @@ fn a_projection_that_nobody_has_adjusted_keeps_the_floors_shape_when_its_window_
     let mut room = Room::simulated();
     room.window.get_by_label("Project").click();
     room.run(3);
-    // From 4:3, as a window opens, to the 16:10 of a screen that it is moved to.
+    // From 4:3, the initial shape of a window, to the 16:10 of another screen.
     for size in [vec2(960.0, 720.0), vec2(1280.0, 800.0)] {
         room.window.set_size(size);
         room.run(3);
@@ -289,7 +289,7 @@ fn a_corner_follows_the_mouse_from_where_it_was_pressed_however_seldom_the_windo
         pressed,
         modifiers: Modifiers::NONE,
     };
-    // The way to the corner, the press and half of the drag within one frame; the rest within the next.
+    // The approach, the press and half of the drag within one frame; the rest within the next.
     let (first, far) = (room.place("Corner 1"), room.place("Corner 3"));
     let on = first + vec2(5.0, -4.0);
     room.window.event(Event::PointerMoved(far));
@@ -301,7 +301,7 @@ fn a_corner_follows_the_mouse_from_where_it_was_pressed_however_seldom_the_windo
     room.run(1);
     let moved = room.place("Corner 1") - first;
     assert!((moved - vec2(40.0, 20.0)).length() < 0.5, "{moved}");
-    // A whole drag within one frame, and a touch that moves nothing.
+    // A whole drag within one frame, and a click that moves nothing.
     let third = room.place("Corner 3");
     let to = third - vec2(30.0, 15.0);
     let touch = [button(room.place("Corner 2"), true), button(room.place("Corner 2"), false)];
@@ -330,7 +330,7 @@ fn the_projection_is_laid_onto_the_floor_by_its_corners() {
     let moved = room.place("Corner 1") - first;
     assert!((moved - vec2(60.0, 40.0)).length() < 2.0, "{moved}");
     assert_ne!(room.place("Projected Home"), home, "the controls go along");
-    // By keys: the third one, by a point and by ten.
+    // By keys: the third corner, by one point and by ten.
     let third = room.place("Corner 3");
     room.window.key_press(Key::Num3);
     room.window.key_press(Key::ArrowLeft);

@@ -1,8 +1,8 @@
-//! The panels at the side and the effect tuner: what they tell and what they ask for.
+//! The panels at the side and the effect tuner: their content and their commands.
 
 use super::*;
 
-/// Brings a line of the panel into its view.
+/// Scrolls to a line of the panel.
 fn scroll_to(room: &mut Room, label: &str) {
     room.window.get_by_label(label).scroll_to_me();
     room.run(20);
@@ -64,7 +64,7 @@ fn the_list_of_events_is_searched_and_copied() {
     room.window.event(Event::Text("hom".into()));
     room.run(2);
     assert!(room.says("home pressed") && !room.says("time pressed"));
-    // Keys that are typed press nothing and mute nothing.
+    // Keys in a text field neither press a control nor mute.
     assert!(room.commands.try_recv().is_err());
     room.window.get_by_label("Copy events").click();
     room.window.step();
@@ -112,7 +112,7 @@ fn an_apps_part_can_be_played_from_the_panel() {
     assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Set { id, value: Value::Switch(true) }));
 }
 
-/// The map as it is when the floor file of the hall lacks the calibration of `home`.
+/// The state of the map if the floor file of the hall lacks the calibration of `home`.
 fn home_is_off() -> crate::engine::Snapshot {
     let page = map();
     let mut snapshot = at_rest(&page);
@@ -141,7 +141,7 @@ fn a_control_that_is_off_says_why_under_the_pointer() {
     assert!(!room.says("hall.ron"));
     let home = room.place("Home");
     room.hover(home);
-    // The pointer rests for longer than egui waits before it shows what it says.
+    // The pointer rests for longer than the tooltip delay of egui.
     room.run(60);
     assert!(room.says("not calibrated: hall.ron lacks"));
 }
@@ -159,7 +159,7 @@ fn an_effect_is_tuned_played_and_saved() {
     };
     assert_eq!(effect.kind.name(), "Click");
     assert!(tile < 36);
-    // A slider to its far end: seen at once, and played once the hand rests.
+    // A slider at its far end: drawn at once, and played once the hand rests.
     let level = room.window.get_by_label("level_n").rect();
     let end = Pos2::new(level.right() - 70.0, level.center().y);
     room.press(end);

@@ -1,4 +1,4 @@
-//! Plots over time: what is in them, and thresholds that are dragged in them.
+//! Plots over time: their content, and dragging their thresholds.
 
 use eframe::egui::accesskit::Role;
 
@@ -6,7 +6,7 @@ use super::presses::{map_room, text, tried};
 use super::*;
 use crate::scene::sample::step_on;
 
-/// A press of 90 N on `home` for a tenth of a second, seen 60 times a second, from `at_ms` on.
+/// A press of 90 N on `home` for a tenth of a second, at 60 frames a second, starting at `at_ms`.
 fn press_home(room: &mut Room, at_ms: u64) {
     let layout = Arc::clone(&room.window.state().messages.layout);
     let home = layout.widgets[layout.widget_index("home").unwrap()].area.centre();
@@ -45,7 +45,7 @@ fn plots_are_opened_by_button_and_key_and_show_what_just_happened() {
     assert!(!room.says("Plot in N"));
     room.window.get_by_label("Plots").click();
     room.run(3);
-    // The press was before anybody wanted to see it.
+    // The press was before the plot was opened.
     assert!(room.says("Plot in N: selected: home 0.0 N"));
     let geometry = room.window.state().floor.geometry;
     let selected = WidgetId::new("home");
@@ -74,7 +74,7 @@ fn what_is_plotted_is_chosen_from_a_list_and_taken_out_again() {
     room.window.get_by_label("tile 2, 1 sensor ne").click();
     room.run(3);
     assert!(room.says("Leave out tile 2, 1 sensor ne"), "the list stays open, and it is in the strip");
-    // A place has metres, a value neither: each has a plot of its own.
+    // Places are in metres, values have no unit: each gets a plot of its own.
     room.window.key_press(Key::Escape);
     room.run(3);
     room.window.get_by_label("Plot satellite").click();
@@ -101,7 +101,7 @@ fn a_threshold_that_is_dragged_is_one_step_of_the_layout() {
     let plot = room.window.get_by_label_contains("Plot in N").rect();
     assert!(plot.contains(line), "{line} in {plot:?}");
     while room.commands.try_recv().is_ok() {}
-    // The floor is not asked before it is let go.
+    // The floor gets no command before the release.
     let up = room.place("home lets go").y - line.y;
     drag(&mut room, line, line - vec2(0.0, up));
     // 40 N and 60 N are as far apart as 60 N and 80 N.

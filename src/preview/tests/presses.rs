@@ -1,11 +1,11 @@
-//! "Use this press": what people did to a control becomes its threshold.
+//! "Use this press": recorded presses of a control set its threshold.
 
 use eframe::egui::accesskit::Role;
 
 use super::*;
 use crate::engine::{AnsweredPress, FootRole, FootState, Ignored, IgnoredPress};
 
-/// A floor on which two people have pressed `home`: with 96 and 130 N, and once with 48 N, in vain.
+/// A floor on which two people have pressed `home`: with 96 and 130 N, and once with 48 N, which was ignored.
 fn pressed_home() -> Snapshot {
     let foot = |contact, person| FootState {
         contact: ContactId(contact),
@@ -31,7 +31,7 @@ fn pressed_home() -> Snapshot {
     }
 }
 
-/// A window whose floor and text are the shipped map.
+/// A window with the built-in map as its layout and text.
 pub(super) fn map_room() -> Room {
     let mut room = Room::simulated();
     let text = builtin_layout("map").unwrap();
@@ -59,12 +59,12 @@ pub(super) fn text(room: &Room) -> String {
 #[test]
 fn presses_of_several_people_are_counted_and_their_spread_is_told() {
     let mut room = map_room();
-    // The first control of the layout, until one is pressed: nothing moves then.
+    // The panel shows the first control of the layout until one is pressed: nothing moves then.
     let contacts = room.place("Contacts");
     assert!(room.says("no presses yet"));
     room.write(pressed_home());
     assert_eq!(room.place("Contacts"), contacts);
-    // The control pressed last is shown by itself.
+    // The panel shows the control that was pressed last without a click.
     assert!(room.says("Control Home") && room.says("takes 60 newtons, lets go below 40"));
     assert!(room.says("3 presses by 2 people: median 96 N"));
     assert!(room.says("48 to 130 N, quartiles 72 and 113 N"));
@@ -78,7 +78,7 @@ fn this_press_becomes_the_threshold_as_one_step_that_is_taken_back() {
     let before = text(&room);
     room.window.get_by_label("Press by press").click();
     room.run(20);
-    // It was not meant so.
+    // This press was unintended.
     room.window.get_by_label_contains("48 newtons, too light").click();
     room.run(3);
     assert!(room.says("2 presses by 2 people"));

@@ -1,9 +1,9 @@
-//! A window that shows a server's floor.
+//! A window on a server's floor.
 
 use super::*;
 use crate::preview::{ServerLink, ServerState};
 
-/// A window that has joined a server, and how that is.
+/// A window that has joined a server, and the state of the server.
 fn room() -> (Room, Arc<Mutex<ServerState>>) {
     let state = ServerState {
         address: "10.0.0.7:9002".into(),

@@ -1,4 +1,4 @@
-//! The line at the window's lower edge.
+//! The status bar at the window's lower edge.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn the_line_tells_mode_source_rates_and_losses_and_nothing_in_it_moves() {
     let before = line(&room);
     assert!(before.iter().any(|(text, _)| text == "Try") && room.says("simulated floor"), "{before:?}");
     assert!(before.iter().any(|(text, _)| text == "0 lost, 0 refused"), "{before:?}");
-    // 6000 packets and 1000 frames a second, for a second, and bad news.
+    // 6000 packets and 1000 frames a second, for one second, and then losses.
     for _ in 0..60 {
         snapshot.counters.packets += 100;
         snapshot.counters.frames += 17;

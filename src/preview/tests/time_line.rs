@@ -14,7 +14,7 @@ use crate::units::{Instant, Newtons};
 use crate::widget::WidgetId;
 use crate::wire::LinkState;
 
-/// A recording of 20 s that stands where it was led.
+/// A recording of 20 s that records its commands and executes none.
 #[derive(Clone, Default)]
 struct Reel(Arc<Mutex<(PlaybackState, Vec<PlaybackOrder>)>>);
 
@@ -30,7 +30,7 @@ impl Reel {
         reel
     }
 
-    /// What was asked for since the last call.
+    /// The commands since the last call.
     fn orders(&self) -> Vec<PlaybackOrder> {
         std::mem::take(&mut self.0.lock().unwrap().1)
     }
@@ -71,7 +71,7 @@ fn a_recording_is_paused_and_stepped_by_mouse_and_keyboard() {
     room.window.key_press(Key::ArrowLeft);
     room.run(2);
     assert_eq!(reel.orders(), [PlaybackOrder::GoTo(3.0)]);
-    // What was recorded is not set by hand.
+    // Controls of a recording cannot be set by hand.
     assert!(!room.says("Controls, as an app sets them"));
 }
 
@@ -114,7 +114,7 @@ fn a_recording_is_not_called_live() {
     let mut room = Room::recorded(Box::new(Reel::paused()));
     room.write(Snapshot { link: LinkState::Live, ..at_rest(&map()) });
     assert!(room.window.query_by_label("replay").is_some() && room.window.query_by_label("live").is_none());
-    // How the floor was then is told all the same.
+    // A replay still reports the recorded state of the floor.
     room.write(Snapshot { link: LinkState::Partial, ..at_rest(&map()) });
     assert!(room.says("replay: partial"));
     let mut room = Room::simulated();
@@ -141,7 +141,7 @@ fn a_press_is_counted_once_when_its_moment_is_shown_again() {
     room.write(moment(6000, vec![press(5000)]));
     assert_eq!(counted(&room), 1);
     assert!(room.says("1 so far"), "what is listed is counted");
-    // Back to before it, and there again.
+    // Back to an earlier time, and forward again.
     room.events.send(EventNews::Restarted(Arc::new(map()))).unwrap();
     room.write(moment(4000, vec![]));
     room.write(moment(6000, vec![press(5000)]));

@@ -1,10 +1,10 @@
-//! People who are sent along ways drawn with the mouse.
+//! People on walks drawn with the mouse.
 
 use super::*;
 use crate::preview::walks::Walks;
 use crate::sim::{Arrivals, FootDriver, Scenario, arrivals, feet_by_hand};
 
-/// A window, and the floor that people are sent onto.
+/// A window, and the floor for the people.
 fn room() -> (Room, Arrivals) {
     let (_, nobody) = feet_by_hand();
     let (handle, floor) = arrivals(Box::new(nobody));
@@ -14,7 +14,7 @@ fn room() -> (Room, Arrivals) {
     (room, floor)
 }
 
-/// Draws a line from one place of the screen to the other.
+/// Draws a line between two points of the screen.
 fn draw(room: &mut Room, from: Pos2, to: Pos2) {
     room.hover(from);
     room.button(from, PointerButton::Primary, true);
@@ -25,7 +25,7 @@ fn draw(room: &mut Room, from: Pos2, to: Pos2) {
     room.run(2);
 }
 
-/// The most that is pressed on the control called `name` in the next twenty seconds, in newtons.
+/// The maximum force on the control called `name` in the next twenty seconds, in newtons.
 fn pressed(floor: &mut Arrivals, name: &str) -> f32 {
     let area = map().widgets.iter().find(|widget| widget.label == name).unwrap().area;
     let (mut feet, mut most) = (Vec::new(), 0.0_f32);
@@ -48,7 +48,7 @@ fn somebody_walks_what_was_drawn_and_uses_the_control_at_its_end() {
     assert!(room.feet().0.is_none(), "the mouse is no foot meanwhile");
     assert!(room.says("1 on the floor"));
     let most = pressed(&mut floor, "Home");
-    // What a foot presses with that works a control, not a step of somebody who only walks over it.
+    // The force of a foot that works a control, not that of a step of a person walking over it.
     assert!((90.0..300.0).contains(&most), "{most} N");
     room.run(2);
     assert!(room.says("none on the floor"));

@@ -1,11 +1,11 @@
-//! What goes to the clipboard of the system, and what comes from it.
+//! Copying to and pasting from the clipboard of the system.
 
 use eframe::egui::OutputCommand;
 
 use super::*;
 
 impl Desk {
-    /// What the window gives to the clipboard when `event` comes.
+    /// The text that the window copies to the clipboard on `event`.
     fn copied(&mut self, event: Event) -> Option<String> {
         self.window.event(event);
         self.window.run_steps(1);
@@ -48,7 +48,7 @@ fn a_control_that_was_copied_from_a_file_elsewhere_is_pasted() {
     desk.paste("  (id: \"other\", kind: \"button\", at: (4, 4), size: (0.6, 0.6), label: \"B\"), // from elsewhere\n");
     assert_eq!(desk.designer().layout().widgets.len(), before + 1);
     assert!(desk.text().contains("// from elsewhere"), "{}", desk.text());
-    // Also a place to stand, which has no kind, and several at once.
+    // The clipboard may hold a place to stand, which has no kind, and several records.
     desk.paste("(at: (4, 0.5), size: (1, 1), label: \"B\"),\n(id: \"third\", kind: \"button\", at: (1, 5), size: (0.5, 0.5), label: \"C\")");
     assert_eq!(desk.designer().layout().stances.len(), 2, "{}", desk.text());
     assert_eq!(desk.designer().layout().widgets.len(), before + 2);
@@ -64,11 +64,11 @@ fn text_that_is_no_control_is_refused_and_nothing_is_changed() {
         desk.paste(foreign);
         assert_eq!(desk.text(), first, "{foreign:.40}");
         assert!(desk.says("Nothing is pasted"), "{foreign:.40}");
-        // It is said until something is done.
+        // The message stays until the next action.
         desk.command(Modifiers::COMMAND, Key::S);
         desk.key(Key::Escape);
     }
-    // A record of something else is told as a file would be.
+    // A record of another type gets the same message as in a file.
     desk.paste("(name: \"x\", force: 3)");
     assert_eq!(desk.text(), first);
 }

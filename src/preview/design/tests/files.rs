@@ -1,4 +1,4 @@
-//! Files, drafts, and what other programs save meanwhile.
+//! Files, drafts, and concurrent changes by other programs.
 
 use super::*;
 
@@ -29,7 +29,7 @@ fn what_was_never_saved_is_offered_at_the_next_start() {
     desk.drag(home, home + vec2(0.0, -90.0));
     desk.window.run_steps(130);
     let text = desk.text();
-    // The window is gone, not its folder.
+    // The window closes, but its folder stays.
     let Desk { window, state, .. } = desk;
     drop(window);
     let mut desk = Desk::with(builtin_layout("map").unwrap(), None, state);
@@ -56,7 +56,7 @@ fn a_file_that_is_saved_outside_is_taken_in_while_feet_try_the_layout() {
     assert_eq!(cause, crate::preview::LayoutCause::Saved);
     let area = |id| layout.widgets[layout.widget_index(id).unwrap()].area;
     assert!(area("home") == moved && layout.widgets.iter().any(|widget| widget.label == "Scale"));
-    // What can't be read is told, and changes nothing.
+    // A file that cannot be read is reported and changes nothing.
     std::fs::write(&path, "Layout(").unwrap();
     desk.news.send(LayoutNews::Changed).unwrap();
     desk.window.run_steps(2);
@@ -92,7 +92,7 @@ fn enter_in_a_path_does_what_it_was_asked_for_and_escape_does_not() {
     let mut desk = Desk::map();
     let type_path = |desk: &mut Desk, modifiers, key| {
         desk.command(modifiers, key);
-        // It has the keyboard at once.
+        // The field has the keyboard focus at once.
         desk.command(Modifiers::COMMAND, Key::A);
         desk.window.event(Event::Text(path.display().to_string()));
         desk.window.run_steps(2);
@@ -110,7 +110,7 @@ fn enter_in_a_path_does_what_it_was_asked_for_and_escape_does_not() {
     type_path(&mut desk, Modifiers::COMMAND, Key::O);
     desk.key(Key::Enter);
     assert_eq!(desk.text(), text);
-    // What can't be opened is told, and can be typed anew.
+    // A failure to open is reported, and the path can be typed again.
     desk.command(Modifiers::COMMAND, Key::O);
     desk.command(Modifiers::COMMAND, Key::A);
     desk.window.event(Event::Text("/nonexistent/it.ron".into()));
@@ -143,7 +143,7 @@ fn of_two_changes_to_the_same_lines_a_person_chooses() {
     }
 }
 
-/// A file of the desktop, let go over the window.
+/// A file of the desktop that is dropped on the window.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 

@@ -1,4 +1,4 @@
-//! Groups and what the inspector shows of them.
+//! Groups and their display in the inspector.
 
 use super::*;
 
@@ -45,7 +45,7 @@ fn what_the_controls_of_a_group_have_in_common_is_changed_in_all_of_them() {
     let forces = pans(&desk);
     assert!(forces.len() == 4 && forces.iter().all(|force| *force == forces[0]), "{forces:?}");
     assert_eq!(desk.text().matches("press_n: 77").count(), 4, "{}", desk.text());
-    // As one step.
+    // It is one undo step.
     desk.command(Modifiers::COMMAND, Key::Z);
     assert!(!desk.text().contains("press_n: 77"));
 }
@@ -56,7 +56,7 @@ fn a_field_that_differs_says_so_and_becomes_the_same_when_it_is_set() {
         builtin_layout("map").unwrap().replacen("label: \"North\"", "press_n: 90, label: \"North\"", 1);
     let mut desk = Desk::on(&text, None);
     let (north, south) = (desk.place("pan_north"), desk.place("pan_south"));
-    // Without a group, several that are selected have the same fields in common.
+    // Without a group, several selected controls share the same common fields.
     desk.drag(north + vec2(-130.0, -60.0), south + vec2(130.0, 40.0));
     assert!(desk.says("4 selected") && desk.says("differs"));
     desk.field("press_n").focus();

@@ -1,8 +1,8 @@
-//! Designing by keys alone.
+//! Design mode by keyboard alone.
 
 use super::*;
 
-/// Types into the field that has the keyboard, in place of what it says, and goes on to the next.
+/// Types into the field with the focus, replaces its text, and moves to the next field.
 pub(super) fn fill(desk: &mut Desk, text: &str) {
     desk.window.key_press_modifiers(Modifiers::COMMAND, Key::A);
     desk.window.run_steps(1);
@@ -35,7 +35,7 @@ fn a_layout_is_built_from_an_empty_floor_by_keyboard() {
     assert!(desk.text().starts_with(&empty[..200]), "comments stay");
 }
 
-/// The layout `map.ron` from an empty file, by keys alone: what a newcomer does, one control after the other.
+/// Builds the layout `map.ron` from an empty file by keyboard, one control after the other, as a beginner would.
 #[test]
 fn the_shipped_map_is_built_from_an_empty_file_by_keyboard() {
     let folder = tempfile::tempdir().unwrap();
@@ -51,7 +51,7 @@ fn the_shipped_map_is_built_from_an_empty_file_by_keyboard() {
     field(&mut desk, "title", "Map navigation");
     desk.click("Region main");
     field(&mut desk, "id", "map");
-    // Less deep first: five tiles from the second row on would leave the floor.
+    // First reduce the depth: five tiles from the second row on would leave the floor.
     field(&mut desk, "size depth", "4");
     field(&mut desk, "at north", "2");
     let controls = [
@@ -66,7 +66,7 @@ fn the_shipped_map_is_built_from_an_empty_file_by_keyboard() {
     for (kind, id, label, east, north, width, depth) in controls {
         desk.designer_mut().pane = None;
         desk.key(Key::F6);
-        // Arrows lead through the whole list, whatever of it is scrolled away.
+        // The arrow keys reach the whole list, scrolled-out entries included.
         let number = Kinds::builtin().iter().position(|one| one.name.replace('_', " ") == kind).unwrap();
         for _ in 0..number {
             desk.key(Key::ArrowDown);

@@ -1,4 +1,4 @@
-//! Design mode without a display: found by name, worked by mouse and keyboard, judged by the text that comes of it.
+//! Design mode without a display: finds parts by name, uses mouse and keyboard, and checks the resulting text.
 
 mod clipboard;
 mod files;
@@ -35,7 +35,7 @@ impl Desk {
         Self::with(text, path, tempfile::tempdir().unwrap())
     }
 
-    /// On a file that is not there yet.
+    /// For a file that does not exist yet.
     fn begun(shown: &str, path: &Path) -> Self {
         Self::of(shown, "", Some(path.into()), tempfile::tempdir().unwrap())
     }
@@ -44,7 +44,7 @@ impl Desk {
         Self::of(text, text, path, state)
     }
 
-    /// With the layout of `text` on the floor, and `designed` given to be designed.
+    /// The layout of `text` on the floor, and the text `designed` in Design mode.
     fn of(text: &str, designed: &str, path: Option<PathBuf>, state: TempDir) -> Self {
         let floor = Arc::new(Floor::default());
         let kinds = Arc::new(Kinds::builtin());
@@ -64,7 +64,7 @@ impl Desk {
         };
         let app = App::new(input, &PreviewOptions::default());
         let mut builder = Harness::builder().with_size(vec2(1400.0, 860.0)).with_step_dt(1.0 / 60.0);
-        // Chinese, which is not among the program's own letters.
+        // Chinese letters, which the program's own fonts lack.
         if text.chars().any(|letter| letter >= '\u{4e00}') {
             builder = builder.allow_missing_glyphs();
         }
@@ -101,7 +101,7 @@ impl Desk {
         self.window.run_steps(3);
     }
 
-    /// Whether this is written somewhere in the window.
+    /// Whether the window shows this text.
     fn says(&self, text: &str) -> bool {
         self.window.query_all_by_label_contains(text).next().is_some()
     }
@@ -116,7 +116,7 @@ impl Desk {
         self.window.run_steps(3);
     }
 
-    /// What is typed into, beside its name.
+    /// The input field with this name.
     fn field<'d>(&'d self, name: &'d str) -> egui_kittest::Node<'d> {
         match self.window.query_by_role_and_label(Role::TextInput, name) {
             Some(text) => text,
@@ -238,7 +238,7 @@ fn the_inspector_says_where_a_value_comes_from_and_warnings_can_be_mended() {
 
 #[test]
 fn letters_that_no_font_has_are_a_warning_at_their_control() {
-    // Tests have the program's own fonts, and none of the computer's.
+    // Tests use the program's own fonts only, not those of the computer.
     let text = builtin_layout("map").unwrap().replace("\"Home\"", "\"首页\"");
     let mut desk = Desk::on(&text, None);
     desk.click("1 warning");
@@ -298,7 +298,7 @@ fn what_is_selected_is_arranged_from_the_menu_and_each_step_is_undone() {
 fn regions_grounds_places_to_stand_and_pages_are_put_down_too() {
     let empty = Template::Empty.text(&Floor::default().geometry);
     let mut desk = Desk::on(&empty, None);
-    // What is put down with the next click follows the pointer until then.
+    // The thing to put down follows the pointer until the next click.
     desk.click("Put down: button");
     let board = desk.window.get_by_label("Drawing board").rect().center();
     desk.drag(board, board);

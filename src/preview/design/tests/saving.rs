@@ -1,4 +1,4 @@
-//! One state of saving: in the title, in the bar, by keys, and when the window is closed.
+//! The saved state is the same in the title, in the bar, by keys, and when the window closes.
 
 use eframe::egui::{ViewportCommand, ViewportEvent, ViewportId};
 
@@ -24,7 +24,7 @@ impl Desk {
         self.window.state().titled.as_deref().unwrap_or_default()
     }
 
-    /// What the window manager's cross, Alt+F4 and Ctrl+Q come to; whether the window closes.
+    /// Requests a close, as the cross, Alt+F4 and Ctrl+Q do; returns whether the window closes.
     fn close(&mut self) -> bool {
         let window = self.window.input_mut().viewports.entry(ViewportId::ROOT).or_default();
         window.events.push(ViewportEvent::Close);
@@ -69,7 +69,7 @@ fn ctrl_s_saves_while_the_layout_is_tried() {
     assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
     assert_eq!(desk.title(), "mine.ron - underfoot");
     assert!(desk.says("Saved in"));
-    // Without a file it asks for one, also here.
+    // Without a file, saving asks for a path in this mode as well.
     let mut desk = Desk::map();
     desk.change();
     desk.key(Key::F2);
@@ -153,7 +153,7 @@ fn a_layout_without_a_file_is_asked_for_one_before_the_window_closes() {
     desk.key(Key::Enter);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
     assert!(desk.close());
-    // A person who names no file stays.
+    // Without a path, the window stays open.
     let mut desk = Desk::map();
     desk.change();
     desk.close();
