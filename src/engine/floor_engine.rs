@@ -76,7 +76,7 @@ const CUES: usize = 64;
 impl Engine {
     /// An engine for the controls of `layout` on a floor of this geometry.
     ///
-    /// Every control works only after a frame without load on it.
+    /// Every control works only once it has been seen unloaded.
     #[must_use]
     pub fn new(geometry: Geometry, layout: Layout, method: Method) -> Self {
         let interaction = Interaction::new(&layout, &geometry, 0);
@@ -192,7 +192,7 @@ impl Engine {
     /// Ends every press and disarms every control without committing anything, because no more frames will come;
     /// changes under way are reverted. Returns the events.
     ///
-    /// Each control works again only after a frame without load on it.
+    /// Each control works again only once it has been seen unloaded.
     pub fn cancel_all(&mut self) -> &[WidgetEvent] {
         self.events.clear();
         self.events.append(&mut self.pending);
@@ -319,8 +319,8 @@ impl Engine {
     /// range; layouts given later get it too. Clamps the value to the range, without an event.
     ///
     /// # Errors
-    /// [`SetError::WrongType`] for other controls, [`SetError::NoRange`] for a range that is empty, not finite, beyond
-    /// a million or narrower than the control's step; [`SetError::InUse`], [`SetError::Locked`].
+    /// [`SetError::WrongType`] for other controls, [`SetError::NoRange`] for a range that is empty, not finite,
+    /// beyond a million or narrower than the control's step; [`SetError::InUse`], [`SetError::Locked`].
     pub fn set_range(&mut self, id: &str, least: f32, greatest: f32) -> Result<(), SetError> {
         let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
         let spec = self.layout.widgets.get_mut(widget).ok_or(SetError::Unknown)?;

@@ -41,7 +41,7 @@ pub enum Ignored {
     OtherFoot,
     /// The foot slid onto the control from beside it.
     SlidOn,
-    /// No frame without load on the control has come since the start, a loss, a cancel or a change of the page.
+    /// The control has not been seen unloaded since the start, a loss, a cancel or a change of the page.
     NotSeenUnloaded,
     /// The forces are not reliable: a saturated or failing sensor, or a load that does not rise as a foot's does.
     Unbelieved,

@@ -95,7 +95,7 @@ pub(super) struct Landing {
     pub(super) at: Vec2,
     /// The heaviest foot of the same person that was down.
     pub(super) support: Option<Support>,
-    /// Time since another foot of theirs left the floor that had pressed nothing.
+    /// Time since the last lift of another foot of the person, one that had pressed no control.
     pub(super) left: Option<Duration>,
 }
 

@@ -21,14 +21,14 @@ pub enum Input {
     },
     /// No foot is on it.
     Clear,
-    /// A foot that was already loaded slid onto it; it works only after a frame without load.
+    /// A foot that was already loaded slid onto it; the control works only once it has been seen unloaded.
     SlidOn {
         /// The foot's force.
         force: Newtons,
     },
     /// The foot on it takes a step: it carries the body, rolls over or belongs to a walk.
     ///
-    /// A press is cancelled, none begins, and the control works only after a frame without load.
+    /// A press is cancelled, none begins, and the control works only once it has been seen unloaded.
     Stepping {
         /// The foot's force.
         force: Newtons,

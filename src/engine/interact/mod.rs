@@ -79,7 +79,7 @@ pub(super) struct Sliding {
 }
 
 impl Interaction {
-    /// All controls at their initial values; each works after a frame without load on it.
+    /// All controls at their initial values; each works once it has been seen unloaded.
     pub(super) fn new(layout: &Layout, geometry: &Geometry, page: usize) -> Self {
         let controls: Vec<_> =
             layout.widgets.iter().map(|widget| Control::new(&widget.behaviour, widget.area.size())).collect();

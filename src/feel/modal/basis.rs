@@ -84,8 +84,8 @@ impl Basis {
         }
     }
 
-    /// Whether the first [`FEW`] terms describe a mode that turns by `angle` and shrinks by the factor `exp(-fade)` per
-    /// sample.
+    /// Whether the first [`FEW`] terms describe a mode that turns by `angle` and shrinks by the factor `exp(-fade)`
+    /// per sample.
     pub(super) fn is_smooth(angle: f64, fade: f64) -> bool {
         angle.hypot(fade) * HALF as f64 <= SMOOTH
     }

@@ -122,7 +122,7 @@ fn what_is_no_mode_is_not_struck() {
     assert!(bank.is_silent());
 }
 
-/// After minutes every number of the bank is zero: from then on it costs as much as silence, nothing.
+/// After minutes every number of the bank is zero: from then on it costs no more than silence.
 #[test]
 fn a_bank_that_has_decayed_for_minutes_is_all_exact_zeros() {
     let mut bank = ModalBank::new(RATE, 16);
