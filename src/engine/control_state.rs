@@ -1,68 +1,68 @@
-//! How a control is, for those who ask.
+//! The state of one control, as reported to apps.
 
 use super::{Engine, Snapshot};
 use crate::floor::FloorFile;
 use crate::layout::Layout;
 use crate::widget::{Behaviour, Indicator, OffReason, Scale, Value, WidgetId};
 
-/// How a control is, and what it can be.
+/// The state of a control and its range of values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlState {
-    /// Which control.
+    /// The control's name.
     pub id: WidgetId,
-    /// What it holds; `None` for what holds nothing.
+    /// Its value; `None` for a control without one.
     pub value: Option<Value>,
-    /// What it can hold; `None` for what holds nothing, or on and off.
+    /// Its possible values; `None` for a switch and for a control without a value.
     pub range: Option<ValueRange>,
-    /// Whether it reacts to feet: false while an app or what is wrong with the floor file keeps it off
-    /// ([`OffReason::is_lasting`]). `off` also has what passes by itself.
+    /// Whether it reacts to feet: false while an app or a fault of the floor file keeps it off
+    /// ([`OffReason::is_lasting`]). `off` also has the reasons that pass without a change of settings.
     pub enabled: bool,
-    /// Why no foot can press it; `None` if one can.
+    /// The reason why no foot can press it; `None` if a foot can.
     pub off: Option<Off>,
-    /// Whether it keeps its value.
+    /// Whether an app has locked its value.
     pub locked: bool,
-    /// Whether a foot has it pressed.
+    /// Whether a foot presses it now.
     pub pressed: bool,
     /// Whether a first press has armed it.
     pub armed: bool,
-    /// What its lamp shows.
+    /// The state of its lamp.
     pub indicator: Indicator,
-    /// What is written on it.
+    /// The text on it.
     pub label: String,
-    /// The page it is on; `None` if it is on all of them.
+    /// Its page; `None` if it is on all of them.
     pub page: Option<WidgetId>,
 }
 
-/// Why a control is off.
+/// A reason why a control is off.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Off {
     /// The reason.
     pub reason: OffReason,
-    /// The reason in a sentence, with the name of the floor file where that matters.
+    /// The reason as a sentence, with the name of the floor file where that matters.
     pub text: String,
 }
 
 impl Off {
-    /// The reason on a floor that was read from `file`.
+    /// The reason for a floor that was read from `file`.
     #[must_use]
     pub fn new(reason: OffReason, file: &FloorFile) -> Self {
         Self { reason, text: reason.explain(file) }
     }
 }
 
-/// What a control can hold.
+/// The possible values of a control.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ValueRange {
-    /// Numbers.
+    /// A number on this scale.
     Number(Scale),
     /// Two numbers, eastwards and northwards.
     Pair(Scale, Scale),
-    /// One of these, from 0.
+    /// One of these options, counted from 0.
     Choices(Vec<String>),
 }
 
 impl ValueRange {
-    /// What a control of this behaviour can hold.
+    /// The range of a control with this behaviour.
     fn of(behaviour: &Behaviour) -> Option<Self> {
         let unit = Scale::new(-1.0, 1.0);
         match behaviour {
@@ -81,7 +81,7 @@ impl ValueRange {
 }
 
 impl ControlState {
-    /// How control number `index` of `layout` is in `snapshot`; `None` if there is none.
+    /// The state of control number `index` of `layout` in `snapshot`; `None` if there is no such control.
     pub(crate) fn of(layout: &Layout, index: usize, snapshot: &Snapshot) -> Option<Self> {
         let (widget, state) = (layout.widgets.get(index)?, snapshot.widgets.get(index)?);
         let range = snapshot.ranges.iter().find(|(of, _)| *of == index);
@@ -105,7 +105,7 @@ impl ControlState {
 }
 
 impl Engine {
-    /// How the control named `id` is; `None` for an unknown name.
+    /// The state of the control named `id`; `None` for an unknown name.
     #[must_use]
     pub fn control_state(&self, id: &str) -> Option<ControlState> {
         let control = self.control(id)?;

@@ -16,22 +16,22 @@ use super::overrides::Overrides;
 use super::response::{Now, Responses};
 use super::{PageShown, Snapshot, TileState, WidgetState};
 
-/// A floor with a page of controls on it: frames in, events and cues out.
+/// A floor with a page of controls on it: takes frames, returns events and cues.
 ///
-/// It reads no clock and draws no random number: what it does follows from the
-/// frames and the calls alone. In steady state it allocates nothing.
+/// It reads no clock and draws no random number: its output depends on the frames and the calls alone. In steady
+/// state it allocates nothing.
 #[derive(Debug)]
 pub struct Engine {
     geometry: Geometry,
     layout: Layout,
-    /// A layout that waits for feet to let go, with its revision.
+    /// A layout that waits until every foot has let go, with its revision.
     waiting_layout: Option<(Layout, u64)>,
-    /// Layouts given so far, the first one not counted.
+    /// Number of layouts given so far, without the first one.
     layouts_given: u64,
     layout_revision: u64,
-    /// A page that waits for feet to let go.
+    /// A page that waits until every foot has let go.
     waiting_page: Option<usize>,
-    /// A page that has come since the last step, and in it.
+    /// A page shown since the last step, and the one that the last step reports.
     page_shown: Option<PageShown>,
     page_told: Option<PageShown>,
     overrides: Overrides,
@@ -42,27 +42,27 @@ pub struct Engine {
     /// The file that the floor was read from.
     floor_file: FloorFile,
     last_frame: ForceFrame,
-    /// Whether a frame has been taken in.
+    /// Whether a frame has been processed.
     has_begun: bool,
-    /// What calls between two steps led to; reported by the next step.
+    /// Events of calls between two steps; the next step reports them.
     pending: Vec<WidgetEvent>,
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
     sustained: SustainedCues,
 }
 
-/// What one frame led to.
+/// The results of one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
-    /// What the controls did, in order.
+    /// Events of the controls, in order.
     pub events: &'a [WidgetEvent],
-    /// The page that has taken the place of another since the last frame.
+    /// The page that has replaced another since the last frame.
     pub page: Option<&'a PageShown>,
-    /// Clicks to be felt.
+    /// Clicks to render.
     pub cues: &'a [Cue],
-    /// Feet sliding on controls now.
+    /// Sustained cues, such as the friction under feet that slide.
     pub sustained: &'a SustainedCues,
-    /// Presses that no control answered, as their feet left.
+    /// Presses without a response of a control, reported when the foot leaves.
     pub ignored: &'a [IgnoredPress],
     /// Ground events of the frame; their cues are among `cues`.
     pub grounds: &'a [GroundEvent],
@@ -70,13 +70,13 @@ pub struct Step<'a> {
     pub contacts: &'a [Contact],
 }
 
-/// How many events and cues of controls a frame has room for without asking for memory: more than feet can set off.
+/// Capacity for events and cues of controls in one frame, without an allocation: more than feet can cause.
 const CUES: usize = 64;
 
 impl Engine {
     /// An engine for the controls of `layout` on a floor of this geometry.
     ///
-    /// Every control must first be seen unloaded before it works.
+    /// Every control works only once it has been seen unloaded.
     #[must_use]
     pub fn new(geometry: Geometry, layout: Layout, method: Method) -> Self {
         let interaction = Interaction::new(&layout, &geometry, 0);
@@ -108,29 +108,29 @@ impl Engine {
         }
     }
 
-    /// The same, each tile corrected by its position map; in tile-index order.
+    /// Corrects each tile by its position map; in tile-index order.
     #[must_use]
     pub fn with_maps(mut self, maps: &[Option<PositionMap>]) -> Self {
         self.sensing = self.sensing.with_maps(maps);
         self
     }
 
-    /// The same, with the file that the floor was read from, for messages about what it lacks.
+    /// Sets the file from which the floor was read, for messages about missing parts of it.
     #[must_use]
     pub fn with_floor_file(mut self, file: FloorFile) -> Self {
         self.floor_file = file;
         self
     }
 
-    /// Takes in one frame; frames must come in time order and be of this floor's size.
+    /// Processes one frame; frames must come in time order and be of this floor's size.
     ///
-    /// A frame with missing tiles is taken as an unsensed floor: every control is cancelled.
+    /// A frame with missing tiles counts as an unsensed floor: every control is cancelled.
     pub fn step(&mut self, frame: &ForceFrame) -> Step<'_> {
         self.sensing.update(frame);
         self.respond(frame, None)
     }
 
-    /// As [`Engine::step`] with contacts that were found elsewhere: one sensing for many layouts on the same floor.
+    /// As [`Engine::step`] with given contacts: one sensing for many layouts on the same floor.
     #[cfg(feature = "lab")]
     pub(crate) fn step_given<'a>(&'a mut self, frame: &ForceFrame, contacts: &'a [Contact]) -> Step<'a> {
         self.respond(frame, Some(contacts))
@@ -173,27 +173,26 @@ impl Engine {
         &self.layout
     }
 
-    /// The floor's measures.
+    /// The floor's dimensions.
     #[must_use]
     pub const fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
-    /// Takes another layout, keeping the values of controls that both have.
+    /// Installs another layout and keeps the values of controls that both have.
     ///
-    /// With a foot engaged, the change waits until the foot has let go; if the
-    /// engaged control is gone from the new layout it is cancelled at the next step.
-    /// The n-th layout given this way has [`Snapshot::layout_revision`] n.
+    /// While a foot is engaged, the change waits until the foot has let go. If the engaged control is missing from
+    /// the new layout, the next step cancels it. The n-th layout given this way has [`Snapshot::layout_revision`] n.
     pub fn set_layout(&mut self, layout: Layout) {
         self.layouts_given += 1;
         self.waiting_layout = Some((layout, self.layouts_given));
         self.take_waiting_layout();
     }
 
-    /// Ends every press and disarms every control without committing anything, since no more frames
-    /// will come; what a foot had changed changes back. Gives the events of it.
+    /// Ends every press and disarms every control without committing anything, because no more frames will come;
+    /// changes under way are reverted. Returns the events.
     ///
-    /// Each control must be seen unloaded before it works again.
+    /// Each control works again only once it has been seen unloaded.
     pub fn cancel_all(&mut self) -> &[WidgetEvent] {
         self.events.clear();
         self.events.append(&mut self.pending);
@@ -201,23 +200,22 @@ impl Engine {
         &self.events
     }
 
-    /// The controls that a foot holds pressed, in no order.
+    /// The controls that feet press now, in any order.
     pub fn held(&self) -> impl Iterator<Item = &WidgetId> + Clone + '_ {
         let widgets = self.interaction.holding();
         widgets.filter_map(|held| self.layout.widgets.get(held.widget).map(|widget| &widget.id))
     }
 
-    /// The name of the page that is shown; `None` in a layout without pages.
+    /// The name of the current page; `None` in a layout without pages.
     #[must_use]
     pub fn page(&self) -> Option<&str> {
         self.layout.pages.get(self.interaction.page()).map(|page| page.id.as_str())
     }
 
-    /// Shows the page named `id`; [`Step::page`] tells when it has come.
+    /// Shows the page named `id`; [`Step::page`] reports the change.
     ///
-    /// With a foot engaged it waits until every foot has let go; a page named
-    /// later takes the place of one that waits. Feet that stand where a control
-    /// appears must lift before it works.
+    /// While a foot is engaged, the page waits until every foot has let go; a later call replaces the waiting page.
+    /// Feet that stand where a control appears must lift before it works.
     ///
     /// # Errors
     /// [`SetError::Unknown`] if the layout has no such page.
@@ -227,17 +225,18 @@ impl Engine {
         Ok(())
     }
 
-    /// Which layout the controls belong to, as [`Snapshot::layout_revision`] has it.
+    /// Revision of the layout in use, the same as [`Snapshot::layout_revision`].
     pub(crate) const fn layout_revision(&self) -> u64 {
         self.layout_revision
     }
 
-    /// The file that the floor was read from.
+    /// The file from which the floor was read.
     pub(crate) const fn floor_file(&self) -> &FloorFile {
         &self.floor_file
     }
 
-    /// Why no foot can press the control at `index` of the layout; `None` if one can, and for an index too large.
+    /// The reason why no foot can press the control at `index` of the layout; `None` if a foot can, and for an index
+    /// out of range.
     pub(crate) fn off(&self, index: usize) -> Option<OffReason> {
         self.interaction.off(index, &self.layout, self.has_begun.then_some(&self.last_frame))
     }
@@ -248,13 +247,13 @@ impl Engine {
         self.last_frame.at
     }
 
-    /// What the control named `id` holds; `None` for a button or an unknown name.
+    /// The value of the control named `id`; `None` for a button or an unknown name.
     #[must_use]
     pub fn value(&self, id: &str) -> Option<Value> {
         self.control(id)?.value()
     }
 
-    /// Gives the control named `id` a value; no event follows, for the caller knows.
+    /// Sets the value of the control named `id`, without an event.
     ///
     /// # Errors
     /// [`SetError`] says whether trying again can help; the control stays as it was.
@@ -282,7 +281,7 @@ impl Engine {
 
     /// Locks or unlocks the control named `id`; locking cancels its press (reported by the next step).
     ///
-    /// A locked control keeps its value, and says so when a foot presses it.
+    /// A locked control keeps its value, and emits a refusal when a foot presses it.
     ///
     /// # Errors
     /// [`SetError::Unknown`] if the layout has no such control.
@@ -294,7 +293,7 @@ impl Engine {
         Ok(())
     }
 
-    /// Switches the lamp of the control named `id`.
+    /// Sets the lamp of the control named `id`.
     ///
     /// # Errors
     /// [`SetError::Unknown`] if the layout has no such control.
@@ -304,9 +303,9 @@ impl Engine {
         Ok(())
     }
 
-    /// Writes `label` on the control named `id`, in place of what the layout says, also of one given later.
+    /// Writes `label` on the control named `id`, in place of the layout's label; layouts given later get it too.
     ///
-    /// Only its first 64 characters are kept, as many as a layout may have.
+    /// Keeps only the first 64 characters, the maximum in a layout.
     ///
     /// # Errors
     /// [`SetError::Unknown`] if the layout has no such control.
@@ -316,12 +315,12 @@ impl Engine {
         Ok(())
     }
 
-    /// Gives the slider, dial or stepper named `id` the range from `least` to `greatest`, in place of what the layout
-    /// says, also of one given later; its value is brought into it, without an event.
+    /// Sets the range of the slider, dial or stepper named `id`, from `least` to `greatest`, in place of the layout's
+    /// range; layouts given later get it too. Clamps the value to the range, without an event.
     ///
     /// # Errors
-    /// [`SetError::WrongType`] for other controls, [`SetError::NoRange`] for a range that is empty, not finite, beyond
-    /// a million or narrower than the control's step; [`SetError::InUse`], [`SetError::Locked`].
+    /// [`SetError::WrongType`] for other controls, [`SetError::NoRange`] for a range that is empty, not finite,
+    /// beyond a million or narrower than the control's step; [`SetError::InUse`], [`SetError::Locked`].
     pub fn set_range(&mut self, id: &str, least: f32, greatest: f32) -> Result<(), SetError> {
         let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
         let spec = self.layout.widgets.get_mut(widget).ok_or(SetError::Unknown)?;
@@ -337,13 +336,13 @@ impl Engine {
         Ok(())
     }
 
-    /// The control named `id`, to read back what it holds and how it is; `None` for an unknown name.
+    /// The control named `id`, with its value and state; `None` for an unknown name.
     #[must_use]
     pub fn control(&self, id: &str) -> Option<&Control> {
         self.interaction.controls().get(self.layout.widget_index(id)?)
     }
 
-    /// Writes the present state into `snapshot`; link state and counters are the caller's to fill.
+    /// Writes the present state into `snapshot`; the caller fills in the link state and the counters.
     pub fn snapshot(&self, snapshot: &mut Snapshot) {
         snapshot.at = self.last_frame.at;
         snapshot.layout_revision = self.layout_revision;
@@ -396,7 +395,7 @@ impl Engine {
         ));
     }
 
-    /// Pages that clicks ask for.
+    /// Takes over the page that a click requests.
     fn follow_clicks(&mut self) {
         let clicked = self.events.iter().filter(|event| event.kind == EventKind::Clicked);
         let goto = clicked
@@ -440,7 +439,7 @@ impl Engine {
             return;
         }
         let Some((mut layout, revision)) = self.waiting_layout.take() else { return };
-        // The page stays if the new layout has it too, and so does one that waits.
+        // The current page and a waiting page stay if the new layout has them too.
         let same_page = |page: usize| layout.page_index(self.layout.pages.get(page)?.id.as_str());
         let page = same_page(self.interaction.page()).unwrap_or(0);
         let waiting_page = self.waiting_page.and_then(same_page);
@@ -470,7 +469,7 @@ impl Engine {
     }
 }
 
-/// Makes `kept` the same as `frame` in the memory it has; a derived `clone_from` would ask for new memory.
+/// Copies `frame` into `kept` without new memory; a derived `clone_from` would allocate.
 fn keep(kept: &mut ForceFrame, frame: &ForceFrame) {
     let ForceFrame { at, received, forces, quality, may_start, hold_doubts, calibration_fault } = frame;
     (kept.at, kept.received, kept.calibration_fault) = (*at, *received, *calibration_fault);

@@ -1,4 +1,4 @@
-//! How hard controls are pressed, and why presses go unanswered: each visit of a contact to a control is watched from
+//! The force of presses, and the reasons why controls ignore some: follows each visit of a contact to a control from
 //! touch to leave.
 //!
 //! ```text
@@ -16,43 +16,43 @@ use crate::sense::ContactId;
 use crate::units::{Instant, Newtons};
 use crate::widget::{OffReason, WidgetId};
 
-/// Least force of a press that is worth a word: the least that a control may be set to.
+/// Minimum force of a press that is reported: the lowest threshold of any control.
 const GRAZE: Newtons = Newtons(10.0);
 
-/// How many ignored presses are kept to be shown, and how many answered ones.
+/// Maximum number of ignored presses in a snapshot, and of answered ones.
 pub(super) const SHOWN: usize = 16;
 
-/// Visits for which there is room from the start; more cost an allocation once.
+/// Initial capacity for visits; more cost one allocation.
 const ROOM: usize = 64;
 
-/// Why a control did not answer a foot.
+/// The reason why a control ignored a foot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Ignored {
     /// The foot walks, stands or rests there.
     Step,
-    /// It has kept still for a minute and counts as an object.
+    /// The contact has kept still for a minute and counts as an object.
     Object,
-    /// It stands in a stance zone.
+    /// The foot stands in a stance zone.
     Stance,
     /// Its centre of pressure is outside the control's region.
     OutsideRegion,
-    /// Another foot works the region.
+    /// Another foot has the region's cursor.
     OtherFoot,
     /// The foot slid onto the control from beside it.
     SlidOn,
-    /// The control has to be seen unloaded first: after a start, a loss, a cancel or a change of the page.
+    /// The control has not been seen unloaded since the start, a loss, a cancel or a change of the page.
     NotSeenUnloaded,
-    /// The forces can't be believed: a saturated or failing sensor, or a load that came as no foot does.
+    /// The forces are not reliable: a saturated or failing sensor, or a load that does not rise as a foot's does.
     Unbelieved,
-    /// The guard wants a foot that has settled and does not take the weight over; or the control acts at once, and no
-    /// foot stands beside this one, whose force has not settled, or it bears a body.
+    /// The guard requires a foot that has settled without taking the weight over; or the control acts at once, and
+    /// the foot carries a body, or its force has not settled and no foot stands beside it.
     Guard,
     /// The control is off.
     Off(OffReason),
-    /// The force never came up to the control's threshold.
+    /// The force stayed below the control's threshold.
     TooLight,
-    /// The force was enough, but not for long enough.
+    /// The force was high enough, but not for long enough.
     TooShort,
 }
 
@@ -75,18 +75,18 @@ impl fmt::Display for Ignored {
     }
 }
 
-/// A press that a control did not answer.
+/// A press that a control ignored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IgnoredPress {
     /// When the foot left the control.
     pub at: Instant,
-    /// Which control.
+    /// The control.
     pub id: WidgetId,
-    /// Which contact.
+    /// The contact.
     pub contact: ContactId,
-    /// The greatest force it had there.
+    /// The maximum force on the control.
     pub force: Newtons,
-    /// Why.
+    /// The reason.
     pub why: Ignored,
 }
 
@@ -100,13 +100,13 @@ impl fmt::Display for IgnoredPress {
 /// A press that a control answered, and that was not cancelled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnsweredPress {
-    /// When the control let go.
+    /// When the press ended.
     pub at: Instant,
-    /// Which control.
+    /// The control.
     pub id: WidgetId,
-    /// Which contact.
+    /// The contact.
     pub contact: ContactId,
-    /// The greatest force it had there since it came, or since the control let go of it last.
+    /// The maximum force since the contact came, or since the control last released it.
     pub force: Newtons,
 }
 
@@ -115,21 +115,21 @@ pub struct AnsweredPress {
 struct Visit {
     contact: ContactId,
     widget: usize,
-    /// The greatest force since the control let go last.
+    /// The maximum force since the control last released the contact.
     peak: Newtons,
-    /// Whether the control has answered since then.
+    /// Whether the control has responded since then.
     is_press: bool,
-    /// What kept the control from being pressed, the first cause of it.
+    /// The first reason that prevented a press.
     why: Option<Ignored>,
     is_answered: bool,
     is_there: bool,
 }
 
-/// The visits under way, and those that led to nothing.
+/// The visits under way, and the latest finished ones.
 #[derive(Clone, Debug)]
 pub(super) struct IgnoredPresses {
     visits: Vec<Visit>,
-    /// Those of this frame.
+    /// The presses ignored in this frame.
     new: Vec<IgnoredPress>,
     latest: VecDeque<IgnoredPress>,
     answered: VecDeque<AnsweredPress>,
@@ -150,7 +150,7 @@ impl IgnoredPresses {
         self.visits.iter_mut().for_each(|visit| visit.is_there = false);
     }
 
-    /// Notes a contact on a control, and what keeps that from being pressed now, if anything does.
+    /// Notes a contact on a control, and the reason that prevents a press now, if any.
     pub(super) fn note(&mut self, contact: ContactId, widget: usize, force: Newtons, why: Option<Ignored>) {
         let visit = self.visit(contact, widget);
         visit.is_there = true;
@@ -160,15 +160,15 @@ impl IgnoredPresses {
         }
     }
 
-    /// Notes that the control answers a contact, if only with a refusal.
+    /// Notes that the control responds to a contact, with a press or a refusal.
     pub(super) fn note_answer(&mut self, contact: ContactId, widget: usize, force: Newtons) {
         let visit = self.visit(contact, widget);
         (visit.is_there, visit.is_answered, visit.is_press) = (true, true, true);
         visit.peak = visit.peak.max(force);
     }
 
-    /// Notes that the control called `id` has let go of a contact, which may still be there and press again; a press
-    /// that was cancelled is not one that a person meant.
+    /// Notes that the control named `id` has released a contact, which may still be there and press again; a
+    /// cancelled press does not count as meant by a person.
     pub(super) fn note_end(&mut self, at: Instant, id: &WidgetId, held: (ContactId, usize), cancelled: bool) {
         let (contact, widget) = held;
         let visit = self.visit(contact, widget);
@@ -189,7 +189,7 @@ impl IgnoredPresses {
         &mut self.visits[at]
     }
 
-    /// Ends a frame of time `at`: what visits that are over led to. `press` is a control's id and threshold.
+    /// Ends the frame at time `at`: reports the visits that are over. `press` gives a control's id and threshold.
     pub(super) fn end(&mut self, at: Instant, press: impl Fn(usize) -> Option<(WidgetId, Newtons)>) {
         let Self { visits, latest, new, answered } = self;
         visits.retain(|visit| {
@@ -213,33 +213,33 @@ impl IgnoredPresses {
         });
     }
 
-    /// Forgets the visits under way: their controls are another layout's.
+    /// Drops the visits under way: their controls belong to another layout.
     pub(super) fn forget(&mut self) {
         self.visits.clear();
     }
 
-    /// The latest presses that were answered, oldest first.
+    /// The latest answered presses, oldest first.
     pub(super) fn answered(&self) -> impl Iterator<Item = &AnsweredPress> {
         self.answered.iter()
     }
 
-    /// The latest ones, oldest first.
+    /// The latest ignored presses, oldest first.
     pub(super) fn latest(&self) -> impl Iterator<Item = &IgnoredPress> {
         self.latest.iter()
     }
 
-    /// Those of the last frame.
+    /// The ignored presses of the last frame.
     pub(super) fn new_ones(&self) -> &[IgnoredPress] {
         &self.new
     }
 
-    /// Whether something has been noted of this contact in this frame.
+    /// Whether a visit of this contact was noted in this frame.
     pub(super) fn is_noted(&self, contact: ContactId) -> bool {
         self.visits.iter().any(|visit| visit.is_there && visit.contact == contact)
     }
 }
 
-/// Puts one behind the others, in place of the oldest of [`SHOWN`].
+/// Appends one press; drops the oldest of [`SHOWN`].
 fn keep<T>(all: &mut VecDeque<T>, one: T) {
     if all.len() == SHOWN {
         all.pop_front();

@@ -1,13 +1,13 @@
-//! The change of page, as events tell it.
+//! The change of page, as events report it.
 
 use crate::units::Instant;
 use crate::widget::WidgetId;
 
-/// A page of controls has taken the place of another.
+/// A page of controls has replaced another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PageShown {
     /// When, on the floor's sample clock.
     pub at: Instant,
-    /// The page that is shown now.
+    /// The new page.
     pub page: WidgetId,
 }

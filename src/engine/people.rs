@@ -1,9 +1,8 @@
-//! Whose feet are whose: contacts that land and stand near each other belong to one person.
+//! Assignment of feet to people: contacts that land and stand near each other belong to one person.
 //!
-//! Nobody is identified. A contact belongs to the person whose feet are nearest when it lands,
-//! within a long step, unless that person has both feet down; it stays theirs until it lifts.
-//! Two people who stand closer than a step may exchange feet and then share a weight for a while;
-//! nothing worse follows from it.
+//! The engine identifies nobody. A contact belongs to the person with the nearest feet when it lands, within a long
+//! step, unless that person has both feet down; it keeps its person until it lifts. Two people closer than a step may
+//! exchange feet and then share a weight for a while; this has no other effect.
 
 use std::time::Duration;
 
@@ -14,28 +13,28 @@ use super::feet::FootHistory;
 use super::weight::Scale;
 use crate::units::{Instant, Newtons};
 
-/// Nobody steps further, in metres.
+/// Maximum length of a step, in metres.
 const STRIDE_M: f32 = 1.1;
 
-/// What lands as near as this to a foot is part of the same foot, in metres: feet are wider.
+/// A contact that lands within this distance of a foot is part of the same foot, in metres: feet are wider.
 pub(super) const SAME_FOOT_M: f32 = 0.12;
 
-/// Contacts as near as this to each other may be parts of one foot that the tracker has not yet put
-/// together, in metres, and lighter ones than this in newtons mere traces: they are not two feet.
+/// Contacts within this distance of each other may be parts of one foot that the tracker has not merged yet, in
+/// metres. Contacts lighter than this, in newtons, are traces. Neither counts as two feet.
 const ONE_FOOT_M: f32 = 0.2;
 const TRACE_N: f32 = 40.0;
 
-/// Two people do not stand on one leg each as near to each other as this, in metres.
+/// Two people do not stand on one leg each within this distance of each other, in metres.
 pub(super) const STANCE_M: f32 = 0.45;
 
-/// A foot that comes back to where it had stood lands as near as this, in metres (our choice:
-/// those who turn on the spot put it further off).
+/// A foot that returns to its earlier place lands within this distance, in metres (our choice: people who turn on the
+/// spot land further off).
 const BACK_M: f32 = 0.03;
 
-/// A foot that has left is remembered so long; a person without feet on the floor too.
+/// Time for which a foot that has left is stored; a person without feet on the floor too.
 const REMEMBERED: Duration = Duration::from_secs(5);
 
-/// How long ago a foot may have left to be the one that lands now.
+/// Maximum time since a foot left for it to be the one that lands now.
 const SWINGING: Duration = Duration::from_millis(1500);
 
 /// A foot that has left the floor.
@@ -43,11 +42,11 @@ const SWINGING: Duration = Duration::from_millis(1500);
 pub(super) struct Left {
     at: Instant,
     place: Vec2,
-    /// Whether a control was pressed with it.
+    /// Whether it pressed a control.
     pressed: bool,
 }
 
-/// Somebody on the floor.
+/// One person on the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Person {
     pub(super) id: u32,
@@ -68,9 +67,9 @@ impl Person {
         self.scale.weight()
     }
 
-    /// How far somebody of these `feet` would have stepped to `place`; `None` if none of them can have.
+    /// Length of a step of this person to `place`, given all `feet`; `None` if out of reach.
     ///
-    /// Where somebody's foot was before it left says nothing while the other one stands further off than anybody steps.
+    /// The earlier place of a foot that has left does not count while the other foot stands more than a step away.
     pub(super) fn reach_to(&self, place: Vec2, feet: &[FootHistory], now: Instant) -> Option<f32> {
         let mine = || feet.iter().filter(|foot| foot.person == self.id && !foot.is_object());
         let distances = || mine().map(|foot| foot.place.distance(place));
@@ -103,20 +102,19 @@ impl Person {
         of(self.id).any(near) && !self.has_both_down(feet) && !other.has_both_down(feet)
     }
 
-    /// Whether a foot that lands at `place` steps there, rather than coming back to where it had stood
-    /// after pressing a control.
+    /// Whether a foot that lands at `place` steps there, rather than returning to its earlier place after a press.
     pub(super) fn steps_to(&self, place: Vec2, now: Instant) -> bool {
         let back = |left: &Left| left.place.distance(place) <= BACK_M;
         let pressed = |left: &Left| left.pressed && now.since(left.at) <= SWINGING;
         !self.left.iter().any(|left| back(left) || pressed(left))
     }
 
-    /// How long ago a foot last left that had pressed no control.
+    /// Time since a foot last left that had pressed no control.
     pub(super) fn last_left(&self, now: Instant) -> Option<Duration> {
         self.left.iter().filter(|left| !left.pressed).map(|left| now.since(left.at)).min()
     }
 
-    /// One of the person's feet has left the floor.
+    /// Notes that a foot of the person has left the floor.
     pub(super) fn leave(&mut self, foot: &FootHistory, now: Instant) {
         if self.left.is_full() {
             self.left.remove(0);
@@ -124,7 +122,7 @@ impl Person {
         self.left.push(Left { at: now, place: foot.place, pressed: foot.pressing });
     }
 
-    /// Takes in the sum of the person's contacts.
+    /// Processes the sum of the person's contacts.
     pub(super) fn carry(&mut self, sum: f32, now: Instant) {
         self.sum = sum;
         self.scale.weigh(sum, now);

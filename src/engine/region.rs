@@ -1,4 +1,4 @@
-//! One region at work: which contacts are its cursors, and which control each of them has.
+//! The state of one region: the contacts that are its cursors, and the control under each of them.
 
 use glam::Vec2;
 
@@ -6,7 +6,7 @@ use crate::layout::{CursorRule, Region};
 use crate::sense::{Contact, ContactId, Cursor, CursorPicker};
 use crate::units::{Instant, Newtons};
 
-/// A foot that a control has engaged.
+/// A foot that has engaged a control.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
     pub(super) widget: usize,
@@ -19,7 +19,7 @@ pub(super) struct Held {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Finger {
     pub(super) cursor: Cursor,
-    /// The control it was on in the last frame, if it was that control's foot.
+    /// The control below it in the last frame, if this finger fed that control.
     pub(super) over: Option<usize>,
     /// The control that keeps it.
     pub(super) held: Option<Held>,
@@ -30,7 +30,7 @@ impl Finger {
         Self { cursor: Cursor::of(contact), over: None, held: None }
     }
 
-    /// Whether the control `widget` has this foot.
+    /// Whether this finger is on the control `widget`, or held by it.
     pub(super) fn has(&self, widget: usize) -> bool {
         self.over == Some(widget) || self.holds(widget)
     }
@@ -50,7 +50,7 @@ pub(super) struct RegionState {
 }
 
 impl RegionState {
-    /// The cursor: of several, the heaviest.
+    /// The cursor; the heaviest of several.
     pub(super) fn cursor(&self) -> Option<Cursor> {
         self.cursor
     }
@@ -65,7 +65,7 @@ impl RegionState {
         self.fingers.iter().filter_map(|finger| finger.held)
     }
 
-    /// Finds the region's cursors among those `contacts` that `may` be one.
+    /// Finds the region's cursors among those `contacts` for which `may` is true.
     pub(super) fn point(
         &mut self,
         region: &Region,
@@ -77,7 +77,7 @@ impl RegionState {
         let may = |contact: &Contact| area.contains(contact.centroid) && may(contact);
         let each = region.cursor == CursorRule::Each;
         let held = self.held().next().map(|held| held.contact);
-        // A control that is engaged follows its own foot, whatever else there is.
+        // An engaged control follows its own foot, independent of all others.
         self.picker.hold(held.filter(|_| !each));
         self.cursor = self.picker.choose(contacts, may, now);
         let cursor = self.cursor.map(|cursor| cursor.contact);
@@ -103,7 +103,7 @@ impl RegionState {
         }
     }
 
-    /// Lets go of the foot that `widget` keeps.
+    /// Releases the foot that `widget` keeps.
     pub(super) fn let_go(&mut self, widget: usize) -> Option<Held> {
         let finger = self.fingers.iter_mut().find(|finger| finger.holds(widget))?;
         finger.over = None;

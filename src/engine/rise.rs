@@ -1,19 +1,19 @@
-//! What tells a press from a sensor that creeps.
+//! Distinguishes a press from the creep of a sensor.
 
 use arrayvec::ArrayVec;
 
 use crate::sense::{Contact, ContactId};
 use crate::units::{Instant, Newtons};
 
-/// Length of one bucket of the past, in microseconds; a foot's least force is known over the last three to
-/// four: longer than a control may want it to dwell (2 s).
+/// Length of one interval of the history, in microseconds. The minimum force of a foot is known over the last three
+/// to four intervals: longer than the longest dwell time of a control (2 s).
 const BUCKET_US: u64 = 1_000_000;
 
-/// How much a foot must have gained to have pressed, besides a share of its force: more than
-/// noise, and what zeros that drift by 10 N a minute put on a tile (our choice).
+/// Constant part of the rise in force that counts as a press, in newtons: more than noise, and more than the drift of
+/// a zero by 10 N a minute adds on a tile (our choice).
 const GAIN_N: f32 = 2.0;
 
-/// Part of its force that a foot must have gained.
+/// Part of the rise that is proportional to the force: a press rises by more than `GAIN_N + GAIN_SHARE * force`.
 ///
 /// # Source
 /// A force-sensing resistor under a steady load creeps by 5 % per decade of time (Interlink,
@@ -21,13 +21,13 @@ const GAIN_N: f32 = 2.0;
 /// down, and ever less later. Drift of a zero is slower by far.
 const GAIN_SHARE: f32 = 0.04;
 
-/// Feet watched at once; more than can stand on a floor with controls.
+/// Maximum number of feet tracked at once; more than can stand on a floor with controls.
 const FEET: usize = 64;
 
-/// The least force of each foot over the last seconds.
+/// The minimum force of each foot over the last seconds.
 ///
-/// A foot may rest on a control below its threshold for hours while the sensors creep: the
-/// force read then passes the threshold one day, but nobody has pressed.
+/// A foot may rest on a control below its threshold for hours while the sensors creep: at some time the reading
+/// passes the threshold without a press.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rises {
     feet: ArrayVec<RecentLeast, FEET>,
@@ -37,12 +37,12 @@ pub(super) struct Rises {
 struct RecentLeast {
     id: ContactId,
     bucket: u64,
-    /// Least force in this bucket and the three before, the latest first.
+    /// Minimum force in this interval and the three before, the latest first.
     least: [f32; 4],
 }
 
 impl Rises {
-    /// Takes in the contacts of one frame.
+    /// Processes the contacts of one frame.
     pub(super) fn update(&mut self, contacts: &[Contact], now: Instant) {
         let bucket = now.micros() / BUCKET_US;
         self.feet.retain(|foot| contacts.iter().any(|contact| contact.id == foot.id));
@@ -50,15 +50,15 @@ impl Rises {
             match self.feet.iter_mut().find(|foot| foot.id == contact.id) {
                 Some(foot) => foot.add(bucket, contact.force.0),
                 None => {
-                    // A foot comes down from nothing.
+                    // A foot lands from zero force.
                     let _ = self.feet.try_push(RecentLeast { id: contact.id, bucket, least: [0.0; 4] });
                 }
             }
         }
     }
 
-    /// Whether `contact` has pressed harder within the last three to four seconds than its sensors
-    /// creep; a foot that is not watched never has.
+    /// Whether the force of `contact` has risen within the last three to four seconds by more than its sensors creep;
+    /// false for a foot that is not tracked.
     pub(super) fn has_risen(&self, contact: &Contact) -> bool {
         let Some(foot) = self.feet.iter().find(|foot| foot.id == contact.id) else { return false };
         let least = foot.least.into_iter().fold(f32::INFINITY, f32::min);
@@ -84,7 +84,7 @@ impl RecentLeast {
 mod tests {
     use super::*;
 
-    /// Whether the foot has risen at each tenth of a second, its force given by the second.
+    /// Whether the foot has risen at each tenth of a second; `force` gives its force at a time in seconds.
     fn risen(seconds: f32, force: impl Fn(f32) -> f32) -> Vec<bool> {
         let mut rises = Rises::default();
         let tenths = (seconds * 10.0) as u64;

@@ -1,4 +1,4 @@
-//! Everything there is to see of a floor at one instant.
+//! The complete visible state of a floor at one instant.
 
 use std::sync::Arc;
 
@@ -15,8 +15,7 @@ use crate::wire::{LinkCause, LinkCounters, LinkState};
 
 /// The state of the floor at one instant, for windows and pictures.
 ///
-/// Only ever the latest matters: a reader that misses one has lost nothing but
-/// a picture. Events travel on their own channel.
+/// Only the latest matters: a reader that misses one loses only a picture. Events have their own channel.
 #[derive(Clone, Debug, Default)]
 pub struct Snapshot {
     /// The frame's time on the floor's sample clock.
@@ -25,73 +24,74 @@ pub struct Snapshot {
     pub tiles: Vec<TileState>,
     /// The feet on the floor.
     pub contacts: Vec<Contact>,
-    /// What each contact is to the controls, in their order.
+    /// The role of each contact for the controls, in the order of the contacts.
     pub feet: Vec<FootState>,
-    /// The cursor of each of the layout's regions; after these, in no order, the further cursors of
-    /// regions in which each contact is one (their own entry is the heaviest).
+    /// The cursor of each of the layout's regions; after these, in no order, the further cursors of regions in which
+    /// each contact is one (their own entry is the heaviest).
     pub cursors: Vec<Option<Cursor>>,
-    /// Which of the layout's pages is shown; 0 without pages.
+    /// Index of the layout's current page; 0 without pages.
     pub page: usize,
-    /// What apps have written on controls in place of what the layout says: the control's index and its label.
+    /// Labels that apps have set in place of the layout's: the control's index and its label.
     pub labels: Vec<(usize, Arc<str>)>,
-    /// Ranges that apps have set in place of what the layout says: the control's index and its scale.
+    /// Ranges that apps have set in place of the layout's: the control's index and its scale.
     pub ranges: Vec<(usize, Scale)>,
     /// One entry per control, in the layout's order.
     pub widgets: Vec<WidgetState>,
-    /// The latest presses that no control answered, oldest first; 16 at most.
+    /// The latest presses without a response, oldest first; 16 at most.
     pub ignored: Vec<IgnoredPress>,
     /// The latest presses that controls answered, oldest first; 16 at most.
     pub answered: Vec<AnsweredPress>,
     /// One entry per ground, in the layout's order.
     pub grounds: Vec<GroundState>,
-    /// The controls that a foot holds pressed, in no order.
+    /// The controls that feet press now, in any order.
     pub held: Vec<WidgetId>,
-    /// The file that the floor was read from, which [`OffReason::explain`] names.
+    /// The file from which the floor was read; [`OffReason::explain`] names it.
     pub floor_file: FloorFile,
     /// Whether sensor packets arrive.
     pub link: LinkState,
-    /// The cause for which something is sent and no frame can be used, or no load was ever seen; `None` where all is
-    /// well, or nothing is sent.
+    /// The cause why a sender is active but no frame is usable, or why no load was ever seen; `None` if all is well,
+    /// or without a sender.
     pub link_cause: Option<LinkCause>,
-    /// Boards that this floor has.
+    /// Number of boards of this floor.
     pub boards: u32,
-    /// Boards of which usable packets arrive.
+    /// Number of boards with usable packets.
     pub boards_live: u32,
-    /// What came in and what was refused.
+    /// Counts of received and of rejected packets.
     pub counters: LinkCounters,
-    /// How the sensors are doing.
+    /// The state of the sensors.
     pub health: SensorHealth,
-    /// How the device that moves the actuators is doing; `None` without one.
+    /// The state of the device that drives the actuators; `None` without one.
     pub device: Option<DeviceStatus>,
-    /// What somebody has muted.
+    /// The feedback that is muted.
     pub muted: Muted,
-    /// What could not be felt as it should.
+    /// Counts of feedback that was not rendered as it should be.
     pub feel: FeelCounters,
-    /// Events that other programs could not be told.
+    /// Number of events that could not be sent to other programs.
     pub unsent_events: u64,
-    /// Which layout the controls belong to: the first is 0, the n-th given to [`super::Engine::set_layout`] is n.
+    /// Revision of the layout to which the controls belong: the first is 0, the n-th given to
+    /// [`super::Engine::set_layout`] is n.
     pub layout_revision: u64,
 }
 
-/// What one tile senses.
+/// The readings of one tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TileState {
     /// Newtons in [`crate::floor::Corner::ALL`] order.
     pub forces: [f32; 4],
-    /// How far each can be trusted.
+    /// How reliable each force is.
     pub quality: [Quality; 4],
     /// Sum of the forces.
     pub force: Newtons,
-    /// Where the tile's load acts; `None` if it is too light to tell.
+    /// Place at which the tile's load acts; `None` if the load is too light.
     pub centroid: Option<Vec2>,
 }
 
-/// What one control looks like to a person.
+/// The visible state of one control.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WidgetState {
     /// Whether a foot engages it.
     pub pressed: bool,
-    /// What it holds; `None` for a button.
+    /// Its value; `None` for a button.
     pub value: Option<Value>,
     /// Force of the foot on it, as a share of its press threshold; 0 with no foot on it.
     pub press_share: f32,
@@ -100,7 +100,7 @@ pub struct WidgetState {
     pub needs_lift: bool,
     /// Whether an app has switched it off.
     pub disabled: bool,
-    /// Why no foot can press it; `None` if one can.
+    /// The reason why no foot can press it; `None` if a foot can.
     pub off: Option<OffReason>,
     /// Whether an app has locked it.
     pub locked: bool,
@@ -108,28 +108,28 @@ pub struct WidgetState {
     pub armed: bool,
     /// Whether it will soon stop by itself although a foot holds it.
     pub warned: bool,
-    /// What its lamp shows.
+    /// The state of its lamp.
     pub indicator: Indicator,
-    /// What its value would become if the foot let go now, where that is another one.
+    /// The value that it would take if the foot let go now, if different.
     pub pending: Option<Value>,
-    /// Whether it is on another page than the one that is shown.
+    /// Whether it is on a page other than the current one.
     pub hidden: bool,
 }
 
-/// What one contact is to the controls.
+/// The role of one contact for the controls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootState {
-    /// Which contact.
+    /// The contact.
     pub contact: ContactId,
-    /// What it is taken for.
+    /// Its role.
     pub role: FootRole,
-    /// Contacts with the same number are taken for feet of one person; never used again.
+    /// Contacts with the same number belong to one person; numbers are not reused.
     pub person: u32,
     /// That person's weight; `None` until they have stood quietly for two seconds.
     pub weight: Option<Newtons>,
 }
 
-/// What a contact is taken for.
+/// The role of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FootRole {
     /// A foot that may press controls.
@@ -139,6 +139,6 @@ pub enum FootRole {
     Stance,
     /// A foot that walks or carries the body, and presses nothing until it has lifted.
     Step,
-    /// Something left on the floor, ignored until it moves: it has kept still for a minute.
+    /// An object left on the floor, ignored until it moves: it has kept still for a minute.
     Object,
 }

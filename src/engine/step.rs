@@ -1,4 +1,4 @@
-//! What tells a step from a press: how bodies walk and stand.
+//! Distinguishes a step from a press, by the way people walk and stand.
 //!
 //! ```text
 //! 1  lands a step ahead of a foot that is rolling over       -> a step from the start
@@ -12,16 +12,15 @@
 //! 7  anything else                                           -> a press, from its first millisecond
 //! ```
 //!
-//! Lines 1 and 2 look at what came before, so that nobody waits for an answer: a foot that taps
-//! beside a foot that stands is never delayed. Lines 3 to 6 take back what the first two could
-//! not know, such as the first foot that somebody puts on the floor.
-//!
+//! Lines 1 and 2 use the past only, so that they add no latency: a foot that taps beside a standing foot is never
+//! delayed. Lines 3 to 6 correct the result where the past is unknown, such as for the first foot that a person puts
+//! on the floor.
 //! # Source
 //! Adults walk at 0.8 to 1.8 m/s with 80 to 130 steps a minute of 0.5 to 0.9 m; the stance lasts
 //! 0.5 to 1.0 s, and each foot alone carries the whole body for 40 % of the cycle (Perry 1992;
 //! Winter 1991). The centre of pressure runs 0.13 to 0.27 m from heel to toe during it, that
 //! is at 0.15 to 0.4 m/s; under a standing foot it wanders by less than 2 cm/s (Prieto 1996).
-//! Where a bound is ours, it says so.
+//! A bound of our own is marked as such.
 
 use std::time::Duration;
 
@@ -29,15 +28,15 @@ use glam::Vec2;
 
 use crate::units::Instant;
 
-/// Slower than this a centre of pressure does not roll from heel to toe, in metres per second
-/// (our choice: half of what the slowest walkers' does, several times what sway does).
+/// Minimum speed of a centre of pressure that rolls from heel to toe, in metres per second (our choice: half the
+/// speed of the slowest walkers, several times the speed of sway).
 const ROLL_M_S: f32 = 0.12;
 
-/// How far a foot lands from the one that rolls over: more than the width of a stance and no
-/// more than the longest step, in metres.
+/// Distance between a landing foot and the one that rolls over, in metres: more than the width of a stance, at most
+/// the longest step.
 const STEP_M: std::ops::RangeInclusive<f32> = 0.15..=1.1;
 
-/// A roll goes where the step goes: cosine between the two (our choice).
+/// Minimum cosine of the angle between the roll and the step (our choice).
 const ALONG: f32 = 0.3;
 
 /// Longest time from one footfall to the other foot's next in a walk that goes on
@@ -47,39 +46,40 @@ const STEP_TIME: Duration = Duration::from_millis(1300);
 /// Longest swing of a foot from one place to the next.
 const SWING_TIME: Duration = Duration::from_millis(900);
 
-/// From which share of the body on a foot carries it (our choice: more than anybody can press with
-/// while standing on the other foot without going over to it).
+/// Share of the body above which a foot carries it (our choice: more than a person can press with while standing on
+/// the other foot, without going over to it).
 pub(super) const CARRIES: f32 = 0.65;
 
-/// What a foot that is alone on the floor carries when it carries a body whose weight is not
-/// known, in newtons: far above any press (three times the heaviest shipped threshold).
+/// Force above which a foot alone on the floor carries a body of unknown weight, in newtons: far above any press
+/// (three times the heaviest shipped threshold).
 const CARRIES_ALONE_N: f32 = 350.0;
 
-/// How long it must, so that one bad estimate is not a step.
+/// Time for which it must carry that, so that a single bad estimate does not make a step.
 const CARRIES_FOR: Duration = Duration::from_millis(30);
 
-/// A foot that stands beside the other one carries half of the body, give and take some sway;
-/// and more than this many newtons, which hold a heavy pedal.
+/// Minimum load on a foot that stands beside the other one: about half of the body, less some sway; and a force in
+/// newtons above that on a heavy pedal.
 const STANDS: f32 = 0.38;
 const STANDS_N: f32 = 200.0;
 
-/// How long a press of that force may last (our choice: twice a slow click).
+/// Maximum duration of a press with that force (our choice: twice a slow click).
 const STANDS_FOR: Duration = Duration::from_millis(800);
 
-/// A foot at rest on a control that is meant to be tapped: share of the body, newtons, and for how long.
+/// A foot at rest on a control that is meant for taps: minimum share of the body, minimum force in newtons, and
+/// minimum time.
 pub(super) const RESTS: f32 = 0.25;
 pub(super) const RESTS_N: f32 = 110.0;
 const RESTS_FOR: Duration = Duration::from_secs(1);
 
-/// How far a foot must roll over for it to be more than a wobble, in metres, and within which time of its landing.
+/// Minimum distance of a roll, above that of a wobble, in metres, and maximum time since the landing.
 const ROLLED_M: f32 = 0.07;
 const ROLLED_WITHIN: Duration = Duration::from_millis(1200);
 
-/// What rolls over under a body carries at least this share of it, and so many newtons.
+/// Minimum load on a foot that rolls over under a body: share of the body and newtons.
 const ROLLS: f32 = 0.35;
 const ROLLS_N: f32 = 200.0;
 
-/// A heel that strikes bears so many newtons within so short a time.
+/// A heel strike: at least this force, in newtons, within this time of the landing.
 ///
 /// # Source
 /// Walking loads a foot by 7 to 20 body weights a second when it lands (Winter 1991; 10 N a
@@ -88,31 +88,31 @@ const ROLLS_N: f32 = 200.0;
 const IMPACT_N: f32 = 250.0;
 const IMPACT_WITHIN: Duration = Duration::from_millis(45);
 
-/// What was known of somebody when a foot of theirs landed.
+/// The state of a person when one of their feet lands.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Landing {
-    /// Where it landed.
+    /// Place of the landing.
     pub(super) at: Vec2,
     /// The heaviest foot of the same person that was down.
     pub(super) support: Option<Support>,
-    /// How long ago another foot of theirs left the floor that had pressed nothing.
+    /// Time since the last lift of another foot of the person, one that had pressed no control.
     pub(super) left: Option<Duration>,
 }
 
-/// A foot that carries somebody while another one lands.
+/// A foot that carries the person while another one lands.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Support {
     pub(super) at: Vec2,
-    /// How long it has been down.
+    /// Time that it has been down.
     pub(super) age: Duration,
-    /// Whether it stepped there, rather than coming back from a control.
+    /// Whether it stepped there, rather than returning from a control.
     pub(super) stepped: bool,
     /// Velocity of its centre of pressure over the last quarter of a second before the landing.
     pub(super) rolling: Vec2,
 }
 
 impl Landing {
-    /// Whether the foot goes on with a walk (lines 1 and 2).
+    /// Whether the foot continues a walk (lines 1 and 2).
     pub(super) fn walks(&self) -> bool {
         let Some(support) = &self.support else { return false };
         let way = self.at - support.at;
@@ -125,28 +125,27 @@ impl Landing {
         rolls_over || steps_on
     }
 
-    /// Whether somebody stood there on the other foot, who has not just come.
+    /// Whether the person stood on the other foot, and had not just stepped there.
     pub(super) fn has_standing_support(&self) -> bool {
         self.support.as_ref().is_some_and(|support| !support.stepped || support.age > STEP_TIME)
     }
 }
 
-/// What one foot carries at one moment.
+/// The load on one foot at one moment.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Loading {
     pub(super) force: f32,
-    /// Share of the person's weight, or of all that the person's feet carry now; `None` if nothing
-    /// is known of either.
+    /// Share of the person's weight, or of the present load on the person's feet; `None` if neither is known.
     pub(super) share: Option<f32>,
-    /// How long the foot has been down.
+    /// Time since the landing.
     pub(super) age: Duration,
-    /// How far its centre of pressure is from where it landed, in metres.
+    /// Distance of its centre of pressure from the place of the landing, in metres.
     pub(super) travelled: f32,
-    /// Whether somebody stood on the other foot when it landed.
+    /// Whether the person stood on the other foot when it landed.
     pub(super) has_support: bool,
 }
 
-/// Watches one foot for signs that it carries a body.
+/// Detects from its load that one foot carries a body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepWatch {
     carries: Since,
@@ -155,12 +154,12 @@ pub(super) struct StepWatch {
 }
 
 impl StepWatch {
-    /// Takes in what the foot carries now; whether it is a step (lines 3, 5 and 6).
+    /// Processes the present load; returns whether it is a step (lines 3, 5 and 6).
     pub(super) fn is_step(&mut self, loading: &Loading, now: Instant) -> bool {
         let Loading { force, share, age, travelled, has_support } = *loading;
         let above = |least: f32, newtons: f32| force >= newtons && share.is_none_or(|share| share >= least);
         let carries = share.map_or(force >= CARRIES_ALONE_N, |share| share >= CARRIES);
-        // Of a foot alone on the floor nobody knows whether it is at rest or held there.
+        // A foot alone on the floor may be at rest or held there: its share is unknown.
         self.rests.note(share.is_some() && above(RESTS, RESTS_N), now);
         let rolls = above(ROLLS, ROLLS_N) && travelled >= ROLLED_M && age <= ROLLED_WITHIN;
         self.stands.note(above(STANDS, STANDS_N), now);
@@ -174,24 +173,24 @@ impl StepWatch {
         self.stands.lasts(now) >= Some(STANDS_FOR)
     }
 
-    /// Whether the foot has been at rest for longer than anybody taps.
+    /// Whether the foot has been at rest for longer than a tap lasts.
     pub(super) fn rests(&self, now: Instant) -> bool {
         self.rests.lasts(now) >= Some(RESTS_FOR)
     }
 }
 
-/// Since when something has been so without a break.
+/// Start time of a condition that has held without a break.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Since(Option<Instant>);
 
 impl Since {
-    /// Notes whether it is so now. For how long it has been so; `None` if it is not.
+    /// Notes whether the condition holds now. Returns for how long; `None` if it does not hold.
     pub(super) fn note(&mut self, is: bool, now: Instant) -> Option<Duration> {
         self.0 = is.then(|| self.0.unwrap_or(now));
         self.lasts(now)
     }
 
-    /// For how long it has been so; `None` if it is not.
+    /// Time for which the condition has held; `None` if it does not hold.
     pub(super) fn lasts(&self, now: Instant) -> Option<Duration> {
         self.0.map(|since| now.since(since))
     }
@@ -222,14 +221,14 @@ mod tests {
         assert!(landing(arrived, Some(400)).walks());
         assert!(!landing(arrived, None).walks(), "somebody puts the second foot down");
         assert!(!landing(arrived, Some(2000)).walks());
-        // Who stands takes the foot from beside the other one to the control: no walk.
+        // A standing person takes the foot from beside the other one to the control: not a walk.
         assert!(!landing(Some(STANDING), Some(400)).walks());
-        // Nor does a foot that went back to where it had stood make the other one's tap a step.
+        // A foot that went back to its earlier place does not make a step of the other foot's tap either.
         let back = Some(Support { age: Duration::from_millis(600), ..STANDING });
         assert!(!landing(back, Some(400)).walks());
     }
 
-    /// When a foot that carries this becomes a step, in milliseconds.
+    /// Time at which a foot with this load becomes a step, in milliseconds.
     fn step_after(force: f32, share: Option<f32>, travelled: impl Fn(u64) -> f32) -> Option<u64> {
         let mut watch = StepWatch::default();
         (0..5000).find(|&ms| {

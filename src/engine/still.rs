@@ -1,4 +1,4 @@
-//! What tells an object from a foot: it keeps still.
+//! Distinguishes an object from a foot: an object keeps still.
 
 use std::time::Duration;
 
@@ -6,32 +6,32 @@ use glam::Vec2;
 
 use crate::units::Instant;
 
-/// How long something must lie still to be no foot (fault S10).
+/// Time without motion after which a contact is an object (fault S10).
 const OBJECT_AFTER: Duration = Duration::from_secs(60);
 
-/// How far its force may wander, in newtons and as a share of it: sensor noise, and the creep of a
-/// force-sensing resistor over a decade of time (Interlink, FSR integration guide). A standing foot
-/// passes this within seconds.
+/// Maximum change of an object's force, in newtons and as a share of it: sensor noise, and the creep of a
+/// force-sensing resistor over a decade of time (Interlink, FSR integration guide). A standing foot exceeds this
+/// within seconds.
 const FORCE_N: f32 = 3.0;
 const FORCE_SHARE: f32 = 0.05;
 
-/// How far its centre may wander, in metres (our choice: less than the sway of quiet standing in a minute).
+/// Maximum change of an object's place, in metres (our choice: less than the sway of quiet standing in a minute).
 const PLACE_M: f32 = 0.005;
 
-/// An object that is changed by this share of its force or moved this far, in metres, may be a foot again.
+/// Change of an object's force, as a share, and of its place, in metres, after which it may be a foot again.
 const MOVED_SHARE: f32 = 0.2;
 const MOVED_M: f32 = 0.03;
 
-/// Time constant of the smoothing that takes out sensor noise, in seconds.
+/// Time constant τ of the smoothing against sensor noise, in seconds: `y += dt / τ * (x - y)`, the factor at most 1.
 const SMOOTH_S: f32 = 0.2;
 
-/// Watches one contact for a minute without motion.
+/// Detects a contact that does not move for a minute.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stillness {
     last: Instant,
     force: f32,
     place: Vec2,
-    /// What it was like when it last moved, and when that was.
+    /// Force and place at the last motion, and its time.
     anchor: (f32, Vec2),
     since: Instant,
     object: bool,
@@ -42,7 +42,7 @@ impl Stillness {
         Self { last: now, force, place, anchor: (force, place), since: now, object: false }
     }
 
-    /// Takes in the contact as it is now.
+    /// Updates the state with the present contact.
     pub(super) fn update(&mut self, force: f32, place: Vec2, now: Instant) {
         let weight = (now.since(self.last).as_secs_f32() / SMOOTH_S).min(1.0);
         self.last = now;
@@ -61,7 +61,7 @@ impl Stillness {
         }
     }
 
-    /// Whether it has been left on the floor.
+    /// Whether it is an object left on the floor.
     pub(super) fn is_object(&self) -> bool {
         self.object
     }
@@ -71,7 +71,7 @@ impl Stillness {
 mod tests {
     use super::*;
 
-    /// The second in which a contact becomes an object, its force given by the second.
+    /// The second in which a contact becomes an object; `force` gives its force at a time in seconds.
     fn object_after(force: impl Fn(f32) -> f32) -> Option<u32> {
         let mut still = Stillness::new(force(0.0), Vec2::ONE, Instant::START);
         (0..18_000).find_map(|step: u32| {

@@ -83,7 +83,7 @@ fn page() -> Layout {
 const HOME: Vec2 = Vec2::new(0.45, 1.05);
 const LIGHT: Vec2 = Vec2::new(1.35, 1.05);
 
-/// An engine fed with the point loads of feet, one frame a millisecond.
+/// An engine with the point loads of feet as its input, one frame a millisecond.
 struct Floor {
     engine: Engine,
     geometry: Geometry,
@@ -210,7 +210,7 @@ fn a_slider_keeps_its_foot_and_slides_while_it_moves() {
     let (west, east) = (Vec2::new(0.6, 1.5), Vec2::new(1.2, 1.5));
     floor.stand(&[(west, 80.0)], 60);
     floor.slide(west, east, 80.0, 0.3);
-    // Far off the slider to the north: captured all the same.
+    // Far to the north of the slider, which captures the foot and keeps it.
     floor.slide(east, east + Vec2::new(0.0, 0.25), 80.0, 0.3);
     let fastest = floor.slip_speeds.iter().copied().fold(0.0, f32::max);
     assert!((0.2..0.4).contains(&fastest), "moved at 0.3 m/s, slid at {fastest}");
@@ -232,7 +232,7 @@ fn a_foot_that_lands_alone_on_a_slider_in_a_walk_does_not_move_it() {
         }
         floor.stand(&[], 50);
         assert_eq!(floor.events_of("zoom"), [], "{newtons_per_ms} N a millisecond");
-        // A foot of somebody who sits presses it once its force has settled.
+        // A foot of a sitting person presses it once its force has settled.
         floor.stand(&[(at, 80.0)], 150);
         assert_eq!(floor.events_of("zoom").first(), Some(&EventKind::Pressed));
     }
@@ -257,7 +257,7 @@ fn a_captured_foot_lost_with_its_tile_cancels_and_commits_nothing() {
     let (west, east) = (Vec2::new(0.6, 1.5), Vec2::new(1.2, 1.5));
     floor.stand(&[(west, 80.0)], 60);
     floor.slide(west, east, 80.0, 0.3);
-    // On to tiles south of the slider, whose board then fails.
+    // On to tiles south of the slider; their board then fails.
     let beyond = Vec2::new(1.2, 1.1);
     floor.slide(east, beyond, 80.0, 0.3);
     let row = floor.geometry.tile_under(beyond).unwrap().row;

@@ -1,33 +1,33 @@
-//! How heavy a person is, from what the floor carries while they stand quietly.
+//! Estimates a person's weight from the load on the floor while they stand quietly.
 
 use std::time::Duration;
 
 use crate::units::{Instant, Newtons};
 
-/// A body weighs 30 to 200 kg; less is a bag or half a person, more is two.
+/// Range of a body's weight, 30 to 200 kg in newtons; less is a bag or half a person, more is two.
 const LEAST: f32 = 30.0 * 9.81;
 const MOST: f32 = 200.0 * 9.81;
 
-/// How long the sum must stay within the band to be a weight (our choice: longer than two slow steps).
+/// Time for which the sum must stay within the band to count as a weight (our choice: longer than two slow steps).
 const QUIET: Duration = Duration::from_secs(2);
 
 /// Width of the band as a share of the sum.
 ///
 /// # Source
-/// Somebody who stands, on both feet or on one, moves the sum by the acceleration of the body:
-/// by 1 to 2 %; walking moves it by 20 % even at 0.6 m/s (Perry 1992).
+/// A standing person, on both feet or on one, changes the sum by the acceleration of the body: by 1 to 2 %; walking
+/// changes it by 20 % even at 0.6 m/s (Perry 1992).
 const BAND: f32 = 0.10;
 
-/// What a new weight counts for against the old one.
+/// Gain of the smoothing of weights: `weight += NEW_SHARE * (mean - weight)`.
 const NEW_SHARE: f32 = 0.3;
 
-/// Below this share of the known weight somebody has put a foot beside the floor, rather than lost weight.
+/// Below this share of the known weight a foot probably stands beside the floor.
 const LIGHTER: f32 = 0.85;
 
-/// So many quiet spans of less weight are believed after all: a load has been put down.
+/// Number of quiet spans of less weight in a row after which it counts: the person has put down a load.
 const BELIEVED: u8 = 3;
 
-/// One person's scale: fed with the sum of the person's contacts, frame by frame.
+/// One person's scale: its input is the sum of the person's contacts, frame by frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Scale {
     weight: Option<f32>,
@@ -45,7 +45,7 @@ impl Scale {
         self.weight.map(Newtons)
     }
 
-    /// Takes in the sum of the person's contacts.
+    /// Processes the sum of the person's contacts.
     pub(super) fn weigh(&mut self, sum: f32, now: Instant) {
         let (low, high) = (self.low.min(sum), self.high.max(sum));
         if self.count == 0 || sum < LEAST || high - low > BAND * high {
@@ -83,7 +83,7 @@ impl Scale {
 mod tests {
     use super::*;
 
-    /// The weight after so many seconds of a sum given by the second.
+    /// The weight after so many seconds; `sum` gives the sum at a time in seconds.
     fn weighed(scale: &mut Scale, from_s: u64, seconds: u64, sum: impl Fn(f32) -> f32) -> Option<f32> {
         for ms in from_s * 1000..(from_s + seconds) * 1000 {
             scale.weigh(sum(ms as f32 * 1e-3), Instant::from_millis(ms));
@@ -108,7 +108,7 @@ mod tests {
         weighed(&mut scale, 0, 3, |_| 700.0);
         assert_eq!(weighed(&mut scale, 3, 5, |_| 350.0), Some(700.0));
         assert_eq!(weighed(&mut scale, 8, 4, |_| 350.0), Some(350.0));
-        // And the second foot back on it is believed at once.
+        // A second foot back on it counts at once.
         assert_eq!(weighed(&mut scale, 12, 3, |_| 700.0), Some(700.0));
     }
 

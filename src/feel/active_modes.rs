@@ -7,29 +7,28 @@ use super::push::Pushes;
 
 /// The modal banks of all channels.
 ///
-/// Most of the time a bank only rings on; then all banks of a group are
-/// rendered side by side, where they are needed. A bank that is struck in the
-/// middle of a block is rendered into the mix's row, up to the strike and on from there.
+/// Most of the time a bank only rings on; then all banks of a group are rendered side by side, at the place of use. A
+/// bank that is struck in the middle of a block is rendered into the mix's row, up to the strike and on from there.
 #[derive(Clone, Debug)]
 pub(super) struct ActiveModes {
     banks: Vec<ModalBank>,
-    /// What is still striking them.
+    /// Pushes under way for each bank.
     pushes: Vec<Pushes>,
-    /// Modes that had to make room since somebody asked.
+    /// Modes stolen since the last query.
     stolen: u32,
-    /// Samples of the block at hand that are in the mix's row, of each bank that is rendered there.
+    /// For each bank, the number of samples of the block at hand that are in the mix's row already.
     in_row: Vec<usize>,
     groups: Vec<Group>,
 }
 
-/// What the banks of a group do.
+/// The state of a group's banks.
 #[derive(Clone, Copy, Debug, Default)]
 struct Group {
-    /// Those that ring on.
+    /// Banks that ring on.
     ringing: LaneSet,
-    /// Those that are rendered into the mix's rows: struck in the block at hand, still being struck, or slow.
+    /// Banks rendered into the mix's rows: struck in the block at hand, with a push under way, or slow.
     in_rows: LaneSet,
-    /// Those that are rendered side by side in the block at hand.
+    /// Banks rendered side by side in the block at hand.
     side_by_side: LaneSet,
 }
 
@@ -60,7 +59,7 @@ impl ActiveModes {
         }
     }
 
-    /// The bank of `channel` and its pushes, to be struck so that sample `at` of the block is the first that moves.
+    /// The bank of `channel` and its pushes; a strike on them is first audible in sample `at` of the block.
     ///
     /// Strikes of one channel come in the order of their samples.
     pub(super) fn strikable(
@@ -74,8 +73,8 @@ impl ActiveModes {
         (&mut self.banks[channel], &mut self.pushes[channel])
     }
 
-    /// Renders what must go through the mix's rows to the block's end, `frames`; the answer is how many
-    /// modes had to make room meanwhile.
+    /// Renders the banks in the mix's rows to the block's end, `frames`; returns the number of modes stolen
+    /// meanwhile.
     pub(super) fn finish_rows(&mut self, frames: usize, mix: &mut Mix) -> u32 {
         for number in 0..self.groups.len() {
             let Group { ringing, in_rows, .. } = self.groups[number];
@@ -93,7 +92,8 @@ impl ActiveModes {
         std::mem::take(&mut self.stolen)
     }
 
-    /// Writes the next `samples` of a group's other banks, at most a span, to `columns`; false if there are none.
+    /// Writes the next `samples` of a group's other banks, at most a span, to `columns`; returns false if there are
+    /// none.
     pub(super) fn draw(&mut self, group: usize, samples: usize, columns: &mut [[f32; LANES]; SPAN]) -> bool {
         let first = group * LANES;
         let last = self.banks.len().min(first + LANES);
@@ -106,7 +106,7 @@ impl ActiveModes {
         true
     }
 
-    /// Whether a group has any bank to draw.
+    /// Whether a group has banks to draw side by side.
     pub(super) fn has_more(&self, group: usize) -> bool {
         self.groups[group].side_by_side != 0
     }

@@ -4,20 +4,20 @@ use std::f64::consts::TAU;
 
 use super::Band;
 
-/// What was measured of rendered samples.
+/// Figures of a stretch of rendered samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
-    /// Highest absolute sample.
+    /// Maximum absolute sample.
     pub peak: f32,
-    /// Root mean square over all of it.
+    /// Root mean square of all samples.
     pub rms: f32,
     /// Share of the energy that lies within the band, 0 to 1.
     pub within: f32,
     /// Mean frequency, weighted by power, in hertz.
     pub centroid_hz: f32,
-    /// Frequency of the highest bin of the spectrum, in hertz.
+    /// Frequency of the strongest bin of the spectrum, in hertz.
     pub loudest_hz: f32,
-    /// Time from the loudest 5 ms until a tenth of their level is left for good, in seconds.
+    /// Time from the loudest 5 ms until the level stays below a tenth of theirs, in seconds.
     pub decay_s: f32,
     /// Power of each frequency, in bins of equal width from 0 Hz to half the sample rate, all of them together 1.
     pub spectrum: Vec<f32>,
@@ -25,7 +25,7 @@ pub struct Analysis {
     pub bin_hz: f32,
 }
 
-/// Measures `samples`, `sample_rate` to the second; `None` of silence or of samples that are not finite.
+/// Measures `samples` at `sample_rate` hertz; `None` for silence or for samples that are not finite.
 #[must_use]
 pub fn analyse(samples: &[f32], sample_rate: f32, band: Band) -> Option<Analysis> {
     let peak = samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
@@ -53,7 +53,7 @@ pub fn analyse(samples: &[f32], sample_rate: f32, band: Band) -> Option<Analysis
     })
 }
 
-/// Length of the stretches by which loudness is judged, in seconds.
+/// Length of the stretches whose levels give the decay, in seconds.
 const STRETCH_S: f32 = 0.005;
 
 fn decay(samples: &[f32], sample_rate: f32) -> f32 {
@@ -67,7 +67,7 @@ fn decay(samples: &[f32], sample_rate: f32) -> f32 {
     (last + 1 - loudest.min(last)) as f32 * STRETCH_S
 }
 
-/// Power per bin up to half the sample rate, and the width of a bin, of the samples and silence behind them.
+/// Power per bin up to half the sample rate, and the width of a bin; pads the samples with silence to a power of two.
 fn spectrum(samples: &[f32], sample_rate: f32) -> (Vec<f64>, f32) {
     let size = samples.len().next_power_of_two().max(2);
     let mut values: Vec<(f64, f64)> = samples.iter().map(|sample| (f64::from(*sample), 0.0)).collect();
@@ -136,7 +136,7 @@ mod tests {
         let fading: Vec<f32> = (0..48_000)
             .map(|n| ((-f64::from(n) / 48e3 / 0.05).exp() * (TAU * 200.0 * f64::from(n) / 48e3).sin()) as f32)
             .collect();
-        // 0.05 s times the logarithm of ten.
+        // 0.05 s times the natural logarithm of ten.
         let found = analyse(&fading, 48e3, Band::USEFUL).unwrap();
         assert!((found.decay_s - 0.115).abs() < 0.011, "{}", found.decay_s);
     }

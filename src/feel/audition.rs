@@ -1,4 +1,4 @@
-//! An effect rendered alone, as a described foot would feel it.
+//! An effect rendered alone, for a given motion of a foot.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,22 +10,22 @@ use super::{
 use crate::floor::{Actuator, Floor, Geometry};
 use crate::units::{Instant, Newtons};
 
-/// What a foot does to try an effect: a path of moments, straight in between.
+/// The motion of a foot that tries an effect: a path of moments, with straight lines in between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gesture {
-    /// In order of time; before the first it is as there, after the last nothing happens any more.
+    /// In order of time. Before the first moment its values hold; after the last one its values stay.
     pub moments: Vec<Moment>,
-    /// When the foot presses, in seconds; also begins what is held.
+    /// Time of the press, in seconds; a held effect begins then too.
     pub press_s: Option<f32>,
-    /// When it lets go, in seconds.
+    /// Time of the release, in seconds.
     pub release_s: Option<f32>,
-    /// Whether what can be held or played once is held.
+    /// Whether an effect that can be held or played once is held.
     pub holds: bool,
-    /// How long it all lasts, in seconds.
+    /// Duration of the whole gesture, in seconds.
     pub length_s: f32,
 }
 
-/// What the foot does at one moment.
+/// The foot at one moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moment {
     /// Seconds from the start.
@@ -36,16 +36,16 @@ pub struct Moment {
     pub force: Newtons,
     /// Value of the control, 0 to 1.
     pub value: f32,
-    /// How far the foot pushes beyond an end, in metres.
+    /// Distance of the foot beyond an end, in metres.
     pub beyond_m: f32,
 }
 
-/// Longest gesture, in seconds.
+/// Maximum length of a gesture, in seconds.
 const LONGEST_S: f32 = 60.0;
 
 impl Gesture {
-    /// One that shows what `effect` can do: a press and a release; two strokes, the second one harder; a slide up
-    /// and down; a slide into the end and on.
+    /// The usual gesture for this kind of effect: a press and a release; two strokes, the second one harder; a slide
+    /// up and down; a slide into the end and on.
     #[must_use]
     pub fn usual(effect: &Effect) -> Self {
         let still =
@@ -108,14 +108,14 @@ impl Gesture {
         }
     }
 
-    /// A foot that slides evenly for so many seconds.
+    /// A foot that slides at constant speed and force for so many seconds.
     #[must_use]
     pub fn steady(speed_m_s: f32, force: Newtons, length_s: f32) -> Self {
         let moment = Moment { speed_m_s, force, ..Moment::default() };
         Self { moments: vec![moment], press_s: None, release_s: None, holds: false, length_s }
     }
 
-    /// What the foot does `t` seconds after the start.
+    /// The foot `t` seconds after the start.
     #[must_use]
     pub fn at(&self, t: f32) -> Moment {
         let after = self.moments.iter().position(|moment| moment.at_s > t).unwrap_or(self.moments.len());
@@ -138,7 +138,7 @@ impl Gesture {
     }
 }
 
-/// Slip speed and normal force at which something rubbed has its full level.
+/// Slip speed and normal force at which a rubbed material has its full level.
 fn full(effect: &Effect) -> (f32, Newtons) {
     match effect.kind.lasting() {
         Some(Lasting::Friction(friction)) => (friction.full_speed_m_s, friction.full_force),
@@ -149,7 +149,7 @@ fn full(effect: &Effect) -> (f32, Newtons) {
     }
 }
 
-/// An effect being tried by a gesture, millisecond by millisecond.
+/// An effect under a gesture, rendered millisecond by millisecond.
 #[derive(Clone, Debug)]
 pub struct Audition {
     effect: Arc<Effect>,
@@ -162,11 +162,11 @@ pub struct Audition {
     thud: bool,
 }
 
-/// The one foot of an audition: a number that contacts take millions of steps to come to.
+/// The owner number of the audition's only foot; real contacts reach it after millions of steps.
 const FOOT: u32 = 0x00FF_FFFF;
 
 impl Audition {
-    /// `effect` under `gesture`, beginning at `start`.
+    /// Tries `effect` under `gesture`, beginning at `start`.
     #[must_use]
     pub fn new(effect: Arc<Effect>, gesture: Gesture, start: Instant) -> Self {
         Self {
@@ -181,7 +181,7 @@ impl Audition {
         }
     }
 
-    /// Appends what happens at `now`, to be called about once a millisecond; whether there is more to come.
+    /// Appends the cues at `now`; to be called about once a millisecond. Returns whether more follow.
     pub fn step(
         &mut self,
         now: Instant,
@@ -196,7 +196,7 @@ impl Audition {
         let effect = Arc::clone(&self.effect);
         match &effect.kind {
             EffectKind::Detents(detents) => {
-                // A control without steps of its own has ten here.
+                // For a control without steps of its own, ten steps.
                 let own = detents.every > 0.0;
                 let stepped =
                     if own { detents.clone() } else { super::Detents { every: 0.1, ..detents.clone() } };
@@ -251,7 +251,7 @@ impl Audition {
     }
 
     fn sustain(&self, effect: Lasting, moment: Moment, spots: &Spots, sustained: &mut SustainedCues) {
-        // One thing at a time always fits.
+        // A single sustained cue always fits.
         let _ = sustained.try_push(SustainedCue {
             key: key(FOOT, 0),
             spots: spots.clone(),
@@ -264,10 +264,10 @@ impl Audition {
     }
 }
 
-/// Newtons of the one actuator that auditions are rendered for: so many that nothing is limited.
+/// Full scale of the one actuator in auditions, in newtons: so high that the limiter changes nothing.
 const FULL_SCALE_N: f32 = 4000.0;
 
-/// What `effect` is under `gesture` as the renderer makes it: newtons at the plate, `sample_rate` to the second.
+/// Renders `effect` under `gesture`: newtons at the plate, `sample_rate` samples to the second.
 #[must_use]
 pub fn audition(effect: &Arc<Effect>, gesture: &Gesture, sample_rate: u32) -> Vec<f32> {
     let Ok(geometry) = Geometry::of_paper_tiles(1, 1) else { return Vec::new() };
@@ -292,7 +292,7 @@ pub fn audition(effect: &Arc<Effect>, gesture: &Gesture, sample_rate: u32) -> Ve
             sender.send(cue);
         });
         sender.sustain(&sustained);
-        // The millisecond that begins now, whole samples of it.
+        // The present millisecond, in whole samples.
         let (from, to) = (ms * rate / 1000, (ms + 1) * rate / 1000);
         let begin = samples.len();
         samples.resize(begin + (to - from) as usize, 0.0);

@@ -5,29 +5,28 @@ use arrayvec::ArrayVec;
 use super::push::Pushes;
 use super::{Click, MODE_HZ, ModalBank, Mode};
 
-/// What became of a click on one channel.
+/// The result of a click on one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Struck {
-    /// Modes that ring now.
+    /// Modes that the click struck.
     pub(super) modes: u32,
     /// Modes that cannot be played: not finite, or outside the ranges of [`super::Mode`].
     pub(super) refused: u32,
-    /// Ringing modes that had to make room.
+    /// Ringing modes stolen for this click.
     pub(super) stolen: u32,
 }
 
-/// The loudest that one mode is struck, in full scales: far above anything the limiter lets through.
+/// Maximum amplitude of a struck mode, in full scales: far above the range of the limiter.
 const LOUDEST: f32 = 16.0;
 
-/// The faintest, in full scales: -180 dB.
+/// Minimum amplitude of a struck mode, in full scales: -180 dB.
 const FAINTEST: f32 = 1e-9;
 
-/// Strikes `click` on `bank`, so that the very next sample is the first that moves.
+/// Strikes `click` on `bank`; the very next sample is the first to move.
 ///
-/// `gain` is full scales per unit of mode amplitude: the click's level times
-/// the spot's weight over the actuator's newtons at full scale. Modes start as
-/// sines, at zero, so nothing steps. A mode of no amplitude to speak
-/// of is left out without being counted; one louder than 16 full scales is struck at 16.
+/// `gain` is full scales per unit of mode amplitude: the click's level times the spot's weight over the actuator's
+/// newtons at full scale. Modes start as sines, at zero, so that there is no step. A mode of negligible amplitude is
+/// left out without being counted; a mode above 16 full scales is struck at 16.
 ///
 /// # Real-time
 /// No allocation.

@@ -1,31 +1,31 @@
-//! How the device that plays the samples is doing.
+//! The state of the device that plays the samples.
 
 use std::fmt;
 
-/// How the device that moves the actuators is doing.
+/// The state of the device that drives the actuators.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DeviceStatus {
     /// Its name.
     pub name: String,
-    /// What the system knows it by: stays the same when it is unplugged and comes back, and from day to day.
+    /// The system's identifier for it: the same after unplugging and reconnecting, and from day to day.
     pub id: String,
     /// Whether it plays.
     pub state: DeviceState,
-    /// Why it does not play, for a person; empty while it plays.
+    /// Reason why it does not play, as a sentence for people; empty while it plays.
     pub why: String,
     /// Samples per second.
     pub sample_rate: u32,
     /// Channels in use or kept silent.
     pub channels: u16,
-    /// Frames in a block as the device asks for them; 0 before the first.
+    /// Frames per block as requested by the device; 0 before the first block.
     pub block: u32,
-    /// Blocks played so far: while it plays, this never stands still for long.
+    /// Blocks played so far: increases steadily while the device plays.
     pub blocks: u64,
-    /// Times when samples came too late for the device.
+    /// Number of underruns: samples that came too late for the device.
     pub underruns: u64,
-    /// Times it was opened anew: after it was lost, hung, or needed larger blocks.
+    /// Number of reopenings: after a loss, a hang, or a change to larger blocks.
     pub reopened: u64,
-    /// Whether its thread goes before everybody else's.
+    /// The priority of its thread.
     pub priority: Priority,
 }
 
@@ -35,16 +35,16 @@ pub enum DeviceState {
     /// It plays.
     #[default]
     Playing,
-    /// It is unplugged or its host has gone; it is searched for once a second.
+    /// It is unplugged or its host is gone; the program searches for it once a second.
     Lost,
-    /// It is there and takes no samples; it is opened anew once a second.
+    /// It is there but takes no samples; the program reopens it once a second.
     Faulty,
-    /// It is there and can no longer do what the floor needs; it is examined once a second.
+    /// It is there but no longer meets the floor's needs; the program examines it once a second.
     Unfit,
 }
 
 impl DeviceState {
-    /// The word for it in messages to other programs.
+    /// Its name in messages to other programs.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -56,20 +56,20 @@ impl DeviceState {
     }
 }
 
-/// Whether the device's thread goes before everybody else's.
+/// The scheduling priority of the device's thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Priority {
-    /// The host sees to it, or it was not asked for yet.
+    /// The host controls it, or the thread has not asked for it yet.
     #[default]
     Hosts,
     /// It has real-time priority.
     RealTime,
-    /// The system did not allow it: samples come late when the machine is busy.
+    /// The system denied it: samples come late when the machine is busy.
     Denied,
 }
 
 impl Priority {
-    /// The word for it in messages to other programs.
+    /// Its name in messages to other programs.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -81,7 +81,7 @@ impl Priority {
 }
 
 impl DeviceStatus {
-    /// Whether others should be told of this after `told`: anything but that it has gone on playing.
+    /// Whether this status is worth reporting after `told`: true for every change except more blocks played.
     #[must_use]
     pub(crate) fn is_news_after(&self, told: &Self) -> bool {
         let Self { blocks: _, .. } = self;
@@ -96,7 +96,7 @@ impl DeviceStatus {
 }
 
 impl fmt::Display for DeviceStatus {
-    /// One line: `Card: playing 36 channels at 96000 Hz in blocks of 64`, and what is not well.
+    /// One line: `Card: playing 36 channels at 96000 Hz in blocks of 64`, followed by any faults.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.name)?;
         match self.state {

@@ -1,4 +1,4 @@
-//! A bounded queue between two threads that never waits and, when it is full, evicts its oldest items.
+//! A bounded queue between two threads that never blocks; when full, it evicts its oldest items.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -6,12 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// Both ends of a queue that holds the `capacity` newest items (at least one); all memory is taken here.
+/// Both ends of a queue that holds the `capacity` newest items (at least one); allocates all memory here.
 ///
-/// A ring alone can only refuse its newest item, since what lies in it is
-/// already the reader's. So items are numbered: what does not fit waits with
-/// the writer, who also says which number is the oldest still worth reading,
-/// and the reader passes over what is older.
+/// A ring alone can only reject its newest item, since the reader owns the items inside. So items are numbered: those
+/// that do not fit wait in the writer's backlog. The writer also publishes the number of the oldest valid item, and
+/// the reader skips older ones.
 pub(super) fn evicting_queue<T>(capacity: usize) -> (Writer<T>, Reader<T>) {
     let capacity = capacity.max(1);
     let (producer, consumer) = RingBuffer::new(capacity);
@@ -28,7 +27,7 @@ pub(super) fn evicting_queue<T>(capacity: usize) -> (Writer<T>, Reader<T>) {
 
 #[derive(Debug, Default)]
 struct Shared {
-    /// Number of the oldest item that is still worth reading.
+    /// Number of the oldest valid item.
     oldest: AtomicU64,
     /// Items evicted so far.
     dropped: AtomicU64,
@@ -40,11 +39,11 @@ struct Numbered<T> {
     item: T,
 }
 
-/// The end that puts items in.
+/// The end that inserts items.
 #[derive(Debug)]
 pub(super) struct Writer<T> {
     ring: Producer<Numbered<T>>,
-    /// What the ring had no room for, oldest first.
+    /// Items that did not fit into the ring, oldest first.
     backlog: VecDeque<Numbered<T>>,
     capacity: u64,
     next: u64,
@@ -52,13 +51,13 @@ pub(super) struct Writer<T> {
 }
 
 impl<T> Writer<T> {
-    /// Puts an item in; if the queue is full, its oldest one is evicted.
+    /// Inserts an item; if the queue is full, evicts its oldest one.
     pub(super) fn push(&mut self, item: T) {
         let number = self.announce();
         self.hand_over(number, item);
     }
 
-    /// Gives up what has become too old, and numbers the item that takes its place.
+    /// Drops items that have become too old, and numbers the item that takes their place.
     fn announce(&mut self) -> u64 {
         let number = self.next;
         self.next += 1;
@@ -72,12 +71,12 @@ impl<T> Writer<T> {
     }
 
     fn hand_over(&mut self, number: u64, item: T) {
-        // Fewer than `capacity` are left, so this takes no memory.
+        // Fewer than `capacity` are left, so this does not allocate.
         self.backlog.push_back(Numbered { number, item });
         self.flush();
     }
 
-    /// Hands on what the ring had no room for; to be called now and then.
+    /// Moves items from the backlog into the ring; to be called now and then.
     pub(super) fn flush(&mut self) {
         while let Some(front) = self.backlog.pop_front() {
             if let Err(rtrb::PushError::Full(front)) = self.ring.push(front) {
@@ -87,23 +86,23 @@ impl<T> Writer<T> {
         }
     }
 
-    /// Takes back what the ring had no room for; the answer is how many items that were.
+    /// Drops the backlog; returns the number of its items.
     pub(super) fn take_back(&mut self) -> u32 {
         let number = self.backlog.len() as u32;
         self.backlog.clear();
         number
     }
 
-    /// Items evicted so far because newer ones took their place.
+    /// Items evicted so far in favour of newer ones.
     pub(super) fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }
 }
 
-/// The end that takes items out.
+/// The end that removes items.
 ///
 /// # Real-time
-/// No call waits, allocates or calls the system.
+/// No call blocks, allocates or enters the system.
 #[derive(Debug)]
 pub(super) struct Reader<T> {
     ring: Consumer<Numbered<T>>,
@@ -111,7 +110,7 @@ pub(super) struct Reader<T> {
 }
 
 impl<T> Reader<T> {
-    /// The oldest item that is still worth reading.
+    /// Removes the oldest valid item.
     pub(super) fn pop(&mut self) -> Option<T> {
         let oldest = self.shared.oldest.load(Ordering::Acquire);
         loop {
@@ -123,17 +122,17 @@ impl<T> Reader<T> {
         }
     }
 
-    /// Items evicted so far because newer ones took their place.
+    /// Items evicted so far in favour of newer ones.
     pub(super) fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }
 
-    /// A look at what comes first, perhaps something that is too old.
+    /// The first item in the ring, perhaps one that is too old.
     pub(super) fn peek(&self) -> Option<&T> {
         self.ring.peek().ok().map(|numbered| &numbered.item)
     }
 
-    /// Takes out what comes first, perhaps something that is too old.
+    /// Removes the first item in the ring, perhaps one that is too old.
     pub(super) fn skip(&mut self) -> bool {
         self.ring.pop().is_ok()
     }
@@ -160,7 +159,7 @@ mod tests {
         assert_eq!((drain(&mut reader), writer.dropped()), (vec![10], 6));
     }
 
-    /// What one thread does in one step that the other thread sees as a whole.
+    /// A step of one thread that is atomic for the other thread.
     #[derive(Clone, Copy, Debug)]
     enum Step {
         Announce,
@@ -170,9 +169,8 @@ mod tests {
 
     /// A8: every way in which the two threads' steps can follow each other.
     ///
-    /// The steps are those that the other side can tell apart: the writer's
-    /// store and its ring operation, the reader's whole pop (which loads once
-    /// and then takes). The ring itself is trusted to be linearisable.
+    /// The steps are those that the other side can distinguish: the writer's store and its ring operation, the
+    /// reader's whole pop (one load, then the removal). The test assumes that the ring itself is linearisable.
     #[test]
     fn a8_in_every_interleaving_order_is_kept_and_only_the_oldest_are_evicted() {
         const CAPACITY: usize = 2;

@@ -11,32 +11,31 @@ use super::modal::multiply_add;
 /// Below this share of full scale the limiter changes nothing; our choice.
 const KNEE: f32 = 0.8;
 
-/// Time in which the limiter's hold on a past peak decays to 1/e; our choice, several periods of a 50 Hz mode.
+/// Time constant of the decay of a held peak; our choice, several periods of a 50 Hz mode.
 const RELEASE_S: f32 = 0.08;
 
-/// Corner of the direct-current block: far enough below the 50 Hz where actuators begin.
+/// Corner of the high-pass against direct current: far enough below the 50 Hz where actuators begin.
 const DC_BLOCK_HZ: f32 = 5.0;
 
-/// Keeps a group of channels within full scale, whatever finite comes in.
+/// Keeps a group of channels within full scale, for every finite input.
 ///
-/// A peak limiter without look-ahead, since a person stands on the actuator
-/// and waits: it follows a rising peak in the very sample (a soft ceiling from
-/// 0.8 of full scale on), and lets go slowly, so that what rings on keeps its
-/// shape. Then direct current is blocked and the sample held to -1..=1.
+/// A peak limiter without look-ahead, for minimum latency: it follows a rising peak in the very sample (a soft
+/// ceiling from 0.8 of full scale on), and releases slowly, so that a ringing mode keeps its shape. A high-pass then
+/// blocks direct current, and the sample is clamped to -1..=1.
 ///
 /// # Real-time
 /// No allocation.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Limiter {
-    /// The peak that is being held down.
+    /// The held peak.
     envelope: [f32; LANES],
-    /// The direct current.
+    /// The estimate of direct current.
     mean: [f32; LANES],
     release: f32,
-    /// How much of the mean stays from one sample to the next.
+    /// Share of the mean that remains from one sample to the next: `exp(-2 pi DC_BLOCK_HZ / sample_rate)`.
     keep: f32,
-    /// Whether any peak held is above [`KNEE`]; if none is, and no sample either, there is nothing to limit.
+    /// Whether any held peak is above [`KNEE`]; if neither a held peak nor a sample is, the limiter is idle.
     holding: bool,
 }
 
@@ -51,15 +50,16 @@ impl Limiter {
         }
     }
 
-    /// Forgets all that was, at once.
+    /// Resets the state at once.
     pub(super) fn clear(&mut self) {
         self.envelope = [0.0; LANES];
         self.mean = [0.0; LANES];
         self.holding = false;
     }
 
-    /// Holds a stretch of samples, of which `loudest` is the largest, below full scale, in a smooth curve from [`KNEE`]
-    /// on; the answer is whether any may have changed.
+    /// Limits a stretch of samples, with the maximum `loudest`, to below full scale, along a smooth curve from
+    /// [`KNEE`] on: with `e = (peak - KNEE) / (1 - KNEE)`, a peak becomes `(KNEE + e) / (1 + e)`. Returns whether any
+    /// sample may have changed.
     #[inline(always)]
     pub(super) fn hold_down(&mut self, columns: &mut [[f32; LANES]], loudest: f32) -> bool {
         if !(loudest > KNEE || self.holding) {
@@ -83,10 +83,11 @@ impl Limiter {
         true
     }
 
-    /// Takes direct current out of up to four samples of each channel, holds each to its gain at most, by which it is
-    /// multiplied.
+    /// Removes direct current from up to four samples of each channel: `y = (x - mean) * gain`, with `x - mean`
+    /// clamped to full scale, then `mean = keep * mean + (1 - keep) * x`.
     ///
-    /// Four together, since a sample's mean needs the one before it, but what four samples add to a mean does not.
+    /// Four together: the mean of a sample depends on the one before it, but the contribution of four samples to a
+    /// mean does not.
     #[inline(always)]
     pub(super) fn finish<const FUSED: bool>(&mut self, columns: &mut [[f32; LANES]], gains: &[f32]) {
         let keep = self.keep;
@@ -104,9 +105,9 @@ impl Limiter {
         self.mean = mean;
     }
 
-    /// Makes exact zeros of trifles; the answer is the largest number that could still be heard.
+    /// Sets tiny values to zero; returns the largest value that is still audible.
     ///
-    /// The peak that is held alone moves nothing: with silence coming in it only decays.
+    /// The held peak does not count: with silence as the input it only decays.
     #[inline(always)]
     pub(super) fn settle(&mut self) -> f32 {
         settled(std::slice::from_mut(&mut self.envelope));
@@ -125,7 +126,8 @@ fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers, in one instruction; [`f32::max`] takes three to do right by NaN, which never comes here.
+/// The larger of two numbers, in one instruction; [`f32::max`] takes three because it handles NaN, which never occurs
+/// here.
 #[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -148,22 +150,22 @@ impl Ramp {
         Self { level: 0.0, step: 1.0 / (Self::LENGTH_S * sample_rate), up: true }
     }
 
-    /// Turns towards full level.
+    /// Starts to rise to full level.
     pub(super) fn fade_in(&mut self) {
         self.up = true;
     }
 
-    /// Turns towards silence.
+    /// Starts to fall to silence.
     pub(super) fn fade_out(&mut self) {
         self.up = false;
     }
 
-    /// Whether it is on the way to silence, or there.
+    /// Whether it falls, or is silent.
     pub(super) fn is_falling(&self) -> bool {
         !self.up
     }
 
-    /// Whether it has come down to exactly zero and stays there.
+    /// Whether it is at exactly zero and stays there.
     pub(super) fn is_down(&self) -> bool {
         !self.up && self.level == 0.0
     }
@@ -187,7 +189,7 @@ mod tests {
 
     const RATE: f32 = 48_000.0;
 
-    /// One channel's way through the limiter.
+    /// The output of one channel of the limiter.
     fn through(limiter: &mut Limiter, input: &[f32]) -> Vec<f32> {
         let mut columns: Vec<[f32; LANES]> = vec![[0.0; LANES]; input.len()];
         for (column, sample) in columns.iter_mut().zip(input) {
@@ -212,7 +214,7 @@ mod tests {
     fn a_quiet_signal_passes_as_it_is() {
         let input = sine(0.7, 4800);
         let out = through(&mut Limiter::new(RATE), &input);
-        // The block of direct current turns a 200 Hz sine by 1.4 degrees and takes its sudden start for a little of it.
+        // The high-pass shifts a 200 Hz sine by 1.4 degrees, and removes a little of its sudden start.
         let worst = input.iter().zip(&out).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(worst < 0.7 * 0.06, "{worst}");
     }
@@ -222,12 +224,12 @@ mod tests {
         let out = through(&mut Limiter::new(RATE), &sine(5.0, 4800));
         let peak = out.iter().fold(0.0_f32, |a, b| a.max(b.abs()));
         assert!((0.9..=1.0).contains(&peak), "{peak}");
-        // From the second period on it is a sine again, not one with its tops cut off.
+        // From the second period on it is a sine again, without clipped peaks.
         let later = &out[480..];
         let rms = (later.iter().map(|x| x * x).sum::<f32>() / later.len() as f32).sqrt();
         let peak = later.iter().fold(0.0_f32, |a, b| a.max(b.abs()));
         assert!((rms / peak - 0.707).abs() < 0.03, "{rms} of {peak}");
-        // And it recovers: half a second later a quiet signal passes nearly whole.
+        // It recovers: half a second later a quiet signal passes nearly whole.
         let mut limiter = Limiter::new(RATE);
         through(&mut limiter, &sine(5.0, 4800));
         through(&mut limiter, &[0.0; 24_000]);
@@ -238,7 +240,7 @@ mod tests {
     fn direct_current_dies_away_and_the_limiter_comes_to_rest() {
         let mut limiter = Limiter::new(RATE);
         let out = through(&mut limiter, &[0.5; 48_000]);
-        // What single precision can't tell from none: -90 dB.
+        // Zero within single precision: -90 dB.
         assert!(out[47_999].abs() < 3e-5, "{}", out[47_999]);
         assert!(limiter.settle() > 0.4);
         through(&mut limiter, &[0.0; 96_000]);

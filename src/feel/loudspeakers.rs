@@ -1,4 +1,4 @@
-//! How what is felt is panned to loudspeakers.
+//! Panning of cues to loudspeakers.
 
 use arrayvec::ArrayVec;
 use glam::Vec2;
@@ -7,29 +7,29 @@ use super::Spot;
 use super::mix::{FAINT, Output};
 use crate::floor::{Actuator, Loudspeaker};
 
-/// Loudspeakers that play one cue at most.
+/// Maximum number of loudspeakers that play one cue.
 pub(super) const NEAREST: usize = 3;
 
-/// Full scales per newton of a loudspeaker without a gain of its own: as a nominal actuator has them.
+/// Full scales per newton of a loudspeaker without a gain of its own: the same as for a nominal actuator.
 pub(super) const PER_NEWTON: f32 = 1.0 / Actuator::nominal(0).full_scale.0;
 
-/// As near as a loudspeaker gets, in metres: nobody stands inside of one.
+/// Minimum distance to a loudspeaker, in metres: bounds the gain at its place.
 const NEAR_M: f32 = 0.1;
 
-/// The loudspeakers that play one cue, and how much of it each gets.
+/// The loudspeakers that play one cue, with the gain of each.
 pub(super) type Panned = ArrayVec<Output, NEAREST>;
 
 /// The loudspeakers around the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Loudspeakers {
-    /// Where each is and what it gets of a cue that only it plays.
+    /// Place of each, and its output at full gain.
     all: ArrayVec<(Vec2, Output), { Loudspeaker::MOST }>,
     /// Centres of the tiles.
     centres: Box<[Vec2]>,
 }
 
 impl Loudspeakers {
-    /// Those of `all` that a device of so many channels has, for a floor whose tiles have these centres.
+    /// The loudspeakers of `all` within the channels of the device, for a floor with these centres of tiles.
     pub(super) fn new(all: &[Loudspeaker], centres: Vec<Vec2>, channels: usize) -> Self {
         let playable = all.iter().filter(|one| {
             usize::from(one.channel) < channels && one.at.is_finite() && one.gain_db.is_finite()
@@ -41,12 +41,11 @@ impl Loudspeakers {
         Self { all: all.collect(), centres: centres.into() }
     }
 
-    /// Where something on these spots is heard, of which `audio_gain` (0 to 1) is to be heard at all. It comes from `at`,
-    /// in floor metres, or from the middle of the spots.
+    /// Pans a cue on these spots with the level `audio_gain` (0 to 1). It comes from `at`, in floor metres, or from
+    /// the middle of the spots.
     ///
-    /// The three nearest loudspeakers share it, the nearer the more, with the same
-    /// power together wherever it is. The share of the third falls to nothing
-    /// where a fourth becomes as near, so nothing jumps when a foot moves.
+    /// The three nearest loudspeakers share it, the nearer the more, with constant total power at every place. The
+    /// share of the third falls to zero where a fourth becomes as near, so that nothing jumps when a foot moves.
     ///
     /// # Real-time
     /// No allocation.
@@ -74,7 +73,7 @@ impl Loudspeakers {
             self.all.iter().map(|(at, output)| (at.distance(place).max(NEAR_M), *output)).collect();
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let beyond = near.get(NEAREST).map_or(0.0, |(distance, _)| distance.recip());
-        // A fourth as near as the first takes no part, but then the first must not fall silent.
+        // A fourth as near as the first gets no share, but then the first must not become silent.
         let share = |distance: f32| distance.recip() - beyond + 1e-4;
         let power: f32 = near.iter().take(NEAREST).map(|(distance, _)| share(*distance).powi(2)).sum();
         let loudness = level / power.sqrt();
@@ -154,7 +153,7 @@ mod tests {
     #[test]
     fn nothing_is_heard_that_is_not_meant_to_be_or_makes_no_sense() {
         let speakers = corners();
-        // The last is so little that it would sound in denormal numbers.
+        // The last one is below `FAINT`: it would be played in denormal numbers.
         for (tile, weight, audio_gain) in [
             (0, 1.0, 0.0),
             (0, 1.0, f32::NAN),

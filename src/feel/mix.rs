@@ -1,4 +1,4 @@
-//! The rows of samples that voices and clicks are added to, and which tile drives which channel.
+//! The rows of samples to which voices and clicks are added, and the channel of each tile.
 
 use glam::{Mat4, Vec4};
 
@@ -13,7 +13,7 @@ pub(super) type LaneSet = u16;
 /// A share of a sound below this (-100 dB) counts as zero.
 pub(super) const FAINT: f32 = 1e-5;
 
-/// Where a tile's share of a cue goes.
+/// The output for a tile's share of a cue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Output {
     pub(super) channel: usize,
@@ -21,14 +21,15 @@ pub(super) struct Output {
     pub(super) per_newton: f32,
 }
 
-/// Which channel moves which tile.
+/// The channel of each tile.
 #[derive(Clone, Debug)]
 pub(super) struct Wiring {
     outputs: Box<[Option<Output>]>,
 }
 
 impl Wiring {
-    /// `actuators` in tile order; one whose channel the device lacks, or whose full scale is not a force, is left out.
+    /// `actuators` in tile order; leaves out those with a channel that the device lacks, or without a positive full
+    /// scale.
     pub(super) fn new(actuators: Vec<Option<Actuator>>, channels: usize) -> Self {
         let output = |actuator: Actuator| {
             let channel = usize::from(actuator.channel);
@@ -44,19 +45,19 @@ impl Wiring {
         self.outputs.iter().map(|output| output.map(|output| output.channel))
     }
 
-    /// What moves tile number `tile`; `None` if nothing does.
+    /// The output of tile number `tile`; `None` if it has none.
     pub(super) fn output(&self, tile: u16) -> Option<Output> {
         self.outputs.get(usize::from(tile)).copied().flatten()
     }
 }
 
-/// One block of samples per channel, on the way to the limiter; channels that nobody writes to cost nothing.
+/// One block of samples per channel, on the way to the limiter; unused channels cost nothing.
 #[derive(Clone, Debug)]
 pub(super) struct Mix {
     samples: Vec<f32>,
     stride: usize,
     frames: usize,
-    /// Which rows of each group hold this block's samples; the others hold old ones.
+    /// Rows of each group with samples of this block; the others hold old ones.
     open: Vec<LaneSet>,
 }
 
@@ -87,14 +88,14 @@ impl Mix {
         row
     }
 
-    /// Whether anybody has written to the channels of this group.
+    /// Whether the channels of this group contain samples of this block.
     pub(super) fn is_open(&self, group: usize) -> bool {
         self.open[group] != 0
     }
 
-    /// Adds samples `from` up to `from + samples` of a group's rows to `columns`, of which at least as many are given.
+    /// Adds samples `from` up to `from + samples` of a group's rows to `columns`, which must have at least as many.
     ///
-    /// Rows that nobody wrote to add nothing. Columns beyond `samples` are of no meaning afterwards.
+    /// Unused rows add nothing. Columns beyond `samples` are undefined afterwards.
     ///
     /// # Panics
     /// If `from` is not a multiple of [`LANES`].
@@ -115,7 +116,7 @@ impl Mix {
             }
             let mut across = [[0.0; LANES]; LANES];
             transpose(&rows, &mut across);
-            // As one flat run of numbers: nested loops over both would be made slow gathers of.
+            // As one flat run of numbers: the compiler turns nested loops over both into slow gathers.
             for (sample, more) in columns.as_flattened_mut().iter_mut().zip(across.as_flattened()) {
                 *sample += more;
             }
@@ -125,8 +126,8 @@ impl Mix {
 
 const NOTHING: [f32; LANES] = [0.0; LANES];
 
-/// Writes rows to columns, in squares of four by four.
-// Not inlined: wider instructions would make slow gathers of these shuffles.
+/// Transposes rows to columns, in squares of four by four.
+// Not inlined: with wider instructions the compiler turns these shuffles into slow gathers.
 #[inline(never)]
 pub(super) fn transpose<const N: usize>(rows: &[&[f32; N]; LANES], columns: &mut [[f32; LANES]; N]) {
     for lane in (0..LANES).step_by(4) {
@@ -146,10 +147,10 @@ pub(super) fn transpose<const N: usize>(rows: &[&[f32; N]; LANES], columns: &mut
     }
 }
 
-/// Below this a number is as good as zero, and far above the denormal numbers, which are slow to compute with.
+/// Below this a number counts as zero; far above the denormal numbers, which are slow to compute with.
 const TRIFLE: f32 = 1e-12;
 
-/// Makes exact zeros of trifles; the answer is the largest absolute number that is left.
+/// Sets tiny values to zero; returns the largest absolute value that is left.
 #[inline(always)]
 pub(super) fn settled(numbers: &mut [[f32; LANES]]) -> f32 {
     // Without a sign, the bits of numbers are in the order of the numbers.

@@ -1,4 +1,4 @@
-//! What the floor feels like: cues in, actuator samples out.
+//! The haptic renderer: cues in, actuator samples out.
 //!
 //! ```text
 //! CueSender ==ring==> schedule -> clicks strike ModalBanks -+
@@ -6,10 +6,9 @@
 //!           ==sustained cues======> voices of what lasts --+-> mix -> rack -> samples
 //! ```
 //!
-//! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
-//! free of allocation, locks, logs and system calls. Two tools check that: clippy refuses the types, methods and
-//! macros that `clippy.toml` lists in all of this module, and `tests/measured` renders the busiest ten seconds under
-//! `assert_no_alloc`.
+//! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is free of allocation, locks, logs and
+//! system calls. Two tools check that: clippy rejects the types, methods and macros that `clippy.toml` lists in all
+//! of this module, and `tests/measured` renders the busiest ten seconds under `assert_no_alloc`.
 
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 

@@ -1,18 +1,18 @@
-//! What is muted.
+//! Mutes of the whole floor and of single tiles.
 
 use crate::floor::TileId;
 
-/// What somebody has muted.
+/// The mutes that are set.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Muted {
-    /// Whether nothing is felt or heard at all.
+    /// Whether everything is muted, felt and heard.
     pub all: bool,
-    /// The tiles that are not felt, in tile-index order.
+    /// The muted tiles, in tile-index order.
     pub tiles: Vec<TileId>,
 }
 
 impl Muted {
-    /// Whether everything can be felt.
+    /// Whether no mute is set.
     #[must_use]
     pub fn is_nothing(&self) -> bool {
         !self.all && self.tiles.is_empty()

@@ -11,14 +11,13 @@ use super::{
 };
 use crate::units::{Instant, Newtons};
 
-/// Most effects that are played or held at once; of more, the oldest ends.
+/// Maximum number of effects that are played or held at once; a further one ends the oldest.
 const MAX_PLAYING: usize = 16;
 
-/// Plays effects part by part as time goes on: cues for what begins, sustained cues for what is held.
+/// Plays effects part by part as time goes on: cues at the start of parts, sustained cues for held ones.
 ///
-/// It knows no clock: whoever owns it says what time it is, about once a
-/// millisecond, and gets each part ahead of its time by up to a millisecond so
-/// that the part can begin at its own sample.
+/// It has no clock: its owner passes the time about once a millisecond, and gets each part up to a millisecond early,
+/// so that the part can begin at its own sample.
 ///
 /// # Real-time
 /// No allocation beyond the list of cues that is handed in.
@@ -40,16 +39,15 @@ struct Playing {
     audio_gain: f32,
 }
 
-/// How far ahead of its time a part is handed out.
+/// Time by which a part is returned early.
 const AHEAD: Duration = Duration::from_millis(1);
 
 impl Player {
     /// Plays `effect` once from `at` on.
     ///
-    /// `owner` is whoever causes it, such as a contact's number; [`Player::due`]
-    /// asks where its foot is. A click answers a release with its release part,
-    /// if it has one. What only lasts or is driven by a value (see
-    /// [`super::Use::Once`]) is not played.
+    /// `owner` identifies the cause, such as a contact's number; [`Player::due`] asks for the place of its foot. A
+    /// click plays its release part for a release, if it has one. Effects that only last or are driven by a value
+    /// (see [`super::Use::Once`]) are not played.
     pub fn play(&mut self, effect: &Arc<Effect>, owner: u32, release: bool, cue: Cue, cues: &mut Vec<Cue>) {
         match &effect.kind {
             EffectKind::Click(Clicks { press, release: other }) => {
@@ -64,7 +62,7 @@ impl Player {
         }
     }
 
-    /// Plays `effect` from when `cue` is due for as long as `owner` holds it; nothing happens if it is held already.
+    /// Plays `effect` from the time of `cue` for as long as `owner` holds it; no effect if it is held already.
     pub fn hold(&mut self, effect: &Arc<Effect>, owner: u32, cue: &Cue) {
         let is_same = |playing: &Playing| playing.held && playing.owner == owner;
         if !self.playing.iter().any(is_same) {
@@ -72,7 +70,7 @@ impl Player {
         }
     }
 
-    /// Ends what `owners` no longer say they hold.
+    /// Ends the held effects of owners for which `holds` is false.
     pub fn let_go(&mut self, holds: impl Fn(u32) -> bool) {
         self.playing.retain(|playing| !playing.held || holds(playing.owner));
     }
@@ -98,9 +96,9 @@ impl Player {
         });
     }
 
-    /// Appends what begins until a millisecond after `now`, and what is held at `now`.
+    /// Appends the parts that begin up to a millisecond after `now`, and the effects held at `now`.
     ///
-    /// `spots` says where an owner's foot is; without an answer it is where it was.
+    /// `spots` gives the place of an owner's foot; with `None` the last place stays.
     pub fn due(
         &mut self,
         now: Instant,
@@ -122,7 +120,7 @@ impl Player {
 }
 
 impl Playing {
-    /// Hands out the parts that begin before `until`; the tones of what is held sound as sustained cues instead.
+    /// Appends the parts that begin before `until`; tones of held effects are sustained cues instead.
     fn begin_parts(&mut self, until: Instant, cues: &mut Vec<Cue>) {
         let EffectKind::Sequence(sequence) = &self.effect.kind else { return };
         while let Some(begins) = sequence.parts.get(self.next).map(|part| self.at + seconds(part.at_s))
@@ -131,7 +129,7 @@ impl Playing {
         {
             self.next += 1;
             let (spots, manner, audio_gain) = (self.spots.clone(), self.effect.manner, self.audio_gain);
-            // What answers the foot is the first part; the others are never late.
+            // Only the first part is a response to the foot; the others are never late.
             let received = if part.at_s > 0.0 { begins } else { self.received };
             let cue = Cue { at: begins, received, spots, manner, audio_gain, ..Cue::default() };
             match part.kind {
@@ -142,7 +140,7 @@ impl Playing {
         }
     }
 
-    /// Says what is held at `now`.
+    /// Appends the sustained cues of a held effect at `now`.
     fn sound_on(&self, now: Instant, sustained: &mut SustainedCues) {
         let t = now.since(self.at).as_secs_f32();
         match &self.effect.kind {
@@ -170,7 +168,7 @@ impl Playing {
         (level, hz): (f32, f32),
         sustained: &mut SustainedCues,
     ) {
-        // Beyond what feet can tell apart, what comes last stays silent.
+        // More than feet can distinguish: the latest cues stay silent.
         let _ = sustained.try_push(SustainedCue {
             key: key(self.owner, FIRST_HELD + part),
             spots: self.spots.clone(),
@@ -190,10 +188,10 @@ impl Playing {
     }
 }
 
-/// The first key number of what a player holds; lower ones are for frictions and the like.
+/// The first part number of held effects; lower ones are for frictions and the like.
 const FIRST_HELD: u32 = 16;
 
-/// A [`SustainedCue::key`]: one of up to 256 things that the foot `owner` does at once.
+/// A [`SustainedCue::key`]: one of up to 256 simultaneous cues of the foot `owner`.
 #[must_use]
 pub fn key(owner: u32, part: u32) -> u32 {
     owner.wrapping_mul(256).wrapping_add(part.min(255))

@@ -1,4 +1,4 @@
-//! Impulses that have a width, struck as series of short ones.
+//! Impulses with a width, struck as series of short ones.
 
 use std::f64::consts::TAU;
 
@@ -6,17 +6,17 @@ use arrayvec::ArrayVec;
 
 use super::{Impulse, MAX_MODES, ModalBank, Mode};
 
-/// Longest time between two of the impulses that make up a push, in seconds: a quarter of the fastest mode's period.
+/// Maximum time between two impulses of a push, in seconds: a quarter of the fastest mode's period.
 const SPACING_S: f32 = 0.000_25;
 
-/// Fewest impulses of a push that has a width.
+/// Minimum number of impulses of a push that has a width.
 const FEWEST: usize = 6;
 
-/// Pushes under way on one channel at once; of more, the rest is struck at once.
+/// Maximum number of pushes under way on one channel; a further one is struck as an ideal impulse.
 const MAX_PUSHES: usize = 8;
 
-/// How much a push may be strengthened so that the strongest mode keeps its level; one much wider than that mode's
-/// period could not do it with any strength.
+/// Maximum gain of a push that keeps the level of its strongest mode; a push much wider than that mode's period could
+/// not do it at any gain.
 const STRONGEST: f32 = 4.0;
 
 /// The pushes that strike one modal bank: an impulse with a width is a row of small ones.
@@ -38,9 +38,9 @@ struct Push {
     gain: f32,
     count: usize,
     done: usize,
-    /// Samples between two impulses, times the impulses done, gives the place of each.
+    /// Samples between two impulses; the place of an impulse is this times the number of impulses before it.
     spacing: f32,
-    /// Samples since the first.
+    /// Samples since the first impulse.
     age: usize,
 }
 
@@ -49,18 +49,17 @@ impl Pushes {
         Self { sample_rate, under_way: ArrayVec::new() }
     }
 
-    /// Whether none is under way.
+    /// Whether no push is under way.
     pub(super) fn is_empty(&self) -> bool {
         self.under_way.is_empty()
     }
 
-    /// Ends them all at once.
+    /// Ends all pushes at once.
     pub(super) fn clear(&mut self) {
         self.under_way.clear();
     }
 
-    /// Strikes modes that can be played, so that the very next sample is the first that moves; the answer is how
-    /// many modes had to make room.
+    /// Strikes playable modes; the very next sample is the first to move. Returns the number of modes stolen.
     pub(super) fn strike(
         &mut self,
         bank: &mut ModalBank,
@@ -81,7 +80,7 @@ impl Pushes {
         stolen
     }
 
-    /// Adds the bank's next `out.len()` samples to `out`; the answer is how many modes had to make room meanwhile.
+    /// Adds the bank's next `out.len()` samples to `out`; returns the number of modes stolen meanwhile.
     pub(super) fn render(&mut self, bank: &mut ModalBank, out: &mut [f32]) -> u32 {
         let (mut rest, mut stolen) = (out, 0);
         while !self.under_way.is_empty() && !rest.is_empty() {
@@ -117,14 +116,15 @@ impl Push {
     }
 }
 
-/// Share of a push that lies in its impulse number `n` of `count`; all together make 1 (but for the rounding of a sum).
+/// Share of impulse number `n` of `count` in a push, `(1 - round + round * 30 u^2 (1 - u)^2) / count` with `u = (n +
+/// 0.5) / count`; the shares add up to 1 (except for rounding).
 fn weight(n: usize, count: usize, round: f32) -> f32 {
     let u = (n as f32 + 0.5) / count as f32;
     let bell = 30.0 * u * u * (1.0 - u) * (1.0 - u);
     (1.0 - round + round * bell) / count as f32
 }
 
-/// What a push must be multiplied with so that its strongest mode is struck as by an ideal impulse.
+/// Gain at which the strongest mode of a push is struck as by an ideal impulse.
 fn evened(modes: &ArrayVec<Mode, MAX_MODES>, round: f32, count: usize, width_s: f64) -> f32 {
     let strongest = modes.iter().max_by(|a, b| a.amplitude.abs().total_cmp(&b.amplitude.abs()));
     let hz = strongest.map_or(0.0, |mode| f64::from(mode.frequency_hz));

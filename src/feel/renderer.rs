@@ -23,30 +23,30 @@ use super::{FeelCounters, SustainedCues};
 use crate::floor::{Actuator, Drive, Floor, Loudspeaker, Response};
 use crate::units::Instant;
 
-/// Different modes that ring at once on one channel, before the weakest has to make room.
+/// Maximum number of different modes that ring at once on one channel; a further one steals the weakest.
 const MODES_PER_CHANNEL: usize = 64;
 
-/// What a renderer is made for.
+/// The configuration of a renderer.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RendererConfig {
-    /// Samples per second, 8,000 to 768,000; what is outside is brought inside.
+    /// Samples per second, 8,000 to 768,000; values outside are clamped.
     pub sample_rate: u32,
     /// Channels in a frame.
     pub channels: usize,
-    /// What moves each tile, in tile-index order.
+    /// The actuator of each tile, in tile-index order.
     pub actuators: Vec<Option<Actuator>>,
-    /// What drives the actuators.
+    /// The amplifier and coil of the actuators.
     pub drive: Drive,
     /// The measured response of each tile's actuator, in tile-index order; may be shorter than `actuators`.
     pub responses: Vec<Option<Response>>,
-    /// The loudspeakers that cues and sustained cues with a share `audio_gain` are heard from.
+    /// The loudspeakers for cues and sustained cues with an `audio_gain`.
     pub loudspeakers: Vec<Loudspeaker>,
-    /// The centre of each tile, in floor metres and tile-index order: what is felt on a tile is heard from there.
+    /// The centre of each tile, in floor metres and tile-index order: the place of the sounds of a tile.
     pub centres: Vec<Vec2>,
-    /// Most frames rendered in one go; longer blocks are rendered in parts.
+    /// Maximum number of frames rendered at once; longer blocks are rendered in parts.
     pub max_block: usize,
-    /// How long after its cause a cue is played, so that the delay is the same for all.
+    /// Delay between the cause of a cue and its playback, the same for all cues.
     pub delay: Duration,
 }
 
@@ -67,16 +67,16 @@ impl RendererConfig {
         }
     }
 
-    /// The same, but every cue is played this long after its cause.
+    /// Sets the delay between the cause of a cue and its playback.
     #[must_use]
     pub fn with_delay(self, delay: Duration) -> Self {
         Self { delay, ..self }
     }
 }
 
-/// The two ends of one wire: the sensing thread keeps the [`CueSender`], the audio side the [`Renderer`].
+/// The two ends of one queue: the sensing thread keeps the [`CueSender`], the audio side the [`Renderer`].
 ///
-/// All memory is taken here.
+/// Allocates all memory.
 #[must_use]
 pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
     let (cues, ring) = evicting_queue(WAITING);
@@ -124,26 +124,24 @@ pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
 /// The first sample of a cue that moves a plate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Onset {
-    /// Which frame of the last block it lies in.
+    /// Its frame in the last block.
     pub frame: usize,
-    /// When the packet arrived that caused it.
+    /// Arrival time of the packet that caused it.
     pub received: Instant,
-    /// When its cue was sent, as told by `CueSender::note_time`.
+    /// Time at which its cue was sent, as set by `CueSender::note_time`.
     pub sent: Instant,
 }
 
 /// Turns cues into actuator samples.
 ///
-/// There are two ways to drive it. In lockstep, for files and tests,
-/// [`Renderer::render`] is told when each block starts on the clock that the
-/// cues are stamped with, and each cue begins at its own sample. A device that
-/// runs on a clock of its own calls [`Renderer::render_now`], and each cue
-/// begins with the block it meets; or it estimates each block's start on the
-/// cues' clock and calls [`Renderer::render`] with a delay long enough that no
-/// cue comes late: then all are felt equally late.
+/// There are two ways to drive it. In lockstep, for files and tests, [`Renderer::render`] gets the start of each
+/// block on the clock of the cues, and each cue begins at its own sample. A device with a clock of its own calls
+/// [`Renderer::render_now`], and each cue begins with the next block; or it estimates each block's start on the cues'
+/// clock and calls [`Renderer::render`] with a delay long enough that no cue comes late: then all cues have the same
+/// latency.
 ///
 /// # Real-time
-/// Rendering does not allocate, lock, log, wait or call the system.
+/// Rendering does not allocate, lock, log, block or enter the system.
 #[derive(Debug)]
 pub struct Renderer {
     sample_rate: u32,
@@ -153,9 +151,9 @@ pub struct Renderer {
     wiring: Wiring,
     loudspeakers: Loudspeakers,
     shared: Arc<Shared>,
-    /// How often silence was turned on and off, as far as is dealt with.
+    /// Number of changes of silence that have been processed.
     turns: u64,
-    /// The same of single tiles' mutes.
+    /// The same for the mutes of single tiles.
     mute_changes: u64,
     schedule: Schedule,
     clock: SampleClock,
@@ -185,26 +183,26 @@ impl Renderer {
         self.channels
     }
 
-    /// Most frames rendered in one go.
+    /// Maximum number of frames rendered at once.
     #[must_use]
     pub(crate) fn max_block(&self) -> usize {
         self.max_block
     }
 
-    /// How long after its cause a cue is played.
+    /// Delay between the cause of a cue and its playback.
     #[must_use]
     pub fn delay(&self) -> Duration {
         self.delay
     }
 
-    /// What could not be done so far.
+    /// Counts of faults so far.
     #[must_use]
     pub fn counters(&self) -> FeelCounters {
         FeelCounters { dropped: self.schedule.dropped(), ..self.shared.counters() }
     }
 
-    /// A view of what is played, for another thread; `None` without channels. A second call takes the view away from
-    /// the first.
+    /// A view of the played samples, for another thread; `None` without channels. A second call disconnects the first
+    /// view.
     ///
     /// Takes memory, so it belongs before the start.
     #[cfg(any(feature = "internals", test))]
@@ -217,16 +215,16 @@ impl Renderer {
         Some(reader)
     }
 
-    /// The cues whose first moving sample lies in the block rendered last, in order.
+    /// The cues with their first moving sample in the last block, in order.
     #[must_use]
     pub fn onsets(&self) -> &[Onset] {
         &self.onsets
     }
 
-    /// Forgets every cue that was sent and all that sounds; what is sent from now on rises from silence.
+    /// Drops all cues sent so far and all sounds; later cues start from silence.
     ///
-    /// For a device that was away: nobody is to feel at once what happened meanwhile. Cues that are
-    /// forgotten are counted as muted.
+    /// For a device that was away: the cues of the meanwhile must not be felt all at once. Dropped cues count as
+    /// muted.
     pub fn restart(&mut self) {
         count(&self.shared.muted, self.schedule.forget_all());
         self.modes.clear();
@@ -242,10 +240,9 @@ impl Renderer {
 
     /// Fills `out` with the frames from `block_start` on, each cue at its own sample.
     ///
-    /// `out` is interleaved, [`Renderer::channels`] wide; samples that make no
-    /// whole frame are zero. A cue is due at its time plus the delay, on the
-    /// nearest sample. One whose time is past starts with the block and is
-    /// counted late; one for later blocks waits. Blocks may leave gaps.
+    /// `out` is interleaved, [`Renderer::channels`] wide; samples that make no whole frame are zero. A cue is due at
+    /// its time plus the delay, on the nearest sample. A cue with a past time starts with the block and counts as
+    /// late; a cue for a later block waits. Blocks may leave gaps.
     ///
     /// # Real-time
     /// No allocation, lock, log or system call.
@@ -260,7 +257,7 @@ impl Renderer {
 
     /// Fills `out` with the next frames; every cue that has arrived starts with the first of them.
     ///
-    /// Like [`Renderer::render`], but the cues' times and the delay don't matter, and none is late.
+    /// As [`Renderer::render`], but the cues' times and the delay are not used, and no cue is late.
     ///
     /// # Real-time
     /// No allocation, lock, log or system call.
@@ -291,7 +288,7 @@ impl Renderer {
         whole / self.channels
     }
 
-    /// Turns the ramp the way the sender wants it.
+    /// Sets the ramp and the mutes as the sender requests.
     fn update_silence(&mut self) {
         let turns = self.shared.turns();
         if turns != self.turns {
@@ -342,7 +339,7 @@ impl Renderer {
     /// Strikes every cue that is due in this part, rendering each bank up to the cue's sample first.
     fn strike_cues(&mut self, first: usize, frames: usize) {
         for Due { frame, cue, sent, .. } in self.schedule.take_before(first + frames) {
-            // A clock that is estimated wavers by a sample; that is not late.
+            // An estimated clock varies by a sample; that is not late.
             count(&self.shared.late, u32::from(frame < -1));
             let frame = usize::try_from(frame).unwrap_or(0).clamp(first, first + frames - 1);
             let mut felt = false;

@@ -1,4 +1,4 @@
-//! Cues in the order of their samples, and the clock that says which sample a moment is.
+//! Cues in the order of their samples, and the clock that converts times to samples.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use super::evicting_queue::Reader;
 use super::sender::Message;
 use crate::units::Instant;
 
-/// Cues that can wait for their time; more stay in the ring.
+/// Maximum number of cues that wait for their time; more stay in the ring.
 pub(super) const WAITING: usize = 256;
 
-/// Cues that wait for the block in which their time comes.
+/// Cues that wait for the block of their time.
 #[derive(Debug)]
 pub(super) struct Schedule {
     ring: Reader<Message>,
@@ -18,12 +18,12 @@ pub(super) struct Schedule {
     waiting: Vec<Due>,
 }
 
-/// A cue and the frame it is due in, counted from the start of the block at hand.
+/// A cue and its frame, counted from the start of the block at hand.
 #[derive(Debug)]
 pub(super) struct Due {
     pub(super) frame: i64,
     pub(super) cue: Cue,
-    /// When it was sent, for measuring latency.
+    /// Time at which it was sent, for measuring latency.
     pub(super) sent: Instant,
     turns: u64,
 }
@@ -33,7 +33,7 @@ impl Schedule {
         Self { ring, waiting: Vec::with_capacity(WAITING) }
     }
 
-    /// Forgets every cue that was sent before silence had been turned on and off `turns` times; the answer is how many.
+    /// Drops every cue that was sent before silence had changed `turns` times; returns their number.
     pub(super) fn forget(&mut self, turns: u64) -> u32 {
         let before = self.waiting.len();
         self.waiting.retain(|due| due.turns >= turns);
@@ -44,12 +44,12 @@ impl Schedule {
         forgotten
     }
 
-    /// Cues evicted so far because newer ones took their place.
+    /// Cues evicted so far in favour of newer ones.
     pub(super) fn dropped(&self) -> u64 {
         self.ring.dropped()
     }
 
-    /// Forgets every cue that was sent so far; the answer is how many.
+    /// Drops every cue sent so far; returns their number.
     pub(super) fn forget_all(&mut self) -> u32 {
         let mut forgotten = self.waiting.len() as u32;
         self.waiting.clear();
@@ -59,7 +59,7 @@ impl Schedule {
         forgotten
     }
 
-    /// Takes in new cues and puts all in order; `frame_of` says when a cue is due.
+    /// Takes new cues from the ring and sorts all; `frame_of` gives the frame of a cue.
     pub(super) fn arrange(&mut self, frame_of: impl Fn(&Cue) -> i64) {
         while self.waiting.len() < WAITING
             && let Some(message) = self.ring.pop()
@@ -73,7 +73,7 @@ impl Schedule {
         self.waiting.sort_unstable_by_key(|due| (due.frame, due.cue.received));
     }
 
-    /// Takes out, in order, the cues that are due before frame `end`.
+    /// Removes, in order, the cues that are due before frame `end`.
     pub(super) fn take_before(&mut self, end: usize) -> impl Iterator<Item = Due> {
         let end = i64::try_from(end).unwrap_or(i64::MAX);
         let due = self.waiting.partition_point(|due| due.frame < end);
@@ -81,21 +81,20 @@ impl Schedule {
     }
 }
 
-/// The renderer's idea of when its next sample is.
+/// The renderer's estimate of the time of its next sample.
 ///
-/// Blocks that follow each other without a gap are counted in samples, so that
-/// a cue's sample does not depend on how time was cut into blocks; their start,
-/// given in whole microseconds, only says that there was no gap.
+/// Blocks that follow each other without a gap are counted in samples, so that a cue's sample does not depend on the
+/// sizes of the blocks; their start, given in whole microseconds, only shows whether there was a gap.
 #[derive(Debug)]
 pub(super) struct SampleClock {
     sample_rate: u64,
-    /// Where counting began.
+    /// Start of the counting.
     anchor: Option<Instant>,
     /// Samples since then.
     position: u64,
 }
 
-/// Spans longer than this (139 years) are as good as for ever.
+/// Spans longer than this (139 years) count as infinite.
 const FOR_EVER_US: u64 = 1 << 52;
 
 impl SampleClock {
@@ -120,7 +119,7 @@ impl SampleClock {
         self.position += frames as u64;
     }
 
-    /// Forgets the time, so that the next block starts anew.
+    /// Resets the clock, so that the next block starts a new count.
     pub(super) fn forget(&mut self) {
         self.anchor = None;
     }
@@ -170,7 +169,7 @@ mod tests {
         assert_eq!(clock.frame_of(Instant::from_millis(6)), 48);
         assert_eq!(clock.frame_of(Instant::from_millis(4)), -48);
         assert!(clock.frame_of(Instant::from_micros(u64::MAX)) > 1 << 40);
-        // Even a gap of a single sample.
+        // A gap of a single sample counts too.
         clock.advance(48);
         clock.begin(Instant::from_micros(6_021));
         assert_eq!(clock.frame_of(Instant::from_micros(7_021)), 48);

@@ -1,29 +1,29 @@
-//! Least and greatest samples of each channel, for those who draw them.
+//! Minimum and maximum of each channel over short stretches, for drawing.
 
 use rtrb::{Consumer, Producer, RingBuffer};
 
 /// Points per channel that a [`ScopeReader`] holds.
 const POINTS: usize = 128;
 
-/// Time that those points cover.
+/// Time covered by those points, in seconds.
 const SPAN_S: f32 = 0.1;
 
-/// Rows of points that may wait for the reader; when it stops reading, newer ones are left out.
+/// Maximum number of rows that wait for the reader; when it stops reading, newer ones are dropped.
 const WAITING: usize = 2 * POINTS;
 
 /// The lowest and highest sample of a short stretch, in full scales.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MinMax {
-    /// Lowest, at least -1.
+    /// Minimum, at least -1.
     pub min: f32,
-    /// Highest, at most 1.
+    /// Maximum, at most 1.
     pub max: f32,
 }
 
-/// What the actuators did in the last 100 ms, for a window's scopes.
+/// The actuators' samples of the last 100 ms, for a window's scopes.
 ///
-/// The renderer's end writes, this end reads; neither ever waits for the
-/// other. A reader that looks away misses what happened meanwhile.
+/// The renderer's end writes, this end reads; neither ever waits for the other. A reader that pauses misses the
+/// samples of the meanwhile.
 #[derive(Debug)]
 pub struct ScopeReader {
     ring: Consumer<MinMax>,
@@ -37,7 +37,7 @@ pub struct ScopeReader {
 #[derive(Debug)]
 pub(super) struct ScopeWriter {
     ring: Producer<MinMax>,
-    /// The stretch that is being measured.
+    /// The stretch in progress.
     row: Vec<MinMax>,
     frames_left: usize,
     frames_per_point: usize,
@@ -65,7 +65,7 @@ pub(super) fn scope(channels: usize, sample_rate: f32) -> (ScopeWriter, ScopeRea
 const UNSEEN: MinMax = MinMax { min: f32::INFINITY, max: f32::NEG_INFINITY };
 
 impl ScopeWriter {
-    /// Takes a block of interleaved samples.
+    /// Processes a block of interleaved samples.
     pub(super) fn observe(&mut self, samples: &[f32]) {
         for frame in samples.chunks_exact(self.row.len()) {
             for (point, sample) in self.row.iter_mut().zip(frame) {
@@ -74,7 +74,7 @@ impl ScopeWriter {
             }
             self.frames_left -= 1;
             if self.frames_left == 0 {
-                // A full ring means that nobody looks; then nothing is missed.
+                // A full ring means that the reader has stopped; dropping is right then.
                 let _ = self.ring.push_entire_slice(&self.row);
                 self.row.fill(UNSEEN);
                 self.frames_left = self.frames_per_point;
@@ -90,7 +90,7 @@ impl ScopeReader {
         self.channels
     }
 
-    /// Takes in what was rendered since the last call; the answer is whether there was anything.
+    /// Takes the rows rendered since the last call; returns whether there were any.
     pub fn update(&mut self) -> bool {
         let rows = self.ring.slots() / self.channels;
         for _ in 0..rows {

@@ -1,4 +1,4 @@
-//! The sending end of the renderer, and what both ends count.
+//! The sending end of the renderer, and the counters of both ends.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -9,12 +9,12 @@ use super::evicting_queue::Writer;
 use super::{Cue, Spot, SustainedCues};
 use crate::units::Instant;
 
-/// What the renderer could not do, counted since it was made.
+/// Counts of the renderer's faults since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FeelCounters {
-    /// Cues that the renderer had not taken when 256 newer ones were waiting: the oldest are evicted first.
+    /// Cues evicted because 256 newer ones were waiting for the renderer; the oldest go first.
     pub dropped: u64,
-    /// Cues that came while everything was silenced, or a tile that they reach was muted.
+    /// Cues sent during silence, or with a muted tile among their spots.
     pub muted: u64,
     /// Cues that were played later than their time.
     pub late: u64,
@@ -22,19 +22,19 @@ pub struct FeelCounters {
     pub unfelt: u64,
     /// Modes of clicks that cannot be played: not finite, or outside the ranges of [`super::Mode`].
     pub refused: u64,
-    /// Ringing modes and lasting voices that had to make room for others.
+    /// Ringing modes and lasting voices stolen for others.
     pub stolen: u64,
     /// Samples that were not finite and became silence.
     pub not_finite: u64,
     /// Samples beyond eight full scales, cut off there.
     pub overloaded: u64,
-    /// Channels whose voices were silenced because their samples were not finite or beyond eight full scales.
+    /// Channels silenced because their samples were not finite or beyond eight full scales.
     pub silenced: u64,
-    /// Times that an actuator began to be turned down because it was driven too long.
+    /// Number of times that an actuator was attenuated because of heat.
     pub heated: u64,
 }
 
-/// What both ends share.
+/// The state shared by both ends.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     pub(super) muted: AtomicU64,
@@ -46,25 +46,25 @@ pub(super) struct Shared {
     pub(super) overloaded: AtomicU64,
     pub(super) silenced: AtomicU64,
     pub(super) heated: AtomicU64,
-    /// Which channel moves each tile.
+    /// The channel of each tile.
     pub(super) channels: Box<[Option<usize>]>,
-    /// Which channels are muted.
+    /// The muted channels.
     mutes: Box<[AtomicBool]>,
     /// Changes of `mutes` so far.
     mute_changes: AtomicU64,
-    /// Calls of `silence` and `resume` so far: odd means silence. A count, not
-    /// a flag, so that the renderer can't miss a silence that was soon lifted.
+    /// Calls of `silence` and `resume` so far: odd means silence. A count rather than a flag, so that the renderer
+    /// cannot miss a short silence.
     turns: AtomicU64,
 }
 
 impl Shared {
-    /// For tiles that these channels move.
+    /// For tiles with these channels.
     pub(super) fn new(channels: Box<[Option<usize>]>) -> Self {
         let count = channels.iter().flatten().max().map_or(0, |most| most + 1);
         Self { channels, mutes: (0..count).map(|_| AtomicBool::new(false)).collect(), ..Self::default() }
     }
 
-    /// How often mutes have changed.
+    /// Number of changes of the mutes.
     pub(super) fn mute_changes(&self) -> u64 {
         self.mute_changes.load(Ordering::Acquire)
     }
@@ -95,38 +95,38 @@ impl Shared {
     }
 }
 
-/// Adds to a counter; in the usual case of zero, nothing is touched.
+/// Adds to a counter; zero, the usual case, costs no memory access.
 pub(super) fn count(counter: &AtomicU64, by: u32) {
     if by > 0 {
         counter.fetch_add(u64::from(by), Ordering::Relaxed);
     }
 }
 
-/// A cue on its way, and how often silence had been turned on and off when it left.
+/// A cue with the number of changes of silence at its sending.
 #[derive(Clone, Debug)]
 pub(super) struct Message {
     pub(super) cue: Cue,
     pub(super) turns: u64,
-    /// When it left, for measuring latency.
+    /// Time of sending, for measuring latency.
     pub(super) sent: Instant,
 }
 
-/// The sensing thread's end of the wire to the renderer; none of its calls waits or allocates.
+/// The sensing thread's end of the queue to the renderer; none of its calls blocks or allocates.
 #[derive(Debug)]
 pub struct CueSender {
     pub(super) cues: Writer<Message>,
     pub(super) sustained: Input<SustainedCues>,
     pub(super) shared: Arc<Shared>,
     pub(super) turns: u64,
-    /// The time as it was last told.
+    /// The time of the last call of `note_time`.
     pub(super) now: Instant,
 }
 
 impl CueSender {
-    /// Sends a cue to be played; the answer is whether it is on its way.
+    /// Sends a cue to be played; returns whether it is on its way.
     ///
-    /// It isn't if everything is silenced; one that reaches a muted tile is, but counted too. If the renderer has
-    /// not taken any of the last 256 cues, the oldest of them is evicted. All of it is counted.
+    /// A cue is dropped during silence; a cue that reaches a muted tile is sent, but counted too. If the renderer has
+    /// taken none of the last 256 cues, the oldest of them is evicted. All of these are counted.
     pub fn send(&mut self, cue: &Cue) -> bool {
         if self.is_silenced() {
             count(&self.shared.muted, 1);
@@ -138,25 +138,24 @@ impl CueSender {
         true
     }
 
-    /// Says what time it is when the next cues are sent, on the clock that stamps packets; only for measuring latency.
+    /// Sets the send time of the next cues, on the clock that stamps packets; only for measuring latency.
     pub(crate) fn note_time(&mut self, now: Instant) {
         self.now = now;
     }
 
-    /// Says what lasts, and how, from now on.
+    /// Sets the sustained cues from now on.
     ///
-    /// To be called with every frame, also with no sustained cues: what was said last
-    /// holds for 50 ms and then fades out, in case whoever sends has died.
+    /// To be called with every frame, also with no sustained cues: the last set stays for 50 ms and then fades out,
+    /// in case the sender has stopped.
     pub fn sustain(&mut self, sustained: &SustainedCues) {
         self.cues.flush();
         self.sustained.input_buffer_mut().clone_from(sustained);
         self.sustained.publish();
     }
 
-    /// Fades everything out within 5 ms and forgets all cues that were sent, because sensing is lost or somebody says
-    /// stop.
+    /// Fades everything out within 5 ms and drops all cues sent, because sensing is lost or a person stops it.
     ///
-    /// It cannot be overtaken or lost in a full ring. Lasts until [`CueSender::resume`].
+    /// No cue can overtake it, and a full ring cannot lose it. Lasts until [`CueSender::resume`].
     pub fn silence(&mut self) {
         if !self.is_silenced() {
             self.turn();
@@ -164,17 +163,16 @@ impl CueSender {
         }
     }
 
-    /// Plays what is sent from now on.
+    /// Ends the silence: plays the cues sent from now on.
     pub fn resume(&mut self) {
         if self.is_silenced() {
             self.turn();
         }
     }
 
-    /// Mutes the actuator of tile number `tile` within 5 ms, or lets it be felt again; false if nothing moves that
-    /// tile.
+    /// Mutes or unmutes the actuator of tile number `tile` within 5 ms; returns false if the tile has none.
     ///
-    /// What it would play goes on meanwhile, unfelt. Tiles that share a channel are muted together.
+    /// Its cues go on meanwhile, unfelt. Tiles that share a channel are muted together.
     pub fn mute(&mut self, tile: u16, muted: bool) -> bool {
         let channel = self.shared.channels.get(usize::from(tile)).copied().flatten();
         let Some(mute) = channel.and_then(|channel| self.shared.mutes.get(channel)) else { return false };
@@ -183,7 +181,7 @@ impl CueSender {
         true
     }
 
-    /// Whether the actuator of tile number `tile` is muted; false if nothing moves that tile.
+    /// Whether the actuator of tile number `tile` is muted; false if the tile has none.
     #[must_use]
     pub fn mutes(&self, tile: u16) -> bool {
         let channel = self.shared.channels.get(usize::from(tile)).copied().flatten();
@@ -191,13 +189,13 @@ impl CueSender {
         mute.is_some_and(|mute| mute.load(Ordering::Relaxed))
     }
 
-    /// Whether [`CueSender::silence`] holds.
+    /// Whether [`CueSender::silence`] is in force.
     #[must_use]
     pub(crate) fn is_silenced(&self) -> bool {
         self.turns % 2 == 1
     }
 
-    /// What could not be done so far.
+    /// Counts of faults so far.
     #[must_use]
     pub fn counters(&self) -> FeelCounters {
         FeelCounters { dropped: self.cues.dropped(), ..self.shared.counters() }

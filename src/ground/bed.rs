@@ -1,4 +1,4 @@
-//! One material at work, whichever it is.
+//! The state of one ground, of any material.
 
 use super::grains::Grains;
 use super::ice::Ice;
@@ -8,7 +8,7 @@ use super::{GroundState, Material};
 use crate::floor::Rect;
 use crate::units::Instant;
 
-/// One material at work.
+/// The state of one ground.
 #[derive(Clone, Debug)]
 pub(super) enum Bed {
     Ice(Box<Ice>),
@@ -25,14 +25,14 @@ impl Bed {
         }
     }
 
-    /// A load is there that nobody saw come.
+    /// Adapts a tile to a load whose landing was not seen.
     pub(super) fn settle(&mut self, tile: usize, displacement_m: f64) {
         if let Self::Wood(wood) = self {
             wood.settle(tile, displacement_m);
         }
     }
 
-    /// One millisecond of one tile; what gives way is told to `give`.
+    /// Steps one tile by one millisecond; passes its events to `give`.
     pub(super) fn tread(&mut self, stride: &Stride<'_>, give: impl FnMut(Event)) {
         match self {
             Self::Ice(ice) => ice.tread(stride, give),
@@ -41,7 +41,7 @@ impl Bed {
         }
     }
 
-    /// Lets heal what is due; the answer is whether anything was.
+    /// Closes cracks that are due; returns whether there were any.
     pub(super) fn heal(&mut self, now: Instant) -> bool {
         match self {
             Self::Ice(ice) => ice.heal(now),
@@ -56,13 +56,13 @@ impl Bed {
         }
     }
 
-    /// What only changes with events, into the memory that `state` has.
+    /// Copies the part that only changes with events into the memory of `state`.
     pub(super) fn show(&self, state: &mut GroundState) {
         state.cracks.clear();
         state.seeds.clear();
         match self {
             Self::Ice(ice) => {
-                // All that there can ever be, so that no later look takes memory.
+                // The maximum of both, so that no later call allocates.
                 let (cracks, seeds) = ice.fracture.most();
                 state.cracks.reserve_exact(cracks);
                 state.seeds.reserve_exact(seeds);

@@ -7,19 +7,19 @@ use crate::units::Instant;
 /// One straight piece of a crack.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crack {
-    /// Where it begins, in floor metres: at a seed or at the end of another piece.
+    /// Its start, in floor metres: at a seed or at the end of another piece.
     pub from: Vec2,
-    /// Where it ends.
+    /// Its end.
     pub to: Vec2,
-    /// The energy that has gone into it, in joules: the more, the wider it gapes.
+    /// Its energy, in joules: the more, the wider it gapes.
     pub energy_j: f32,
-    /// When it opened.
+    /// Time of its opening.
     pub born: Instant,
-    /// Its number, counted as pieces open.
+    /// Its number, in the order of opening.
     pub number: u64,
-    /// The line it is part of: pieces of one line join end to end, in order of their numbers.
+    /// The line of which it is part: pieces of one line join end to end, in order of their numbers.
     pub line: u32,
-    /// How many branchings lie between it and its seed.
+    /// Number of branchings between it and its seed.
     pub rank: u8,
     /// The number of its seed.
     pub seed: u32,
@@ -32,8 +32,8 @@ impl Crack {
         self.from.distance(self.to)
     }
 
-    /// How open it is at `now`: 1 when it opens, 0 when it has frozen shut after `refreeze_s` seconds
-    /// (`None`: it never does).
+    /// Its openness at `now`: 1 when it opens, 0 when it has frozen shut after `refreeze_s` seconds (`None`: it never
+    /// does); `1 - sqrt(age / refreeze_s)` in between.
     ///
     /// # Source
     /// Stefan's law: the thickness of new ice grows with the square root of time.
@@ -44,9 +44,10 @@ impl Crack {
         refreeze_s.map_or(1.0, |whole_s| 1.0 - (age_s / whole_s).clamp(0.0, 1.0).sqrt())
     }
 
-    /// How far along the way from `start` to `end` this crack is met, 0 to 1; `None` if it is not.
+    /// Position of the first contact with this crack on the way from `start` to `end`, 0 to 1; `None` if there is
+    /// none.
     ///
-    /// A crack that ends or begins in `start` itself is where the way comes from, and is not met.
+    /// A crack that ends or begins in `start` itself is the origin of the way, and does not count.
     pub(super) fn met_by(&self, start: Vec2, end: Vec2) -> Option<f32> {
         if self.from == start || self.to == start {
             return None;

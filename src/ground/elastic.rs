@@ -1,11 +1,11 @@
-//! The mass on a damped spring that is under each tile.
+//! The mass on a damped spring below each tile.
 
 use crate::format::{num, record};
 
 record! {
-    /// What the elastic sheet under one tile is like.
+    /// The elastic sheet under one tile.
     pub struct Body = "Body", Copy;
-    /// Mass that moves, in kilograms; positive.
+    /// Moving mass, in kilograms; positive.
     pub mass_kg: f32 = "mass_kg", num(0.01..=10_000.0);
     /// Viscous damping, in newton seconds per metre; not negative.
     pub damping_n_s_m: f32 = "damping_n_s_m", num(0.0..=10_000_000.0);
@@ -18,18 +18,17 @@ record! {
 pub struct Motion {
     /// Displacement, in metres; positive is down.
     pub x_m: f64,
-    /// Its rate, in metres per second.
+    /// Velocity, in metres per second.
     pub v_m_s: f64,
-    /// The force that acted last, in newtons.
+    /// The last force, in newtons.
     pub force_n: f64,
 }
 
-/// Moves sheets on by one step of fixed length, exactly.
+/// Advances sheets by one step of fixed length, exactly.
 ///
-/// Between two instants the force goes in a straight line, as far as anybody
-/// knows of a force that is sampled. For such a force the differential
-/// equation has a closed solution, so the step neither drifts nor rings on the
-/// samples' stairs and is stable whatever the mass, damping and stiffness.
+/// Between two instants the force is taken to change linearly, the best assumption for a sampled force. For such a
+/// force the differential equation has a closed solution, so the step does not drift, does not ring on the samples'
+/// stairs, and is stable for every mass, damping and stiffness.
 ///
 /// # Source
 /// `f = m x'' + b x' + K x` (paper, section 4.1.1). With `f = f0 + r t` one solution is
@@ -40,7 +39,7 @@ pub struct Elastic {
     damping: f64,
     stiffness: f64,
     step_s: f64,
-    /// Row by row: what displacement and speed become of themselves in one step.
+    /// Row by row: the effect of one step on displacement and speed.
     decay: [[f64; 2]; 2],
 }
 
@@ -52,7 +51,7 @@ impl Elastic {
             (f64::from(body.mass_kg), f64::from(body.damping_n_s_m), f64::from(body.stiffness_n_m));
         let rate = damping / (2.0 * mass);
         let square = rate * rate - stiffness / mass;
-        // Of exp(A t) = e^(-rate t) (C I + S (A + rate I)): C and S with the decay in them, so that nothing overflows.
+        // Of exp(A t) = e^(-rate t) (C I + S (A + rate I)): C and S include the decay, so that nothing overflows.
         let (c, s) = if square.abs() < 1e-9 * (stiffness / mass) {
             let left = (-rate * step_s).exp();
             (left, left * step_s)
@@ -76,13 +75,13 @@ impl Elastic {
         self.step_s
     }
 
-    /// A sheet that has come to rest under `force_n`.
+    /// A sheet at rest under `force_n`.
     #[must_use]
     pub fn settled(&self, force_n: f64) -> Motion {
         Motion { x_m: force_n / self.stiffness, v_m_s: 0.0, force_n }
     }
 
-    /// Moves `motion` on by one step, at whose end `force_n` acts.
+    /// Advances `motion` by one step; `force_n` acts at its end.
     pub fn step(&self, motion: &mut Motion, force_n: f64) {
         let slope = (force_n - motion.force_n) / self.step_s;
         let (lag, speed) = (self.damping * slope / self.stiffness, slope / self.stiffness);
@@ -93,7 +92,7 @@ impl Elastic {
         motion.force_n = force_n;
     }
 
-    /// The one-sided kinetic energy, in joules: zero while the sheet comes up.
+    /// The one-sided kinetic energy, in joules: zero while the sheet moves up.
     ///
     /// # Source
     /// `kappa+ = 0.5 m x'^2` where `x' > 0` (paper, section 4.1.1).
@@ -102,13 +101,13 @@ impl Elastic {
         0.5 * self.mass * motion.v_m_s.max(0.0).powi(2)
     }
 
-    /// The power that damping takes, in watts, while the sheet goes down or comes up.
+    /// The power dissipated by the damping, in watts, in both directions of motion.
     #[must_use]
     pub fn lost_w(&self, motion: &Motion) -> f64 {
         self.damping * motion.v_m_s * motion.v_m_s
     }
 
-    /// Whether the sheet has come to rest with nobody on it, as far as the noise of sensors lets one tell.
+    /// Whether the sheet is at rest without a load, within the noise of the sensors.
     #[must_use]
     pub fn is_still(&self, motion: &Motion) -> bool {
         let kinetic = 0.5 * self.mass * motion.v_m_s * motion.v_m_s;
@@ -122,7 +121,7 @@ mod tests {
 
     const BODY: Body = Body { mass_kg: 60.0, damping_n_s_m: 5000.0, stiffness_n_m: 200_000.0 };
 
-    /// The same by 1000 small steps of Runge and Kutta per millisecond.
+    /// The same with 1000 small Runge-Kutta steps per millisecond.
     fn reference(body: Body, force: impl Fn(f64) -> f64, seconds: f64) -> (f64, f64) {
         let (m, b, k) =
             (f64::from(body.mass_kg), f64::from(body.damping_n_s_m), f64::from(body.stiffness_n_m));
@@ -147,7 +146,7 @@ mod tests {
         for damping in [300.0, 5000.0, critical, 40_000.0] {
             let body = Body { damping_n_s_m: damping, ..BODY };
             let elastic = Elastic::new(body, 1e-3);
-            // Straight between whole milliseconds, as the floor's samples are.
+            // Linear between whole milliseconds, as the floor's samples are.
             let force = |t: f64| 700.0 * (t / 0.05).min(1.0);
             for millis in [20, 50, 70, 200] {
                 let mut motion = Motion::default();

@@ -2,24 +2,23 @@
 
 use crate::format::{Num, num, record};
 
-/// Energies of single events.
+/// Range of the energies of single events.
 const JOULES: Num = num(0.0001..=1000.0);
 
 record! {
-    /// How much energy single events take: a power law on a bounded range.
+    /// The distribution of the energies of single events: a power law on a bounded range.
     ///
     /// # Source
-    /// `p(E) ~ E^gamma` (paper, section 4.1.1), here between a least and a most
-    /// energy, for a footstep has only so much to give and what is too weak to be
-    /// felt need not happen. Drawn by the inverse of the distribution function.
+    /// `p(E) ~ E^gamma` (paper, section 4.1.1), here between a least and a greatest energy: the energy of a footstep
+    /// is limited, and events too weak to be felt are left out. Drawn by the inverse of the distribution function.
     pub struct EnergyLaw = "Energy", Copy => |it, faults| {
         faults.not_below(&["most_j", "least_j"], [it.most_j, it.least_j]);
     };
     /// The exponent; below zero, small events are more frequent than large ones.
     pub gamma: f32 = "gamma", num(-5.0..=5.0);
-    /// The least energy, in joules; positive.
+    /// The minimum energy, in joules; positive.
     pub least_j: f32 = "least_j", JOULES;
-    /// The most energy, in joules; at least the least.
+    /// The maximum energy, in joules; at least the minimum.
     pub most_j: f32 = "most_j", JOULES;
 }
 
@@ -33,7 +32,7 @@ impl EnergyLaw {
         let energy = if power.abs() < 1e-6 {
             least * (most / least).powf(u)
         } else {
-            // In units of the least energy, so that no power overflows.
+            // In units of the minimum energy, so that no power overflows.
             least * (1.0 + u * ((most / least).powf(power) - 1.0)).powf(power.recip())
         };
         energy.clamp(least, most)
@@ -50,7 +49,7 @@ impl EnergyLaw {
         } else {
             (energy.powf(power) - 1.0) / ((most / least).powf(power) - 1.0)
         };
-        // A range without extent.
+        // An empty range.
         if share.is_nan() { 1.0 } else { share }
     }
 

@@ -1,4 +1,4 @@
-//! How cracks begin, spread, fork and end.
+//! Cracks: their beginning, spreading, branching and end.
 
 use std::collections::VecDeque;
 use std::f32::consts::TAU;
@@ -16,59 +16,59 @@ use crate::format::{Own, num, record};
 use crate::units::Instant;
 
 record! {
-    /// How cracks spread.
+    /// The rules for the growth of cracks.
     pub struct CrackRules = "Cracks", Copy;
-    /// No new seed comes within this distance of another, in metres: the paper's Δp.
+    /// Minimum distance between two seeds, in metres: the paper's Δp.
     pub apart_m: f32 = "apart_m", num(0.01..=10.0);
-    /// Length of crack that a joule opens, in metres: the paper's α.
+    /// Length of crack per joule, in metres: the paper's α.
     pub per_j_m: f32 = "growth_m_per_j", num(0.0001..=10.0);
     /// Standard deviation of the sideways step β that turns a crack at each event: the paper's σ.
     /// A crack turns by the arc tangent of β.
     pub turn: f32 = "turn", num(0.0..=3.0);
-    /// Chance that a piece of crack ends in two, 0 to 1; none in the paper.
+    /// Probability that a piece of crack ends in two branches, 0 to 1; none in the paper.
     pub branch: f32 = "branch", num(0.0..=1.0);
-    /// The angle at which branches part, in radians; files count in degrees.
+    /// Angle between branches, in radians; in degrees in files.
     pub branch_rad: f32 = "branch_deg", num(1.0..=120.0).degrees();
-    /// Most pieces that are kept, 16 and more; the oldest heal for new ones.
+    /// Maximum number of pieces, 16 and more; the oldest heal for new ones.
     pub most: usize = "pieces", num(16.0..=20_000.0);
-    /// How long a crack takes to freeze shut, in seconds; `None`: for ever. As long as the sheet around it.
+    /// Time in which a crack freezes shut, in seconds; `None`: never. The same as for the sheet around it.
     pub refreeze_s: Option<f32> = "", Own(None);
 }
 
-/// Where cracks come from.
+/// The origin of cracks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seed {
-    /// Its number, never used again.
+    /// Its number; numbers are not reused.
     pub number: u32,
-    /// Where it is, in floor metres.
+    /// Its place, in floor metres.
     pub at: Vec2,
-    /// When the last event was here.
+    /// Time of its last event.
     pub latest: Instant,
-    /// All energy of its events, in joules.
+    /// Total energy of its events, in joules.
     pub energy_j: f32,
-    /// Pieces of crack that it has; one without any has healed.
+    /// Number of its pieces of crack; a seed without any has healed.
     cracks: u32,
     fronts: ArrayVec<Front, 6>,
 }
 
 impl Seed {
-    /// How many crack fronts it has, 2 to 6, grown or not yet.
+    /// Number of its crack fronts, 2 to 6, grown or not yet.
     #[must_use]
     pub fn fronts(&self) -> usize {
         self.fronts.len()
     }
 }
 
-/// One of the ways that cracks go from a seed, with the branches it has put out.
+/// One of the directions in which cracks grow from a seed, with its branches.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Front {
-    /// Ends that can still grow; none once all have met something.
+    /// Ends that can still grow; none once all have met an obstacle.
     tips: ArrayVec<Tip, TIPS>,
-    /// The number of its latest piece.
+    /// Number of its latest piece.
     latest: u64,
 }
 
-/// Most ends of one front that grow.
+/// Maximum number of growing ends of one front.
 const TIPS: usize = 5;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,22 +79,22 @@ struct Tip {
     rank: u8,
 }
 
-/// What one event did to the cracks.
+/// The effect of one event on the cracks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Growth {
-    /// The number of the seed it was at.
+    /// Number of the seed.
     pub seed: u32,
     /// Whether that seed is new.
     pub is_new: bool,
-    /// Which of the seed's fronts it went to; of a new seed the first of two.
+    /// The front of the seed that grew; the first of two for a new seed.
     pub front: usize,
-    /// Where the crack it grew now ends; `None` if no crack grew and one gapes wider instead.
+    /// The end of the new piece; `None` if an existing crack widened instead.
     pub tip: Option<Vec2>,
 }
 
 /// The cracks in one sheet: a graph that grows by events and heals with time.
 ///
-/// Its memory is bounded and taken at the start.
+/// Its memory is bounded, and allocated at the start.
 ///
 /// # Source
 /// Paper, section 4.1.2. Beyond it: fronts branch, stop at the sheet's edge and
@@ -103,26 +103,26 @@ pub struct Growth {
 pub struct Fracture {
     rules: CrackRules,
     area: Rect,
-    /// In the order they opened.
+    /// In the order of opening.
     cracks: VecDeque<Crack>,
-    /// Pieces that have been taken off the front of `cracks`.
+    /// Number of pieces removed from the front of `cracks`.
     healed: u64,
-    /// Of these, those that had to make room.
+    /// Number of these that were evicted by new ones.
     evicted: u64,
     seeds: Vec<Seed>,
     next_seed: u32,
     next_line: u32,
-    /// Grows with every change.
+    /// Increases with every change.
     revision: u64,
 }
 
-/// Most seeds of one sheet; the one that rested longest is evicted for a new one.
+/// Maximum number of seeds of one sheet; a new one evicts the seed without events for the longest time.
 const MOST_SEEDS: usize = 512;
 
-/// How long a seed without cracks is kept after its last event.
+/// Time for which a seed without cracks is stored after its last event.
 const BARE_SEED: Duration = Duration::from_secs(10);
 
-/// A crack cut off shorter than this does not open at all, in metres.
+/// Minimum length of a piece of crack, in metres; a shorter one does not open.
 const SHORTEST_M: f32 = 0.001;
 
 impl Fracture {
@@ -148,13 +148,13 @@ impl Fracture {
         self.cracks.iter()
     }
 
-    /// The seeds that have cracks.
+    /// The seeds, including those whose cracks have not opened yet or have healed.
     #[must_use]
     pub fn seeds(&self) -> &[Seed] {
         &self.seeds
     }
 
-    /// Most pieces of crack and most seeds that there can be.
+    /// Maximum number of pieces of crack and of seeds.
     #[must_use]
     pub const fn most(&self) -> (usize, usize) {
         (self.rules.most, MOST_SEEDS)
@@ -166,17 +166,16 @@ impl Fracture {
         self.revision
     }
 
-    /// Pieces that healed before their time to make room for new ones.
+    /// Number of pieces that new ones evicted before their time.
     #[must_use]
     pub fn evicted(&self) -> u64 {
         self.evicted
     }
 
-    /// Takes in an event of `energy_j` joules at `at`.
+    /// Processes an event of `energy_j` joules at `at`.
     ///
-    /// With a seed within Δp the event goes to one of the fronts of the nearest,
-    /// each with the same chance; otherwise there is a new seed with 2 to 6
-    /// fronts at equal angles, two of which it grows.
+    /// With a seed within Δp the event goes to one of the fronts of the nearest, each with the same probability;
+    /// otherwise it makes a new seed with 2 to 6 fronts at equal angles, and grows two of them.
     pub fn grow(&mut self, at: Vec2, energy_j: f32, now: Instant, rng: &mut Pcg64Mcg) -> Growth {
         self.revision += 1;
         let at = at.clamp(self.area.min, self.area.max);
@@ -204,7 +203,7 @@ impl Fracture {
         Growth { seed: number, is_new, front, tip }
     }
 
-    /// Lets what is old enough freeze shut.
+    /// Closes the cracks that are old enough to be frozen shut.
     pub fn heal(&mut self, now: Instant) {
         let whole = self.rules.refreeze_s.map(|seconds| Duration::from_secs_f32(seconds.clamp(0.0, 1e9)));
         if let Some(whole) = whole {
@@ -212,14 +211,14 @@ impl Fracture {
                 self.drop_oldest();
             }
         }
-        // A seed that has lost its cracks, or never got any, is soon nothing but a place.
+        // A seed without cracks is soon of no use.
         let before = self.seeds.len();
         let rest = whole.unwrap_or(BARE_SEED).min(BARE_SEED);
         self.seeds.retain(|seed| seed.cracks > 0 || now.since(seed.latest) < rest);
         self.revision += u64::from(self.seeds.len() != before);
     }
 
-    /// A new seed's place in `seeds`.
+    /// Inserts a new seed; returns its index in `seeds`.
     fn place_seed(&mut self, at: Vec2, now: Instant, rng: &mut Pcg64Mcg) -> usize {
         if self.seeds.len() == MOST_SEEDS
             && let Some((idlest, _)) = self.seeds.iter().enumerate().min_by_key(|(_, seed)| seed.latest)
@@ -241,7 +240,7 @@ impl Fracture {
         self.seeds.len() - 1
     }
 
-    /// Grows a front by what `energy_j` opens; one that can't grow any more puts out a branch or gapes wider.
+    /// Grows a front by the length for `energy_j`; a front that cannot grow any more gets a branch or widens.
     fn extend(
         &mut self,
         seed: usize,
@@ -298,7 +297,8 @@ impl Fracture {
         (!is_short).then_some(to)
     }
 
-    /// How far a crack from `start` gets towards `end`, and whether something stops it: the edge or another crack.
+    /// The point that a crack from `start` reaches towards `end`, and whether an obstacle stops it: the edge or
+    /// another crack.
     fn reach(&self, start: Vec2, end: Vec2) -> (Vec2, bool) {
         let mut share = 1.0_f32;
         for axis in 0..2 {
@@ -331,13 +331,13 @@ impl Fracture {
         self.cracks.push_back(Crack { number, ..crack });
     }
 
-    /// Lets a front of which nothing grows any more begin anew from the end of one of its seed's cracks.
+    /// Restarts a front without growing ends from the start of one of its seed's cracks, with a certain probability.
     fn branch(&mut self, seed: usize, front: usize, rng: &mut Pcg64Mcg) {
         if self.cracks.is_empty() || rng.random::<f32>() >= self.rules.branch.max(0.25) {
             return;
         }
         let Some(number) = self.seeds.get(seed).map(|seed| seed.number) else { return };
-        // A few tries: most cracks near the newest are the seed's own.
+        // A few attempts: most cracks near the newest are the seed's own.
         for _ in 0..8 {
             let back = (rng.random::<f32>().powi(2) * self.cracks.len() as f32) as usize;
             let Some(crack) = self.cracks.get(self.cracks.len() - 1 - back.min(self.cracks.len() - 1)) else {
@@ -473,7 +473,7 @@ mod tests {
         assert!(left > 0 && fracture.cracks().all(|crack| crack.born > at(0.4)));
         fracture.heal(at(110.0));
         assert_eq!((fracture.cracks().len(), fracture.seeds().len()), (0, 0));
-        // And cracks anew from a new seed.
+        // And cracks again from a new seed.
         assert!(fracture.grow(Vec2::splat(0.9), 0.5, at(111.0), &mut rng).is_new);
     }
 

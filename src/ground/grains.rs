@@ -1,4 +1,4 @@
-//! Snow, gravel and sand at work.
+//! Snow, gravel and sand in motion.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -8,13 +8,13 @@ use super::tile::{Event, Stride};
 use super::{Grain, GrainSpec, Onsets, Relief, Resonance};
 use crate::floor::Rect;
 
-/// Snow, gravel or sand at work.
+/// The state of snow, gravel or sand.
 ///
 /// # Source
-/// P. R. Cook, "Physically Informed Sonic Modeling (PhISM)", Computer Music Journal 21(3), 1997:
-/// the system's energy decays exponentially and is fed from outside; grains collide as a Poisson
-/// process, each as hard as the system's energy. Here what feeds it is the power that the bed
-/// under the foot takes up, and the rate follows the root of the energy, as speeds do.
+/// P. R. Cook, "Physically Informed Sonic Modeling (PhISM)", Computer Music Journal 21(3), 1997: the system's energy
+/// decays exponentially and has an external input; grains collide as a Poisson process, each as hard as the system's
+/// energy. Here the input is the power that the bed under the foot dissipates, and the rate follows the root of the
+/// energy, as speeds do.
 #[derive(Clone, Debug)]
 pub(super) struct Grains {
     spec: GrainSpec,
@@ -29,14 +29,14 @@ struct Bed {
     onsets: Onsets,
     /// Energy of the moving grains, in joules.
     energy_j: f64,
-    /// Stones differ; each collision takes one of them.
+    /// The resonances of different stones; each collision uses one of them.
     stones: [Resonance; STONES],
 }
 
-/// Different sounds that the grains of one tile have.
+/// Number of different resonances of the grains of one tile.
 const STONES: usize = 4;
 
-/// Below this share of the full energy nothing moves that anybody could feel.
+/// Below this share of the full energy no motion can be felt.
 const STILL: f64 = 1e-4;
 
 impl Grains {
@@ -80,7 +80,7 @@ impl Grains {
             let law = spec.energy.quantile(rng.random()) as f32 / spec.energy.most_j;
             let energy = law * moved;
             let stone = &stones[rng.random_range(0..STONES)];
-            // Sand has no voice of its own for each grain; stones knock at their own pitch.
+            // Each grain of sand gets a random pitch; stones knock at their own pitch.
             let pitch = if spec.grain == Grain::Sand { rng.random_range(0.8..1.25) } else { 1.0 };
             let click = stone.strike(&spec.ring, energy, pitch, rng);
             give(Event { share, energy_j: energy * spec.full_j, place: stride.place, seed: None, click });

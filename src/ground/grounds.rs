@@ -1,4 +1,4 @@
-//! All grounds of a layout at work: frames in, events out.
+//! All grounds of a layout: frames in, events out.
 
 use std::time::Duration;
 
@@ -14,23 +14,23 @@ use crate::units::Instant;
 /// Length of one step.
 const STEP: Duration = Duration::from_millis(1);
 
-/// A gap of more frames than this is not walking: what stands there then has settled.
+/// Longest gap in steps for which motion goes on; after a longer one, a load on the ground counts as settled.
 const LONGEST_GAP: u64 = 20;
 
-/// Most events of one frame that are felt one by one.
+/// Maximum number of events of one ground in a frame that are felt one by one.
 const MOST_EVENTS: usize = 32;
 
-/// Load with which a foot is noticed at the latest when it comes gently, in newtons: what is there
-/// in the first frame of a contact and no more than this has not fallen from the sky.
+/// Maximum load, in newtons, that counts as settled in the first frame of a contact: a gentle foot is detected with
+/// no more than this.
 const LANDING_N: f64 = 20.0;
 
-/// How often healing is seen to.
+/// Interval between the checks for healing.
 const HEAL_EVERY: Duration = Duration::from_millis(100);
 
-/// All grounds of a layout at work: frames and contacts in, events out.
+/// All grounds of a layout: frames and contacts in, events out.
 ///
-/// Each tile of a ground has a sheet, a process and modes of its own. A tile
-/// that nobody loads costs nothing. Nothing allocates once a ground is laid.
+/// Each tile of a ground has a sheet, a process and modes of its own. A tile without a load costs nothing. Nothing
+/// allocates after the start.
 ///
 /// # Source
 /// "Separate, independent responses are rendered in parallel for each tile" (paper, section 4.1.1).
@@ -48,17 +48,17 @@ struct GroundBed {
     elastic: Elastic,
     bed: Bed,
     treads: Vec<Tread>,
-    /// Tiles that are followed.
+    /// Tiles in motion or under load.
     awake: Vec<usize>,
     healed: Instant,
     revision: u64,
     counters: GroundCounters,
-    /// Whether nothing has been seen of it yet, or not lately.
+    /// Whether the ground is new, or was not stepped lately.
     is_fresh: bool,
 }
 
 impl Grounds {
-    /// The `grounds` of a layout on a floor of this `geometry`, whole and untrodden.
+    /// The `grounds` of a layout on a floor of this `geometry`, whole and without tracks.
     #[must_use]
     pub fn new(grounds: impl IntoIterator<Item = GroundSpec>, geometry: &Geometry) -> Self {
         let tiles = geometry.tile_count();
@@ -78,12 +78,12 @@ impl Grounds {
         Self { beds, last: None, events }
     }
 
-    /// How many events one frame gives at most.
+    /// Maximum number of events in one frame.
     pub(crate) fn most_events(&self) -> usize {
         MOST_EVENTS * self.beds.len()
     }
 
-    /// Keeps the state of grounds that both have, so that editing one leaves the cracks in the other.
+    /// Takes over the state of grounds that both have, so that an edit of one leaves the cracks in the other.
     pub fn inherit(&mut self, old: &mut Self) {
         self.last = old.last;
         for bed in &mut self.beds {
@@ -99,11 +99,10 @@ impl Grounds {
         }
     }
 
-    /// Takes in a frame, with what sensing made of it, and gives the ground events, in order of time.
+    /// Processes a frame with its contacts; returns the ground events, in order of time.
     ///
-    /// `previous` is the frame before. Only the grounds of `page` and of all pages are trodden. A tile
-    /// of which nothing is known holds still, and a load that stands there when it is known again has
-    /// come unseen: it cracks nothing.
+    /// `previous` is the frame before. Only the grounds of `page` and those on all pages take part. A tile without
+    /// sensing holds still; a load that stands there when sensing returns counts as settled and causes no cracks.
     ///
     /// # Real-time
     /// No allocation.
@@ -141,25 +140,25 @@ impl Grounds {
         &self.events
     }
 
-    /// How many grounds there are.
+    /// Number of grounds.
     #[must_use]
     pub fn len(&self) -> usize {
         self.beds.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no grounds.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.beds.is_empty()
     }
 
-    /// Writes what the grounds look like into `states`, one each, in the layout's order.
+    /// Writes the state of the grounds into `states`, one each, in the layout's order.
     ///
-    /// A state that is up to date already is left alone, so that looking often costs little.
+    /// Skips states that are up to date already, so that frequent calls cost little.
     pub fn show(&self, states: &mut Vec<GroundState>) {
         states.resize_with(self.beds.len(), GroundState::default);
         for (bed, state) in self.beds.iter().zip(states) {
-            // What has nothing to do with this ground may have the same revision by chance: it covers another area.
+            // The state of an unrelated ground may have the same revision by chance: it covers another area.
             if state.revision != bed.revision || state.counters != bed.counters || state.is_empty() {
                 state.revision = bed.revision;
                 bed.bed.show(state);
@@ -170,7 +169,7 @@ impl Grounds {
 }
 
 impl GroundBed {
-    /// Forgets who treads.
+    /// Resets all tiles.
     fn doze(&mut self) {
         for tile in self.awake.drain(..) {
             if let Some(tread) = self.treads.get_mut(tile) {
@@ -180,7 +179,7 @@ impl GroundBed {
         self.is_fresh = true;
     }
 
-    /// Finds out who treads where.
+    /// Assigns contacts to tiles.
     fn wake(&mut self, contacts: &[Contact], frame: &ForceFrame, previous: &ForceFrame) {
         for index in &self.awake {
             if let Some(tread) = self.treads.get_mut(*index) {
@@ -208,7 +207,7 @@ impl GroundBed {
                 if tread.contact.is_none() {
                     (tread.weight, tread.share) = (0.0, 0.0);
                 }
-                // Of several feet on one tile the heavier one counts: the dominant centroid.
+                // Of several feet on one tile the heaviest counts: the dominant centroid.
                 if contact.force.0 > tread.weight {
                     (tread.contact, tread.weight) = (Some(contact.id), contact.force.0);
                     tread.place = contact.centroid.clamp(self.spec.area.min, self.spec.area.max);
@@ -278,17 +277,17 @@ impl GroundBed {
     }
 }
 
-/// Whether `area` has `point`, all of its edges included.
+/// Whether `area` contains `point`, with all of its edges.
 fn holds(area: Rect, point: Vec2) -> bool {
     point == point.clamp(area.min, area.max)
 }
 
-/// What a tile bears, in newtons.
+/// The load on a tile, in newtons.
 fn force_n(frame: &ForceFrame, tile: usize) -> f64 {
     frame.forces.get(tile).map_or(0.0, |forces| forces.iter().copied().map(f64::from).sum())
 }
 
-/// Whether too little is known of a tile with sensors of this quality to say what it bears.
+/// Whether sensors of this quality leave the load on a tile unknown.
 fn is_unknown(quality: [Quality; 4]) -> bool {
     quality.iter().all(|quality| *quality >= Quality::Stale)
 }

@@ -1,4 +1,4 @@
-//! A frozen pond at work.
+//! A frozen pond.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -9,7 +9,7 @@ use super::{Fracture, IceSpec, Onsets, Relief, Resonance};
 use crate::floor::Rect;
 use crate::units::Instant;
 
-/// A frozen pond at work.
+/// The state of a frozen pond.
 ///
 /// # Source
 /// Paper, section 4.1. Depth, weakness and refreezing are ours.
@@ -19,11 +19,11 @@ pub(super) struct Ice {
     rng: Pcg64Mcg,
     pub(super) fracture: Fracture,
     pub(super) relief: Relief,
-    /// For each tile of the floor: its process, and what rings there.
+    /// For each tile of the floor: its process and its resonance.
     tiles: Vec<(Onsets, Resonance)>,
 }
 
-/// How much lower ice rings that is all but broken through: a plate's pitch goes with its thickness.
+/// Factor of the pitch of ice that is nearly broken through: a plate's pitch is proportional to its thickness.
 const THIN_PITCH: f32 = 0.45;
 
 impl Ice {
@@ -60,7 +60,7 @@ impl Ice {
         });
     }
 
-    /// Lets heal what is due; the answer is whether anything was.
+    /// Closes cracks that are due; returns whether there were any.
     pub(super) fn heal(&mut self, now: Instant) -> bool {
         let before = self.fracture.revision();
         self.fracture.heal(now);

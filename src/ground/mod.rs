@@ -1,4 +1,4 @@
-//! Materials underfoot: how ice, snow, gravel, sand and wood answer the feet on them.
+//! Materials underfoot: the response of ice, snow, gravel, sand and wood to the feet on them.
 //!
 //! ```text
 //! tile forces (N, 1 kHz) -elastic-> displacement and speed of the sheet under each tile
@@ -8,10 +8,9 @@
 //!                                                                   +-resonance-> Cue (one event: touch and sound)
 //! ```
 //!
-//! `Grounds` is all the ground of one page at work: the engine feeds it each
-//! frame. Nothing here reads a clock or the system's randomness: times come
-//! with the frames, chance from the seeds of the layout, so the same walk
-//! gives the same pond, to the bit.
+//! `Grounds` is all the ground of one page: the engine passes it each frame. Nothing here reads a clock or the
+//! system's randomness: times come with the frames, random numbers from the seeds of the layout, so that the same
+//! walk gives the same pond, to the bit.
 
 mod bed;
 mod crack;

@@ -1,24 +1,23 @@
-//! When events happen: a Poisson process whose rate follows a signal.
+//! Times of events: a Poisson process with a rate that follows a signal.
 
 use rand_distr::{Distribution, Exp1};
 use rand_pcg::Pcg64Mcg;
 
-/// Most events a second that one process gives, whatever its rate.
+/// Maximum rate of one process, in events per second.
 pub const MOST_PER_S: f64 = 16_000.0;
 
-/// When events happen: a Poisson process whose rate follows a signal.
+/// Times of events: a Poisson process with a rate that follows a signal.
 ///
-/// The time to the next event is drawn in units of the expected number of
-/// events; each step uses some of it up, and where it runs out within a step
-/// lies the event. So events have times of their own within the millisecond,
-/// and no rate is too small or too large for the step.
+/// The time to the next event is drawn in units of the expected number of events; each step uses some of it up, and
+/// the event lies where it runs out within a step. So events have times of their own within the millisecond, and no
+/// rate is too small or too large for the step.
 ///
 /// # Source
 /// Time rescaling: the integral of the rate between two events is exponentially
 /// distributed with mean 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Onsets {
-    /// What the integral of the rate must still reach before the next event.
+    /// Remaining integral of the rate up to the next event.
     left: f64,
 }
 
@@ -29,10 +28,10 @@ impl Onsets {
         Self { left: Exp1.sample(rng) }
     }
 
-    /// Goes on by `step_s` seconds in which the rate goes in a straight line from the first to the
-    /// second of `rates` (per second), and gives to `event` when in the step, 0 to 1, each event lies.
+    /// Advances by `step_s` seconds, in which the rate changes linearly from the first to the second of `rates` (per
+    /// second); passes to `event` the place of each event within the step, 0 to 1.
     ///
-    /// Rates below zero or not a number are taken as zero, rates above [`MOST_PER_S`] as that.
+    /// Rates below zero or NaN count as zero, rates above [`MOST_PER_S`] as that.
     pub fn advance(
         &mut self,
         rates: [f64; 2],
@@ -46,7 +45,8 @@ impl Onsets {
         while reached + self.left <= whole && whole > 0.0 {
             reached += self.left;
             self.left = Exp1.sample(rng);
-            // Where first s + (last - first) s^2 / 2 equals what is reached, in the form that survives equal rates.
+            // Where first s + (last - first) s^2 / 2 equals `reached / step_s`, in the form that also works for equal
+            // rates.
             let c = reached / step_s;
             let root = (first * first + 2.0 * (last - first) * c).max(0.0).sqrt();
             event((2.0 * c / (first + root).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0), rng);

@@ -1,13 +1,13 @@
-//! How far a ground is worn, and how it recovers.
+//! Wear of a ground, and its recovery.
 
 use glam::{UVec2, Vec2};
 
 use crate::floor::Rect;
 use crate::units::Instant;
 
-/// How far a sheet has been worn at an even grid of points, and how it recovers: broken ice, trodden snow.
+/// Wear of a sheet on an even grid of points, and its recovery: broken ice, packed snow.
 ///
-/// Recovery is worked out when a point is examined, so that a ground nobody steps on costs nothing.
+/// Recovery is computed when a point is read, so that an unused ground costs nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Relief {
     area: Rect,
@@ -17,26 +17,27 @@ pub struct Relief {
     recovery: Recovery,
 }
 
-/// How a worn sheet becomes whole again.
+/// The recovery of a worn sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Recovery {
-    /// From wholly worn to whole, in seconds; `None`: never.
+    /// Time from fully worn to whole, in seconds; `None`: never.
     pub(super) seconds: Option<f32>,
-    /// Whether fast at first, as ice grows (Stefan's law: thickness goes with the square root of time), or evenly.
+    /// Whether recovery is fast at first, as ice grows (Stefan's law: thickness is proportional to the square root of
+    /// time), or linear.
     pub(super) is_ice: bool,
 }
 
-/// One point: what is whole of it (squared for ice, so that it grows evenly), as it was at a time.
+/// One point: its remaining thickness (squared for ice, so that it grows linearly) at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Point {
     whole: f32,
     at: Instant,
 }
 
-/// Distance of the points, in metres, on floors that are not huge.
+/// Distance of the points, in metres, except on very large floors.
 const GRID_M: f32 = 0.04;
 
-/// Most points along one side.
+/// Maximum number of points along one side.
 const MOST: u32 = 257;
 
 impl Relief {
@@ -48,19 +49,19 @@ impl Relief {
         Self { area, columns, rows, points, recovery }
     }
 
-    /// What it covers.
+    /// Its area.
     #[must_use]
     pub const fn area(&self) -> Rect {
         self.area
     }
 
-    /// Points eastwards, and points northwards; the outermost lie on the area's edges.
+    /// Number of points eastwards, and of points northwards; the outermost lie on the area's edges.
     #[must_use]
     pub const fn size(&self) -> (u32, u32) {
         (self.columns, self.rows)
     }
 
-    /// How far the point in this column and row is worn at `now`, 0 to 1; 0 beyond the grid.
+    /// Wear of the point in this column and row at `now`, 0 to 1; 0 beyond the grid.
     #[must_use]
     pub(crate) fn depth(&self, column: u32, row: u32, now: Instant) -> f32 {
         if column >= self.columns {
@@ -71,14 +72,15 @@ impl Relief {
             .map_or(0.0, |point| 1.0 - self.whole(point, now))
     }
 
-    /// How far the sheet is worn at the point of the grid nearest to `at`.
+    /// Wear at the point of the grid nearest to `at`.
     #[must_use]
     pub fn depth_at(&self, at: Vec2, now: Instant) -> f32 {
         let grid = self.grid(at).round().max(Vec2::ZERO).as_uvec2();
         self.depth(grid.x.min(self.columns.saturating_sub(1)), grid.y.min(self.rows.saturating_sub(1)), now)
     }
 
-    /// Wears the sheet by `amount` (a share of all there is) at `at`, less with the distance, by `reach_m` to 1/e.
+    /// Wears the sheet at `at` by `amount`, a share of its whole thickness; the wear falls with the distance, to 1/e
+    /// at `reach_m`.
     pub(super) fn wear(&mut self, at: Vec2, amount: f32, reach_m: f32, now: Instant) {
         let spacing = self.spacing();
         let reach = Vec2::splat(2.2 * reach_m) / spacing;
@@ -99,7 +101,7 @@ impl Relief {
         }
     }
 
-    /// Makes this the same as `other` in the memory it has.
+    /// Copies `other` without new memory.
     pub(super) fn copy(&mut self, other: &Self) {
         (self.area, self.columns, self.rows) = (other.area, other.columns, other.rows);
         self.recovery = other.recovery;
@@ -149,7 +151,7 @@ mod tests {
             relief.wear(at, 0.5, 0.1, now);
         }
         assert!(relief.depth_at(at, now) <= 1.0);
-        // Off the sheet or nonsense wears nothing away that could be examined, and stops nothing.
+        // A place off the sheet or NaN wears no visible point, and does no harm.
         relief.wear(Vec2::new(-9.0, 99.0), 0.5, 0.1, now);
         relief.wear(Vec2::NAN, 0.5, 0.1, now);
     }

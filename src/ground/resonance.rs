@@ -1,4 +1,4 @@
-//! How single events ring.
+//! Resonances of single events.
 
 use arrayvec::ArrayVec;
 use rand::RngExt;
@@ -8,14 +8,14 @@ use crate::feel::{Click, MAX_MODES, Mode};
 use crate::format::{Num, num, record};
 use crate::units::Newtons;
 
-/// Frequencies of what rings.
+/// Range of the frequencies of modes.
 const HZ: Num = num(20.0..=1000.0);
 
-/// Times in which it dies away.
+/// Range of the decay times of modes.
 const DECAY: Num = num(1.0..=2000.0).milli();
 
 record! {
-    /// How single events ring.
+    /// The resonances of single events.
     pub struct Ring = "Ring", Copy => |it, faults| {
         faults.not_below(&["high_hz", "low_hz"], [it.high_hz, it.low_hz]);
         let millis = [it.longest_s, it.shortest_s].map(|seconds| seconds * 1000.0);
@@ -23,7 +23,7 @@ record! {
     };
     /// Force at the plate of the strongest event.
     pub level: Newtons = "level_n", num(0.0..=200.0);
-    /// Modes that ring together, 1 to `MAX_MODES`.
+    /// Number of modes that ring together, 1 to `MAX_MODES`.
     pub modes: u8 = "modes", num(1.0..=MAX_MODES as f64);
     /// Lowest frequency, in hertz; 20 to 1000.
     pub low_hz: f32 = "low_hz", HZ;
@@ -35,7 +35,7 @@ record! {
     pub longest_s: f32 = "longest_ms", DECAY;
 }
 
-/// The modes of one place: what every event there makes ring.
+/// The modes of one place, excited by every event there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resonance {
     /// Frequency in hertz and time to 1/e in seconds, low modes first.
@@ -43,12 +43,12 @@ pub struct Resonance {
 }
 
 impl Resonance {
-    /// Modes drawn from `ring`: one in each of equal parts (in octaves) of the band, so that no
-    /// place has only high or only low ones; low modes ring longer, as those of any plate do.
+    /// Modes drawn from `ring`: one in each of equal parts (in octaves) of the band, so that no place has only high
+    /// or only low ones; low modes ring longer, as those of every plate do.
     ///
     /// # Source
-    /// `s(t) = sum a_i exp(-b_i t) sin(2 pi f_i t)`, a bank that represents the resonant response
-    /// of the sheet (paper, section 4.1.1). How its numbers are chosen the paper does not say.
+    /// `s(t) = sum a_i exp(-b_i t) sin(2 pi f_i t)`, a bank that represents the resonant response of the sheet
+    /// (paper, section 4.1.1). The paper does not give the choice of its numbers.
     #[must_use]
     pub fn draw(ring: &Ring, rng: &mut Pcg64Mcg) -> Self {
         let count = usize::from(ring.modes).clamp(1, MAX_MODES);
@@ -63,12 +63,11 @@ impl Resonance {
         Self { modes: modes.collect() }
     }
 
-    /// What an event with `share` (0 to 1) of the largest energy makes of them.
+    /// The click of an event with `share` (0 to 1) of the maximum energy.
     ///
-    /// Energy goes with the square of the level. Strong events drive the low
-    /// modes more, weak ones the high ones; how much of each falls to chance,
-    /// for no two events strike the sheet in the same place. `pitch` (a factor
-    /// on all frequencies) below 1 is for a sheet that has become thinner.
+    /// Energy is proportional to the square of the level. Strong events excite the low modes more, weak ones the high
+    /// ones; the share of each mode is random, because no two events strike the sheet in the same place. `pitch` (a
+    /// factor on all frequencies) below 1 is for a sheet that has become thinner.
     #[must_use]
     pub fn strike(&self, ring: &Ring, share: f32, pitch: f32, rng: &mut Pcg64Mcg) -> Click {
         let share = share.clamp(0.0, 1.0);
@@ -84,7 +83,7 @@ impl Resonance {
         let modes = self.modes.iter().zip(&amplitudes).map(|((hz, decay_s), amplitude)| Mode {
             frequency_hz: (hz * pitch).clamp(ring.low_hz, ring.high_hz),
             decay_s: *decay_s,
-            // Together at most 1: the level is what the plate feels at most.
+            // Together at most 1: the level is the maximum force at the plate.
             amplitude: (amplitude / sum.max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0),
         });
         Click { modes: modes.collect(), level: ring.level * share.sqrt(), ..Click::default() }

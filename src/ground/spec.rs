@@ -1,4 +1,4 @@
-//! What grounds are made of, as layouts describe them.
+//! The materials of grounds, as layouts describe them.
 
 use super::{Body, CrackRules, EnergyLaw, Ring};
 use crate::floor::Rect;
@@ -6,16 +6,16 @@ use crate::format::{Name, Opt, Own, Rec, num, record};
 use crate::units::Newtons;
 use crate::widget::Axis;
 
-/// Where a ground is and what it is made of.
+/// The area and material of a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundSpec {
-    /// Where it is.
+    /// Its area.
     pub area: Rect,
-    /// Which of the layout's pages it is on; `None` if it is on all of them.
+    /// Index of the layout's page; `None` if it is on all pages.
     pub page: Option<usize>,
-    /// What chance begins with: the same seed and the same feet give the same ground.
+    /// Start of the random numbers: the same seed and the same feet give the same ground.
     pub seed: u32,
-    /// What it is made of.
+    /// Its material.
     pub material: Material,
 }
 
@@ -27,7 +27,7 @@ impl GroundSpec {
     }
 }
 
-/// What a ground is.
+/// The material of a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
     /// A frozen pond that cracks.
@@ -39,7 +39,7 @@ pub enum Material {
 }
 
 impl Material {
-    /// The name that layouts call it by.
+    /// Its name in layouts.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -49,7 +49,7 @@ impl Material {
         }
     }
 
-    /// How much of what is felt of it is also heard, 0 to 1.
+    /// Share of its haptic events that is also heard, 0 to 1.
     #[must_use]
     pub const fn sound(&self) -> f32 {
         match self {
@@ -59,7 +59,7 @@ impl Material {
         }
     }
 
-    /// The elastic sheet that its tiles are.
+    /// The elastic sheet of its tiles.
     #[must_use]
     pub const fn body(&self) -> Body {
         match self {
@@ -77,27 +77,27 @@ record! {
     pub body: Body = "body", Rec;
     /// Crack events per second and joule of one-sided kinetic energy above `calm_j`.
     pub onsets_per_j_s: f32 = "onsets_per_j_s", num(0.0..=10_000_000.0);
-    /// Kinetic energy that the ice bears without cracking, in joules; none in the paper.
+    /// Kinetic energy below which the ice does not crack, in joules; none in the paper.
     pub calm_j: f32 = "calm_j", num(0.0..=1000.0);
-    /// How much energy single events take.
+    /// The energies of single events.
     pub energy: EnergyLaw = "energy", Rec;
-    /// How they ring.
+    /// The resonances of single events.
     pub ring: Ring = "ring", Rec;
-    /// How cracks spread.
+    /// The growth of cracks.
     pub cracks: CrackRules = "cracks", Rec;
-    /// How the sheet is broken through.
+    /// The wear of the sheet.
     pub sheet: Sheet = "sheet", Rec;
-    /// How much of each crack is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
+    /// Share of each crack that is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
     pub sound: f32 = "sound", num(0.0..=1.0) => 0.0;
 }
 
 impl IceSpec {
-    /// Crack events per second while the sheet has the one-sided kinetic energy `kinetic_j` and
-    /// is worn to `depth` (0 to 1) there.
+    /// Crack events per second for the one-sided kinetic energy `kinetic_j` and the wear `depth` (0 to 1):
+    /// `onsets_per_j_s * max(kinetic_j - calm_j, 0) * (1 + weakening * depth)`.
     ///
     /// # Source
-    /// A Poisson process whose rate is the one-sided kinetic energy (paper, section 4.1.1); the
-    /// threshold and the weakness of broken ice are ours, and with both at zero it is the paper's.
+    /// A Poisson process with the one-sided kinetic energy as its rate (paper, section 4.1.1); the threshold and the
+    /// weakness of broken ice are ours, and with both at zero it is the paper's.
     #[must_use]
     pub(crate) fn onsets_per_s(&self, kinetic_j: f64, depth: f32) -> f64 {
         let beyond = (kinetic_j - f64::from(self.calm_j)).max(0.0);
@@ -106,22 +106,22 @@ impl IceSpec {
 }
 
 record! {
-    /// How a sheet of ice loses and regains its thickness.
+    /// Wear and recovery of a sheet of ice.
     pub struct Sheet = "Sheet", Copy;
-    /// Share of its thickness that a joule breaks where it acts.
+    /// Share of its thickness that breaks per joule, at the place of the event.
     pub depth_per_j: f32 = "depth_per_j", num(0.0..=100.0);
-    /// Distance at which it breaks 1/e of that, in metres.
+    /// Distance at which the wear falls to 1/e, in metres.
     pub reach_m: f32 = "reach_m", num(0.01..=2.0);
-    /// How many times as often again ice cracks that is broken through.
+    /// Relative increase of the crack rate where the ice is broken through.
     pub weakening: f32 = "weakening", num(0.0..=100.0);
-    /// How long broken ice takes to be whole again, in seconds; `None`: for ever.
+    /// Time in which broken ice becomes whole again, in seconds; `None`: never.
     pub refreeze_s: Option<f32> = "refreeze_s", Opt(num(1.0..=1_000_000.0));
 }
 
-/// Which grains.
+/// The kind of grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grain {
-    /// Dry snow, which is packed underfoot.
+    /// Dry snow, packed by feet.
     Snow,
     /// Gravel, which stays loose.
     Gravel,
@@ -130,7 +130,7 @@ pub enum Grain {
 }
 
 impl Grain {
-    /// The name that layouts call it by.
+    /// Its name in layouts.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -144,30 +144,29 @@ impl Grain {
 record! {
     /// Many small grains.
     pub struct GrainSpec = "Grain", Copy;
-    /// Which grains they are: how they look.
+    /// The kind of grains, which sets their look.
     pub grain: Grain = "", Own(Grain::Snow);
     /// The elastic bed that moves them.
     pub body: Body = "body", Rec;
-    /// Collisions per second at `full_j`; fewer with the root of the energy.
+    /// Collisions per second at `full_j`; the rate follows the root of the energy.
     pub collisions_per_s: f32 = "collisions_per_s", num(1.0..=10_000.0);
-    /// Energy of the moving grains under one tile at which they collide as often and as hard as they
-    /// do, in joules.
+    /// Energy of the moving grains under one tile at which collisions have their full rate and force, in joules.
     pub full_j: f32 = "full_j", num(0.0001..=1000.0);
-    /// Time in which moving grains lose all but 1/e of their energy, in seconds.
+    /// Time in which the energy of moving grains decays to 1/e, in seconds.
     pub settle_s: f32 = "settle_ms", num(1.0..=5000.0).milli();
-    /// How much energy single collisions take: only its shape counts, for the most is what `ring` says.
+    /// The energies of single collisions: only the shape of the law counts, since `ring` sets the maximum.
     pub energy: EnergyLaw = "energy", Rec;
-    /// How they ring.
+    /// The resonances of single collisions.
     pub ring: Ring = "ring", Rec;
-    /// Share of the looseness that a joule of work packs where it acts.
+    /// Share of the looseness that a joule of work packs, at the place of the load.
     pub packing_per_j: f32 = "packing_per_j", num(0.0..=100.0);
-    /// Distance at which it packs 1/e of that, in metres.
+    /// Distance at which the packing falls to 1/e, in metres.
     pub reach_m: f32 = "reach_m", num(0.01..=2.0);
-    /// What packed grains still move, as a share of loose ones, 0 to 1.
+    /// Motion of packed grains, as a share of that of loose ones, 0 to 1.
     pub packed: f32 = "packed", num(0.0..=1.0);
-    /// How long the ground takes to lie loose again, in seconds; `None`: for ever.
+    /// Time in which the ground becomes loose again, in seconds; `None`: never.
     pub renew_s: Option<f32> = "renew_s", Opt(num(1.0..=1_000_000.0));
-    /// How much of each collision is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
+    /// Share of each collision that is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
     pub sound: f32 = "sound", num(0.0..=1.0) => 0.0;
 }
 
@@ -178,17 +177,17 @@ record! {
     pub body: Body = "body", Rec;
     /// Width of a plank, in metres.
     pub plank_m: f32 = "plank_m", num(0.02..=5.0);
-    /// Which way planks lie.
+    /// Direction of the planks.
     pub along: Axis = "along", Name;
-    /// Force at which a joint slips, on average.
+    /// Mean force at which a joint slips.
     pub stick: Newtons = "stick_n", num(1.0..=2000.0);
-    /// How much that varies from slip to slip, as a share of it, 0 to 0.9.
+    /// Variation of that force from slip to slip, as a share of it, 0 to 0.9.
     pub scatter: f32 = "scatter", num(0.0..=0.9);
     /// Share of its strain that a joint loses when it slips, 0 to 1.
     pub slip: f32 = "slip", num(0.05..=1.0);
-    /// How slips ring.
+    /// The resonances of slips.
     pub ring: Ring = "ring", Rec;
-    /// How much of each slip is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
+    /// Share of each slip that is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
     pub sound: f32 = "sound", num(0.0..=1.0) => 0.0;
 }
 
@@ -196,8 +195,8 @@ const WHITE_SPRUCE: Ring =
     Ring { level: Newtons(9.0), modes: 5, low_hz: 70.0, high_hz: 420.0, shortest_s: 0.006, longest_s: 0.045 };
 
 impl IceSpec {
-    /// A pond of clear ice that bears who walks with care. Its numbers were tuned so: a step of ordinary walking
-    /// opens some ten cracks, loading a foot slowly next to none.
+    /// A pond of clear ice that carries a person with a careful gait. Tuned so that a step of ordinary walking opens
+    /// some ten cracks, and slow loading of a foot almost none.
     pub const POND: Self = Self {
         body: Body { mass_kg: 60.0, damping_n_s_m: 5000.0, stiffness_n_m: 200_000.0 },
         onsets_per_j_s: 6500.0,
@@ -226,7 +225,7 @@ impl IceSpec {
 }
 
 impl GrainSpec {
-    /// Dry snow: crunches while it is packed, and is quieter underfoot the second time.
+    /// Dry snow: crunches while it is packed, and is quieter the second time.
     pub(crate) const SNOW: Self = Self {
         grain: Grain::Snow,
         body: Body { mass_kg: 20.0, damping_n_s_m: 9000.0, stiffness_n_m: 90_000.0 },

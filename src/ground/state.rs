@@ -1,4 +1,4 @@
-//! What grounds tell others: events, counters, what they look like.
+//! The output of grounds: events, counters and visible state.
 
 use glam::Vec2;
 
@@ -7,49 +7,49 @@ use crate::feel::Click;
 use crate::sense::ContactId;
 use crate::units::Instant;
 
-/// A ground event: something broke or moved under a foot; one event for touch, sound and picture.
+/// A ground event: a crack, a collision or a slip under a foot; one event for touch, sound and picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundEvent {
-    /// When it is felt: as long after its millisecond began as the force that caused it, one millisecond later.
+    /// Playback time: one millisecond after the force that caused it, with the same place within the millisecond.
     pub at: Instant,
-    /// Which of the layout's grounds.
+    /// Index of the layout's ground.
     pub ground: usize,
-    /// The tile it happened on, in tile-index order.
+    /// Index of the tile, in tile-index order.
     pub tile: usize,
-    /// The contact that loads it; `None` for one that has just left.
+    /// The contact that loads it; `None` if it has just left.
     pub contact: Option<ContactId>,
-    /// Where, in floor metres.
+    /// Its place, in floor metres.
     pub place: Vec2,
-    /// How much energy it took, in joules.
+    /// Its energy, in joules.
     pub energy_j: f32,
     /// The seed of the crack that it opened; `None` on grounds that don't crack.
     pub seed: Option<u32>,
-    /// What is felt and heard.
+    /// Its click, felt and heard.
     pub click: Click,
 }
 
-/// What could not be done as it should, and what was, since the ground was laid.
+/// Counts of events and of faults since the start of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GroundCounters {
     /// Events.
     pub events: u64,
-    /// Events that came too thick to be felt one by one: more than 32 in a millisecond. They left their marks.
+    /// Events that were not felt one by one because there were more than 32 in a frame. They left their marks.
     pub unfelt: u64,
-    /// Pieces of crack that healed before their time to make room for new ones.
+    /// Pieces of crack that new ones evicted before their time.
     pub evicted: u64,
 }
 
-/// What one ground looks like.
+/// The visible state of one ground.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroundState {
-    /// Changes whenever anything below does, but not as time alone makes things heal.
+    /// Changes whenever anything below does, except for healing by time alone.
     pub revision: u64,
     /// Pieces of crack; those of one line follow each other in order.
     pub cracks: Vec<Crack>,
-    /// Seeds that cracks come from.
+    /// Seeds, the origins of cracks.
     pub seeds: Vec<Seed>,
-    /// How far it is worn.
+    /// Its wear.
     pub relief: Relief,
-    /// What happened on it.
+    /// Counts of its events.
     pub counters: GroundCounters,
 }

@@ -1,4 +1,4 @@
-//! One tile of one ground, and what a material is told of it.
+//! The state of one tile of one ground, and the inputs of its material.
 
 use glam::Vec2;
 
@@ -10,31 +10,31 @@ use crate::units::Instant;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tread {
     pub(super) motion: Motion,
-    /// Whether it is followed.
+    /// Whether it is in motion or under load.
     pub(super) is_awake: bool,
-    /// The contact that presses it hardest, if any does, and where that is or was.
+    /// The heaviest contact on it, if any, and its present or last place.
     pub(super) contact: Option<ContactId>,
     pub(super) place: Vec2,
     /// Force of that contact, in newtons.
     pub(super) weight: f32,
-    /// Share of the tile's load that is on this ground; that of the last contact once it has gone.
+    /// Share of the tile's load that is on this ground; the last contact's share after it has left.
     pub(super) share: f64,
 }
 
-/// One tile's millisecond, as a material sees it.
+/// One millisecond of one tile, the input of a material.
 pub(super) struct Stride<'a> {
     pub(super) tile: usize,
     pub(super) place: Vec2,
     pub(super) elastic: &'a Elastic,
     pub(super) before: Motion,
     pub(super) after: Motion,
-    /// When it begins.
+    /// Start of the millisecond.
     pub(super) from: Instant,
 }
 
 /// One event of a tile.
 pub(super) struct Event {
-    /// When in the millisecond, 0 to 1.
+    /// Time within the millisecond, 0 to 1.
     pub(super) share: f64,
     pub(super) energy_j: f32,
     pub(super) place: Vec2,

@@ -1,4 +1,4 @@
-//! Planks at work.
+//! Planks.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -9,11 +9,10 @@ use crate::floor::Rect;
 use crate::units::Newtons;
 use crate::widget::Axis;
 
-/// Planks at work: joints that stick and slip as the load on them changes, up or down.
+/// The state of planks: joints that stick and slip as the load on them changes, up or down.
 ///
-/// A joint holds on to its neighbour until the strain between them exceeds
-/// what it can bear, then slips a part of the way and sticks again. A load
-/// that changes faster makes more slips a second: the creak rises.
+/// A joint sticks to its neighbour until the strain between them exceeds its strength, then slips a part of the way
+/// and sticks again. A load that changes faster makes more slips a second: the pitch of the creak rises.
 #[derive(Clone, Debug)]
 pub(super) struct Wood {
     spec: WoodSpec,
@@ -23,16 +22,16 @@ pub(super) struct Wood {
     planks: Vec<Resonance>,
 }
 
-/// What holds one tile's part of a plank.
+/// The joint of one tile's part of a plank.
 #[derive(Clone, Copy, Debug)]
 struct Joint {
     /// Displacement at which the joint is without strain, in metres.
     rest_m: f64,
-    /// Force at which it slips next, in newtons.
+    /// Force of the next slip, in newtons.
     strength_n: f64,
 }
 
-/// Most planks that differ in sound.
+/// Maximum number of planks with different sounds.
 const MOST_PLANKS: usize = 256;
 
 impl Wood {
@@ -46,7 +45,7 @@ impl Wood {
         Self { spec, area, rng, joints, planks }
     }
 
-    /// Takes the strain off a joint under a load that it has carried unseen.
+    /// Removes the strain of a joint under a load whose landing was not seen.
     pub(super) fn settle(&mut self, tile: usize, displacement_m: f64) {
         if let Some(joint) = self.joints.get_mut(tile) {
             joint.rest_m = displacement_m;
@@ -61,20 +60,20 @@ impl Wood {
         let offset = stride.place - area.min;
         let across = if spec.along == Axis::East { offset.y } else { offset.x };
         let plank = ((across / spec.plank_m).max(0.0) as usize).min(planks.len() - 1);
-        // At most so many slips a millisecond, whatever happens.
+        // At most so many slips a millisecond, for every input.
         for _ in 0..8 {
             let strain = last - joint.rest_m;
             if strain.abs() * stiffness <= joint.strength_n {
                 break;
             }
             let bears_m = joint.strength_n / stiffness;
-            // Where the straight way from first to last exceeds what the joint bears.
+            // Where the straight way from first to last exceeds the strength of the joint.
             let limit = joint.rest_m + bears_m.copysign(strain);
             let share = if last == first { 1.0 } else { ((limit - first) / (last - first)).clamp(0.0, 1.0) };
             let left_m = bears_m * f64::from(1.0 - spec.slip);
             joint.rest_m = limit - left_m.copysign(strain);
             let energy_j = 0.5 * stiffness * (bears_m * bears_m - left_m * left_m);
-            // A joint that bears the most there is gives the level.
+            // The strongest joint gives the level.
             let most_m = f64::from(spec.stick.0) * f64::from(1.0 + spec.scatter) / stiffness;
             let relative = (energy_j / (0.5 * stiffness * most_m * most_m)).min(1.0) as f32;
             joint.strength_n = strength(spec, rng);

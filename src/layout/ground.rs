@@ -1,12 +1,12 @@
-//! A part of the floor that seems to be made of a material.
+//! A part of the floor with the appearance of a material.
 
 use super::Colour;
 use crate::ground::GroundSpec;
 
-/// A material that a part of the floor seems to be made of.
+/// A part of the floor with the appearance of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ground {
-    /// Where it is and what it is made of.
+    /// Its area and material.
     pub spec: GroundSpec,
     /// Its colour where it is whole.
     pub surface: Colour,

@@ -1,4 +1,4 @@
-//! Which control lies at a point.
+//! Finds the control at a point.
 
 use glam::Vec2;
 
@@ -16,12 +16,11 @@ pub(super) fn hits(widget: &Widget, point: Vec2) -> bool {
     }
 }
 
-/// The controls of one layout by the tiles they lie on, so that finding one takes as long
-/// in a layout of thousands as in one of ten.
+/// The controls of one layout by their tiles: a search takes as long in a layout of thousands as in one of ten.
 #[derive(Clone, Debug)]
 pub struct HitIndex {
     geometry: Geometry,
-    /// Per tile, in tile-index order: the controls that share ground with it, in drawing order.
+    /// Per tile, in tile-index order: the controls that overlap it, in drawing order.
     tiles: Vec<Vec<usize>>,
 }
 
@@ -42,7 +41,7 @@ impl HitIndex {
 
     /// The same control as [`Layout::widget_at`]; `None` also beyond the floor.
     ///
-    /// `layout` must be the one this was made of.
+    /// `layout` must be the one from which the index was made.
     #[must_use]
     pub fn widget_at(&self, layout: &Layout, page: usize, point: Vec2) -> Option<usize> {
         let tile = self.geometry.tile_under(point).and_then(|tile| self.geometry.index(tile))?;
@@ -52,16 +51,16 @@ impl HitIndex {
         self.on_tile(tile).iter().rev().find(there).copied()
     }
 
-    /// The controls of all pages that share ground with the tile at `index`, in drawing order.
+    /// The controls of all pages that overlap the tile at `index`, in drawing order.
     #[must_use]
     pub fn on_tile(&self, index: usize) -> &[usize] {
         self.tiles.get(index).map_or(&[], Vec::as_slice)
     }
 }
 
-/// The tiles whose cells (plate and gap) share ground with `area`.
+/// The tiles with a cell (plate and gap) that overlaps `area`.
 fn cells_under(area: Rect, geometry: &Geometry) -> impl Iterator<Item = TileId> {
-    // Casts cut what is negative to zero.
+    // The casts turn negative values into zero.
     let first = (area.min / geometry.pitch_m()).floor().as_u16vec2();
     let end = (area.max / geometry.pitch_m()).ceil().as_u16vec2();
     let cells = TileBlock {

@@ -3,7 +3,7 @@
 use crate::format::Named;
 use crate::widget::Behaviour;
 
-/// A picture on a control's face, told apart from standing height.
+/// A picture on a control's face, distinguishable from standing height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Icon {
     /// An arrow to the north.
@@ -57,7 +57,7 @@ impl Named for Icon {
 }
 
 impl Icon {
-    /// All icons with the names that layouts call them by.
+    /// All icons with their names in layouts.
     pub const ALL: [(&'static str, Self); 22] = [
         ("Up", Self::Up),
         ("Down", Self::Down),

@@ -1,4 +1,4 @@
-//! What a control looks like: shape and colours.
+//! The look of a control: shape and colours.
 
 use super::Icon;
 use std::fmt;
@@ -25,7 +25,7 @@ impl Colour {
         Self { red, green, blue }
     }
 
-    /// How well the two stand off from each other, 1 (not at all) to 21.
+    /// The contrast of two colours, 1 (none) to 21.
     ///
     /// # Source
     /// Web Content Accessibility Guidelines 2.2, "contrast ratio": `(L1 + 0.05) / (L2 + 0.05)` of the
@@ -46,7 +46,7 @@ impl Colour {
         0.2126 * linear(self.red) + 0.7152 * linear(self.green) + 0.0722 * linear(self.blue)
     }
 
-    /// The colour `share` (0 to 1) of the way from `self` to `other`.
+    /// The colour at `share` (0 to 1) between `self` and `other`.
     #[must_use]
     pub fn mix(self, other: Self, share: f32) -> Self {
         let share = share.clamp(0.0, 1.0);
@@ -65,7 +65,7 @@ impl fmt::Display for Colour {
 impl FromStr for Colour {
     type Err = ();
 
-    /// Reads `#rrggbb`; anything else is refused.
+    /// Reads `#rrggbb`; rejects anything else.
     fn from_str(text: &str) -> Result<Self, ()> {
         let digits =
             text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii()).ok_or(())?;
@@ -74,7 +74,7 @@ impl FromStr for Colour {
     }
 }
 
-/// The outline of a control's face, which is also where it can be hit.
+/// The outline of a control's face, which is also its active area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shape {
     /// The whole area.
@@ -89,7 +89,7 @@ impl Named for Shape {
 }
 
 record! {
-    /// What a control looks like; a calm grey blue where nothing is said.
+    /// The look of a control; a calm grey blue by default.
     pub struct Look = "Look", Copy;
     /// Outline of the face.
     pub shape: Shape = "shape", Name => Shape::Box;
@@ -104,7 +104,7 @@ record! {
 }
 
 impl Look {
-    /// The look of kinds that don't say: a calm grey blue.
+    /// The default look: a calm grey blue.
     pub const PLAIN: Self = Self {
         shape: Shape::Box,
         face: Colour::rgb(0xdd, 0xe4, 0xec),
@@ -114,7 +114,7 @@ impl Look {
     };
 }
 
-/// A colour as files write it: `"#rrggbb"`.
+/// A colour in files: `"#rrggbb"`.
 pub(crate) const HEX: Spelled<Colour> = Spelled {
     about: "a colour in quotes, \"#rrggbb\"",
     parse: |text| text.parse().ok(),

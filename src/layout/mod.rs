@@ -1,7 +1,7 @@
 //! A checked page of controls on a floor: the engine's input, made by [`crate::schema`].
 //!
-//! Everything here is in floor metres and newtons, with ids unique, sizes
-//! positive and numbers finite; [`crate::schema`] is where nonsense stops.
+//! Everything here is in floor metres and newtons, with unique ids, positive sizes and finite numbers;
+//! [`crate::schema`] rejects everything else.
 
 mod ground;
 mod hit;
@@ -30,7 +30,7 @@ use crate::widget::{Behaviour, WidgetId};
 /// Controls placed on one floor, on one page or on several that take turns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
-    /// What people call it.
+    /// Its title for people.
     pub title: String,
     /// The active control areas, each with its own cursor.
     pub regions: Vec<Region>,
@@ -38,7 +38,7 @@ pub struct Layout {
     pub stances: Vec<Stance>,
     /// The pages that take turns, the first one first; empty if there is only one.
     pub pages: Vec<Page>,
-    /// What the floor seems to be made of, on all pages; where two overlap, both answer.
+    /// The grounds on all pages; where two overlap, both respond.
     pub grounds: Vec<Ground>,
     /// The controls of all pages, in drawing order.
     pub widgets: Vec<Widget>,
@@ -51,35 +51,35 @@ pub struct Widget {
     pub id: WidgetId,
     /// The name of the kind it was made from.
     pub kind: String,
-    /// Which of [`Layout::regions`] holds its middle.
+    /// Index in [`Layout::regions`] of the region that contains its middle.
     pub region: usize,
-    /// Which of [`Layout::pages`] it is on; `None` if it is on all of them.
+    /// Index in [`Layout::pages`] of its page; `None` if it is on all of them.
     pub page: Option<usize>,
-    /// Which of [`Layout::pages`] a click on it shows; `None` if it switches none.
+    /// Index in [`Layout::pages`] of the page that a click on it shows; `None` if it switches none.
     pub goto: Option<usize>,
-    /// Where it is.
+    /// Its area.
     pub area: Rect,
-    /// What is written on it; may be empty.
+    /// The text on it; may be empty.
     pub label: String,
-    /// What it does.
+    /// Its function.
     pub behaviour: Behaviour,
-    /// What it feels like.
+    /// Its effects.
     pub feel: Feel,
-    /// What it looks like.
+    /// Its shape and colours.
     pub look: Look,
 }
 
 impl Layout {
-    /// The position in [`Layout::widgets`] of the control named `id`.
+    /// The index in [`Layout::widgets`] of the control named `id`.
     #[must_use]
     pub fn widget_index(&self, id: &str) -> Option<usize> {
         self.widgets.iter().position(|widget| widget.id == id)
     }
 
-    /// What of it the computer of `area` serves, on the floor of this `geometry`: the controls whose middle is in the
-    /// area, and the grounds that reach into it. Pages, regions and places to stand stay.
+    /// The part of the layout for the computer of `area`, on the floor of this `geometry`: the controls with their
+    /// middle in the area, and the grounds that overlap it. Keeps pages, regions and stances.
     ///
-    /// Of the parts for a floor's areas, exactly one has a control.
+    /// Of the parts for a floor's areas, exactly one has a given control.
     #[must_use]
     pub fn part(mut self, area: &Area, geometry: &Geometry) -> Self {
         self.widgets.retain(|widget| area.holds(geometry, widget.area.centre()));
@@ -88,16 +88,16 @@ impl Layout {
         self
     }
 
-    /// The position in [`Layout::pages`] of the page named `id`.
+    /// The index in [`Layout::pages`] of the page named `id`.
     #[must_use]
     pub fn page_index(&self, id: &str) -> Option<usize> {
         self.pages.iter().position(|page| page.id == id)
     }
 
-    /// The position in [`Layout::widgets`] of the control at `point` of the page numbered `page`
-    /// (0 without pages); the one drawn last wins.
+    /// The index in [`Layout::widgets`] of the control at `point` of page number `page` (0 without pages); the last
+    /// one drawn wins.
     ///
-    /// Looks at every control; `HitIndex` finds the same one faster.
+    /// Searches all controls; `HitIndex` finds the same one faster.
     #[must_use]
     pub fn widget_at(&self, page: usize, point: Vec2) -> Option<usize> {
         self.widgets.iter().rposition(|widget| widget.is_on(page) && hit::hits(widget, point))
@@ -105,13 +105,13 @@ impl Layout {
 }
 
 impl Widget {
-    /// Whether it is on the page numbered `page`.
+    /// Whether it is on page number `page`.
     #[must_use]
     pub(crate) fn is_on(&self, page: usize) -> bool {
         self.page.is_none_or(|own| own == page)
     }
 
-    /// The name of the page of `layout` it is on; `None` if it is on all of them.
+    /// The name of its page of `layout`; `None` if it is on all of them.
     pub(crate) fn page_of(&self, layout: &Layout) -> Option<WidgetId> {
         Some(layout.pages.get(self.page?)?.id.clone())
     }

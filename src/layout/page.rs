@@ -2,11 +2,11 @@
 
 use crate::widget::WidgetId;
 
-/// A page of controls: those on it are there while it is shown, together with those on all pages.
+/// A page of controls, shown together with the controls on all pages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Page {
     /// Unique among the layout's pages.
     pub id: WidgetId,
-    /// What people call it; may be empty.
+    /// Its title for people; may be empty.
     pub title: String,
 }

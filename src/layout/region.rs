@@ -1,9 +1,9 @@
-//! Regions, in which feet work controls, and zones where people stand.
+//! Regions, in which feet operate controls, and zones where people stand.
 
 use crate::floor::Rect;
 use crate::format::Named;
 
-/// Which contacts in a region operate its controls.
+/// Rule that selects the contacts in a region that operate its controls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CursorRule {
     /// The one with the largest force: for people who stand beside the region.
@@ -12,8 +12,8 @@ pub enum CursorRule {
     /// Paper, section 4.2.
     #[default]
     Largest,
-    /// The one with the largest force of those that press on a control and are not steps:
-    /// for people who stand inside of the region, between its controls.
+    /// The one with the largest force of those that press on a control and are not steps: for people who stand inside
+    /// the region, between its controls.
     Working,
     /// Each of them, so that several controls can be engaged at once, each by one foot.
     Each,
@@ -29,20 +29,20 @@ impl Named for CursorRule {
 pub struct Region {
     /// Unique among the layout's regions.
     pub id: String,
-    /// Where it is.
+    /// Its area.
     pub area: Rect,
-    /// Which contacts in it operate its controls.
+    /// The rule that selects the contacts that operate its controls.
     pub cursor: CursorRule,
 }
 
 /// A place to stand while using the controls.
 ///
-/// A contact with its centroid in it is a standing foot and no cursor, also
-/// where the zone lies in a region. A control keeps a foot it has engaged.
+/// A contact with its centroid in it is a standing foot and cannot be a cursor, also where the zone lies in a region.
+/// A control keeps a foot that it has engaged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stance {
-    /// Where it is.
+    /// Its area.
     pub area: Rect,
-    /// What is written on it; may be empty.
+    /// The text on it; may be empty.
     pub label: String,
 }

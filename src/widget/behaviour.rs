@@ -1,4 +1,4 @@
-//! What a control does: one of ten behaviours with its settings.
+//! The function of a control: one of ten behaviours with its settings.
 
 use super::scale::ENDS;
 use super::{
@@ -8,7 +8,7 @@ use super::{
 use crate::format::choices;
 
 choices! {
-    /// What a control does, with its settings.
+    /// The function of a control, with its settings.
     pub enum Behaviour;
     /// A push button.
     Button(ButtonSpec),
@@ -20,20 +20,20 @@ choices! {
     Selector(SelectorSpec),
     /// A slider.
     Slider(SliderSpec),
-    /// Force to value.
+    /// A pedal: force to value.
     Pedal(PedalSpec),
     /// A pair of numbers.
     Pad(PadSpec),
     /// A rotary dial.
     Dial(DialSpec),
-    /// Up and down by steps.
+    /// A stepper: up and down by steps.
     Stepper(StepperSpec),
     /// A direction by leaning.
     Lean(LeanSpec),
 }
 
 impl Behaviour {
-    /// When it engages.
+    /// The thresholds of its press.
     #[must_use]
     pub const fn thresholds(&self) -> Thresholds {
         match self {
@@ -50,7 +50,7 @@ impl Behaviour {
         }
     }
 
-    /// The word for it in messages, such as `button` or `slider`.
+    /// Its name in messages, such as `button` or `slider`.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -67,7 +67,7 @@ impl Behaviour {
         }
     }
 
-    /// Whether a foot should feel something when the control comes to `value`: a step, or a detent.
+    /// Whether `value` is a step or a detent, to be felt.
     #[must_use]
     pub(crate) fn is_stop(&self, value: Value) -> bool {
         match (self, value) {
@@ -81,7 +81,7 @@ impl Behaviour {
         }
     }
 
-    /// The values of a control that holds one number and takes one from an app; `None` for others.
+    /// The values of a control that holds one number and accepts one from an app; `None` for others.
     #[must_use]
     pub const fn scale(&self) -> Option<&Scale> {
         match self {
@@ -92,10 +92,10 @@ impl Behaviour {
         }
     }
 
-    /// The same control with another range, its value to begin with brought into it; `None` if it can't have it.
+    /// This control with another range, its initial value clamped to it; `None` if the range is not possible.
     ///
-    /// What takes one number from an app can have any that is finite, not beyond a million and no narrower than its
-    /// step.
+    /// Possible for controls that accept one number from an app: a finite range, at most a million, and no narrower
+    /// than the step.
     #[must_use]
     pub(crate) fn with_range(&self, least: f32, greatest: f32) -> Option<Self> {
         let mut other = self.clone();
@@ -113,7 +113,7 @@ impl Behaviour {
         fits.then_some(other)
     }
 
-    /// What the control holds before anybody has touched it; `None` for a button.
+    /// The value before the first touch; `None` for a button.
     #[must_use]
     pub fn initial(&self) -> Option<Value> {
         super::Control::new(self, glam::Vec2::ONE).value()

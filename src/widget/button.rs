@@ -1,4 +1,4 @@
-//! A push button, with the gestures its kind asks for.
+//! A push button, with the gestures of its kind.
 //!
 //! ```text
 //!  1  press                                    -> Pressed; Clicked too if it acts on press
@@ -42,16 +42,16 @@ use crate::units::{Instant, Newtons};
 record! {
     /// A push button: `Pressed`, then `Released` and `Clicked`, or `Cancelled`.
     pub struct ButtonSpec = "Button", Copy => ButtonSpec::rules;
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
-    /// When it clicks.
+    /// The moment of its click.
     pub acts_on: ActsOn = "acts_on", Name => ActsOn::Release;
-    /// What else it understands.
+    /// Its further gestures.
     pub gestures: Gestures = "", Flat;
 }
 
 impl ButtonSpec {
-    /// Settings that contradict each other.
+    /// Reports settings that contradict each other.
     fn rules(&mut self, faults: &mut Faults) {
         let Gestures { double_tap, long_press, swipe_m, hard } = self.gestures;
         if let Some(HardStage { press, release }) = hard {
@@ -82,7 +82,7 @@ impl ButtonSpec {
         }
     }
 
-    /// A button that clicks on release and knows no gestures.
+    /// A button that clicks on release, without gestures.
     #[must_use]
     pub const fn new(thresholds: Thresholds) -> Self {
         let gestures = Gestures { double_tap: None, long_press: None, swipe_m: None, hard: None };
@@ -90,12 +90,12 @@ impl ButtonSpec {
     }
 }
 
-/// When a button clicks.
+/// The moment at which a button clicks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ActsOn {
-    /// As soon as it is pressed: where every millisecond counts and a slip does no harm.
+    /// At the press: for minimum latency, where an accidental press does no harm.
     Press,
-    /// When the foot lets go on it: sliding off takes the press back.
+    /// At the release of a foot on it: sliding off cancels the press.
     #[default]
     Release,
 }
@@ -105,15 +105,15 @@ impl Named for ActsOn {
 }
 
 record! {
-    /// What a button understands besides a tap; nothing by default.
+    /// The gestures of a button besides a tap; none by default.
     pub struct Gestures = "Gestures", Copy, Default;
-    /// How soon after a tap a second press must be down to make it a double tap.
+    /// Maximum time from a tap to the second press of a double tap.
     pub double_tap: Option<Duration> = "double_tap_ms", Opt(num(100.0..=1000.0).milli()) => None;
-    /// How long a press must last to be a long one.
+    /// Minimum duration of a long press.
     pub long_press: Option<Duration> = "long_press_ms", Opt(num(200.0..=5000.0).milli()) => None;
-    /// How far a foot must go to swipe, in metres.
+    /// Minimum distance of a swipe, in metres.
     pub swipe_m: Option<f32> = "swipe_m", Opt(num(0.02..=1.0)) => None;
-    /// The second stage: force from which on a press is hard.
+    /// The second stage: force above which a press is hard.
     pub hard: Option<HardStage> = "hard_n", HARD => None;
 }
 
@@ -126,12 +126,12 @@ const HARD: Stage = Stage {
     lonely: "a second stage needs both",
 };
 
-/// The second stage of a press. It grows with the first where that is a share of the person's weight.
+/// The second stage of a press. It is scaled with the first where that is a share of the person's weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HardStage {
-    /// Force from which on the press is hard; more than the press threshold.
+    /// Force above which the press is hard; more than the press threshold.
     pub press: Newtons,
-    /// Force below which it is hard no longer; less than `press`.
+    /// Force below which it is no longer hard; less than `press`.
     pub release: Newtons,
 }
 
@@ -147,16 +147,16 @@ impl From<HardStage> for [f32; 2] {
     }
 }
 
-/// How far beyond its edge a button that keeps its foot still counts the foot as on it, in metres
-/// (as much as others let a foot sway).
+/// Distance beyond its edge at which a button that captures its foot still counts the foot as on it, in metres (the
+/// same allowance for sway as on other controls).
 const MARGIN_M: f32 = 0.03;
 
-/// A push button at work.
+/// The state of a push button.
 #[derive(Clone, Debug)]
 pub(super) struct Button {
     spec: ButtonSpec,
     down: Option<Down>,
-    /// When a first tap becomes a click, if no second press comes.
+    /// Time at which a first tap becomes a click, if no second press comes.
     tapped: Option<Instant>,
 }
 
@@ -164,12 +164,12 @@ pub(super) struct Button {
 #[derive(Clone, Copy, Debug)]
 struct Down {
     since: Instant,
-    /// Where the foot was first and last, in metres from the button's middle.
+    /// First and last place of the foot, in metres from the button's middle.
     path: Option<(Vec2, Vec2)>,
     /// Whether a first tap came just before.
     second: bool,
     hard: bool,
-    /// Whether it has been long or hard: its release is not a click.
+    /// Whether it was long or hard already: its release is not a click.
     spent: bool,
 }
 
@@ -248,14 +248,14 @@ impl Button {
 
     fn cancelled(&mut self, moment: &Moment, down: Down, emitted: &mut Emitted) {
         emitted.push(EventKind::Cancelled);
-        // The first tap was a good one; what came of it is known a little later.
+        // The first tap was valid; a second one decides its meaning a little later.
         if down.second && !down.spent && !moment.broken {
             self.tapped = Some(moment.now + self.spec.gestures.double_tap.unwrap_or_default());
         }
     }
 }
 
-/// The press is not a tap, nor the second of two.
+/// Turns the press into something other than a tap or the second of two.
 fn become_other(down: &mut Down, kind: EventKind, emitted: &mut Emitted) {
     if std::mem::take(&mut down.second) {
         emitted.push(EventKind::Clicked);
@@ -269,7 +269,7 @@ impl Down {
         self.path.map_or(Vec2::ZERO, |(from, to)| to - from)
     }
 
-    /// How far the foot went, in metres.
+    /// Distance of the foot's motion, in metres.
     fn went(&self) -> f32 {
         self.way().length()
     }

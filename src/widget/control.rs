@@ -1,4 +1,4 @@
-//! One control at work: press, guard and behaviour.
+//! One control: press, guard and behaviour.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ use super::switch::Switch;
 use super::{Behaviour, Emitted, EventKind, Indicator, Input, OffReason, SetError, Value};
 use crate::units::Instant;
 
-/// One control at work: its press, its guard and the state of its behaviour.
+/// One control: its press, its guard and the state of its behaviour.
 #[derive(Debug)]
 pub struct Control {
     press: Press,
@@ -54,10 +54,10 @@ impl Control {
         }
     }
 
-    /// Takes in one frame and gives back what happened; `now` must not run backwards.
+    /// Processes one frame and returns the events; `now` must not decrease.
     ///
-    /// A disabled or inhibited control senses nothing. A locked one senses, but all that
-    /// comes of a press is [`EventKind::Refused`].
+    /// A disabled or inhibited control ignores its input. A locked one responds to a press only with
+    /// [`EventKind::Refused`].
     pub fn step(&mut self, now: Instant, input: Input) -> Emitted {
         let last = std::mem::replace(&mut self.now, now);
         if self.disabled || self.inhibited.is_some() {
@@ -73,7 +73,7 @@ impl Control {
         emitted
     }
 
-    /// Ends a press without committing it, disarms the control and forgets gestures that are not complete.
+    /// Ends a press without committing it, disarms the control and drops incomplete gestures.
     pub fn cancel(&mut self) -> Emitted {
         let outcome = self.press.cancel();
         let mut emitted = Emitted::new();
@@ -91,9 +91,9 @@ impl Control {
         }
     }
 
-    /// Switches the control off or on; switching off cancels its press.
+    /// Disables or enables the control; disabling cancels its press.
     pub fn set_disabled(&mut self, disabled: bool) -> Emitted {
-        // Also on the way back: a foot that stands on it must lift first.
+        // Enabling cancels too: a foot that stands on it must lift first.
         let emitted = self.cancel();
         self.disabled = disabled;
         emitted
@@ -105,15 +105,14 @@ impl Control {
         self.disabled
     }
 
-    /// Switches the control off for a reason of its floor, whatever apps want, or with `None` lets it work again;
-    /// either cancels its press.
+    /// Inhibits the control for a reason of its floor, independent of apps; `None` ends that. Both cancel its press.
     pub fn set_inhibited(&mut self, inhibited: Option<OffReason>) -> Emitted {
         let emitted = self.cancel();
         self.inhibited = inhibited;
         emitted
     }
 
-    /// Why its floor has switched it off; `None` if it has not.
+    /// The reason for which its floor inhibits it; `None` if it does not.
     #[must_use]
     pub fn inhibited(&self) -> Option<OffReason> {
         self.inhibited
@@ -121,7 +120,7 @@ impl Control {
 
     /// Locks or unlocks the control; locking cancels its press.
     ///
-    /// A locked control keeps its value whatever feet and apps do, and says so when it is pressed.
+    /// Neither feet nor apps change the value of a locked control; a press on it emits a refusal.
     pub fn set_locked(&mut self, locked: bool) -> Emitted {
         let emitted = self.cancel();
         self.locked = locked;
@@ -134,30 +133,30 @@ impl Control {
         self.locked
     }
 
-    /// Switches its lamp.
+    /// Sets its lamp.
     pub fn set_indicator(&mut self, indicator: Indicator) {
         self.indicator = indicator;
     }
 
-    /// What its lamp shows.
+    /// The state of its lamp.
     #[must_use]
     pub fn indicator(&self) -> Indicator {
         self.indicator
     }
 
-    /// What it holds; `None` for a button.
+    /// Its value; `None` for a button.
     #[must_use]
     pub fn value(&self) -> Option<Value> {
         self.machine.value()
     }
 
-    /// What its value would become if the foot let go now, where that is another one.
+    /// The value that it would take if the foot let go now, if different.
     #[must_use]
     pub fn pending(&self) -> Option<Value> {
         if self.is_engaged() { self.machine.pending() } else { None }
     }
 
-    /// Gives it a value, without an event; a number is brought to the control's range and steps.
+    /// Sets its value, without an event; a number is brought to the control's range and steps.
     ///
     /// # Errors
     /// [`SetError`]; the value stays as it was.
@@ -171,7 +170,7 @@ impl Control {
         self.machine.set(value)
     }
 
-    /// Goes on as a control of this behaviour, of the same kind with another range; its number is brought into it.
+    /// Changes the behaviour to one of the same kind with another range; brings its number into it.
     ///
     /// # Errors
     /// [`SetError::InUse`] and [`SetError::Locked`]; it stays as it was.
@@ -187,7 +186,7 @@ impl Control {
         value.map_or(Ok(()), |value| self.machine.set(value))
     }
 
-    /// Whether a foot has it pressed.
+    /// Whether a foot presses it.
     #[must_use]
     pub fn is_engaged(&self) -> bool {
         !self.locked && self.press.is_engaged()
@@ -237,7 +236,7 @@ fn refusal(outcome: Option<Outcome>) -> Emitted {
     pressed.then_some(EventKind::Refused).into_iter().collect()
 }
 
-/// As a control of this behaviour begins.
+/// The initial state of a control with this behaviour.
 fn machine(behaviour: &Behaviour) -> Box<dyn Machine> {
     match behaviour {
         Behaviour::Button(spec) => Box::new(Button::new(*spec)),

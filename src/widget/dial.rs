@@ -1,4 +1,4 @@
-//! A dial: a foot that goes round its middle turns it.
+//! A dial: a foot that moves round its middle turns it.
 //!
 //! ```text
 //!  1  press                          -> Pressed; the value stays, wherever the dial is touched
@@ -25,26 +25,26 @@ use crate::format::{Flat, num, record};
 record! {
     /// A dial.
     pub struct DialSpec = "Dial", Copy => |it, faults| it.scale.check_initial(&mut it.initial, faults);
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
     /// Its values; they grow clockwise.
     pub scale: Scale = "", Flat;
-    /// How far it is from the least to the greatest value, in degrees; may be several turns.
+    /// Angle from the least to the greatest value, in degrees; may be several turns.
     pub turn_degrees: f32 = "turn_deg", num(45.0..=3600.0) => 270.0;
-    /// Value to begin with, within the range.
+    /// Initial value, within the range.
     pub initial: f32 = "initial", INITIAL;
 }
 
-/// Part of the way from middle to edge within which a foot is at no angle to speak of
-/// (our choice: a centimetre of error there turns the dial by 20 degrees).
+/// Share of the way from middle to edge within which the angle of a foot is undefined (our choice: a centimetre of
+/// error there turns the dial by 20 degrees).
 const HUB: f32 = 0.2;
 
-/// A dial at work.
+/// The state of a dial.
 #[derive(Clone, Debug)]
 pub(super) struct Dial {
     spec: DialSpec,
     number: Number,
-    /// Where the foot was, in radians.
+    /// Last angle of the foot, in radians.
     angle: Option<f32>,
 }
 

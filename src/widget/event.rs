@@ -15,7 +15,7 @@ use crate::units::{Instant, Newtons};
 pub struct WidgetId(Arc<str>);
 
 impl WidgetId {
-    /// The id written as `name`.
+    /// The id with this name.
     #[must_use]
     pub fn new(name: &str) -> Self {
         Self(name.into())
@@ -46,15 +46,15 @@ impl PartialEq<&str> for WidgetId {
     }
 }
 
-/// What a control holds; as JSON true or false, a number, or two numbers in a list.
+/// The value of a control; as JSON true or false, a number, or two numbers in a list.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// Something that is on or off: a switch, or a control that acts while it is held.
+    /// On or off: the value of a switch, or of a control that acts while it is held.
     Switch(bool),
     /// A finite number in the control's range.
     Number(f32),
-    /// Which of a selector's options, from 0.
+    /// Index of a selector's option, from 0.
     Choice(u16),
     /// Two finite numbers, eastwards and northwards.
     Pair(#[serde(serialize_with = "as_list")] Vec2),
@@ -94,7 +94,7 @@ impl From<Vec2> for Value {
     }
 }
 
-/// Where a foot went.
+/// The direction of a swipe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
@@ -112,7 +112,7 @@ impl Direction {
     /// All four, clockwise from north.
     pub const ALL: [Self; 4] = [Self::North, Self::East, Self::South, Self::West];
 
-    /// The word for it: `north`, `east`, `south` or `west`.
+    /// Its name: `north`, `east`, `south` or `west`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -124,16 +124,14 @@ impl Direction {
     }
 }
 
-/// What one step of a control gave, in order; at most eight events.
+/// The events of one step of a control, in order; at most eight.
 pub type Emitted = ArrayVec<EventKind, 8>;
 
-/// What happened to a control.
+/// An event of a control.
 ///
-/// Every `Pressed` is followed by exactly one of `Released` and `Cancelled`,
-/// every `Armed` by exactly one `Disarmed`. Only a release commits: `Clicked`
-/// (unless the button acts on press), a gesture and a switch's or selector's
-/// `Changed` never follow a `Cancelled`. What a foot had changed during a
-/// press that is cancelled changes back.
+/// Every `Pressed` is followed by exactly one of `Released` and `Cancelled`, every `Armed` by exactly one `Disarmed`.
+/// Only a release commits: `Clicked` (unless the button acts on press), a gesture and a switch's or selector's
+/// `Changed` never follow a `Cancelled`. A cancel reverts the changes of its press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EventKind {
     /// The foot engaged the control.
@@ -146,21 +144,21 @@ pub enum EventKind {
     DoubleTapped,
     /// A button has been held for long; its release is not a click.
     LongPressed,
-    /// A button was pressed, the foot went this way and let go.
+    /// A button was pressed, the foot moved in this direction and let go.
     Swiped(Direction),
     /// The press of a button with two stages reached the second.
     HardPressed,
-    /// The press came back from the second stage; its release is not a click.
+    /// The press left the second stage; its release is not a click.
     HardReleased,
     /// The press ended without counting: the foot slid off or took a step, sensing was lost, or an app stopped it.
     Cancelled,
-    /// The control holds a new value.
+    /// The control has a new value.
     Changed(Value),
     /// The foot passed from one choice to the next; nothing has changed yet.
     Ticked,
     /// A first press armed a guarded control: the next one acts.
     Armed,
-    /// It is armed no longer.
+    /// The control is no longer armed.
     Disarmed,
     /// A control that acts while it is held will soon stop by itself.
     Warned,
@@ -169,7 +167,7 @@ pub enum EventKind {
 }
 
 impl EventKind {
-    /// The word for it in OSC addresses and JSON, such as `pressed` or `long_pressed`.
+    /// Its name in OSC addresses and JSON, such as `pressed` or `long_pressed`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -192,18 +190,18 @@ impl EventKind {
     }
 }
 
-/// What an event says besides its name.
+/// The content of an event besides its name.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Detail {
-    /// The value that the control now holds.
+    /// The new value of the control.
     Value(Value),
-    /// Where the foot went.
+    /// The direction of the foot.
     Direction(Direction),
 }
 
 impl EventKind {
-    /// Those that say nothing besides their name.
+    /// The events without further content.
     pub const PLAIN: [Self; 13] = [
         Self::Pressed,
         Self::Released,
@@ -220,7 +218,7 @@ impl EventKind {
         Self::Refused,
     ];
 
-    /// What happened, by its [name](Self::name) and what is said besides; `None` if that is nothing a control does.
+    /// The event with this [name](Self::name) and detail; `None` if controls emit no such event.
     #[must_use]
     pub fn of(name: &str, detail: Option<Detail>) -> Option<Self> {
         let with_detail = detail.map(|detail| match detail {
@@ -230,7 +228,7 @@ impl EventKind {
         Self::PLAIN.into_iter().chain(with_detail).find(|kind| kind.name() == name)
     }
 
-    /// What it says besides its name; `None` for most.
+    /// Its content besides the name; `None` for most.
     #[must_use]
     pub const fn detail(self) -> Option<Detail> {
         match self {
@@ -253,19 +251,19 @@ impl EventKind {
     }
 }
 
-/// One event of one control, as it leaves the engine.
+/// One event of one control, as the engine returns it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WidgetEvent {
-    /// When it happened, on the floor's sample clock.
+    /// Its time, on the floor's sample clock.
     pub at: Instant,
-    /// Which control.
+    /// The control.
     pub id: WidgetId,
-    /// What happened.
+    /// The event.
     pub kind: EventKind,
-    /// The contact that did it; `None` if no foot did (an app, a lost floor).
+    /// The contact that caused it; `None` without a foot (an app, a lost floor).
     pub contact: Option<ContactId>,
-    /// Force of that contact, last known.
+    /// Last known force of that contact.
     pub force: Newtons,
-    /// Where the contact was, in floor metres, last known.
+    /// Last known place of that contact, in floor metres.
     pub position: Vec2,
 }

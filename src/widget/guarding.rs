@@ -1,4 +1,4 @@
-//! What stands between a press and what it does.
+//! The guard between a press and its action.
 //!
 //! ```text
 //! Confirm (arm, then press within 3 s)
@@ -33,14 +33,14 @@ enum State {
     Armed {
         until: Instant,
     },
-    /// The press that counts is down.
+    /// The press that acts is down.
     Acting {
         since: Instant,
         warned: bool,
     },
 }
 
-/// A guard at work.
+/// The state of a guard: idle, arming, armed or acting.
 #[derive(Clone, Debug)]
 pub(super) struct Guarding {
     guard: Guard,
@@ -57,7 +57,7 @@ impl Guarding {
             || (matches!(self.state, State::Acting { .. }) && matches!(self.guard, Guard::Confirm { .. }))
     }
 
-    /// Whether the press that is down will only arm it.
+    /// Whether the present press will only arm it.
     pub(super) fn is_arming(&self) -> bool {
         self.state == State::Arming
     }
@@ -71,7 +71,7 @@ impl Guarding {
         self.state == State::Idle
     }
 
-    /// Ends what is not trusted or has lasted too long; gives back what the press came to then.
+    /// Ends a press that is untrusted or has lasted too long; returns the outcome of the press.
     pub(super) fn end_untrusted(
         &mut self,
         now: Instant,
@@ -99,7 +99,7 @@ impl Guarding {
         outcome
     }
 
-    /// Whether the press goes on to the control; one that only arms it ends here.
+    /// Whether the press reaches the control; a press that only arms ends here.
     pub(super) fn passes(
         &mut self,
         now: Instant,
@@ -133,7 +133,7 @@ impl Guarding {
             (State::Armed { until }, _) if broken || now >= until => {
                 self.state = State::Idle;
                 emitted.push(EventKind::Disarmed);
-                // Too late to be the second press, it is a first one.
+                // Too late for the second press: it counts as a first one.
                 if outcome == Some(Outcome::Pressed) {
                     self.state = State::Arming;
                     emitted.push(EventKind::Pressed);
@@ -145,8 +145,8 @@ impl Guarding {
         false
     }
 
-    /// Takes note of what the press has come to: whether it is still down, and whether the control
-    /// `waits` for a second tap, which a first press that only arms must not swallow.
+    /// Updates the state after the control: `is_down` is whether the press is still down, `waits` whether the control
+    /// waits for a second tap, during which the guard must stay open.
     pub(super) fn after(&mut self, is_down: bool, waits: bool, emitted: &mut Emitted) {
         let confirms = matches!(self.guard, Guard::Confirm { .. });
         if matches!(self.state, State::Acting { .. }) && !is_down && !(confirms && waits) {

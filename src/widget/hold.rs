@@ -7,7 +7,7 @@
 //!  4  an app sets it                         -> refused: only a foot can hold it
 //! ```
 //!
-//! With the guard `HoldToRun` it is off as soon as the contact is uncertain as well, and after a time.
+//! With the guard `HoldToRun` it is also off as soon as the contact is uncertain, and after a time.
 
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
@@ -17,11 +17,11 @@ use crate::format::{Flat, record};
 record! {
     /// A control that is on while a foot holds it.
     pub struct HoldSpec = "Hold", Copy;
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
 }
 
-/// A momentary control at work.
+/// The state of a momentary control.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hold {
     on: bool,

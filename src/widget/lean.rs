@@ -1,4 +1,4 @@
-//! A direction pad worked by leaning: how far the foot's pressure has moved from where it settled.
+//! A direction pad for leaning: the value is the shift of the foot's pressure from its settled place.
 //!
 //! ```text
 //!  1  press                                -> Pressed; the value is zero while the foot settles
@@ -24,9 +24,9 @@ use crate::format::{Flat, num, record};
 use crate::units::Instant;
 
 record! {
-    /// A direction pad worked by leaning.
+    /// A direction pad for leaning.
     ///
-    /// A foot's pressure wanders by half a centimetre while it stands, and by about four when it leans.
+    /// The pressure of a standing foot wanders by half a centimetre, that of a leaning one by about four.
     pub struct LeanSpec = "Lean", Copy => |it, faults| {
         if it.deadband_m >= it.full_m {
             let [deadband, full] = [it.deadband_m, it.full_m].map(|metres| plain(metres.into()));
@@ -34,23 +34,24 @@ record! {
             faults.error(&["full_m", "deadband_m"], "`full_m` must be above `deadband_m`", found);
         }
     };
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
-    /// How long a foot takes to settle: its heel lands first and it rolls on.
+    /// Time in which a foot settles: its heel lands first and it rolls on.
     pub settle: Duration = "settle_ms", num(0.0..=2000.0).milli() => Duration::from_millis(250);
-    /// How far the pressure must move before it counts, in metres.
+    /// Minimum shift of the pressure that counts, in metres.
     pub deadband_m: f32 = "deadband_m", num(0.0..=0.5) => 0.008;
-    /// How far it must move for a length of 1, in metres; more than `deadband_m`.
+    /// Shift of the pressure for a length of 1, in metres; more than `deadband_m`.
     pub full_m: f32 = "full_m", num(0.001..=0.5) => 0.03;
 }
 
-/// Smallest change of the length worth an event (our choice: standing still sways by as much).
+/// Minimum change of the length for an event (our choice: quiet standing sways by as much).
 const QUANTUM: f32 = 0.02;
 
-/// Over how much of the last time the origin is averaged, so that a foot that rolled there is not half-way.
+/// Time constant T of the origin's smoothing, `mean += (1 - exp(-dt / T)) * (x - mean)`: short, so that the start of
+/// a roll does not count.
 const MEMORY: Duration = Duration::from_millis(30);
 
-/// A direction pad at work.
+/// The state of a direction pad.
 #[derive(Clone, Debug)]
 pub(super) struct Lean {
     spec: LeanSpec,
@@ -62,9 +63,9 @@ pub(super) struct Lean {
 enum Origin {
     /// Not pressed.
     None,
-    /// The mean of the last places since the press.
+    /// Smoothed place since the press.
     Settling { since: Instant, mean: Option<Vec2> },
-    /// Known, in metres from the control's middle.
+    /// The origin, in metres from the control's middle.
     At(Vec2),
 }
 

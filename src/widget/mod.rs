@@ -1,8 +1,7 @@
 //! The behaviours of controls: pure state machines fed with one foot's force and place.
 //!
-//! Each step takes the time and one `Input` and gives back what happened.
-//! Nothing here knows of floors, layouts or feedback. Three layers, the
-//! timeline of each written above it:
+//! Each step takes the time and one `Input`, and returns the events. Nothing here depends on floors, layouts or
+//! feedback. There are three layers, each with its timeline at the top of its file:
 //!
 //! ```text
 //! Input -press-> pressed, released, cancelled -guard-> may it act? -behaviour-> events
@@ -66,7 +65,7 @@ internal! {
 
 use crate::format::Named;
 
-/// Along which axis of the floor something lies.
+/// An axis of the floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axis {
     /// Eastwards (to the right).

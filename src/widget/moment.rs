@@ -1,4 +1,4 @@
-//! What a behaviour is told of one frame, and what every behaviour can do.
+//! The input of a behaviour in one frame, and the interface of all behaviours.
 
 use std::time::Duration;
 
@@ -8,19 +8,19 @@ use super::press::{Outcome, Press};
 use super::{Emitted, Input, SetError, Thresholds, Value};
 use crate::units::{Instant, Newtons};
 
-/// What a behaviour is told of one frame.
+/// The input of a behaviour in one frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
     pub(super) now: Instant,
     /// Time since the last frame.
     pub(super) elapsed: Duration,
-    /// What became of the press in this frame.
+    /// The outcome of the press in this frame.
     pub(super) outcome: Option<Outcome>,
-    /// The foot that presses, if it can be believed.
+    /// The foot that presses, if its force is reliable.
     pub(super) foot: Option<FootInput>,
-    /// Whether that foot means to stay: a lifting foot rolls, and its place means nothing.
+    /// Whether that foot presses firmly: a lifting foot rolls, and its place is of no use.
     pub(super) firm: bool,
-    /// Whether what waits to be done must be forgotten: sensing was lost, the foot steps, an app stopped the control.
+    /// Whether pending actions must be dropped: sensing was lost, the foot steps, or an app stopped the control.
     pub(super) broken: bool,
     /// Width and depth of the control, in metres.
     pub(super) size: Vec2,
@@ -37,7 +37,7 @@ pub(super) struct FootInput {
 }
 
 impl Moment {
-    /// What `press` makes of `input`, its `outcome` being known, a time `elapsed` after the last frame.
+    /// The moment for `input` and the `outcome` of `press`, at `elapsed` after the last frame.
     pub(super) fn new(
         now: Instant,
         elapsed: Duration,
@@ -56,12 +56,12 @@ impl Moment {
         Self { now, elapsed, outcome, foot, firm: press.is_firm(), broken, size, at: press.thresholds() }
     }
 
-    /// The foot, if it means to stay: only it may change a value by its place.
+    /// The foot, if it presses firmly: only then may its place change a value.
     pub(super) fn firm_foot(&self) -> Option<FootInput> {
         self.foot.filter(|_| self.firm)
     }
 
-    /// Where that foot is, in metres from the control's middle.
+    /// Place of that foot, in metres from the control's middle.
     pub(super) fn offset(&self) -> Option<Vec2> {
         self.firm_foot().map(|foot| (foot.place - 0.5) * self.size)
     }
@@ -71,22 +71,22 @@ impl Moment {
     }
 }
 
-/// What a behaviour does with the press that it is given.
+/// The interface of behaviours.
 pub(super) trait Machine: std::fmt::Debug + Send {
-    /// Takes in one frame and appends what happened.
+    /// Processes one frame and appends its events.
     fn act(&mut self, moment: &Moment, emitted: &mut Emitted);
 
-    /// What it holds; `None` if nothing.
+    /// Its value; `None` if it has none.
     fn value(&self) -> Option<Value> {
         None
     }
 
-    /// Takes a value from an app.
+    /// Sets the value for an app.
     fn set(&mut self, _: Value) -> Result<(), SetError> {
         Err(SetError::WrongType)
     }
 
-    /// What a release would make of [`Machine::value`], if something else.
+    /// The value after a release, if different from [`Machine::value`].
     fn pending(&self) -> Option<Value> {
         None
     }

@@ -1,16 +1,16 @@
-//! A number that feet move and a cancel takes back.
+//! A number moved by feet and reverted by a cancel.
 
 use super::press::Outcome;
 use super::{Emitted, EventKind, Scale, SetError, Value};
 
-/// A number that feet move, and that goes back to where it was if the press is cancelled.
+/// A number moved by feet; a cancelled press reverts it.
 #[derive(Clone, Debug)]
 pub(super) struct Number {
     scale: Scale,
     value: f32,
     /// The value before the press.
     before: f32,
-    /// The value as the foot moves it, before steps and detents.
+    /// The value before steps and detents.
     raw: f32,
 }
 
@@ -24,7 +24,7 @@ impl Number {
         self.value
     }
 
-    /// Says what became of the press, and takes back what a cancelled one did.
+    /// Emits the outcome of the press, and reverts a cancelled one.
     pub(super) fn follow_press(&mut self, outcome: Option<Outcome>, emitted: &mut Emitted) {
         match outcome {
             Some(Outcome::Pressed) => {
@@ -44,7 +44,7 @@ impl Number {
         }
     }
 
-    /// Goes to `wanted` as far as steps and detents let it.
+    /// Sets the value to `wanted`, subject to steps and detents.
     pub(super) fn follow(&mut self, wanted: f32, quantum: f32, emitted: &mut Emitted) {
         if let Some(value) = self.scale.follow(self.value, wanted, quantum) {
             self.value = value;
@@ -52,7 +52,7 @@ impl Number {
         }
     }
 
-    /// Moves by `way`; what steps swallow is kept for later, what goes beyond an end is not.
+    /// Moves by `way`; keeps the rest between two steps for later, drops the part beyond an end.
     pub(super) fn move_by(&mut self, way: f32, emitted: &mut Emitted) {
         if way.is_finite() {
             self.raw = (self.raw + way).clamp(self.scale.min, self.scale.max);
@@ -60,7 +60,7 @@ impl Number {
         }
     }
 
-    /// Takes a value from an app.
+    /// Sets the value for an app.
     pub(super) fn set(&mut self, value: Value) -> Result<(), SetError> {
         let Value::Number(number) = value else { return Err(SetError::WrongType) };
         if !number.is_finite() {

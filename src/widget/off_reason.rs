@@ -1,13 +1,13 @@
-//! Why a control is off.
+//! The reasons why a control is off.
 
 use std::fmt;
 
 use crate::floor::FloorFile;
 
-/// Why a control is off: no foot can press it, whoever stands where.
+/// The reason why a control is off: no foot can press it, at any place.
 ///
-/// A foot that does not press a control that is on has reasons of its own (`engine::Ignored`). Where several reasons
-/// hold at once, the first in the order of [`OffReason::ALL`] is given.
+/// A control that is on may ignore a foot for other reasons (`engine::Ignored`). Where several reasons apply at once,
+/// the first in the order of [`OffReason::ALL`] counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum OffReason {
@@ -15,20 +15,21 @@ pub enum OffReason {
     Disabled,
     /// The floor has not been sensed yet: no packets have come, or the tare is being measured.
     Waiting,
-    /// Boards have changed places; controls with the guard `HoldToRun` are off everywhere, others on the tiles of these
+    /// Boards have been swapped; controls with the guard `HoldToRun` are off everywhere, others on the tiles of these
     /// boards.
     BoardsSwapped,
-    /// The floor file has no calibration of some sensors; of controls with the guard `HoldToRun`.
+    /// The floor file has no calibration of some sensors; only for controls with the guard `HoldToRun`.
     NotCalibrated,
-    /// The floor file is another floor's; of controls with the guard `HoldToRun`.
+    /// The floor file belongs to another floor; only for controls with the guard `HoldToRun`.
     OtherFloor,
-    /// Nothing usable has come for 100 ms from a board under the control.
+    /// No usable packet has come for 100 ms from a board under the control.
     LinkLost,
-    /// Sensors under the control are known to be wrong, or at the end of their range.
+    /// Sensors under the control are faulty or saturated.
     SensorTrouble,
-    /// Sensors under the control repeat their readings bit for bit under a load; of controls with the guard `HoldToRun`.
+    /// Sensors under the control repeat their readings bit for bit under a load; only for controls with the guard
+    /// `HoldToRun`.
     RepeatedReadings,
-    /// The readings under the control are so coarse that a frozen sensor cannot be noticed; of controls with the guard
+    /// The readings under the control are too coarse to detect a frozen sensor; only for controls with the guard
     /// `HoldToRun`.
     CoarseReadings,
     /// Another control with the guard `HoldToRun` is held: only one acts at a time.
@@ -36,7 +37,7 @@ pub enum OffReason {
 }
 
 impl OffReason {
-    /// All reasons, the one that is given first first.
+    /// All reasons, in order of precedence.
     pub const ALL: [Self; 10] = [
         Self::Disabled,
         Self::Waiting,
@@ -50,7 +51,7 @@ impl OffReason {
         Self::OtherHeld,
     ];
 
-    /// The word for it in OSC, JSON, C and Python; it stays the same in later versions.
+    /// Its name in OSC, JSON, C and Python; it stays the same in later versions.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -73,8 +74,8 @@ impl OffReason {
         Self::ALL.into_iter().find(|reason| reason.name() == name)
     }
 
-    /// Whether it lasts until somebody does something about it. The others pass by themselves: packets come, a foot
-    /// lets go, a sensor recovers.
+    /// Whether it lasts until a person acts. The others pass by themselves: packets come, a foot lets go, a sensor
+    /// recovers.
     #[must_use]
     pub const fn is_lasting(self) -> bool {
         match self {
@@ -91,7 +92,7 @@ impl OffReason {
         }
     }
 
-    /// The reason on a floor that was read from `file`, with a way out of it, in a sentence without a full stop.
+    /// The reason on a floor that was read from `file`, with a remedy, in a sentence without a full stop.
     #[must_use]
     pub fn explain(self, file: &FloorFile) -> String {
         match self {
@@ -161,7 +162,7 @@ mod tests {
     fn a_floor_without_a_file_says_where_one_comes_from() {
         let text = OffReason::NotCalibrated.explain(&FloorFile::NONE);
         assert!(text.contains("no floor file is given") && text.contains("underfoot calibrate"), "{text}");
-        // The library knows no options of the program.
+        // The library does not name options of the program.
         assert!(!text.contains("--"), "{text}");
     }
 }

@@ -29,22 +29,22 @@ const fn pair(each: Num) -> Pair {
 record! {
     /// A pad with two axes; every setting is written eastwards and northwards.
     pub struct PadSpec = "Pad", Copy => PadSpec::rules;
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
     /// The least values.
     pub min: Vec2 = "min", pair(VALUES);
-    /// The greatest; more than `min`.
+    /// The greatest values; more than `min`.
     pub max: Vec2 = "max", pair(VALUES);
-    /// Distances between the values it may take, counted from `min`; 0 for any value.
+    /// Distances between allowed values, counted from `min`; 0 for any value.
     pub step: Vec2 = "step", pair(WIDTHS) => Vec2::ZERO;
-    /// Distances between values that draw the numbers to them, counted from `min`; 0 for none.
+    /// Distances between values that attract the numbers, counted from `min`; 0 for none.
     pub detent: Vec2 = "detent", pair(WIDTHS) => Vec2::ZERO;
-    /// Values to begin with.
+    /// Initial values.
     pub initial: Vec2 = "initial", Follow { explicit: pair(VALUES), otherwise: "the least" };
 }
 
 impl PadSpec {
-    /// A pad of these values from west to east and from south to north, which begins at the least of both.
+    /// A pad with these values from west to east and from south to north; it begins at the least of both.
     #[must_use]
     pub const fn new(thresholds: Thresholds, x: Scale, y: Scale) -> Self {
         Self {
@@ -82,7 +82,7 @@ impl PadSpec {
     }
 }
 
-/// A pad at work.
+/// The state of a pad.
 #[derive(Clone, Debug)]
 pub(super) struct Pad {
     spec: PadSpec,

@@ -19,8 +19,8 @@ use crate::format::{Flat, Opt, num, record};
 use crate::units::Newtons;
 
 record! {
-    /// A pedal: force to value. `deadband` and `full` grow with the press threshold where that is a share of the
-    /// weight.
+    /// A pedal: force to value. `deadband` and `full` are scaled with the press threshold where that is a share of
+    /// the weight.
     pub struct PedalSpec = "Pedal", Copy => |it, faults| {
         if it.gives_from() >= it.full {
             let [deadband, full] = [it.gives_from(), it.full].map(|force| plain(force.0.into()));
@@ -28,15 +28,15 @@ record! {
             faults.error(&["full_n", "deadband_n", "press_n"], "`full_n` must be above `deadband_n`", found);
         }
     };
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
     /// Its values; the least at rest.
     pub scale: Scale = "", Flat;
-    /// Force up to which the value is the least; the press threshold where it says none.
+    /// Force up to which the value is the least; the press threshold by default.
     pub deadband: Option<Newtons> = "deadband_n", Opt(num(0.0..=1000.0)) => None;
-    /// Force from which on the value is the greatest; more than `deadband`.
+    /// Force above which the value is the greatest; more than `deadband`.
     pub full: Newtons = "full_n", num(10.0..=2000.0);
-    /// Exponent of the curve between: 1 is straight, more gives finer control of light presses.
+    /// Exponent of the curve in between: 1 is linear, a greater one gives finer control of light presses.
     pub curve: f32 = "curve", num(0.2..=5.0) => 1.0;
 }
 
@@ -48,10 +48,10 @@ impl PedalSpec {
     }
 }
 
-/// Smallest change worth an event, as a part of the range (our choice: a foot's force trembles by as much).
+/// Minimum change for an event, as a part of the range (our choice: a foot's force varies by as much).
 const QUANTUM: f32 = 0.01;
 
-/// A pedal at work.
+/// The state of a pedal.
 #[derive(Clone, Debug)]
 pub(super) struct Pedal {
     spec: PedalSpec,

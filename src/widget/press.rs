@@ -24,16 +24,16 @@ use std::time::Duration;
 use super::{Input, Thresholds};
 use crate::units::{Instant, Newtons};
 
-/// How long the force must stay below the release threshold before a lift counts (our choice).
+/// Time for which the force must stay below the release threshold for a lift (our choice).
 ///
-/// A press is never delayed by this; a release is, by less than anybody feels.
+/// It delays no press; it delays a release by less than a person can feel.
 pub(super) const LIFT_TIME: Duration = Duration::from_millis(4);
 
-/// How long a control must be seen unloaded before it works after a start or a loss
-/// (our choice: longer than a foot needs to be found again when packets return).
+/// Time without load before a control works after a start or a loss (our choice: longer than the tracker needs to
+/// find a foot again when packets return).
 const UNLOAD_TIME: Duration = Duration::from_millis(20);
 
-/// What became of a press.
+/// The outcome of a press in one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
     Pressed,
@@ -43,9 +43,9 @@ pub(super) enum Outcome {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
-    /// Must be seen unloaded before anything counts; it has been since `clear`.
+    /// Ignores all presses until an unloaded span is over; unloaded since `clear`.
     NeedsLift { clear: Option<Instant> },
-    /// At rest; presses count again from `ready` on.
+    /// At rest; presses count from `ready` on.
     Up { ready: Instant },
     /// Loaded enough since `since`, waiting for the dwell to pass.
     Arming { since: Instant },
@@ -57,24 +57,24 @@ enum State {
 
 const NEEDS_LIFT: State = State::NeedsLift { clear: None };
 
-/// One control's press.
+/// One control's press: needs a lift, up, arming, down or lifting.
 #[derive(Clone, Debug)]
 pub(super) struct Press {
-    /// As written.
+    /// The thresholds as written.
     written: Thresholds,
-    /// For the person whose foot was last on it.
+    /// The thresholds for the person of the last foot on it.
     at: Thresholds,
     state: State,
     force: Newtons,
 }
 
 impl Press {
-    /// A press that must first be seen unloaded.
+    /// A press that first needs a span without load.
     pub(super) fn new(at: Thresholds) -> Self {
         Self { written: at, at, state: NEEDS_LIFT, force: Newtons::ZERO }
     }
 
-    /// The thresholds for the person whose foot was last on it.
+    /// The thresholds for the person of the last foot on it.
     pub(super) fn thresholds(&self) -> Thresholds {
         self.at
     }
@@ -97,7 +97,7 @@ impl Press {
         (self.force / self.at.press).max(0.0)
     }
 
-    /// Whether the force is closer to the press than to the release threshold: a foot that means to stay.
+    /// Whether the force is closer to the press than to the release threshold: the foot is not lifting.
     pub(super) fn is_firm(&self) -> bool {
         self.is_engaged() && self.force >= (self.at.press + self.at.release) * 0.5
     }
@@ -111,10 +111,10 @@ impl Press {
 
     pub(super) fn step(&mut self, now: Instant, input: Input) -> Option<Outcome> {
         use State::{Arming, Down, Lifting, NeedsLift, Up};
-        // A foot that is not there presses with nothing.
+        // An absent foot has no force.
         let (force, trusted) = match input {
             Input::Foot { force, trusted, weight, .. } => {
-                // While it is pressed the thresholds stay: a better idea of the weight is not a release.
+                // The thresholds stay during a press: a better estimate of the weight is not a release.
                 if !self.is_engaged() {
                     self.at = self.written.for_weight(weight);
                 }
@@ -181,7 +181,7 @@ mod tests {
 
     const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
-    /// Long enough unloaded, in milliseconds, for the press to work.
+    /// Time without load, in milliseconds, after which the press works.
     const SETTLED: u64 = 25;
 
     /// One press fed millisecond by millisecond.
@@ -192,7 +192,7 @@ mod tests {
     }
 
     impl Bench {
-        /// A press that has been seen unloaded.
+        /// A press after a span without load.
         fn ready() -> Self {
             let mut bench = Self { press: Press::new(AT), now: Instant::START, outcomes: Vec::new() };
             bench.give(Input::Clear, SETTLED);

@@ -1,4 +1,4 @@
-//! Every behaviour under every guard, worked by feet and apps that do anything at all.
+//! Every behaviour with every guard, under random actions of feet and apps.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,7 +17,7 @@ const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 const SIZE: Vec2 = Vec2::new(0.4, 0.3);
 const LIMIT: Duration = Duration::from_millis(700);
 
-/// One of each, plain.
+/// One of each, without extras.
 pub(super) fn behaviours(at: Thresholds) -> Vec<Behaviour> {
     let scale = Scale { step: 0.5, ..Scale::new(-1.0, 3.0) };
     let hard = HardStage { press: Newtons(120.0), release: Newtons(90.0) };
@@ -96,7 +96,7 @@ enum Op {
     Cancel,
 }
 
-/// A foot that presses, lifts and slides, more often than not like a foot.
+/// A random action of a foot that presses, lifts and slides, mostly plausible.
 fn op(random: &mut Pcg64Mcg, place: &mut Vec2) -> Op {
     let millis =
         if random.random_bool(0.1) { random.random_range(1..900) } else { random.random_range(1..60) };
@@ -128,7 +128,7 @@ fn op(random: &mut Pcg64Mcg, place: &mut Vec2) -> Op {
     Op::Sense(Input::Foot { force, trusted: random.random_bool(0.97), place: at, weight }, millis)
 }
 
-/// What is known of a control from its events alone.
+/// The state of a control, derived from its events alone.
 struct Watch<'a> {
     behaviour: &'a Behaviour,
     value: Option<Value>,
@@ -148,7 +148,7 @@ impl Watch<'_> {
         matches!(self.behaviour, Behaviour::Hold(_) | Behaviour::Pedal(_) | Behaviour::Lean(_))
     }
 
-    /// Checks what one step gave; `clean` says whether the step may commit anything.
+    /// Checks the events of one step; `clean` is whether the step may commit anything.
     fn take(&mut self, now: Instant, emitted: &[EventKind], clean: bool) {
         let confirm = matches!(self.guard(), Guard::Confirm { .. });
         let mut released = false;
@@ -212,7 +212,7 @@ impl Watch<'_> {
         }
     }
 
-    /// What must hold between any two operations.
+    /// Checks the conditions that hold between any two operations.
     fn check(&self, now: Instant, control: &Control) {
         assert_eq!(control.is_engaged(), self.down.is_some());
         assert_eq!(control.is_armed(), self.armed);
@@ -311,7 +311,7 @@ fn whatever_feet_and_apps_do_each_press_ends_once_and_nothing_commits_while_untr
     assert!(all.len() as u32 * OPERATIONS >= 100_000);
     for (seed, behaviour) in (0..).zip(&all) {
         let commits = work(behaviour, seed);
-        // Enough presses came through for the rest to mean something.
+        // Enough presses counted for the checks to be meaningful.
         assert!(commits > 20, "only {commits} commits of {behaviour:?}");
     }
 }

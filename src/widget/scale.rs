@@ -4,46 +4,46 @@ use crate::format::Faults;
 use crate::format::number::plain;
 use crate::format::{Follow, Num, num, record};
 
-/// Values of controls: as far as `f32` still resolves a tenth.
+/// Range of values of controls: `f32` still resolves a tenth.
 pub(super) const VALUES: Num = num(-1e6..=1e6);
 
-/// The same for what apps give.
+/// The same range for values from apps.
 pub(super) const ENDS: std::ops::RangeInclusive<f32> = -1e6..=1e6;
 
-/// A value to begin with.
+/// An initial value.
 pub(super) const INITIAL: Follow<Num> = Follow { explicit: VALUES, otherwise: "the least" };
 
-/// Distances between values.
+/// Range of distances between values.
 pub(super) const WIDTHS: Num = num(0.0..=1e6);
 
 record! {
-    /// The values that a control's number may take.
+    /// The allowed values of a control's number.
     pub struct Scale = "Scale", Copy => |it, faults| it.check(faults, "");
-    /// The least.
+    /// The least value.
     pub min: f32 = "min", VALUES;
-    /// The greatest; more than `min`.
+    /// The greatest value; more than `min`.
     pub max: f32 = "max", VALUES;
-    /// Distance between the values it may take, counted from `min`; 0 for any value. `max` may always be taken.
+    /// Distance between allowed values, counted from `min`; 0 for any value. `max` is always allowed.
     pub step: f32 = "step", WIDTHS => 0.0;
-    /// Distance between values that draw the number to them, counted from `min`; 0 for none.
+    /// Distance between values that attract the number, counted from `min`; 0 for none.
     pub detent: f32 = "detent", WIDTHS => 0.0;
 }
 
-/// How far beyond the middle between two steps the foot must be before the number follows, in steps
-/// (our choice: a foot that rests between two steps sways by less).
+/// Distance of the foot beyond the middle between two steps at which the number follows, in steps (our choice: a foot
+/// that rests between two steps sways by less).
 const HYSTERESIS: f32 = 0.15;
 
-/// How near a value must come to a detent to be drawn to it: in detents, and at most this part of the range.
+/// Distance from a detent within which it attracts a value: in detents, and at most this part of the range.
 const PULL: (f32, f32) = (0.15, 0.04);
 
-/// How much farther than that a value must go to leave its detent.
+/// Factor of that distance for leaving the detent.
 const GRIP: f32 = 1.5;
 
-/// Smallest change worth an event where there are no steps, as a part of the range (our choice).
+/// Minimum change for an event where there are no steps, as a part of the range (our choice).
 pub(super) const QUANTUM: f32 = 1e-3;
 
 impl Scale {
-    /// Notes what is wrong with it; `way` is the direction of a pad's, with a space behind it.
+    /// Reports faults of the scale; `way` is the direction of a pad's scale, followed by a space.
     pub(super) fn check(&self, faults: &mut Faults, way: &str) {
         let Self { min, max, step, detent } = *self;
         let shown = |value: f32| plain(value.into());
@@ -69,7 +69,7 @@ impl Scale {
         }
     }
 
-    /// Brings a value to begin with into the range; notes it if that was written and lies outside.
+    /// Clamps an initial value to the range; reports it if it was written and lies outside.
     pub(super) fn check_initial(&self, initial: &mut f32, faults: &mut Faults) {
         let nearest = initial.min(self.max).max(self.min);
         if nearest != *initial {
@@ -95,20 +95,20 @@ impl Scale {
         self.max - self.min
     }
 
-    /// How far along the scale `value` is: 0 at `min`, 1 at `max`, at most that; 0 for NaN.
+    /// Position of `value` on the scale: 0 at `min`, 1 at `max`, clamped; 0 for NaN.
     #[must_use]
     pub fn share(&self, value: f32) -> f32 {
         let share = ((value - self.min) / self.range()).clamp(0.0, 1.0);
         if share.is_nan() { 0.0 } else { share }
     }
 
-    /// The value a `share` (0 to 1) of the way along the scale, before steps and detents.
+    /// The value at `share` (0 to 1) of the scale, before steps and detents.
     #[must_use]
     pub fn at(&self, share: f32) -> f32 {
         self.min + self.range() * share
     }
 
-    /// The nearest value that may be taken; `min` for NaN.
+    /// The nearest allowed value; `min` for NaN.
     #[must_use]
     pub fn settle(&self, value: f32) -> f32 {
         if value.is_nan() {
@@ -118,7 +118,7 @@ impl Scale {
         if self.step > 0.0 { nearest(value, self.min, self.step).min(self.max) } else { value }
     }
 
-    /// Whether a foot should feel something when the number comes to `value`: a step, or a detent.
+    /// Whether `value` is a step or a detent, to be felt.
     #[must_use]
     pub(crate) fn is_stop(&self, value: f32) -> bool {
         self.step > 0.0
@@ -126,9 +126,9 @@ impl Scale {
                 && (nearest(value, self.min, self.detent) - value).abs() <= 1e-5 * self.range())
     }
 
-    /// The value that follows `current` when the foot asks for `wanted`; `None` if it stays.
+    /// The next value after `current` when the foot asks for `wanted`; `None` if it stays.
     ///
-    /// Changes of less than `quantum` (a part of the range) are left out where there are no steps.
+    /// Without steps, changes of less than `quantum` (a part of the range) are left out.
     pub(super) fn follow(&self, current: f32, wanted: f32, quantum: f32) -> Option<f32> {
         if wanted.is_nan() {
             return None;
@@ -146,7 +146,7 @@ impl Scale {
         (next != current).then_some(next)
     }
 
-    /// `wanted`, or the detent that it is near enough to.
+    /// `wanted`, or a detent within reach.
     fn drawn(&self, current: f32, wanted: f32) -> f32 {
         if self.detent <= 0.0 {
             return wanted;

@@ -1,4 +1,4 @@
-//! A selector: one of several options, picked by where the foot lets go.
+//! A selector: one of several options, selected by the place of the release.
 //!
 //! ```text
 //!  1  press                          -> Pressed; the option under the foot is in question
@@ -17,7 +17,7 @@ use super::press::Outcome;
 use super::{Axis, Emitted, EventKind, SetError, Thresholds, Value};
 use crate::format::{Flat, Follow, Name, Text, list, num, record};
 
-/// Most options: more are too narrow for a foot on any control within reach.
+/// Maximum number of options: more are too narrow for a foot on any control within reach.
 const MOST: usize = 12;
 
 record! {
@@ -30,21 +30,21 @@ record! {
         }
         it.initial = it.initial.min(last);
     };
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
     /// Whether the options stand side by side from the west, or one below the other from the north.
     pub axis: Axis = "axis", Name => Axis::East;
-    /// What is written on each option; 2 to 12.
+    /// The label of each option; 2 to 12.
     pub options: Arc<[Arc<str>]> = "options", list("option", MOST, Text(32))
         .at_least(2, "a selector needs options to choose from");
-    /// The option to begin with, from 0.
+    /// The initial option, from 0.
     pub initial: u16 = "initial", Follow { explicit: num(0.0..=MOST as f64 - 1.0), otherwise: "0" };
 }
 
-/// How far beyond the border between two options the foot must be, in widths of one (our choice).
+/// Distance of the foot beyond the border between two options for a change, in widths of one (our choice).
 const HYSTERESIS: f32 = 0.15;
 
-/// A selector at work.
+/// The state of a selector.
 #[derive(Clone, Debug)]
 pub(super) struct Selector {
     axis: Axis,
@@ -109,7 +109,7 @@ impl Machine for Selector {
         let choice = match value {
             Value::Choice(choice) => choice,
             Value::Number(number) if !number.is_finite() => return Err(SetError::NotFinite),
-            // Some senders know no whole numbers.
+            // Some senders have no whole numbers.
             Value::Number(number) if (0.0..=65535.0).contains(&number) && number.fract() == 0.0 => {
                 number as u16
             }

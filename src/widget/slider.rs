@@ -30,15 +30,15 @@ use crate::format::{Flat, OneOf, choices, num, record};
 record! {
     /// A slider: the foot's place along its track is its value, or moves it.
     pub struct SliderSpec = "Slider", Copy => |it, faults| it.scale.check_initial(&mut it.initial, faults);
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
-    /// Where its value grows.
+    /// The direction in which its value grows.
     pub track: Track = "axis", TrackFields => Track::EAST;
-    /// What the foot's place does to its value.
+    /// The effect of the foot's place on its value.
     pub mapping: Mapping = "mapping", OneOf => Mapping::Absolute;
     /// Its values.
     pub scale: Scale = "", Flat;
-    /// Value to begin with, within the range.
+    /// Initial value, within the range.
     pub initial: f32 = "initial", INITIAL;
 }
 
@@ -52,42 +52,42 @@ impl SliderSpec {
 }
 
 choices! {
-    /// What the place of a foot does to a slider's value.
+    /// The effect of a foot's place on a slider's value.
     pub enum Mapping: Copy = Absolute;
     /// The place is the value.
     Absolute,
-    /// The way from where it was pressed moves the value: to lift and press again is to reach farther.
+    /// The distance from the place of the press moves the value: a lift and another press extend the reach.
     Relative(Relative),
-    /// The way from where it was pressed is the speed at which the value moves.
+    /// The distance from the place of the press is the speed at which the value moves.
     Rate(Rate),
 }
 
 record! {
-    /// The way from where it was pressed moves the value: to lift and press again is to reach farther.
+    /// The distance from the place of the press moves the value: a lift and another press extend the reach.
     pub struct Relative = "Relative", Copy;
     /// Ranges per length of the track.
     pub gain: f32 = "gain", num(0.01..=10.0) => 1.0;
 }
 
 record! {
-    /// The way from where it was pressed is the speed at which the value moves.
+    /// The distance from the place of the press is the speed at which the value moves.
     pub struct Rate = "Rate", Copy;
     /// Change of the value per second at full deflection, half the track.
     pub full_per_s: f32 = "full_per_s", num(1e-6..=1e6);
 }
 
-/// Part of the way to full speed within which a rate slider stands still (our choice).
+/// Share of the full deflection within which a rate slider stands still (our choice).
 const DEAD: f32 = 0.1;
 
-/// Longest time that one frame may move a rate slider, however long it was.
+/// Maximum time by which one frame moves a rate slider.
 const LONGEST: Duration = Duration::from_millis(20);
 
-/// A slider at work: it keeps its foot until the foot lets go, wherever that slides.
+/// The state of a slider: it keeps its foot until the foot lets go, wherever that slides.
 #[derive(Clone, Debug)]
 pub(super) struct Slider {
     spec: SliderSpec,
     number: Number,
-    /// Where along the track the foot was pressed (rate) or last (relative).
+    /// Place of the press (rate) or last place of the foot (relative) along the track.
     anchor: Option<f32>,
 }
 
@@ -122,7 +122,7 @@ impl Machine for Slider {
         let share = moment.firm_foot().and_then(|foot| self.spec.track.share_at(foot.place, moment.size));
         match share {
             Some(share) => self.slide(share, moment.elapsed, emitted),
-            // What happened meanwhile does not count as travel.
+            // Motion in the meantime does not count as travel.
             None if matches!(self.spec.mapping, Mapping::Relative { .. }) => self.anchor = None,
             None => {}
         }

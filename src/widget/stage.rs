@@ -1,4 +1,4 @@
-//! Pairs of thresholds, of which the second follows the first.
+//! Pairs of thresholds; the second is derived from the first.
 
 use crate::format::describe::{FieldDescription, FieldType, first_paragraph};
 use crate::format::fields::Fields;
@@ -7,17 +7,18 @@ use crate::format::problem::Problem;
 use crate::format::text::{Entry, Text};
 use crate::format::{Codec, Num};
 
-/// A pair of thresholds in two fields, which may be absent; the second one follows the first unless it is written.
+/// A pair of thresholds in two fields, which may be absent; the second is derived from the first unless it is
+/// written.
 pub(super) struct Stage {
     pub(super) press: Num,
     pub(super) release: Num,
-    /// The fields.
+    /// The names of the fields.
     pub(super) names: [&'static str; 2],
-    /// What the second one is.
+    /// Description of the second one.
     pub(super) about: &'static str,
-    /// What part of the first one the second one is where nothing says it.
+    /// Default of the second one as a share of the first.
     pub(super) follows: f32,
-    /// What is said of the second one without the first.
+    /// Error text for the second one without the first.
     pub(super) lonely: &'static str,
 }
 
@@ -75,7 +76,7 @@ impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for
             }
             return None;
         };
-        // A base's release follows a new press.
+        // A base's release threshold is scaled with a new press threshold.
         let part = base.map_or(self.follows, |[press, release]| release / press);
         Some([press, release.unwrap_or(press * part)].into())
     }

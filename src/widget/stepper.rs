@@ -31,20 +31,20 @@ record! {
             faults.error(&["step"], "a stepper needs a `step`", "expected more than 0");
         }
     };
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
-    /// Which half counts up: the eastern or the northern one.
+    /// The half that counts up: the eastern or the northern one.
     pub axis: Axis = "axis", Name => Axis::East;
     /// Its values; its step is not 0.
     pub scale: Scale = "", Flat;
-    /// Value to begin with, within the range.
+    /// Initial value, within the range.
     pub initial: f32 = "initial", INITIAL;
-    /// How a held one repeats.
+    /// The repetition of a held stepper.
     pub repeat: Repeat = "", Flat;
 }
 
 record! {
-    /// How a held stepper repeats; unless told otherwise slowly enough to let go in time.
+    /// The repetition of a held stepper; by default slow enough to let go in time.
     pub struct Repeat = "Repeat", Copy, Eq => |it, faults| {
         if it.fastest > it.every || it.fastest < Duration::from_millis(10) {
             let (fastest, every) = (it.fastest.as_millis(), it.every.as_millis());
@@ -55,26 +55,26 @@ record! {
             );
         }
     };
-    /// How long after the first step the second follows; `None` for never.
+    /// Time from the first step to the second; `None` for no repetition.
     pub after: Option<Duration> = "repeat_after_ms", Opt(num(50.0..=5000.0).milli())
         => Some(Duration::from_millis(600));
-    /// How long after the second the third follows.
+    /// Time from the second step to the third.
     pub every: Duration = "repeat_every_ms", num(0.0..=5000.0).milli() => Duration::from_millis(250);
-    /// Shortest time between two steps, at most `every`.
+    /// Minimum time between two steps, at most `every`.
     pub fastest: Duration = "fastest_ms", num(0.0..=5000.0).milli() => Duration::from_millis(60);
 }
 
 impl Repeat {
-    /// Not at all.
+    /// No repetition.
     #[cfg(test)]
     pub(crate) const NEVER: Self =
         Self { after: None, every: Duration::from_millis(250), fastest: Duration::from_millis(60) };
 }
 
-/// How much shorter each pause is than the one before.
+/// Ratio of each pause to the one before.
 const ACCELERATION: f32 = 0.85;
 
-/// A stepper at work.
+/// The state of a stepper.
 #[derive(Clone, Debug)]
 pub(super) struct Stepper {
     spec: StepperSpec,
@@ -86,7 +86,7 @@ pub(super) struct Stepper {
 #[derive(Clone, Copy, Debug)]
 struct Held {
     up: bool,
-    /// When the next step is due, and how long the one after that will wait.
+    /// Time of the next step, and the pause after it.
     next: Option<(Instant, Duration)>,
 }
 

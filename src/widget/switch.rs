@@ -1,4 +1,4 @@
-//! A switch: each completed press turns it over.
+//! A switch: each completed press toggles it.
 //!
 //! ```text
 //!  1  press                              -> Pressed
@@ -13,15 +13,15 @@ use super::{Emitted, EventKind, SetError, Thresholds, Value};
 use crate::format::{Flag, Flat, record};
 
 record! {
-    /// A switch: each completed press turns it over.
+    /// A switch: each completed press toggles it.
     pub struct SwitchSpec = "Switch", Copy;
-    /// When it engages.
+    /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
-    /// Whether it is on to begin with.
+    /// Whether it is on initially.
     pub initial: bool = "initial", Flag => false;
 }
 
-/// A switch at work.
+/// The state of a switch.
 #[derive(Clone, Debug)]
 pub(super) struct Switch {
     on: bool,

@@ -31,7 +31,7 @@ fn foot(newtons: f32, share: f32) -> Input {
     Input::Foot { force: Newtons(newtons), trusted: true, place: Vec2::new(share, 0.5), weight: None }
 }
 
-/// Gives each input for so many milliseconds, after the control has been seen unloaded.
+/// Feeds each input for so many milliseconds, after a span without load.
 fn play(control: &mut Control, inputs: &[(Input, u64)]) -> Vec<EventKind> {
     let mut now = Instant::START;
     for millis in 0..25 {
@@ -60,7 +60,7 @@ fn a_button_clicks_on_release_and_never_after_a_cancel() {
 #[test]
 fn a_guard_that_confirms_waits_for_a_second_tap_and_leaves_nothing_of_it() {
     use EventKind::{Armed, Clicked, Disarmed, DoubleTapped, Pressed, Released};
-    // No layout may say so, but an app can.
+    // No layout may set this, but an app can.
     let thresholds = Thresholds { guard: Guard::Confirm(Confirm { within: Duration::from_secs(3) }), ..AT };
     let mut spec = ButtonSpec::new(thresholds);
     spec.gestures.double_tap = Some(Duration::from_millis(350));
@@ -152,7 +152,7 @@ fn a_step_takes_back_whatever_a_press_did() {
         let events = play(&mut control, &[(foot(130.0, 0.4), 60), (foot(130.0, 0.8), 60), (stepping, 400)]);
         assert_eq!(events.last(), Some(&EventKind::Cancelled), "{}", behaviour.name());
         assert_eq!(control.value(), before, "{}", behaviour.name());
-        // The foot of a step that lands on it presses nothing, heavy as it is.
+        // The foot of a step that lands on it presses nothing at any force.
         let events = play(&mut control, &[(stepping, 400), (foot(500.0, 0.5), 200)]);
         assert_eq!(events, [], "{}", behaviour.name());
     }

@@ -1,4 +1,4 @@
-//! When a foot's force counts as a press.
+//! The force thresholds of a press.
 
 use std::time::Duration;
 
@@ -8,28 +8,28 @@ use crate::format::number::plain;
 use crate::format::{Faults, Num, OneOf, num, record};
 use crate::units::Newtons;
 
-/// Longest dwell or lockout.
+/// Range of a dwell or lockout.
 const BRIEF: Num = num(0.0..=2000.0).milli();
 
 record! {
-    /// When a foot's force counts as a press.
+    /// The force thresholds of a press.
     pub struct Thresholds = "Thresholds", Copy => Thresholds::rules;
-    /// Force from which on the control engages: a press below 10 N cannot be told from a foot resting beside the
-    /// control, one above 1000 N is a jump.
+    /// Force above which the control engages: a press below 10 N looks the same as a foot resting beside the control,
+    /// one above 1000 N is a jump.
     pub press: Newtons = "press_n", num(10.0..=1000.0);
-    /// Force below which it lets go; less than `press`.
+    /// Force below which it releases; less than `press`.
     pub release: Newtons = "release_n", num(1.0..=1000.0);
-    /// How long the force must hold before the press counts.
+    /// Time for which the force must hold before the press counts.
     pub dwell: Duration = "dwell_ms", BRIEF => Duration::from_millis(20);
-    /// How long after a release no new press counts.
+    /// Time after a release in which no new press counts.
     pub lockout: Duration = "lockout_ms", BRIEF => Duration::from_millis(20);
-    /// What takes the place of `press` and `release` once the person's weight is known: parts of it.
+    /// Shares of the person's weight that replace `press` and `release` once the weight is known.
     pub share: Option<WeightShare> = "press_share", SHARE => None;
-    /// What it takes besides force.
+    /// The condition besides force.
     pub guard: Guard = "guard", OneOf => Guard::Free;
 }
 
-/// Parts of a person's weight; twice the weight is a jump.
+/// Shares of a person's weight; twice the weight is a jump.
 const SHARE: Stage = Stage {
     press: num(0.01..=2.0),
     release: num(0.005..=2.0),
@@ -39,12 +39,12 @@ const SHARE: Stage = Stage {
     lonely: "parts of the person's weight come in pairs",
 };
 
-/// Thresholds as parts of a person's weight.
+/// Thresholds as shares of a person's weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightShare {
-    /// Part of the weight from which on the control engages.
+    /// Share of the weight above which the control engages.
     pub press: f32,
-    /// Part of the weight below which it lets go; less than `press`.
+    /// Share of the weight below which it releases; less than `press`.
     pub release: f32,
 }
 
@@ -60,13 +60,13 @@ impl From<WeightShare> for [f32; 2] {
     }
 }
 
-/// Share of the press force from which on a release follows a press by mere swaying.
+/// Ratio of release to press force above which sway alone causes a release.
 const RELEASE_SHARE: f32 = 0.8;
 
-/// Release threshold of those who give only the other one, as a part of that.
+/// Default release threshold, as a share of the press threshold.
 const TWO_THIRDS: f32 = 0.67;
 
-/// Force below which no press can be told from a foot that rests beside the control.
+/// Force below which a press looks the same as a foot that rests beside the control.
 const LEAST_PRESS: Newtons = Newtons(10.0);
 
 impl Thresholds {
@@ -84,11 +84,10 @@ impl Thresholds {
         Self { press, release, dwell: brief, lockout: brief, share: None, guard: Guard::Free }
     }
 
-    /// The same for a person of this weight: shares turned into newtons.
+    /// The thresholds for a person of this weight: shares converted to newtons.
     ///
-    /// `press` and `release` stay as they are where there are no shares, or
-    /// while the weight is not known (`None`, or no positive number). A press
-    /// never takes less than 10 N.
+    /// `press` and `release` stay without shares, or while the weight is unknown (`None`, or not positive). A press
+    /// threshold is at least 10 N.
     #[must_use]
     pub(crate) fn for_weight(self, weight: Option<Newtons>) -> Self {
         match (self.share, weight) {
@@ -139,7 +138,7 @@ mod tests {
         };
         assert_eq!(at(None), (60.0, 40.0));
         assert_eq!(at(Some(Newtons(900.0))), (90.0, 54.0));
-        // A child of 5 kg: 10 N is as light as a press may be.
+        // A child of 5 kg: 10 N is the minimum of a press.
         assert_eq!(at(Some(Newtons(50.0))), (10.0, 6.0));
         for nonsense in [0.0, -700.0, f32::NAN, f32::INFINITY] {
             assert_eq!(at(Some(Newtons(nonsense))), (60.0, 40.0));

@@ -1,4 +1,4 @@
-//! The way along which a slider is worked.
+//! The track of a slider.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -11,7 +11,7 @@ use crate::format::problem::Problem;
 use crate::format::text::{Entry, Text};
 use crate::format::{Codec, Num, Pair, num};
 
-/// The way along which a slider is worked, through the middle of its area.
+/// The track of a slider, through the middle of its area.
 ///
 /// Angles count in degrees from east, counter-clockwise: 90 is north.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,14 +23,14 @@ pub enum Track {
     },
     /// Part of a circle, as large as fits the area with room for a foot around it.
     Arc {
-        /// Where it begins, seen from its centre.
+        /// Angle of its start, from its centre.
         from_degrees: f32,
-        /// Where it ends; less than `from_degrees` if the value grows clockwise, at most 360 degrees away.
+        /// Angle of its end; less than `from_degrees` if the value grows clockwise, at most 360 degrees away.
         to_degrees: f32,
     },
 }
 
-/// A track as files write it: `axis`, `angle_deg` or `arc_deg`.
+/// A track in files: `axis`, `angle_deg` or `arc_deg`.
 pub(super) struct TrackFields;
 
 /// Angles, in degrees from east, counter-clockwise.
@@ -129,7 +129,7 @@ impl Codec<Track> for TrackFields {
     }
 }
 
-/// Part of an arc's radius within which a place is too near its centre to be at an angle.
+/// Share of an arc's radius within which the angle of a place is undefined.
 const HUB: f32 = 0.25;
 
 /// Part of an area's smaller side that stays free around an arc.
@@ -142,10 +142,10 @@ impl Track {
     /// Northwards.
     pub const NORTH: Self = Self::Line { degrees: 90.0 };
 
-    /// How far along the track (0 to 1, on a line also beyond) a `place` is.
+    /// Position of a `place` along the track (0 to 1, on a line also beyond).
     ///
-    /// `place` is 0 to 1 across a control of `size` metres. `None` for a place
-    /// too near an arc's centre, or one that is not finite.
+    /// `place` is 0 to 1 across a control of `size` metres. `None` for a place too near an arc's centre, or one that
+    /// is not finite.
     #[must_use]
     pub fn share_at(&self, place: Vec2, size: Vec2) -> Option<f32> {
         let offset = (place - 0.5) * size;
@@ -164,7 +164,7 @@ impl Track {
                     return None;
                 }
                 let sweep = (to_degrees - from_degrees).to_radians();
-                // From the arc's middle, so that what lies beyond either end is nearer to that end.
+                // From the arc's middle, so that a place beyond either end is nearer to that end.
                 let middle = from_degrees.to_radians() + 0.5 * sweep;
                 let off = wrapped(spoke.to_angle() - middle);
                 Some((0.5 + off / sweep).clamp(0.0, 1.0))
@@ -172,7 +172,7 @@ impl Track {
         }
     }
 
-    /// The place (0 to 1 across a control of `size` metres) a `share` of the way along the track.
+    /// The place (0 to 1 across a control of `size` metres) at the position `share` along the track.
     #[must_use]
     pub fn place_at(&self, share: f32, size: Vec2) -> Vec2 {
         let offset = match *self {
@@ -214,7 +214,7 @@ fn chord(along: Vec2, size: Vec2) -> f32 {
     (size / along.abs()).min_element()
 }
 
-/// The circle of which an arc is part, so that the arc just fits.
+/// The circle of an arc that just fits the area.
 fn circle(from_degrees: f32, to_degrees: f32, size: Vec2) -> (Vec2, f32) {
     let (from, to) = (from_degrees.min(to_degrees).to_radians(), from_degrees.max(to_degrees).to_radians());
     let (mut low, mut high) = (Vec2::from_angle(from), Vec2::from_angle(from));
@@ -229,7 +229,7 @@ fn circle(from_degrees: f32, to_degrees: f32, size: Vec2) -> (Vec2, f32) {
     (-0.5 * (low + high) * radius, radius)
 }
 
-/// `angle` brought to -pi to pi.
+/// `angle` wrapped to -pi to pi.
 pub(super) fn wrapped(angle: f32) -> f32 {
     (angle + PI).rem_euclid(TAU) - PI
 }
@@ -267,7 +267,7 @@ mod tests {
     fn a_half_circle_fills_an_area_twice_as_wide_as_deep() {
         let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
         let (centre, radius) = arc.circle(Vec2::new(0.6, 0.3)).unwrap();
-        // 18 % of 30 cm stay free all around.
+        // A margin of 18 % of 30 cm stays free on all sides.
         assert!((radius - 0.192).abs() < 1e-5);
         assert!(centre.distance(Vec2::new(0.0, -0.096)) < 1e-5);
         assert_eq!(arc.share_at(Vec2::new(0.5, 0.14), Vec2::new(0.6, 0.3)), None, "at the hub");

@@ -1,4 +1,4 @@
-//! One contact with its past: since when it is down, how it moved, and whether it is a foot that may press at all.
+//! One contact with its history: time of landing, motion, and whether it is a foot that may press.
 
 use std::time::Duration;
 
@@ -12,58 +12,60 @@ use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
 use crate::widget::Guard;
 
-/// How often a foot's place is kept, and how many of them: the last 0.4 s.
+/// Interval at which the history records a foot's place, and number of places: the last 0.4 s.
 const PLACE_EVERY: Duration = Duration::from_millis(20);
 const PLACES: usize = 20;
 
-/// How a supporting foot rolls is taken from this many kept places before the latest five: in the
-/// last tenth of a second the foot that lands may have been taken for a part of it.
+/// Number of recorded places from which the rolling velocity of a supporting foot follows, and number of the latest
+/// ones to skip: in the last tenth of a second the tracker may have merged the landing foot into this one.
 const ROLL_PLACES: usize = 13;
 const SKIPPED_PLACES: usize = 5;
 
-/// How long a foot must have been down before it starts what must not start by accident (fault R8),
-/// and how steady: over the last tenth of a second, by this share of its force and this far in metres.
+/// Time that a foot must have been down before it starts a guarded control (fault R8), and how steady it must be:
+/// over the last tenth of a second its force changes by at most this share, and its place by at most this distance in
+/// metres.
 const SETTLED: Duration = Duration::from_millis(300);
 const STEADY_PLACES: usize = 4;
 const STEADY_SHARE: f32 = 0.2;
 const STEADY_M: f32 = 0.015;
 
-/// Who jumps or falls is left by this share of what the floor carried within so many kept places; a
-/// foot that goes from a control back to the floor leaves less than a fifth missing for a moment.
+/// A jump or a fall: the load drops below this share of its maximum over so many recorded places. A foot that returns
+/// from a control to the floor lowers the load by less than a fifth for a moment.
 const FALLEN: f32 = 0.6;
 const FALL_PLACES: usize = 15;
 
-/// Least force on the other foot for it to count as standing, in newtons.
+/// Minimum force on the other foot for it to count as standing, in newtons.
 const STOOD_N: f32 = 150.0;
 
-/// A press has most of its force after so long; weight is shifted from foot to foot in no less than 0.3 s.
+/// A press reaches this share of its force within this time; a shift of weight from foot to foot takes at least 0.3
+/// s.
 const EARLY: Duration = Duration::from_millis(150);
 const AT_ONCE: f32 = 0.85;
 
-/// A foot as light as this has as good as left the floor, in newtons: below the release of any control.
+/// Below this force a foot counts as lifted, in newtons: less than the release threshold of any control.
 pub(in crate::engine) const AS_GOOD_AS_LIFTED_N: f32 = 8.0;
 
-/// Least sum of somebody's contacts from which shares of it say anything, in newtons.
+/// Minimum sum of a person's contacts for a share of it to be meaningful, in newtons.
 const SUM_N: f32 = 250.0;
 
-/// What the other foot must carry for such a share, in newtons.
+/// Minimum load on the person's other feet for such a share, in newtons.
 const OTHERS_N: f32 = 50.0;
 
-/// A contact that may have been two feet is told apart into both within so long of having been marked.
+/// An ambiguous contact must split into two feet within this time of its mark.
 const TOLD_APART: Duration = Duration::from_millis(100);
 
-/// Feet that had been one contact carry at least this share of their person from their first frame on; one that lands
-/// has a tenth of a body no sooner than 5 ms after it has touched the floor (10 N a millisecond, see
-/// [`super::super::step`]).
+/// A foot that splits from another contact carries at least this share of its person's load from its first frame on;
+/// a foot that lands reaches a tenth of a body no sooner than 5 ms after it has touched the floor (10 N a
+/// millisecond, see [`super::super::step`]).
 const TOLD_APART_SHARE: f32 = 0.1;
 
-/// Share of what somebody carried when a further foot landed that both this foot and the others carry if it is somebody
-/// else's, and for how long (our choices: who stands on both feet has half on each, and who jumps with both carries more
-/// than a body for a tenth of a second).
+/// A foot belongs to another person if both this foot and the others carry at least this share of the person's load
+/// at the landing, for at least this time (our choices: a person on both feet has half on each; a jump with both feet
+/// loads more than a body for a tenth of a second).
 const ANOTHER_BODY: f32 = 0.8;
 const ANOTHER_FOR: Duration = Duration::from_millis(300);
 
-/// Where a foot was, with which force, and what the person's other feet carried.
+/// Place and force of a foot, and the load on the person's other feet, at one moment of the past.
 #[derive(Clone, Copy, Debug, Default)]
 struct PastLoad {
     place: Vec2,
@@ -71,20 +73,20 @@ struct PastLoad {
     others: f32,
 }
 
-/// Which way of pressing a control answers to.
+/// The way of pressing to which a control responds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::engine) enum PressMode {
-    /// A press that is over soon.
+    /// A press that ends soon.
     Tap,
     /// A press that may last.
     Hold,
-    /// A press that acts from its first moment on, and whose foot moves a value.
+    /// A press that acts from its first moment on; its foot moves a value.
     Follow,
     /// A stance: the person stands on it.
     Stand,
 }
 
-/// One contact with its past.
+/// One contact with its history.
 #[derive(Clone, Debug)]
 pub(in crate::engine) struct FootHistory {
     pub(in crate::engine) id: ContactId,
@@ -93,25 +95,25 @@ pub(in crate::engine) struct FootHistory {
     pub(in crate::engine) landed_at: Vec2,
     pub(in crate::engine) place: Vec2,
     pub(in crate::engine) force: f32,
-    /// Whether a control has engaged it since it landed.
+    /// Whether it has engaged a control since it landed.
     pub(in crate::engine) pressing: bool,
-    /// Whether it came from elsewhere, and not from a control back to where it had stood.
+    /// Whether it came from elsewhere, rather than from a control back to its earlier place.
     stepped: bool,
-    /// Whether somebody stood on the other foot when it landed.
+    /// Whether the person stood on the other foot when it landed.
     pub(super) has_support: bool,
     pub(super) in_stance: bool,
-    /// When it was last marked as perhaps two feet.
+    /// When the tracker last marked it as perhaps two feet.
     ambiguous: Option<Instant>,
     step: bool,
     watch: StepWatch,
     still: Stillness,
-    /// Share of the body that it carries, where that is known.
+    /// Share of the body that it carries, if known.
     share: Option<f32>,
-    /// What it pressed with when it had been down for a moment.
+    /// Its force `EARLY` after the landing.
     early: Option<f32>,
-    /// What the person's other feet carried when this one was last examined.
+    /// Load on the person's other feet at the last update.
     others: f32,
-    /// What the person carried when it landed, and since when it and the others each have carried about as much.
+    /// The person's load when it landed, and since when it and the others have each carried about as much.
     before: f32,
     another: Since,
     past: [PastLoad; PLACES],
@@ -151,7 +153,7 @@ impl FootHistory {
         }
     }
 
-    /// Whether it has been left on the floor and counts as an object.
+    /// Whether it is an object left on the floor.
     pub(in crate::engine) fn is_object(&self) -> bool {
         self.still.is_object()
     }
@@ -166,7 +168,7 @@ impl FootHistory {
         !self.in_stance && !self.is_object()
     }
 
-    /// Whether it walks, stands or rests on a control of this mode, which therefore must not answer.
+    /// Whether it walks, stands or rests on a control of this mode, so that the control must not respond.
     pub(in crate::engine) fn is_step_on(&self, mode: PressMode, now: Instant) -> bool {
         match mode {
             PressMode::Tap => self.step || self.watch.stands(now) || self.watch.rests(now),
@@ -191,7 +193,7 @@ impl FootHistory {
         }
     }
 
-    /// How its centre of pressure has moved over the last quarter of a second, the last tenth left out.
+    /// Mean velocity of its centre of pressure over the last quarter of a second, without the latest tenth.
     fn rolling(&self) -> Vec2 {
         let known = self.kept.saturating_sub(SKIPPED_PLACES + 1).min(ROLL_PLACES);
         if known < ROLL_PLACES / 2 {
@@ -202,13 +204,13 @@ impl FootHistory {
         (place(SKIPPED_PLACES) - place(SKIPPED_PLACES + known)) / span
     }
 
-    /// What it was like so many kept places ago.
+    /// Its state so many recorded places ago.
     fn past(&self, ago: usize) -> PastLoad {
         self.past[(self.next + 2 * PLACES - 1 - ago) % PLACES]
     }
 
-    /// Whether the other foot has left the floor within the last 0.3 s, and this one has not taken over
-    /// what it carried: the person jumps or falls.
+    /// Whether the person jumps or falls: the other foot has left the floor within the last 0.3 s, and this one has
+    /// not taken over its load.
     pub(in crate::engine) fn falls(&self) -> bool {
         let lately = || (0..FALL_PLACES.min(self.kept)).map(|ago| self.past(ago));
         let others = lately().map(|past| past.others).fold(0.0, f32::max);
@@ -216,51 +218,53 @@ impl FootHistory {
         others >= STOOD_N && self.others < FALLEN * others && self.others + self.force < FALLEN * sum
     }
 
-    /// Whether it is or was of late where another contact lands now: two feet don't stand in one place.
+    /// Whether it is, or recently was, at this place, where another contact lands now: two feet cannot stand in one
+    /// place.
     pub(super) fn was_at(&self, place: Vec2) -> bool {
         let near = |at: Vec2| at.distance(place) <= SAME_FOOT_M;
         near(self.place) || (0..self.kept).any(|ago| near(self.past(ago).place))
     }
 
-    /// Whether another contact of the same person, who had `sum` on the floor, is a foot that had been down unseen as
-    /// part of this one.
+    /// Whether another contact of the same person, with a total of `sum` on the floor, is a foot that was down before
+    /// as an undetected part of this one.
     pub(super) fn contained(&self, other: &Self, sum: f32, now: Instant) -> bool {
         self.ambiguous.is_some_and(|at| now.since(at) <= TOLD_APART)
             && self.place.distance(other.place) <= STANCE_M
             && other.force >= TOLD_APART_SHARE * sum.max(SUM_N)
     }
 
-    /// Goes on as `other`: it is no foot that has just come, but the first one under another name, a part of it told
-    /// apart for a while, or a second one that had stood beside it unseen.
+    /// Continues the history of `other`: this contact has not just landed. It is the same foot with a new id, a part
+    /// of it split off for a while, or a second foot that stood undetected beside it.
     pub(super) fn go_on_as(&mut self, other: &Self) {
         (self.landed, self.landed_at) = (other.landed, other.landed_at);
         (self.step, self.stepped, self.has_support) = (other.step, other.stepped, other.has_support);
     }
 
-    /// What the way it came down tells.
+    /// Sets the support and the step state from the landing.
     pub(super) fn land(&mut self, landing: &Landing) {
         self.has_support = landing.has_standing_support();
         self.step = landing.walks();
     }
 
-    /// Whether it presses neither harder nor elsewhere than a tenth of a second ago.
+    /// Whether its force and place are those of a tenth of a second ago, within the limits of a steady foot.
     fn is_steady(&self) -> bool {
         self.has_steady_force() && self.place.distance(self.past(STEADY_PLACES).place) <= STEADY_M
     }
 
-    /// Whether it presses no harder than a tenth of a second ago, when it was down already, and no less.
+    /// Whether it was down a tenth of a second ago already, with the same force within `STEADY_SHARE`.
     fn has_steady_force(&self) -> bool {
         self.kept > STEADY_PLACES
             && (self.force - self.past(STEADY_PLACES).force).abs() <= STEADY_SHARE * self.force
     }
 
-    /// Whether it may start a press of a control with this `guard`, as far as its past tells.
+    /// Whether its history allows it to start a press of a control with this `guard`.
     ///
     /// A control to stand on ([`PressMode::Stand`]) starts once the foot has settled. A guarded control starts once
-    /// the foot has settled and has not taken the weight over, since that would be a step; one that only asks for
-    /// confirmation does so at once if the other foot supports the person. A free control starts at once, unless it
-    /// acts at once ([`PressMode::Follow`]): then a foot beside which nobody stands must have stopped gaining weight,
-    /// which a foot that lands in a walk does only when it is known for a step, and no foot may carry a body.
+    /// the foot has settled without taking the weight over, since that would be a step; a control that only requires
+    /// confirmation starts at once if the other foot supports the person. A free control starts at once, except one
+    /// that acts at once ([`PressMode::Follow`]): no foot on it may carry a body, and a foot without a standing foot
+    /// beside it must have stopped gaining weight. A foot that lands in a walk stops gaining only when it is already
+    /// classified as a step.
     pub(in crate::engine) fn is_meant(&self, mode: PressMode, guard: Guard, now: Instant) -> bool {
         let stays = || now.since(self.landed) >= SETTLED && self.is_steady();
         let settled = || stays() && !self.took_weight_over();
@@ -276,8 +280,8 @@ impl FootHistory {
         }
     }
 
-    /// Whether it carries as much as a resting foot does and came to it slowly: a press is put on at
-    /// once, a body is shifted over.
+    /// Whether it carries as much as a resting foot and its force grew slowly: a press reaches its force at once, a
+    /// shift of weight takes longer.
     fn took_weight_over(&self) -> bool {
         let rests = self.force >= RESTS_N && self.share.is_none_or(|share| share >= RESTS);
         rests && self.early.is_none_or(|early| early < AT_ONCE * self.force)
@@ -323,12 +327,12 @@ impl FootHistory {
         self.step |= self.watch.is_step(&loading, now);
     }
 
-    /// Whether it bears a body besides the one that stood there when it landed, and stands there still.
+    /// Whether it has carried a second body for long enough, in addition to the one that stood there at its landing.
     pub(super) fn bears_another_body(&self, now: Instant) -> bool {
         self.another.lasts(now) >= Some(ANOTHER_FOR)
     }
 
-    /// Is the foot of this person from now on.
+    /// Assigns the foot to another person.
     pub(super) fn give_to(&mut self, person: u32) {
         self.person = person;
         (self.others, self.before, self.another) = (0.0, 0.0, Since::default());
@@ -346,7 +350,7 @@ impl FootHistory {
         }
     }
 }
-/// Whether `contact` may be two feet. One that was split from another may be none.
+/// Whether `contact` may be two feet. A contact that split from another may not be a foot at all.
 fn may_be_two(contact: &Contact) -> bool {
     contact.ambiguous && !contact.split
 }

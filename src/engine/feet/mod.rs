@@ -1,4 +1,4 @@
-//! What is known of all contacts beyond the present frame, and whose feet they are.
+//! The history of all contacts, and the assignment of feet to people.
 
 mod history;
 
@@ -12,16 +12,16 @@ use crate::layout::Stance;
 use crate::sense::{Contact, ContactId};
 use crate::units::{Instant, Newtons};
 
-/// Feet and people for which there is room from the start; more cost an allocation once.
+/// Initial capacity for feet and people; more cost one allocation.
 const ROOM: usize = 64;
 
-/// A support carries at least this much, in newtons.
+/// Minimum load on a supporting foot, in newtons.
 const SUPPORT_N: f32 = 100.0;
 
-/// All contacts with their past, and the people they belong to.
+/// All contacts with their history, and the people to which they belong.
 #[derive(Clone, Debug)]
 pub(super) struct FootHistories {
-    /// In the order of their ids.
+    /// Sorted by id.
     feet: Vec<FootHistory>,
     people: Vec<Person>,
     next_person: u32,
@@ -34,7 +34,7 @@ impl Default for FootHistories {
 }
 
 impl FootHistories {
-    /// Takes in the contacts of one frame.
+    /// Processes the contacts of one frame.
     ///
     /// # Real-time
     /// Allocates nothing while there are no more than 64 contacts.
@@ -76,24 +76,24 @@ impl FootHistories {
         self.take_apart(now);
     }
 
-    /// The foot of a contact.
+    /// The history of a contact.
     pub(super) fn of(&self, id: ContactId) -> Option<&FootHistory> {
         self.feet.binary_search_by_key(&id, |foot| foot.id).ok().and_then(|at| self.feet.get(at))
     }
 
-    /// A control has engaged a contact.
+    /// Notes that a contact has engaged a control.
     pub(super) fn note_press(&mut self, id: ContactId) {
         if let Ok(at) = self.feet.binary_search_by_key(&id, |foot| foot.id) {
             self.feet[at].pressing = true;
         }
     }
 
-    /// The weight of the person whose foot this is; `None` if it is not known.
+    /// The weight of the person to whom this foot belongs; `None` if unknown.
     pub(super) fn weight(&self, id: ContactId) -> Option<Newtons> {
         self.person_of(id)?.weight()
     }
 
-    /// What there is to show of each contact, in their order.
+    /// The state of each contact, in their order.
     pub(super) fn states(&self, now: Instant) -> impl Iterator<Item = FootState> + '_ {
         self.feet.iter().map(move |foot| FootState {
             contact: foot.id,
@@ -134,7 +134,8 @@ impl FootHistories {
         foot
     }
 
-    /// Makes one person of two that had been taken for two while their feet were on the way.
+    /// Merges two people that are one: while their feet were on the way, each foot was assigned to a person of its
+    /// own.
     fn bring_together(&mut self) {
         let mut first = 0;
         while first < self.people.len() {
@@ -153,7 +154,7 @@ impl FootHistories {
         }
     }
 
-    /// Makes two people of one on whose further foot another body stands.
+    /// Splits a person into two where another body stands on one of the feet.
     fn take_apart(&mut self, now: Instant) {
         for at in 0..self.feet.len() {
             if self.feet[at].bears_another_body(now) {
@@ -164,8 +165,8 @@ impl FootHistories {
         }
     }
 
-    /// The position of the person to whom a foot that lands at `place` belongs; a new person if no known one can have
-    /// put it there.
+    /// The index of the person to whom a foot that lands at `place` belongs; a new person if the place is out of
+    /// reach for all known ones.
     fn whose(&mut self, place: Vec2, now: Instant) -> usize {
         let near = self
             .people
@@ -176,7 +177,7 @@ impl FootHistories {
         near.map(|(at, _)| at).unwrap_or_else(|| self.newcomer(now))
     }
 
-    /// The position of a new person.
+    /// The index of a new person.
     fn newcomer(&mut self, now: Instant) -> usize {
         self.people.push(Person::new(self.next_person, now));
         self.next_person = self.next_person.wrapping_add(1);
@@ -208,14 +209,14 @@ mod tests {
             }
             Instant::from_millis(ms)
         };
-        // Somebody with narrow feet stands, taken for one foot that may be two; weight goes over to the right one,
-        // which is told apart; nothing is left of the other one's load.
+        // A person with narrow feet stands, tracked as one foot that may be two. The weight goes over to the right
+        // foot, which splits off; nothing is left of the load on the other one.
         give(&mut feet, &[contact(1, (0.5, 0.3), 700.0, true)], 3000);
         give(&mut feet, &[contact(1, (0.4, 0.3), 600.0, false), contact(2, (0.6, 0.3), 100.0, true)], 100);
         give(&mut feet, &[contact(1, (0.4, 0.3), 20.0, true), contact(2, (0.6, 0.3), 680.0, false)], 500);
         let standing = contact(2, (0.6, 0.3), 660.0, false);
         give(&mut feet, std::slice::from_ref(&standing), 5);
-        // The left foot comes down on a control.
+        // The left foot lands on a control.
         let now = give(&mut feet, &[standing, contact(3, (0.5, 0.9), 40.0, false)], 10);
         let foot = feet.of(ContactId(3)).unwrap();
         assert!(!foot.is_step_on(PressMode::Tap, now), "it presses");
@@ -226,7 +227,7 @@ mod tests {
     fn a_foot_on_which_another_body_stands_is_another_person_s() {
         let person_of_second = |first_n: f32, second_n: f32, ms: u64| {
             let mut feet = FootHistories::default();
-            // Somebody stands on one foot; another one lands a step away.
+            // A person stands on one foot; another foot lands a step away.
             let standing = contact(1, (1.8, 0.6), 700.0, false);
             (0..500).for_each(|ms| {
                 feet.update(std::slice::from_ref(&standing), &[], Instant::from_millis(ms));
@@ -247,8 +248,8 @@ mod tests {
         let mut feet = FootHistories::default();
         let mut give = |contacts: &[Contact], ms: u64| feet.update(contacts, &[], Instant::from_millis(ms));
         let (one, other) = (contact(1, (1.0, 1.6), 600.0, false), contact(2, (1.4, 2.1), 600.0, false));
-        // Somebody steps north; 0.4 s after the trailing foot has left, a foot of somebody else lands a metre south of
-        // where it was.
+        // One person steps north; 0.4 s after the trailing foot has left, a foot of another person lands a metre
+        // south of its last place.
         give(std::slice::from_ref(&one), 0);
         give(&[one, other.clone()], 500);
         give(std::slice::from_ref(&other), 700);

@@ -1,22 +1,22 @@
-//! How far the forces of a contact are to be believed.
+//! How far the forces of a contact are reliable.
 
 use crate::sense::{Contact, ForceFrame, HoldDoubt, Quality, TileLoad};
 use crate::units::Newtons;
 use crate::widget::{Guard, Thresholds};
 
-/// Whether a control with this `guard` takes `contact` for something else than a foot, whatever its sensors say.
+/// Whether `contact` may not be a foot for a control with this `guard`, whatever its sensors read.
 fn is_doubtful_foot(contact: &Contact, guard: Guard) -> bool {
     contact.split && guard != Guard::Free
 }
 
-/// How much of the force of `contact` would be left if a sensor erred that is suspected to.
+/// Force of `contact` that remains if a suspected sensor is wrong.
 ///
-/// `Degraded` tiles count: one with a dead sensor, whose force the other three tell, and one that loses packets. A tile
-/// with a saturated sensor, or one that reads what its plate does not bear, is suspected; see
-/// [`ForceFrame::may_start`]. Of what runs while it is held, so is one whose readings may not hold it; see
-/// [`ForceFrame::hold_doubts`]. A shoe that laps over onto a tile, or a foot over the meeting of tiles, presses there at
-/// one sensor alone, as an erring sensor reads: one of these tiles is taken for wrong, and all of them where what runs
-/// while it is held depends on it.
+/// `Degraded` tiles count in full: a tile with a dead sensor, its force estimated from the other three, and a tile
+/// that loses packets. A tile is suspected if it has a saturated sensor, or reads a load that its plate does not
+/// carry; see [`ForceFrame::may_start`]. For controls that run while they are held, a tile with unsuitable readings
+/// is suspected too; see [`ForceFrame::hold_doubts`]. A shoe that overlaps a tile, or a foot across the joint of
+/// tiles, loads a single sensor there, as a faulty sensor reads: for most controls the heaviest suspected tile counts
+/// as wrong, for those that run while they are held all of them.
 fn certain_force(contact: &Contact, guard: Guard, frame: &ForceFrame) -> Newtons {
     let forces = suspected(contact, guard, frame).map(|load| load.force.0);
     let wrong: f32 = match guard {
@@ -26,7 +26,7 @@ fn certain_force(contact: &Contact, guard: Guard, frame: &ForceFrame) -> Newtons
     contact.force - Newtons(wrong)
 }
 
-/// The tiles under `contact` at which a sensor is suspected.
+/// The tiles under `contact` with a suspected sensor.
 fn suspected<'a>(
     contact: &'a Contact,
     guard: Guard,
@@ -38,29 +38,29 @@ fn suspected<'a>(
     contact.tiles.iter().filter(move |load| !may_start(load.index) || !may_hold(load.index))
 }
 
-/// Whether `contact` is a foot, and no sensor under it is suspected.
+/// Whether `contact` is a foot, without a suspected sensor under it.
 pub(super) fn is_certain(contact: &Contact, guard: Guard, frame: &ForceFrame) -> bool {
     !is_doubtful_foot(contact, guard) && suspected(contact, guard, frame).next().is_none()
 }
 
-/// Whether the noise of the sensors under `contact` is all that is not known of them: it soon will be.
+/// Whether the noise of a sensor under `contact` is not yet estimated; the estimate comes soon.
 pub(super) fn is_unlearned(contact: &Contact, frame: &ForceFrame) -> bool {
     contact.tiles.iter().any(|load| frame.hold_doubts.get(load.index) == Some(&Some(HoldDoubt::Unlearned)))
 }
 
-/// Whether `contact` is a foot whatever a suspected sensor reads: most of its force would be left without it.
+/// Whether `contact` is a foot even if a suspected sensor is wrong: at least half of its force remains.
 pub(super) fn is_believed(contact: &Contact, guard: Guard, frame: &ForceFrame) -> bool {
     !is_doubtful_foot(contact, guard) && certain_force(contact, guard, frame) * 2.0 >= contact.force
 }
 
-/// Whether a foot of this force may press: without a suspected sensor it would still keep the control pressed, and
-/// press one that runs while it is held.
+/// Whether a foot of this force may press: without the suspected sensors its force reaches the release threshold, or
+/// the press threshold of a control that runs while it is held.
 pub(super) fn certainly_presses(contact: &Contact, at: &Thresholds, frame: &ForceFrame) -> bool {
     let least = if matches!(at.guard, Guard::HoldToRun { .. }) { at.press } else { at.release };
     certain_force(contact, at.guard, frame) >= least
 }
 
-/// A tile goes on with three sensors.
+/// Whether a tile is sensed: three sensors are enough.
 pub(super) fn is_sensed(tile: &[Quality; 4]) -> bool {
     tile.iter().filter(|quality| **quality < Quality::Stale).count() >= 3
 }
@@ -73,7 +73,7 @@ mod tests {
     use crate::floor::Geometry;
     use crate::widget::HoldToRun;
 
-    /// A contact that presses with so much on the first tiles of a floor of which those `suspected` may not start.
+    /// A contact with these loads on the first tiles of a floor; the tiles `suspected` may not start a press.
     fn pressed(loads: &[f32], suspected: &[usize]) -> (Contact, ForceFrame) {
         let mut frame = ForceFrame::empty(&Geometry::default());
         suspected.iter().for_each(|&tile| frame.may_start[tile] = false);

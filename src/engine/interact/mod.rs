@@ -1,4 +1,4 @@
-//! From cursors to controls: which control gets which foot.
+//! From cursors to controls: assigns feet to controls.
 
 mod belief;
 mod off;
@@ -22,38 +22,38 @@ use crate::sense::{Contact, ContactId, Cursor, ForceFrame, Quality};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Behaviour, Control, Emitted, EventKind, Guard, Input, OffReason, WidgetEvent};
 
-/// How far beyond its edge a control keeps the foot that presses it (our choice: within the sway of a foot that means
-/// to stay).
+/// Distance beyond its edge within which a control keeps the foot that presses it (our choice: within the sway of a
+/// foot that is meant to stay).
 const SLIDE_OFF_MARGIN_M: f32 = 0.03;
 
-/// How long a landing foot's centroid may travel before entering a control counts as sliding on
-/// (our choice: a heel-first landing rolls forward for about a quarter of a second).
+/// Time after the landing within which a foot may enter a control without sliding on (our choice: a heel-first
+/// landing rolls forward for about a quarter of a second).
 const LANDING: Duration = Duration::from_millis(300);
 
-/// The controls of one layout at work.
+/// The state of all controls of one layout.
 #[derive(Debug)]
 pub(super) struct Interaction {
     geometry: Geometry,
     hits: HitIndex,
-    /// The page that is shown.
+    /// The current page.
     page: usize,
     regions: Vec<RegionState>,
     controls: Vec<Control>,
-    /// Whether each control lies on a tile that can't be sensed, and which ones do.
+    /// Whether each control lies on a tile without sensing, and the list of those that do.
     unsensed: Vec<bool>,
     lost: Vec<usize>,
     /// The indices of the tiles that each control lies on.
     tiles_under: Vec<Vec<usize>>,
-    /// Controls for which even an empty floor changes something.
+    /// Controls that even an empty floor can change.
     awake: Vec<usize>,
     feet: FootHistories,
     rises: Rises,
     ignored: IgnoredPresses,
-    /// Whether a control of the region that is being stepped acts while it is held.
+    /// Whether a control of the region in work acts while it is held.
     running: bool,
 }
 
-/// What happens in one frame.
+/// The inputs of one frame.
 #[derive(Clone, Copy)]
 struct Moment<'a> {
     frame: &'a ForceFrame,
@@ -79,7 +79,7 @@ pub(super) struct Sliding {
 }
 
 impl Interaction {
-    /// All controls at their initial values; each must first be seen unloaded.
+    /// All controls at their initial values; each works once it has been seen unloaded.
     pub(super) fn new(layout: &Layout, geometry: &Geometry, page: usize) -> Self {
         let controls: Vec<_> =
             layout.widgets.iter().map(|widget| Control::new(&widget.behaviour, widget.area.size())).collect();
@@ -101,7 +101,7 @@ impl Interaction {
         }
     }
 
-    /// Goes on with the feet that `other` knew.
+    /// Takes over the feet that `other` tracks.
     pub(super) fn inherit(&mut self, other: &mut Self) {
         self.feet = std::mem::take(&mut other.feet);
         self.rises = std::mem::take(&mut other.rises);
@@ -117,12 +117,12 @@ impl Interaction {
         self.controls.get_mut(widget)
     }
 
-    /// Presses that no control answered.
+    /// The presses without a response.
     pub(super) fn ignored(&self) -> &IgnoredPresses {
         &self.ignored
     }
 
-    /// The page that is shown.
+    /// The current page.
     pub(super) fn page(&self) -> usize {
         self.page
     }
@@ -149,7 +149,7 @@ impl Interaction {
         self.regions.iter().map(RegionState::cursor).chain(more)
     }
 
-    /// What there is to show of each contact.
+    /// The state of each contact.
     pub(super) fn feet(&self, now: Instant) -> impl Iterator<Item = FootState> + '_ {
         self.feet.states(now)
     }
@@ -172,19 +172,19 @@ impl Interaction {
         self.held().any(|held| held.contact == contact)
     }
 
-    /// FootHistories that slide on a control that keeps them.
+    /// Feet that slide on a control that captures them.
     pub(super) fn sliding(&self) -> impl Iterator<Item = Sliding> + '_ {
         self.held()
             .filter(|held| self.controls.get(held.widget).is_some_and(Control::captures))
             .map(|held| Sliding { widget: held.widget, contact: held.contact })
     }
 
-    /// FootHistories that keep a control pressed.
+    /// Feet that keep a control pressed.
     pub(super) fn holding(&self) -> impl Iterator<Item = Sliding> + Clone + '_ {
         self.held().map(|held| Sliding { widget: held.widget, contact: held.contact })
     }
 
-    /// Switches a control off or on, or locks it, which `change` does.
+    /// Changes the state of a control by `change`, which disables, enables, locks or unlocks it.
     pub(super) fn change(
         &mut self,
         widget: usize,
@@ -217,8 +217,8 @@ impl Interaction {
 
     /// Ends every press and disarms every control, without committing anything.
     ///
-    /// It asks the controls themselves, not the regions that lead feet to them, so that it also
-    /// works on what a step that broke off has left behind.
+    /// Goes through the controls themselves, not through the regions that assign feet to them, so that it also works
+    /// after a step that was interrupted.
     pub(super) fn cancel_all(&mut self, layout: &Layout, now: Instant, events: &mut Vec<WidgetEvent>) {
         for widget in 0..self.controls.len() {
             if self.controls.get(widget).is_some_and(|control| !control.is_at_rest()) {
@@ -227,7 +227,7 @@ impl Interaction {
         }
     }
 
-    /// Takes in one frame.
+    /// Processes one frame.
     pub(super) fn step(
         &mut self,
         frame: &ForceFrame,
@@ -280,7 +280,7 @@ impl Interaction {
         }
     }
 
-    /// Fingers that no control keeps feed the control they are on; of several the heaviest does.
+    /// Free fingers feed the control below them; of several on one control, the heaviest does.
     fn step_free(
         &mut self,
         index: usize,
@@ -314,7 +314,7 @@ impl Interaction {
         }
     }
 
-    /// A foot is on a control that does not keep it yet.
+    /// Feeds a control from a foot that it does not hold yet.
     fn step_over(
         &mut self,
         widget: usize,
@@ -335,10 +335,10 @@ impl Interaction {
         let slid_on = is_new
             && contact.force >= thresholds.release
             && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
-        // A foot whose force could not be believed when it pressed is not believed once it lightens.
+        // A foot with unreliable force at the press stays unreliable when it lightens.
         let presses = contact.force >= thresholds.press;
         let believed = is_believed(contact, thresholds.guard, at.frame);
-        // Noise that is not known yet soon will be: the foot may stay.
+        // The noise estimate comes soon: the foot may stay.
         let waits = matches!(thresholds.guard, Guard::HoldToRun { .. }) && is_unlearned(contact, at.frame);
         let unbelieved = presses && !believed && !waits;
         let (input, why) =
@@ -386,7 +386,7 @@ impl Interaction {
             && (self.running || self.held().any(|held| holds_to_run(layout, held.widget)))
     }
 
-    /// A control that is engaged follows its own foot, whatever the cursor does.
+    /// An engaged control follows its own foot, independent of the cursor.
     fn step_held(&mut self, finger: &mut Finger, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
         let Some(mut held) = finger.held else { return };
         let (Some(spec), Some(control)) =
@@ -412,7 +412,8 @@ impl Interaction {
                 } else if off && !control.captures() {
                     Input::SlidOff
                 } else {
-                    // What a lift commits may be believed as a press is; what acts meanwhile waits for the sensors.
+                    // An action on lifting needs the reliability of a press; an action while the foot is down needs
+                    // certain sensors.
                     let acts = matches!(mode, PressMode::Follow | PressMode::Stand)
                         || matches!(guard, Guard::HoldToRun { .. });
                     let believed = if acts {
@@ -423,7 +424,7 @@ impl Interaction {
                     self::foot(contact, spec, at.frame, self.feet.weight(contact.id), believed)
                 }
             }
-            // Gone from a floor that is sensed, it was lifted; gone with the sensors, nobody knows.
+            // A contact that disappears from a sensed floor was lifted; without sensing its state is unknown.
             None if is_sensed_at(held.position, &self.geometry, at.frame) => Input::Foot {
                 force: Newtons::ZERO,
                 trusted: true,
@@ -460,8 +461,8 @@ impl Interaction {
         self.awake = awake;
     }
 
-    /// Switches controls that act while they are held off on a floor whose newtons may be wrong, and where the readings
-    /// under them may not hold them.
+    /// Inhibits controls that act while they are held: on a floor with doubtful calibration, and where the readings
+    /// below them are unsuitable.
     fn inhibit(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
         let fault = at.frame.calibration_fault.map(of_calibration);
         for widget in (0..self.controls.len()).filter(|&widget| holds_to_run(at.layout, widget)) {
@@ -473,7 +474,7 @@ impl Interaction {
         }
     }
 
-    /// Controls on a tile that can't be sensed are lost.
+    /// Cancels controls on tiles without sensing.
     fn lose_unsensed(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
         for widget in self.lost.drain(..) {
             if let Some(unsensed) = self.unsensed.get_mut(widget) {
@@ -499,7 +500,7 @@ impl Interaction {
                 }
             }
         }
-        // In the layout's order, whatever tile each lies on.
+        // In the layout's order, independent of the tiles.
         self.lost.sort_unstable();
         for which in 0..self.lost.len() {
             let widget = self.lost[which];
@@ -522,7 +523,7 @@ impl Interaction {
     }
 }
 
-/// For each control of `layout` the indices of the tiles that it lies on.
+/// For each control of `layout`, the indices of the tiles below it.
 fn tiles_under(layout: &Layout, geometry: &Geometry, hits: &HitIndex) -> Vec<Vec<usize>> {
     let mut under = vec![Vec::new(); layout.widgets.len()];
     for tile in 0..geometry.tile_count() {
@@ -538,7 +539,7 @@ fn tiles_under(layout: &Layout, geometry: &Geometry, hits: &HitIndex) -> Vec<Vec
     under
 }
 
-/// What `widget` senses of a foot of somebody of this `weight`; `may` says whether that foot may act on it.
+/// The input of `widget` from a foot of a person of this `weight`; `may` is whether that foot may act on it.
 fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, weight: Option<Newtons>, may: bool) -> Input {
     let trusted =
         may && contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed));

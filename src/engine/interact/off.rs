@@ -1,4 +1,4 @@
-//! Why controls are off.
+//! The reasons why controls are off.
 
 use super::belief::is_sensed;
 use super::{Interaction, holds_to_run};
@@ -7,8 +7,8 @@ use crate::sense::{CalibrationFault, ForceFrame, HoldDoubt, Quality};
 use crate::widget::OffReason;
 
 impl Interaction {
-    /// Why no foot can press `widget` as of `frame`, the last one taken in; `None` if one can. Without a frame the floor
-    /// has not been sensed yet.
+    /// The reason why no foot can press `widget` in `frame`, the last one processed; `None` if a foot can. Before the
+    /// first frame the floor counts as unsensed.
     pub(in crate::engine) fn off(
         &self,
         widget: usize,
@@ -36,7 +36,7 @@ impl Interaction {
         (!is_held && self.runs_elsewhere(widget, layout)).then_some(OffReason::OtherHeld)
     }
 
-    /// Why a control lies on a tile that can't be sensed.
+    /// The reason for a control on a tile without sensing.
     fn of_silence(&self, widget: usize, frame: &ForceFrame) -> OffReason {
         let qualities = self.tiles_under(widget).filter_map(|tile| frame.quality.get(tile));
         let worst = qualities.filter(|tile| !is_sensed(tile)).flatten().max();
@@ -50,8 +50,8 @@ impl Interaction {
         }
     }
 
-    /// Why the readings of some tile under `widget` may not hold it. That their noise is not known yet keeps a foot
-    /// waiting, and switches nothing off.
+    /// The reason why the readings of some tile under `widget` are unsuitable for holding it. A noise estimate that
+    /// is still missing only delays a foot and inhibits nothing.
     pub(super) fn of_readings(&self, widget: usize, frame: &ForceFrame) -> Option<OffReason> {
         let doubts = self.tiles_under(widget).filter_map(|tile| *frame.hold_doubts.get(tile)?);
         let reasons = doubts.filter_map(|doubt| match doubt {
@@ -59,23 +59,24 @@ impl Interaction {
             HoldDoubt::Repeats => Some(OffReason::RepeatedReadings),
             HoldDoubt::Coarse => Some(OffReason::CoarseReadings),
         });
-        // Readings that repeat are found before coarse ones are.
+        // Repeated readings come before coarse ones.
         reasons.min_by_key(|reason| *reason == OffReason::CoarseReadings)
     }
 
-    /// Whether a sensor is suspected on every tile under a control that acts while it is held: no force there starts it.
+    /// Whether every tile under a control that acts while it is held has a suspected sensor: no force there starts
+    /// it.
     fn is_suspected(&self, widget: usize, frame: &ForceFrame) -> bool {
         let mut tiles = self.tiles_under(widget).peekable();
         tiles.peek().is_some() && tiles.all(|tile| frame.may_start.get(tile) == Some(&false))
     }
 
-    /// The indices of the tiles that a control lies on.
+    /// The indices of the tiles under a control.
     fn tiles_under(&self, widget: usize) -> impl Iterator<Item = usize> + '_ {
         self.tiles_under.get(widget).into_iter().flatten().copied()
     }
 }
 
-/// Why controls that act while they are held are off on the whole floor.
+/// The reason why controls that act while they are held are off on the whole floor.
 pub(super) const fn of_calibration(fault: CalibrationFault) -> OffReason {
     match fault {
         CalibrationFault::Missing => OffReason::NotCalibrated,

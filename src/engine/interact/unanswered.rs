@@ -1,4 +1,4 @@
-//! Contacts on controls that work none of them, and why.
+//! Contacts on controls without a response, and the reasons.
 
 use super::super::feet::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
 use super::super::ignored::Ignored;
@@ -6,7 +6,7 @@ use super::{Interaction, Moment};
 use crate::widget::{Control, OffReason};
 
 impl Interaction {
-    /// Notes the contacts that lie on controls and work none, and closes the visits that are over.
+    /// Notes the contacts that lie on controls without operating one, and closes the visits that are over.
     pub(super) fn note_ignored(&mut self, at: &Moment<'_>) {
         for contact in at.contacts.iter().filter(|contact| contact.force.0 >= AS_GOOD_AS_LIFTED_N) {
             let Some(widget) = self.hits.widget_at(at.layout, self.page, contact.centroid) else { continue };
@@ -46,7 +46,7 @@ impl Interaction {
     }
 }
 
-/// Why `control` answers nobody, if it is off.
+/// The reason why `control` responds to no foot, if it is off.
 pub(super) fn switched_off(control: &Control) -> Option<Ignored> {
     let disabled = control.is_disabled().then_some(OffReason::Disabled);
     disabled.or(control.inhibited()).map(Ignored::Off)

@@ -1,4 +1,4 @@
-//! Which effect answers which event: the one place where controls meet feel.
+//! Assigns effects to events: the one place where controls meet feel.
 
 mod values;
 
@@ -16,7 +16,7 @@ use crate::widget::{Behaviour, Control, EventKind, Value, WidgetEvent};
 
 use values::{Ends, Shares, Way};
 
-/// What is felt, from what controls do.
+/// Turns events of controls into cues.
 #[derive(Debug, Default)]
 pub(super) struct Responses {
     player: Player,
@@ -25,11 +25,11 @@ pub(super) struct Responses {
     last_spots: LastSpots,
 }
 
-/// The keys of what one foot does at once, for [`key`].
+/// Keys for the simultaneous cues of one foot, for [`key`].
 const DRAG: u32 = 0;
 const PUSH: u32 = 1;
 
-/// What is known while one frame is answered.
+/// The inputs of one frame.
 #[derive(Clone, Copy)]
 pub(super) struct Now<'a> {
     pub(super) at: Instant,
@@ -49,14 +49,14 @@ impl<'a> Now<'a> {
 }
 
 impl Responses {
-    /// Forgets what was felt of another layout; `controls` are those of `layout`.
+    /// Drops the state of the previous layout; `controls` are those of `layout`.
     pub(super) fn begin(&mut self, layout: &Layout, controls: &[Control]) {
         self.shares.begin(layout, controls);
         self.ends.clear();
         self.player.clear();
     }
 
-    /// Takes note of a value that an app has given.
+    /// Notes a value that an app has set.
     pub(super) fn note(&mut self, widget: usize, layout: &Layout, value: Value) {
         if let Some(spec) = layout.widgets.get(widget) {
             self.shares.go(widget, &spec.behaviour, value);
@@ -65,7 +65,7 @@ impl Responses {
 
     /// Appends the cues that answer `events`, on the tiles under the contacts that caused them.
     ///
-    /// A cancel is not felt, nor what it takes back: the foot has left, or the floor can't be trusted.
+    /// Neither a cancel nor the change that it reverts has a cue: the foot has left, or the floor is unreliable.
     pub(super) fn answer(&mut self, events: &[WidgetEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
         for (number, event) in events.iter().enumerate() {
             let Some(widget) = now.layout.widget_index(event.id.as_str()) else { continue };
@@ -111,7 +111,7 @@ impl Responses {
         }
     }
 
-    /// The click of the end or the step that a number comes to on this `way`; `None` if there is none.
+    /// The click of the end or the step that a number reaches on this `way`; `None` if there is none.
     fn stop(
         &mut self,
         (number, widget): (usize, &Widget),
@@ -145,8 +145,8 @@ impl Responses {
         Some((click, effect.manner))
     }
 
-    /// Says what lasts: frictions under feet that slide, ends that feet push against, what is held; and goes on
-    /// with sequences.
+    /// Appends the sustained cues: friction under sliding feet, feet that push against an end, effects of held
+    /// controls; and continues sequences.
     pub(super) fn last(
         &mut self,
         sliding: impl Iterator<Item = Sliding>,
@@ -172,8 +172,8 @@ impl Responses {
         self.player.due(now.at, place, cues, sustained);
     }
 
-    /// Appends the cues of ground events: felt on the tiles under the contact that did it, by its
-    /// weights, or on the tile alone where the contact is not known any more; heard from where they happened.
+    /// Appends the cues of ground events: felt on the tiles under the contact that caused them, by its weights, or on
+    /// the tile alone if the contact is unknown by now; heard from the place of the event.
     pub(super) fn give_way(&self, broken: &[GroundEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
         for event in broken {
             let here = event.contact.and_then(|id| now.contact(id)).map(spots);
@@ -189,8 +189,8 @@ impl Responses {
         }
     }
 
-    /// Remembers where the contacts of this frame are felt; those that were gone in the last one too are forgotten
-    /// unless `keep` says that a control still waits for them.
+    /// Stores the spots of this frame's contacts; drops those of contacts that have left, unless `keep` says that a
+    /// control still needs them.
     pub(super) fn remember(&mut self, contacts: &[Contact], keep: impl Fn(ContactId) -> bool) {
         self.last_spots.update(contacts, keep);
     }
@@ -218,12 +218,12 @@ fn answering(widget: &Widget, event: EventKind) -> Option<&Arc<Effect>> {
     }
 }
 
-/// Whether it counts by presses, so that one at its end should say so.
+/// Whether it is a stepper with an end effect, so that a press at its end plays that effect.
 fn steps(widget: &Widget) -> bool {
     matches!(widget.behaviour, Behaviour::Stepper(_)) && widget.feel.end.is_some()
 }
 
-/// What a foot sliding on a control feels like now; `None` if the control has no friction.
+/// The sustained cue of a foot that slides on a control; `None` if the control has no friction.
 fn sustained_cue(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Option<SustainedCue> {
     let feel = &layout.widgets.get(sliding.widget)?.feel;
     let effect = feel.drag.as_ref()?;
@@ -239,9 +239,9 @@ fn sustained_cue(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Opt
     })
 }
 
-/// Appends `cue` unless the list is full, which takes more feet than a floor control page has room for.
+/// Appends `cue` unless the list is full, which takes more feet than fit on a page of controls.
 fn push(sustained: &mut SustainedCues, cue: Option<SustainedCue>) {
-    // Cues beyond the limit are the latest to land; they stay silent until one ends.
+    // Cues beyond the limit come from the latest feet to land; they stay silent until one ends.
     if let Some(cue) = cue {
         let _ = sustained.try_push(cue);
     }
@@ -263,7 +263,7 @@ fn spots(contact: &Contact) -> Spots {
         .collect()
 }
 
-/// Where contacts were felt last, so that a release is felt where the foot was although it has just left.
+/// The last spots of each contact, so that a release is felt at the place of a foot that has just left.
 #[derive(Debug, Default)]
 struct LastSpots(Vec<(ContactId, Spots)>);
 

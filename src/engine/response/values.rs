@@ -1,4 +1,4 @@
-//! Where numbers were and where they come to, so that steps and ends are felt.
+//! Positions of numbers within their ranges, so that steps and ends are felt.
 
 use arrayvec::ArrayVec;
 use glam::Vec2;
@@ -10,7 +10,7 @@ use crate::sense::ContactId;
 use crate::units::Instant;
 use crate::widget::{Behaviour, Control, Scale, Value};
 
-/// Where along their ranges the controls' numbers are.
+/// Positions of the controls' numbers within their ranges.
 #[derive(Debug, Default)]
 pub(super) struct Shares(Vec<Share>);
 
@@ -19,21 +19,21 @@ pub(super) struct Shares(Vec<Share>);
 struct Share {
     /// 0 to 1, both numbers of a pad; NaN for other values.
     at: Vec2,
-    /// The detent of an effect's own that was felt last, and how far the number has been from it since.
+    /// The last detent of the effect that was felt, and the maximum distance of the number from it since.
     detent: f32,
     away: f32,
 }
 
-/// How far a number must go from a detent before that one is felt again, in distances between two (our choice: a
-/// foot that rests on one sways by less).
+/// Distance from a detent after which it is felt again, in spacings of detents (our choice: a foot that rests on one
+/// sways by less).
 const AGAIN: f32 = 0.25;
 
-/// What a number did.
+/// A change of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Way {
     pub(super) from: f32,
     pub(super) to: f32,
-    /// Whether an end was reached, and if so whether it is the high one.
+    /// The end that the change reached: true for the high one; `None` if it reached none.
     pub(super) end: Option<bool>,
 }
 
@@ -46,7 +46,7 @@ impl Shares {
         }));
     }
 
-    /// Takes note of the new value of control number `widget`; `None` if it is not a number.
+    /// Notes the new value of control number `widget`; `None` if it is not a number.
     pub(super) fn go(&mut self, widget: usize, behaviour: &Behaviour, value: Value) -> Option<Way> {
         let share = self.0.get_mut(widget)?;
         let to = shares(behaviour, value);
@@ -61,7 +61,7 @@ impl Shares {
         Some(Way { from: from.x, to: to.x, end })
     }
 
-    /// The detent of `detents` that a number passes on this `way`, if it is not the one that was felt just now.
+    /// The detent of `detents` that a number passes on this `way`, if it is not the last one that was felt.
     pub(super) fn detent(&mut self, widget: usize, detents: &Detents, way: Way) -> Option<f32> {
         let detent = detents.passed(way.from, way.to)?;
         let share = self.0.get_mut(widget)?;
@@ -72,7 +72,7 @@ impl Shares {
         Some(detent)
     }
 
-    /// The way of a number that would go on if it were not at its end.
+    /// The change of a number that stays at its end although it was meant to go on.
     pub(super) fn stay(&self, widget: usize) -> Way {
         let at = self.0.get(widget).map_or(f32::NAN, |share| share.at.x);
         Way { from: at, to: at, end: end_of(at) }
@@ -84,7 +84,7 @@ impl Shares {
     }
 }
 
-/// Whether it is the high end.
+/// The end at which a share is: true for the high one; `None` between the ends.
 fn end_of(share: f32) -> Option<bool> {
     if share <= 0.0 {
         Some(false)
@@ -97,7 +97,7 @@ fn end_of(share: f32) -> Option<bool> {
 
 fn shares(behaviour: &Behaviour, value: Value) -> Vec2 {
     let share = |scale: &Scale, number: f32| {
-        // Steps need not end at the greatest value to the last bit.
+        // The last step may differ from the greatest value by rounding.
         let share = scale.share(number);
         if share < 1e-5 {
             0.0
@@ -130,19 +130,20 @@ const MAX_PUSHING: usize = 16;
 struct Pushing {
     widget: usize,
     contact: ContactId,
-    /// Where the foot was when the end was reached, and the way it went.
+    /// Place of the foot when it reached the end, and its direction of motion.
     anchor: Vec2,
     way: Vec2,
-    /// How far beyond the end it last pushed on, in metres, and when.
+    /// Farthest distance of the push beyond the end, in metres, and the time of the last push.
     reached: f32,
     pushed: Instant,
 }
 
-/// How much farther a foot that pushes on goes, rather than sways, in metres (our choice: a foot that stands wanders
-/// by less within a second).
+/// Additional distance that counts as pushing on, rather than sway, in metres (our choice: a standing foot wanders by
+/// less within a second).
 const PUSHES_M: f32 = 0.004;
 
-/// How long pushing is felt once the foot is at rest again, in seconds (our choice: a wall is not an alarm).
+/// Time over which the effect of pushing fades once the foot is at rest again, in seconds (our choice: a wall is not
+/// an alarm).
 const FADES_S: f32 = 1.2;
 
 impl Ends {
@@ -150,7 +151,7 @@ impl Ends {
         self.0.clear();
     }
 
-    /// Takes note of a number that has changed: it may have come to an end, or left it.
+    /// Notes a changed number: it may have reached an end, or left it.
     pub(super) fn reach(&mut self, widget: usize, spec: &Widget, way: Way, id: ContactId, now: Now<'_>) {
         let Some(EffectKind::EndStop(end)) = spec.feel.end.as_ref().map(|effect| &effect.kind) else {
             return;
@@ -167,7 +168,7 @@ impl Ends {
         let _ = self.0.try_push(pushing);
     }
 
-    /// Says what feet feel that push on against an end.
+    /// Appends the sustained cues of feet that push on against an end.
     pub(super) fn push(&mut self, shares: &Shares, now: Now<'_>, sustained: &mut SustainedCues) {
         self.0.retain(|pushing| {
             let Some(contact) = now.contact(pushing.contact) else { return false };
@@ -186,7 +187,7 @@ impl Ends {
             if beyond > pushing.reached + PUSHES_M {
                 (pushing.reached, pushing.pushed) = (beyond, now.at);
             }
-            // Who gives way a little and pushes again feels it again.
+            // A foot that moves back a little and pushes again feels it again.
             pushing.reached = pushing.reached.min(beyond + PUSHES_M);
             let fresh = 1.0 - now.at.since(pushing.pushed).as_secs_f32() / FADES_S;
             if beyond > 0.0 && fresh > 0.0 {

@@ -1,4 +1,4 @@
-//! Which effects a control plays when.
+//! The effects of a control for each of its events.
 
 use std::sync::Arc;
 
@@ -8,21 +8,21 @@ use super::{Effect, Use};
 use crate::format::{Opt, record};
 
 record! {
-    /// What a control feels like; each part may be absent.
+    /// The effects of a control; each may be absent.
     pub struct Feel = "Feel", Default;
     /// Felt when the control engages.
     pub press: Option<Arc<Effect>> = "press", Opt(Played(Use::Once)) => None;
-    /// Felt when it lets go.
+    /// Felt when the control releases.
     pub release: Option<Arc<Effect>> = "release", Opt(Played(Use::Once)) => None;
     /// Felt when a foot passes a step, a detent or a choice.
     pub step: Option<Arc<Effect>> = "step", Opt(Played(Use::Step)) => None;
     /// Felt when its number reaches either end, and while a foot pushes on.
     pub end: Option<Arc<Effect>> = "end", Opt(Played(Use::End)) => None;
-    /// Felt when a press becomes long or reaches its second stage; the press once more where absent.
+    /// Felt when a press becomes long or reaches its second stage; where absent, the press effect is repeated.
     pub stage: Option<Arc<Effect>> = "stage", Opt(Played(Use::Once)) => None;
     /// Felt when a first press has armed it.
     pub arm: Option<Arc<Effect>> = "arm", Opt(Played(Use::Once)) => None;
-    /// Felt when it will soon stop by itself, or is locked.
+    /// Felt when the control will soon stop by itself, or when it is locked.
     pub warn: Option<Arc<Effect>> = "warn", Opt(Played(Use::Once)) => None;
     /// Felt when a foot turns it on.
     pub on: Option<Arc<Effect>> = "on", Opt(Played(Use::Once)) => None;
@@ -32,6 +32,6 @@ record! {
     pub hold: Option<Arc<Effect>> = "hold", Opt(Played(Use::Hold)) => None;
     /// Felt while the foot slides along it.
     pub drag: Option<Arc<Effect>> = "drag", Opt(Played(Use::Drag)) => None;
-    /// How much of all this is also heard, from the floor's loudspeakers: 0 (not at all) to 1.
+    /// Share of all this that is also heard, from the floor's loudspeakers: 0 (not at all) to 1.
     pub sound: f32 = "sound", SHARE => 0.0;
 }

@@ -1,4 +1,4 @@
-//! Every number of an effect by its name, for those who turn it by hand.
+//! Every number of an effect by its name, for adjustment by hand.
 
 #[cfg(any(feature = "internals", test))]
 use super::Knob;
@@ -8,8 +8,8 @@ use crate::feel::Lasting;
 use crate::format::{Record, Variants, hand::Hand};
 
 impl Effect {
-    /// Shows every number of the effect to `visit`, which may change it within its range; then brings models to
-    /// their level anew.
+    /// Passes every number of the effect to `visit`, which may change it within its range; then balances models to
+    /// their level again.
     ///
     /// The order is the same each time.
     #[cfg(any(feature = "internals", test))]
@@ -26,7 +26,7 @@ impl Effect {
         self.balance();
     }
 
-    /// Brings a model of something rubbed to the level it says.
+    /// Balances the model of a rubbed material to its level.
     pub(super) fn balance(&mut self) {
         let Some(lasting) = self.kind.lasting() else { return };
         match (&mut self.kind, lasting.balanced(self.manner.band)) {
@@ -34,7 +34,7 @@ impl Effect {
             (EffectKind::StickSlip(own), Lasting::StickSlip(stick)) => *own = stick,
             (EffectKind::Texture(own), Lasting::Texture(texture)) => *own = texture,
             (EffectKind::Grains(own), Lasting::Grains(grains)) => *own = grains,
-            // A kind that is played by the model of another one balances that.
+            // A kind played by another kind's model is balanced there.
             _ => {}
         }
     }
@@ -68,7 +68,7 @@ mod tests {
                     number += 1;
                 });
                 assert_ne!(turned, effect, "{}: {name}", named.name);
-                // Whatever the hand does can be saved and read again.
+                // Every adjusted effect can be saved and read again.
                 let saved = NamedEffect { effect: Arc::new(turned), ..named.clone() };
                 let text = write_named_effect(&saved);
                 let read = parse_effect(&text, "turned.ron", &Effects::default());

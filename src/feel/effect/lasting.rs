@@ -11,27 +11,26 @@ use crate::format::text::Text;
 use crate::format::{Codec, Flat, List, Num, Own, Rec, list, num, record};
 use crate::units::Newtons;
 
-/// Slip speeds of files, in metres per second.
+/// Range of slip speeds in files, in metres per second.
 const SPEED: Num = num(0.01..=5.0);
 
-/// Normal forces of files.
+/// Range of normal forces in files.
 const FORCE: Num = num(1.0..=2000.0);
 
-/// Distances between ridges or grains, in metres.
+/// Range of distances between ridges or grains, in metres.
 const SPACING: Num = num(0.0003..=0.2);
 
-/// How long a ridge or a grain pushes.
+/// Range of the duration of a ridge's or a grain's push.
 const PUSH: Num = num(0.3..=10.0).milli();
 
-/// What a foot does at its fastest and heaviest, where an effect doesn't say.
+/// Default slip speed and normal force of the full level, as of a fast and heavy foot.
 const FULL_SPEED_M_S: f32 = 0.6;
 const FULL_FORCE: Newtons = Newtons(200.0);
 
-/// What is felt for as long as something lasts.
+/// An effect that is felt for as long as its cause lasts.
 ///
-/// The level of each is a root mean square at full slip speed and normal
-/// force (of a sole that sticks and slips, at the speed where it is loudest):
-/// one of 2 N is as strong as a sine of 2 N.
+/// The level of each is a root mean square at full slip speed and normal force (for stick-slip, at the speed of the
+/// highest level): an effect of 2 N is as strong as a sine of 2 N.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Lasting {
     /// Noise whose band follows the slip speed.
@@ -40,9 +39,9 @@ pub enum Lasting {
     StickSlip(StickSlip),
     /// Ridges at even distances.
     Texture(Texture),
-    /// Grains that crunch by chance.
+    /// Grains that crunch at random.
     Grains(Grains),
-    /// A tone or noise at a level that whoever sends it gives.
+    /// A tone or noise with a level set by the sender.
     Hum(Hum),
 }
 
@@ -65,7 +64,7 @@ record! {
     };
     /// Force at the plate at full slip speed and full normal force.
     pub level: Newtons = "level_n", LEVEL;
-    /// Centre of the noise band when barely moving, in hertz; 20 to 1000.
+    /// Centre of the noise band at very low slip speed, in hertz; 20 to 1000.
     pub low_hz: f32 = "low_hz", num(20.0..=1000.0);
     /// Centre of the noise band at full slip speed, in hertz; `low_hz` to 1000.
     pub high_hz: f32 = "high_hz", num(20.0..=1000.0);
@@ -76,7 +75,7 @@ record! {
 }
 
 record! {
-    /// A tone or noise that goes on.
+    /// A continuous tone or noise.
     pub struct Hum = "Hum", Copy, Default, Serialize, Deserialize;
     /// Force at the plate.
     pub level: Newtons = "level_n", LEVEL;
@@ -87,39 +86,39 @@ record! {
 }
 
 record! {
-    /// One resonance of what is rubbed.
+    /// One resonance of a rubbed material.
     pub struct Resonance = "Resonance", Copy, Serialize, Deserialize;
     /// Frequency, in hertz; 20 to 1000.
     pub hz: f32 = "hz", HZ;
-    /// Time after which a factor 1/e is left, in seconds; 0.001 to 0.2.
+    /// Time in which it decays by a factor of 1/e, in seconds; 0.001 to 0.2.
     pub decay_s: f32 = "decay_ms", num(1.0..=200.0).milli();
     /// Share of the whole, 0 to 1.
     pub amplitude: f32 = "amplitude", SHARE => 1.0;
 }
 
 impl Resonance {
-    /// None.
+    /// No resonance.
     pub const NONE: Self = Self { hz: 200.0, decay_s: 0.005, amplitude: 0.0 };
 }
 
 record! {
-    /// What every rubbed material has: how strong it is, and how its plate rings.
+    /// The common part of all rubbed materials: level and resonances of the plate.
     pub struct Material = "Material", Copy, Serialize, Deserialize;
     /// Force at the plate at full slip speed and full normal force.
     pub level: Newtons = "level_n", LEVEL;
-    /// The two resonances that it excites.
+    /// The two resonances of the plate.
     pub resonances: [Resonance; 2] = "resonances", Resonances;
-    /// Share of the bare exciting force, beside the resonances, 0 to 1.
+    /// Share of the exciting force itself, beside the resonances, 0 to 1.
     pub bare: f32 = "bare", SHARE => 0.0;
     /// Slip speed of the full level, in metres per second.
     pub full_speed_m_s: f32 = "full_speed_m_s", SPEED => FULL_SPEED_M_S;
     /// Normal force of the full level.
     pub full_force: Newtons = "full_force_n", FORCE => FULL_FORCE;
-    /// What brings the model to its level; [`Lasting::balanced`] finds it.
+    /// Factor that brings the model to its level; [`Lasting::balanced`] computes it.
     pub trim: f32 = "", Own(1.0);
 }
 
-/// One or two resonances; one that isn't written has no amplitude.
+/// One or two resonances; a missing one has no amplitude.
 struct Resonances;
 
 const RESONANCES: List<Rec> = list("resonance", 2, Rec).at_least(1, "a material needs a resonance");
@@ -156,31 +155,31 @@ impl Codec<[Resonance; 2]> for Resonances {
 record! {
     /// Ridges: the foot strikes one after another, so that the pitch is the speed over their distance.
     pub struct Texture = "Texture", Copy, Serialize, Deserialize;
-    /// How strong it is and how it rings.
+    /// Level and resonances.
     pub material: Material = "", Flat;
     /// Distance between two ridges, in metres; 0.0003 to 0.2.
     pub spacing_m: f32 = "spacing_m", SPACING;
-    /// How long each ridge pushes, in seconds; 0.0003 to 0.01.
+    /// Duration of each ridge's push, in seconds; 0.0003 to 0.01.
     pub width_s: f32 = "width_ms", PUSH => 0.0015;
-    /// How uneven they are in distance and height, 0 to 1.
+    /// Random variation of their distance and height, 0 to 1.
     pub uneven: f32 = "uneven", SHARE => 0.0;
 }
 
 record! {
-    /// Grains: the foot crunches them by chance, so many to the metre.
+    /// Grains: the foot crunches them at random, at a mean rate per metre.
     pub struct Grains = "Grains", Copy, Serialize, Deserialize;
-    /// How strong it is and how it rings.
+    /// Level and resonances.
     pub material: Material = "", Flat;
     /// Mean distance between two grains, in metres; 0.0003 to 0.2.
     pub spacing_m: f32 = "spacing_m", SPACING;
-    /// How long each grain pushes, in seconds; 0.0003 to 0.01.
+    /// Duration of each grain's push, in seconds; 0.0003 to 0.01.
     pub width_s: f32 = "width_ms", PUSH => 0.001;
     /// From grains of one size (0) to few large ones among many small ones (1).
     pub spread: f32 = "spread", SHARE => 0.5;
 }
 
 record! {
-    /// Stick-slip: a sole on its spring that sticks to the plate, lets go, slips and sticks again.
+    /// Stick-slip: a sole on a spring that sticks to the plate, breaks away, slips and sticks again.
     ///
     /// # Source
     /// Friction as bristles that bend elastically up to a breakaway and then creep: P. Dupont, V. Hayward,
@@ -190,24 +189,25 @@ record! {
     pub struct StickSlip = "StickSlip", Copy, Serialize, Deserialize => |it, faults| {
         faults.not_above(&["glide", "grip"], [it.glide, it.grip]);
     };
-    /// How strong it is and how it rings.
+    /// Level and resonances.
     pub material: Material = "", Flat;
     /// Coefficient of friction at rest, 0.1 to 2.
     pub grip: f32 = "grip", num(0.1..=2.0);
     /// Coefficient of friction of a fast slip, 0.05 to `grip`.
     pub glide: f32 = "glide", num(0.05..=2.0);
-    /// Slip speed at which half of the difference is lost (Stribeck's), in metres per second; 0.001 to 1.
+    /// Slip speed at which the friction has dropped by half of the difference (Stribeck's), in metres per second;
+    /// 0.001 to 1.
     pub let_go_m_s: f32 = "let_go_m_s", num(0.001..=1.0) => 0.05;
-    /// How far the sole is drawn along before it lets go, at full force, in metres; 0.0002 to 0.05.
+    /// Distance over which the foot drags the sole before it breaks away, at full force, in metres; 0.0002 to 0.05.
     pub stretch_m: f32 = "stretch_m", num(0.0002..=0.05);
-    /// How fast the sole swings on its spring, in hertz; 20 to 500.
+    /// Natural frequency of the sole on its spring, in hertz; 20 to 500.
     pub sole_hz: f32 = "sole_hz", num(20.0..=500.0) => 150.0;
-    /// How rough the surface is: share of the friction that varies by chance, 0 to 1.
+    /// Roughness of the surface: share of the friction that varies at random, 0 to 1.
     pub rough: f32 = "rough", SHARE => 0.1;
 }
 
 impl Lasting {
-    /// What is common to rubbed materials; `None` for friction noise and hums.
+    /// The common part of rubbed materials; `None` for friction noise and hums.
     #[must_use]
     pub fn material(&self) -> Option<&Material> {
         match self {

@@ -1,4 +1,4 @@
-//! What a floor can feel like, as data: named in a file of `effects/`, or written where it is used.
+//! Haptic effects as data: named in a file of `effects/`, or written at the place of use.
 //!
 //! ```text
 //! once:     Click  Continuous (a Tone)  Sequence    a control's event plays it
@@ -30,19 +30,19 @@ use self::reading::BandFields;
 pub use crate::format::hand::Knob;
 use crate::format::{Flat, Opt, Rec, Variants, choices, num, record};
 
-/// One effect, with how it gets along with others.
+/// One effect, with its band, ducking and priority.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
-    /// What is felt.
+    /// The effect itself.
     pub kind: EffectKind,
-    /// How it gets along with what else is felt.
+    /// Its band, ducking and priority.
     pub manner: Manner,
 }
 
 choices! {
-    /// What is felt.
+    /// The kinds of effects.
     pub enum EffectKind;
-    /// Modes struck once, and perhaps others where the foot lets go.
+    /// Modes struck once, and optionally others at the release.
     Click(Clicks),
     /// A tone or a band of noise under an envelope.
     Continuous(Tone),
@@ -54,7 +54,7 @@ choices! {
     StickSlip(StickSlip),
     /// Ridges at even distances.
     Texture(Texture),
-    /// Grains that crunch by chance.
+    /// Grains that crunch at random.
     Grains(Grains),
     /// A click at each step of a value.
     Detents(Detents),
@@ -62,7 +62,7 @@ choices! {
     EndStop(EndStop),
 }
 
-/// What plays an effect, which decides which ones fit.
+/// The cause that plays an effect; it decides which kinds fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
     /// An event, once.
@@ -78,7 +78,7 @@ pub enum Use {
 }
 
 impl Use {
-    /// The kinds that can be played so, first the one that is used so most often.
+    /// The kinds for this use, the most common one first.
     #[must_use]
     pub const fn kinds(self) -> &'static [&'static str] {
         match self {
@@ -90,7 +90,7 @@ impl Use {
         }
     }
 
-    /// Whether an effect of this kind can be played so.
+    /// Whether an effect of this kind fits this use.
     #[must_use]
     pub fn fits(self, kind: &EffectKind) -> bool {
         self.kinds().contains(&kind.name())
@@ -98,28 +98,28 @@ impl Use {
 }
 
 record! {
-    /// A click, and perhaps another one where the foot lets go.
+    /// A click, and optionally another one for the release.
     pub struct Clicks = "Click";
-    /// Felt wherever it is played, but for releases if there is a `release`.
+    /// Felt for every event, except for releases if there is a `release`.
     pub press: Click = "", Flat;
-    /// Felt where it answers a release.
+    /// Felt for a release.
     pub release: Option<Click> = "release", Opt(Rec) => None;
 }
 
 impl EffectKind {
-    /// The name by which files call it.
+    /// Its name in files.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.variant()
     }
 
-    /// The names of all kinds, those first that are played once, then those that last, then those that a value drives.
+    /// The names of all kinds: first those played once, then lasting ones, then those driven by a value.
     #[must_use]
     pub const fn names() -> &'static [&'static str] {
         Self::NAMES
     }
 
-    /// What it is when a moving foot drives it; `None` for what is played once or driven by a value.
+    /// The effect as a moving foot drives it; `None` for effects played once or driven by a value.
     #[must_use]
     pub fn lasting(&self) -> Option<Lasting> {
         match self {
@@ -133,18 +133,18 @@ impl EffectKind {
 }
 
 record! {
-    /// How an effect gets along with what else is felt on the same tiles.
+    /// The relation of an effect to others on the same tiles.
     pub struct Manner = "Manner", Copy, Serialize, Deserialize;
-    /// What it may move, in hertz.
+    /// The frequencies that it may move, in hertz.
     pub band: Band = "band_hz", BandFields => Band::USEFUL;
-    /// How far everything that lasts and is no more important goes down while it plays, in decibels; 0 to 60.
+    /// Attenuation of all lasting effects of the same or lower priority while it plays, in decibels; 0 to 60.
     pub duck_db: f32 = "duck_db", num(0.0..=60.0).hand(0.0..=40.0) => 0.0;
-    /// How important it is, 0 to 9: when there are too many voices, the least important one makes room.
+    /// Priority, 0 to 9: when there are too many voices, the one with the lowest priority is stolen.
     pub priority: u8 = "priority", num(0.0..=9.0) => 5;
 }
 
 impl Manner {
-    /// That of effects that don't say: the useful band of the actuators, no ducking, of middling importance.
+    /// The default: the useful band of the actuators, no ducking, middle priority.
     pub const PLAIN: Self = Self { band: Band::USEFUL, duck_db: 0.0, priority: 5 };
 }
 
@@ -154,7 +154,7 @@ impl Default for Manner {
     }
 }
 
-/// The frequencies that an effect keeps to.
+/// The frequency band of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Band {
     /// The lowest, in hertz; 20 to 1000.
@@ -164,22 +164,22 @@ pub struct Band {
 }
 
 impl Band {
-    /// What the actuators move well and soles feel: 50 to 750 Hz.
+    /// The band that actuators move well and soles feel: 50 to 750 Hz.
     pub const USEFUL: Self = Self { low_hz: 50.0, high_hz: 750.0 };
 
-    /// Whether it holds this frequency.
+    /// Whether the band contains this frequency.
     #[must_use]
     pub fn contains(&self, hz: f32) -> bool {
         (self.low_hz..=self.high_hz).contains(&hz)
     }
 
-    /// The nearest frequency within; the lowest for NaN.
+    /// The nearest frequency within the band; the lowest for NaN.
     #[must_use]
     pub fn clamp(&self, hz: f32) -> f32 {
         if hz.is_nan() { self.low_hz } else { hz.max(self.low_hz).min(self.high_hz) }
     }
 
-    /// The same, brought to what a voice can keep: ordinary numbers, in order, within 20 to 1000 Hz.
+    /// The band limited to the range of a voice: finite numbers, in order, within 20 to 1000 Hz.
     #[must_use]
     pub fn sound(&self) -> Self {
         let low = if self.low_hz >= 20.0 { self.low_hz.min(600.0) } else { 20.0 };

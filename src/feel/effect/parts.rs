@@ -1,4 +1,4 @@
-//! The parts of a sequence as files write them: any effect that is played once, changed and moved in time.
+//! The parts of a sequence in files: any effect that is played once, with changed level and pitch, at its time.
 
 use std::sync::Arc;
 
@@ -15,13 +15,13 @@ use crate::format::{Codec, List, Rec, list, num, record};
 record! {
     /// One part of a sequence.
     struct PartRecord = "Part";
-    /// When it begins, from the sequence's start.
+    /// Start time, from the sequence's start.
     at_s: f32 = "at_ms", super::tone::TIME;
-    /// What its level is multiplied with.
+    /// Factor of its level.
     level: f32 = "level", super::tone::STRENGTH => 1.0;
-    /// What its frequencies are multiplied with.
+    /// Factor of its frequencies.
     pitch: f32 = "pitch", num(0.1..=10.0) => 1.0;
-    /// What is played: an effect that is played once, by its name or written out.
+    /// The effect: one that is played once, by its name or written out.
     plays: Arc<Effect> = "plays", Played(Use::Once);
 }
 
@@ -79,7 +79,7 @@ impl Codec<Arc<[Part]>> for Parts {
 }
 
 impl PartRecord {
-    /// What it plays, one by one: several if it is a sequence itself.
+    /// The parts that it stands for: several if it plays a sequence.
     fn into_parts(self, within: Option<Within>) -> Vec<Part> {
         let Self { at_s, level, pitch, plays } = self;
         let turned = |hz: f32| {

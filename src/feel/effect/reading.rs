@@ -1,4 +1,4 @@
-//! Effects where they are written: by name, or written out, made from another one or over what is there already.
+//! Effects in files: by name, or written out, made from another one or on top of an existing one.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,11 +19,11 @@ use crate::format::{Codec, Id, Num, Pair, Record, Variants, num, record};
 record! {
     /// An effect with a name.
     pub struct NamedEffect = "Effect";
-    /// What layouts and kinds call it.
+    /// Its name in layouts and kinds.
     pub name: String = "name", Id;
-    /// What it is for, in a sentence; may be empty.
+    /// Its purpose, in a sentence; may be empty.
     pub about: String = "about", Words(200) => String::new();
-    /// What is felt.
+    /// The effect itself.
     pub effect: Arc<Effect> = "plays", WRITTEN_OUT;
 }
 
@@ -42,12 +42,12 @@ pub struct Effects {
 }
 
 impl Effects {
-    /// Puts `effect` in place of any other of its name.
+    /// Inserts `effect`; replaces any other of its name.
     pub fn insert(&mut self, effect: NamedEffect) {
         self.effects.insert(effect.name.clone(), effect);
     }
 
-    /// The effect called `name`.
+    /// The effect named `name`.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&NamedEffect> {
         self.effects.get(name)
@@ -59,7 +59,7 @@ impl Effects {
     }
 }
 
-/// An effect that can be played so.
+/// An effect for this use.
 pub(crate) struct Played(pub(crate) Use);
 
 impl Codec<Arc<Effect>> for Played {
@@ -101,7 +101,7 @@ impl Codec<Arc<Effect>> for Played {
     }
 }
 
-/// What of a click is felt for a release, so that it is what an override of it changes.
+/// The release part of a click; an override of a release changes this part.
 fn released(effect: &Effect) -> Option<Effect> {
     let EffectKind::Click(Clicks { release: Some(release), .. }) = &effect.kind else { return None };
     let kind = EffectKind::Click(Clicks { press: release.clone(), release: None });
@@ -120,9 +120,9 @@ fn named(node: Node<'_>) -> Option<Arc<Effect>> {
     })
 }
 
-/// The effect that is written out at `node`; what it leaves out is `base`'s if that is of the same kind.
+/// The effect that is written out at `node`; missing fields come from `base` if that is of the same kind.
 ///
-/// Fields without a name are what the base is, or what is `used` so most often.
+/// Fields without a kind's name belong to the kind of the base, or to the most common kind for `used`.
 fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect> {
     let name = match node.expr {
         Expr::Struct(variant) => {
@@ -152,7 +152,7 @@ fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect>
     };
     let base = from.as_deref().or(base).filter(|base| base.kind.name() == name);
     let manner = Manner::read_fields(&mut fields, base.map(|base| &base.manner));
-    // A band that can't be used is told of; what else is wrong is searched for within the usual one.
+    // An unusable band is reported; the search for other faults uses the usual band.
     let outer = node.reader.keep_within(Some(manner.band.as_bounds()));
     let kind = EffectKind::read_fields(name, &mut fields, base.map(|base| &base.kind));
     node.reader.keep_within(outer);
@@ -185,7 +185,7 @@ fn a(name: &str) -> String {
 }
 
 impl Effect {
-    /// As it is written where it is played.
+    /// Its text at the place of use.
     pub(crate) fn to_ron(&self) -> Text {
         let mut entries: Vec<Entry> = Vec::new();
         self.kind.write_fields(&mut entries);

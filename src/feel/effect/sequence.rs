@@ -10,7 +10,7 @@ use super::{MAX_POINTS, Tone, TonePoint};
 use crate::feel::Click;
 use crate::format::{Rec, list, record};
 
-/// Greatest number of parts of a sequence: each that is held has a key of its own, of which a foot has 256 (see
+/// Maximum number of parts of a sequence: each held part has a key of its own, of which a foot has 256 (see
 /// [`crate::feel::key`]) and other effects have the first 16. The longest of Apple's own patterns have some 150 taps.
 pub const MAX_PARTS: usize = 240;
 
@@ -21,20 +21,20 @@ record! {
     };
     /// The parts, in order of time.
     pub parts: Arc<[Part]> = "parts", Parts;
-    /// Share of each part's level over time, in order of time; empty for all of it.
+    /// Factor of each part's level over time, in order of time; empty for a factor of 1.
     pub curve: ArrayVec<CurvePoint, MAX_POINTS> = "curve", list("point", MAX_POINTS, Rec).still() => ArrayVec::new();
 }
 
 /// One part of a sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// When it begins, in seconds from the sequence's start.
+    /// Start time, in seconds from the sequence's start.
     pub at_s: f32,
-    /// What is played.
+    /// The click or tone.
     pub kind: PartKind,
 }
 
-/// What one part of a sequence plays.
+/// The content of one part of a sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PartKind {
     /// A click.
@@ -44,16 +44,16 @@ pub enum PartKind {
 }
 
 record! {
-    /// A share of the level at one moment.
+    /// A factor of the level at one moment.
     pub struct CurvePoint = "Point", Copy, Default;
-    /// How long after the start, in seconds.
+    /// Time since the start, in seconds.
     pub at_s: f32 = "at_ms", TIME;
     /// Share of the level.
     pub level: f32 = "level", STRENGTH;
 }
 
 impl Sequence {
-    /// Part number `index` as the curve wants it; `None` if there is no such part.
+    /// Part number `index` with the curve applied; `None` if there is no such part.
     ///
     /// # Real-time
     /// No allocation.
@@ -67,7 +67,7 @@ impl Sequence {
         Some(Part { at_s: part.at_s, kind })
     }
 
-    /// When the last part has ended, in seconds from the start.
+    /// End time of the last part, in seconds from the start.
     #[must_use]
     pub fn length_s(&self) -> f32 {
         let end = |part: &Part| match &part.kind {
@@ -77,7 +77,7 @@ impl Sequence {
         self.parts.iter().map(end).fold(0.0, f32::max)
     }
 
-    /// Share of the level `t` seconds from the start.
+    /// Value of the curve `t` seconds from the start.
     #[must_use]
     pub(crate) fn share_at(&self, t: f32) -> f32 {
         let after = self.curve.iter().position(|point| point.at_s > t).unwrap_or(self.curve.len());
@@ -89,7 +89,7 @@ impl Sequence {
         }
     }
 
-    /// `tone`, begun at `start`, with its own curve times this one; of both curves' points the first sixteen count.
+    /// `tone`, begun at `start`, with its own curve times this one; keeps the first sixteen points of both curves.
     fn curved(&self, tone: &Tone, start: f32) -> Tone {
         if self.curve.is_empty() {
             return tone.clone();

@@ -7,7 +7,7 @@ use super::click::SHARE;
 use crate::feel::Click;
 use crate::format::{Flat, Opt, Pair, Rec, list, num, record};
 
-/// Most marks of a row of detents.
+/// Maximum number of marks of a row of detents.
 pub const MAX_MARKS: usize = 8;
 
 /// Factors of the frequencies at the low and the high end of a range.
@@ -18,19 +18,19 @@ const PITCH: Pair = Pair {
 };
 
 record! {
-    /// A click at each step of a number, told apart by value and by direction.
+    /// A click at each step of a number, different by value and by direction.
     pub struct Detents = "Detents";
-    /// What each feels like, at the middle of the range and upwards.
+    /// The click of each step, at the middle of the range and upwards.
     pub click: Click = "", Flat;
-    /// Distance between two, as a share of the range; 0 for the control's own steps and detents.
+    /// Distance between two detents, as a share of the range; 0 for the control's own steps and detents.
     pub every: f32 = "every", num(0.0..=1.0).hand(0.0..=0.5) => 0.0;
-    /// How strong those are that are passed downwards, as a share.
+    /// Factor of the level of detents passed downwards.
     pub falling: f32 = "falling", num(0.0..=4.0).hand(0.0..=2.0) => 1.0;
-    /// What the frequencies are multiplied with at the low and at the high end.
+    /// Factors of the frequencies at the low and at the high end.
     pub pitch: [f32; 2] = "pitch", PITCH => [1.0; 2];
-    /// Where they are felt stronger, as shares of the range.
+    /// Positions of stronger detents, as shares of the range.
     pub marks: ArrayVec<f32, MAX_MARKS> = "marks", list("mark", MAX_MARKS, SHARE) => ArrayVec::new();
-    /// How much stronger.
+    /// Factor of the level at the marks.
     pub mark: f32 = "mark", num(0.0..=4.0) => 1.6;
 }
 
@@ -39,7 +39,7 @@ impl Detents {
     #[must_use]
     pub(crate) fn click_at(&self, share: f32, rising: bool) -> Click {
         let side = if rising { 1.0 } else { self.falling };
-        // A control's own steps come as near as that to a mark that is meant.
+        // Tolerance between a mark and the control's own step.
         let near = if self.every > 0.0 { 0.25 * self.every } else { 1e-3 };
         let marked = self.marks.iter().any(|mark| (mark - share).abs() <= near);
         let mark = if marked { self.mark } else { 1.0 };
@@ -47,8 +47,8 @@ impl Detents {
         self.click.scaled(side * mark, low + (high - low) * share)
     }
 
-    /// The detent (as a share of the range) that a number passes on its way from `from` to `to`; the last one of
-    /// several, `None` of none or if the control's own steps count.
+    /// The detent (as a share of the range) that a number passes on its way from `from` to `to`: the last one of
+    /// several; `None` if it passes none or if the control's own steps count.
     #[must_use]
     pub fn passed(&self, from: f32, to: f32) -> Option<f32> {
         let way = to - from;
@@ -63,33 +63,34 @@ impl Detents {
 }
 
 record! {
-    /// What the ends of a number feel like.
+    /// The effect of the ends of a number.
     pub struct EndStop = "EndStop";
-    /// Felt when an end is reached; the faster, the stronger.
+    /// Felt when an end is reached; stronger at higher speed.
     pub click: Click = "", Flat;
-    /// What the frequencies are multiplied with at the low and at the high end.
+    /// Factors of the frequencies at the low and at the high end.
     pub pitch: [f32; 2] = "pitch", PITCH => [1.0; 2];
     /// Felt while a foot pushes on against the end.
     pub push: Option<Push> = "push", Opt(Rec) => None;
 }
 
 record! {
-    /// What pushing against an end feels like.
+    /// The effect of pushing against an end.
     pub struct Push = "Push", Copy;
-    /// What is felt, at its full level.
+    /// The tone or noise at its full level.
     pub hum: Hum = "", Flat;
-    /// How far beyond the end it is at its full level, in metres.
+    /// Distance beyond the end at which it has its full level, in metres.
     pub full_m: f32 = "full_m", num(0.001..=0.5).hand(0.001..=0.2) => 0.03;
 }
 
-/// The speed at which an end is hit at its full level, in metres per second (our choice: a brisk slide).
+/// Speed at which an end is hit at its full level, in metres per second (our choice: a brisk slide).
 const FULL_HIT_M_S: f32 = 0.4;
 
-/// Share of its level that an end has however slowly it is reached (our choice).
+/// Share of the level for an end that is reached very slowly (our choice).
 const SOFTEST: f32 = 0.4;
 
 impl EndStop {
-    /// The click of an end that is hit at this speed, in metres per second; also without one (NaN), softly.
+    /// The click of an end that is hit at this speed, in metres per second: level factor `SOFTEST + (1 - SOFTEST) *
+    /// min(speed / FULL_HIT_M_S, 1)`. Without a speed (NaN), soft.
     #[must_use]
     pub(crate) fn click_at(&self, high: bool, speed_m_s: f32) -> Click {
         let hit = (speed_m_s / FULL_HIT_M_S).clamp(0.0, 1.0);
@@ -99,7 +100,7 @@ impl EndStop {
 }
 
 impl Push {
-    /// What is felt with the foot this far beyond the end.
+    /// The hum with the foot this far beyond the end.
     #[must_use]
     pub(crate) fn hum_at(&self, beyond_m: f32) -> Hum {
         let share = (beyond_m / self.full_m).clamp(0.0, 1.0);
@@ -153,7 +154,7 @@ mod tests {
                 if !rising {
                     wanted.reverse();
                 }
-                // One long way passes several at once: the last one is felt.
+                // One long way passes several at once: only the last one is felt.
                 let wanted = if pieces == 1 { vec![wanted[2]] } else { wanted };
                 assert_eq!(passed, wanted, "{pieces} pieces");
             }

@@ -7,54 +7,54 @@ use super::click::{HZ, LEVEL, SHARE};
 use crate::format::{Faults, Num, Opt, Rec, list, num, record};
 use crate::units::Newtons;
 
-/// Most points of a curve; as many as an AHAP parameter curve may have.
+/// Maximum number of points of a curve; the same as in an AHAP parameter curve.
 pub const MAX_POINTS: usize = 16;
 
-/// Longest that one effect may last, in milliseconds in files.
+/// Range of times in one effect, in milliseconds in files.
 pub(super) const TIME: Num = num(0.0..=60_000.0).milli();
 
-/// Most that a curve may strengthen.
+/// Range of the factors of a curve.
 pub(super) const STRENGTH: Num = num(0.0..=4.0);
 
 record! {
-    /// A tone or a band of noise that sounds for a while.
+    /// A tone or a band of noise of limited length.
     ///
-    /// Its level rises to full in `attack_s`, falls to `sustain` in `decay_s`,
-    /// stays there until `length_s`, and is gone `release_s` later; all of it times
-    /// the curve, which also says the pitch.
+    /// Its level rises to full in `attack_s`, falls to `sustain` in `decay_s`, stays there until `length_s`, and
+    /// reaches zero `release_s` later; the curve multiplies all of it and sets the pitch.
     pub struct Tone = "Continuous", Default, Serialize, Deserialize => Tone::rules;
     /// Force at the plate of its tone; a noise is as strong as a tone of this amplitude.
     pub level: Newtons = "level_n", LEVEL;
-    /// Its pitch, or the centre of its noise, where the curve doesn't say, in hertz; 20 to 1000.
+    /// Its pitch, or the centre of its noise, where the curve sets none, in hertz; 20 to 1000.
     pub hz: f32 = "hz", HZ;
     /// From a pure tone (0) to a band of noise (1).
     pub noise: f32 = "noise", SHARE => 0.0;
-    /// Time until it lets go, in seconds.
+    /// Time until the release begins, in seconds.
     pub length_s: f32 = "length_ms", num(1.0..=60_000.0).hand(1.0..=5000.0).milli();
-    /// Time in which it comes, in seconds.
+    /// Duration of the attack, in seconds.
     pub attack_s: f32 = "attack_ms", TIME.hand(0.0..=1000.0) => 0.005;
-    /// Time in which it falls to `sustain` afterwards, in seconds.
+    /// Duration of the decay to `sustain`, in seconds.
     pub decay_s: f32 = "decay_ms", TIME.hand(0.0..=1000.0) => 0.0;
-    /// What stays after the decay, 0 to 1.
+    /// Level after the decay, 0 to 1.
     pub sustain: f32 = "sustain", SHARE => 1.0;
-    /// Time in which it goes after `length_s`, in seconds.
+    /// Duration of the release after `length_s`, in seconds.
     pub release_s: f32 = "release_ms", TIME.hand(0.0..=1000.0) => 0.02;
-    /// Level and pitch over time, in order of time; before the first point as there, after the last as there.
+    /// Level and pitch over time, in order of time; the first point's values hold before it, the last point's after
+    /// it.
     pub curve: ArrayVec<TonePoint, MAX_POINTS> = "curve", list("point", MAX_POINTS, Rec).still() => ArrayVec::new();
 }
 
 record! {
     /// Level and pitch of a tone at one moment.
     pub struct TonePoint = "Point", Copy, Default, Serialize, Deserialize;
-    /// How long after the tone's start, in seconds.
+    /// Time since the tone's start, in seconds.
     pub at_s: f32 = "at_ms", TIME;
     /// Share of the tone's level.
     pub level: f32 = "level", STRENGTH => 1.0;
-    /// Pitch; the tone's where it says none, in hertz.
+    /// Pitch in hertz; the tone's if absent.
     pub hz: Option<f32> = "hz", Opt(HZ) => None;
 }
 
-/// Notes that the points of a curve go backwards in time, if they do.
+/// Reports points of a curve that are not in order of time.
 pub(super) fn check_order(times: impl Iterator<Item = f32> + Clone, faults: &mut Faults) {
     if !times.clone().zip(times.skip(1)).all(|(a, b)| a < b) {
         let expected = "each `at_ms` must be later than the one before";
@@ -67,7 +67,7 @@ impl Tone {
         check_order(self.curve.iter().map(|point| point.at_s), faults);
     }
 
-    /// Share of the level and pitch `t` seconds after the start; no level before it and after the end.
+    /// Level factor and pitch `t` seconds after the start; the level is zero before the start and after the end.
     ///
     /// # Real-time
     /// A few comparisons and divisions.
@@ -82,7 +82,7 @@ impl Tone {
         (level * release, hz)
     }
 
-    /// As [`Tone::at`] for a tone that is held on: it never lets go by itself.
+    /// As [`Tone::at`] for a held tone: without the release.
     #[must_use]
     pub(crate) fn held_at(&self, t: f32) -> (f32, f32) {
         let (curve, hz) = self.curve_at(t);

@@ -1,4 +1,4 @@
-//! The terms by which a mode is computed for many samples at once.
+//! The polynomial terms by which a mode is computed for many samples at once.
 
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
@@ -17,30 +17,30 @@ pub(crate) const TERMS: usize = 16;
 /// Terms that describe a span of a smooth mode.
 pub(crate) const FEW: usize = TERMS / 2;
 
-/// How far a smooth mode may turn and shrink in half a span, in radians.
+/// Maximum turn and decay of a smooth mode in half a span, in radians.
 ///
-/// Of `exp(x t)`, t from -1 to 1, the first eight terms leave out a share of about `sqrt(17) |x|^8 / 17!!`: -140 dB.
+/// The first eight terms of `exp(x t)`, t from -1 to 1, leave out a share of about `sqrt(17) |x|^8 / 17!!`: -140 dB.
 /// At 96 kHz that makes modes up to 460 Hz smooth, at 48 kHz up to 230 Hz.
 const SMOOTH: f64 = 0.97;
 
 const HALF: usize = SPAN / 2;
 
-/// Shapes of which every span of every mode is a sum.
+/// Shapes that add up to every span of every mode.
 ///
-/// A span lasts 1.5 ms at most, so that the slow modes of a floor draw little more than a parabola in it:
-/// whatever the mode, the 64 samples are a sum of the same few polynomials. A bank adds up its modes
-/// polynomial by polynomial, and draws the sum once: 64 modes cost far less than 64 sines.
+/// A span lasts 1.5 ms at most, so that the slow modes of a floor draw little more than a parabola in it: for every
+/// mode, the 64 samples are a sum of the same few polynomials. A bank adds up its modes polynomial by polynomial, and
+/// draws the sum once: 64 modes cost far less than 64 sines.
 ///
 /// # Source
 /// Discrete Legendre polynomials, which are orthonormal on the samples of a span, by the recurrence
 /// of Gram and Chebyshev.
 #[derive(Debug)]
 pub(crate) struct Basis {
-    /// For each sample, its share in each term: what takes samples apart.
+    /// For each sample, its share in each term: decomposes samples into terms.
     shares: [[f64; TERMS]; SPAN],
     /// The later half of each polynomial; the earlier is its mirror image, negative for odd numbers.
     later: [[f32; HALF]; TERMS],
-    /// The same, sample by sample.
+    /// The same values, sample by sample.
     by_sample: [[f32; TERMS]; HALF],
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Basis {
 static BASIS: std::sync::LazyLock<Basis> = std::sync::LazyLock::new(Basis::build);
 
 impl Basis {
-    /// The one basis that there is; takes memory and time when first asked for.
+    /// The shared basis; the first call takes memory and time.
     pub(crate) fn get() -> &'static Self {
         &BASIS
     }
@@ -75,7 +75,7 @@ impl Basis {
             let length = shares.iter().map(|share| share[term] * share[term]).sum::<f64>().sqrt();
             shares.iter_mut().for_each(|share| share[term] /= length);
         }
-        // Products with ever smaller numbers must not end in denormal ones.
+        // Products with ever smaller numbers must not become denormal.
         let rounded = |x: f64| if x.abs() < 1e-9 { 0.0 } else { x as f32 };
         Self {
             later: std::array::from_fn(|term| std::array::from_fn(|n| rounded(shares[HALF + n][term]))),
@@ -84,8 +84,8 @@ impl Basis {
         }
     }
 
-    /// Whether the first [`FEW`] terms describe a mode that turns by `angle` and shrinks by the factor `exp(-fade)` per
-    /// sample.
+    /// Whether the first [`FEW`] terms describe a mode that turns by `angle` and shrinks by the factor `exp(-fade)`
+    /// per sample.
     pub(super) fn is_smooth(angle: f64, fade: f64) -> bool {
         angle.hypot(fade) * HALF as f64 <= SMOOTH
     }
@@ -126,7 +126,7 @@ impl Basis {
         terms: &[[f32; LANES]; FIRST],
         out: &mut [[f32; LANES]; SPAN],
     ) {
-        /// Samples that are worked on together, so that none has to wait for another's sum.
+        /// Samples that are computed together, so that none has to wait for another's sum.
         const TOGETHER: usize = 4;
         for first in (0..HALF).step_by(TOGETHER) {
             let (mut even, mut odd) = ([[0.0; LANES]; TOGETHER], [[0.0; LANES]; TOGETHER]);

@@ -1,4 +1,4 @@
-//! Eight modes side by side: what they ring, and how they move on.
+//! Eight modes side by side: their output, and the advance of their state.
 
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
@@ -8,10 +8,10 @@ use multiversion::multiversion;
 use super::basis::{Basis, FEW, SPAN, TERMS};
 use super::{Key, multiply_add};
 
-/// Modes that are moved on together: as many double-precision numbers as the widest register holds.
+/// Modes that advance together: as many double-precision numbers as the widest register holds.
 pub(super) const EIGHT: usize = 8;
 
-/// Sums that are kept apart, so that no addition has to wait for the one before.
+/// Separate sums, so that no addition has to wait for the one before.
 pub(super) const SUMS: usize = 4;
 
 /// Eight modes side by side.
@@ -20,20 +20,20 @@ pub(super) const SUMS: usize = 4;
 pub(super) struct Eight {
     /// The state one sample before the next one to be rendered.
     pub(super) state: Complexes,
-    /// `r`.
+    /// The pole `r`.
     pub(super) turn: Complexes,
     /// `r` to the power of [`SPAN`].
     pole_power: Complexes,
-    /// The first [`FEW`] terms of each mode, then the others: smooth modes don't read those.
+    /// The first [`FEW`] terms of each mode, then the others, which smooth modes do not use.
     pub(super) power_terms: [[PowerTerms; EIGHT]; 2],
-    /// The states once more, as precise as the terms: real part, imaginary part.
+    /// The states rounded to the precision of the terms: real part, imaginary part.
     rounded: [[f32; 2]; EIGHT],
 }
 
 /// Terms of `r` to the power of 1 to [`SPAN`]: of the imaginary part, of the real one, and so on.
 ///
-/// Side by side with what each is multiplied with, the state's real and its imaginary part, since a pair of numbers
-/// is spread over a vector as it is read.
+/// In the order of their factors, the state's real and its imaginary part, since a pair of numbers is spread over a
+/// vector as it is read.
 pub(super) type PowerTerms = [f32; 2 * FEW];
 
 /// One complex number per mode.
@@ -52,7 +52,7 @@ impl Eight {
         rounded: [[0.0; 2]; EIGHT],
     };
 
-    /// Makes `lane` the mode that `from` holds in another lane.
+    /// Copies into `lane` the mode from another lane of `from`.
     pub(super) fn copy(&mut self, lane: usize, from: &Self, other: usize) {
         for (terms, from) in self.power_terms.iter_mut().zip(&from.power_terms) {
             terms[lane] = from[other];
@@ -62,7 +62,7 @@ impl Eight {
         self.set_state(lane, from.state.get(other));
     }
 
-    /// Adds the first or the other terms of its modes, each in two parts; a lane that holds none adds nothing.
+    /// Adds the first or the other terms of its modes, each in two parts; an empty lane adds nothing.
     #[inline(always)]
     pub(super) fn add_terms<const FUSED: bool>(&self, part: usize, sums: &mut [PowerTerms; SUMS]) {
         for lane in 0..EIGHT {
@@ -74,7 +74,7 @@ impl Eight {
         }
     }
 
-    /// Moves on by up to a span.
+    /// Advances by up to a span.
     #[inline(always)]
     pub(super) fn advance(&mut self, samples: usize) {
         if samples == SPAN {
@@ -99,7 +99,7 @@ impl Eight {
     }
 }
 
-/// Makes `lane` a silent mode of this frequency and decay.
+/// Sets `lane` to a silent mode of this frequency and decay.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(super) fn tune(eight: &mut Eight, lane: usize, key: Key, sample_rate: f64, basis: &Basis) {
     let (angle, fade) = key.per_sample(sample_rate);
@@ -116,7 +116,7 @@ pub(super) fn tune(eight: &mut Eight, lane: usize, key: Key, sample_rate: f64, b
         }
         known *= 2;
     }
-    // What is next to nothing is nothing, lest faint modes end in denormal numbers.
+    // Tiny terms are set to zero, so that faint modes do not become denormal.
     let rounded = |x: f64| if x.abs() < 1e-11 { 0.0 } else { x as f32 };
     let [of_re, of_im] = basis.terms_of(&re, &im);
     for term in 0..TERMS {

@@ -1,4 +1,4 @@
-//! A bank of decaying modes: struck, they ring.
+//! A bank of decaying modes.
 
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
@@ -19,25 +19,24 @@ use eight::{EIGHT, Eight, PowerTerms, SUMS, product, tune};
 
 pub(super) use basis::SPAN;
 
-/// Below this rate a span lasts too long for its terms; there is little to compute then, and it is computed plainly.
+/// Below this rate a span lasts too long for its terms; there is little to compute then, and it is computed sample by
+/// sample.
 const SLOW: f64 = 44_000.0;
 
-/// A mode whose amplitude falls below this (-154 dB of full scale) has rung out.
+/// A mode with an amplitude below this (-154 dB of full scale) has rung out.
 const SILENCE: f64 = 2e-8;
 
-/// How often, in samples, modes that have rung out are searched for.
+/// Interval between the searches for modes that have rung out, in samples.
 const CHECK: usize = 512;
 
 /// A bank of decaying sine modes, struck and left to ring.
 ///
-/// Each mode is one complex number that turns and shrinks by a constant factor
-/// `r` per sample; its output is the imaginary part. The state advances in
-/// double precision once per span of 64 samples. What lies in between is a sum of
-/// the same 16 polynomials for every mode: the bank adds up what its modes
-/// give to each, and draws the sum once. Smooth modes, those below 460 Hz at
-/// 96 kHz, need the first 8 only. That is faster than a recurrence per
-/// sample, and without its rounding (a single-precision two-pole filter is off
-/// by -23 dB for a 60 Hz mode at 96 kHz, this by less than -120 dB).
+/// Each mode is one complex number that turns and shrinks by a constant factor `r` per sample; its output is the
+/// imaginary part. The state advances in double precision once per span of 64 samples. The samples in between are a
+/// sum of the same 16 polynomials for every mode: the bank adds up the contributions of its modes to each, and draws
+/// the sum once. Smooth modes, those below 460 Hz at 96 kHz, need the first 8 only. That is faster than a recurrence
+/// per sample, and without its rounding (a single-precision two-pole filter is off by -23 dB for a 60 Hz mode at 96
+/// kHz, this by less than -120 dB).
 ///
 /// Modes of equal frequency and decay share one state, since the sum of two
 /// such modes is again one. A silent bank costs nothing.
@@ -47,20 +46,20 @@ const CHECK: usize = 512;
 #[derive(Clone, Debug)]
 pub struct ModalBank {
     sample_rate: f64,
-    /// Which mode each slot holds; the first `active` slots ring.
+    /// The mode in each slot; the first `active` slots ring.
     keys: Vec<Key>,
     eights: Vec<Eight>,
     active: usize,
     /// Whether all modes of each eight are smooth, and whether all modes of the bank are.
     smooth: Vec<bool>,
     all_smooth: bool,
-    /// Samples since the last look for modes that have rung out.
+    /// Samples since the last search for modes that have rung out.
     unchecked: usize,
-    /// Where the last strike landed: clicks strike their modes in the same order every time.
+    /// Slot of the last strike: clicks strike their modes in the same order every time.
     last: usize,
 }
 
-/// A mode's frequency and decay time, the two numbers that shape it.
+/// A mode's frequency and decay time, which define its shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Key {
     frequency_hz: f32,
@@ -68,7 +67,7 @@ struct Key {
 }
 
 impl Key {
-    /// By how much the mode turns, in radians, and fades, in shares, from one sample to the next.
+    /// The turn of the mode per sample, in radians, and its decay per sample, as a share.
     fn per_sample(&self, sample_rate: f64) -> (f64, f64) {
         let angle = TAU * f64::from(self.frequency_hz) / sample_rate;
         (angle, (f64::from(self.decay_s) * sample_rate).recip())
@@ -78,11 +77,11 @@ impl Key {
 impl ModalBank {
     /// A silent bank for up to `modes` different modes (rounded up to a multiple of eight) at `sample_rate` hertz.
     ///
-    /// All memory is taken here.
+    /// Allocates all memory.
     #[must_use]
     pub fn new(sample_rate: f64, modes: usize) -> Self {
         let eights = modes.div_ceil(EIGHT).max(1);
-        // Built now rather than with the first strike.
+        // Built here rather than at the first strike.
         Basis::get();
         Self {
             sample_rate,
@@ -108,7 +107,7 @@ impl ModalBank {
         self.active
     }
 
-    /// Whether nothing rings: the next samples are all zero.
+    /// Whether no mode rings: the next samples are all zero.
     #[must_use]
     pub fn is_silent(&self) -> bool {
         self.active == 0
@@ -128,12 +127,11 @@ impl ModalBank {
         self.all_smooth = true;
     }
 
-    /// Strikes a mode, so that the very next sample rendered is the first that moves.
+    /// Strikes a mode; the very next sample rendered is the first to move.
     ///
-    /// `frequency_hz` lies between 0 and [`ModalBank::highest_hz`], `decay_s` (the
-    /// time to 1/e) is 0.001 or more, `amplitude` any finite number; nothing is struck otherwise.
-    /// If the bank is full, the mode with the least energy makes
-    /// room: then the answer is true.
+    /// `frequency_hz` lies between 0 and [`ModalBank::highest_hz`], `decay_s` (the time to 1/e) is 0.001 or more,
+    /// `amplitude` any finite number; other values have no effect. If the bank is full, the new mode steals the slot
+    /// of the mode with the least energy, and the function returns true.
     ///
     /// # Real-time
     /// No allocation. A mode that is not ringing yet costs about as much as the
@@ -162,7 +160,7 @@ impl ModalBank {
     /// Adds the next `out.len()` samples to `out`.
     ///
     /// # Real-time
-    /// No allocation; nothing at all to do if the bank is silent.
+    /// No allocation; no work if the bank is silent.
     pub fn render(&mut self, out: &mut [f32]) {
         if self.active == 0 || out.is_empty() {
             return;
@@ -175,7 +173,7 @@ impl ModalBank {
         self.grow_older(out.len());
     }
 
-    /// Whether it has to be rendered sample by sample, and can't be one of many side by side.
+    /// Whether it needs rendering sample by sample, rather than side by side with others.
     pub(super) fn is_slow(&self) -> bool {
         self.sample_rate < SLOW
     }
@@ -208,7 +206,7 @@ impl ModalBank {
         terms
     }
 
-    /// Moves on by up to a span.
+    /// Advances by up to a span.
     #[inline(always)]
     fn advance(&mut self, samples: usize) {
         for eight in &mut self.eights[..self.active.div_ceil(EIGHT)] {
@@ -216,7 +214,7 @@ impl ModalBank {
         }
     }
 
-    /// Counts samples, and looks for modes that have rung out now and then.
+    /// Counts samples, and at intervals searches for modes that have rung out.
     #[inline(always)]
     fn grow_older(&mut self, samples: usize) {
         self.unchecked += samples;
@@ -244,7 +242,7 @@ impl ModalBank {
         ringing.iter().position(|held| *held == key)
     }
 
-    /// A slot for a mode that does not ring yet, and whether another had to give it up.
+    /// A slot for a new mode, and whether it was stolen from another.
     fn claim(&mut self, key: Key) -> (usize, bool) {
         let stolen = self.active == self.keys.len();
         let slot = if stolen { self.weakest() } else { self.active };
@@ -257,7 +255,7 @@ impl ModalBank {
         (slot, stolen)
     }
 
-    /// Notes whether the modes of an eight are smooth, after one has come or gone.
+    /// Updates whether the modes of an eight are smooth, after a change of its modes.
     fn note_smooth(&mut self, eight: usize) {
         let (first, last) = (eight * EIGHT, self.active.min((eight + 1) * EIGHT));
         self.smooth[eight] = self.keys[first..last.max(first)].iter().all(|key| {
@@ -276,7 +274,7 @@ impl ModalBank {
         re * re + im * im
     }
 
-    /// Gives a slot back; the last ringing mode moves into its place.
+    /// Frees a slot; the last ringing mode moves into its place.
     fn release(&mut self, slot: usize) {
         self.active -= 1;
         let last = self.active;
@@ -289,10 +287,10 @@ impl ModalBank {
     }
 }
 
-/// Writes the next `samples` of several banks, at most a span, to the columns of `out`, and silence to the other lanes.
+/// Writes the next `samples` of several banks, at most a span, to the columns of `out`, and silence to the other
+/// lanes.
 ///
-/// `ringing` says which of up to [`LANES`] banks are asked; the answer is which of them ring on. Columns beyond
-/// `samples` are of no meaning.
+/// `ringing` selects up to [`LANES`] banks; returns those that ring on. Columns beyond `samples` are undefined.
 pub(super) fn ring_side_by_side(
     banks: &mut [ModalBank],
     ringing: LaneSet,
@@ -314,13 +312,13 @@ fn has(set: LaneSet, lane: usize) -> bool {
     set >> lane & 1 == 1
 }
 
-/// `a * b + c`, in one instruction where there is one: without it, `mul_add` is a slow library call.
+/// `a * b + c`, in one instruction where the processor has it: elsewhere `mul_add` is a slow library call.
 #[inline(always)]
 pub(super) fn multiply_add<const FUSED: bool>(a: f32, b: f32, c: f32) -> f32 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// Adds a bank's next samples to `out` with the widest registers this processor has.
+/// Adds a bank's next samples to `out`, with the widest registers of this processor.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 fn render_spans(bank: &mut ModalBank, out: &mut [f32], basis: &Basis) {
     if target_cfg_f!(any(target_feature = "fma", target_arch = "aarch64")) {
@@ -364,7 +362,7 @@ fn render_span<const FUSED: bool>(
     bank.advance(samples);
 }
 
-/// Writes the banks' next samples side by side with the widest registers this processor has.
+/// Writes the banks' next samples side by side, with the widest registers of this processor.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 fn draw_banks(
     banks: &mut [ModalBank],
@@ -405,7 +403,7 @@ fn draw_banks_with<const FUSED: bool>(
     }
 }
 
-/// Adds the first or the other terms of the banks, one bank per lane; the answer is whether all are smooth.
+/// Adds the first or the other terms of the banks, one bank per lane; returns whether all are smooth.
 #[inline(always)]
 fn add_side_by_side<const FUSED: bool>(
     banks: &[ModalBank],

@@ -9,7 +9,7 @@ use super::*;
 
 const RATE: f64 = 96_000.0;
 
-/// What the bank ought to give, in double precision from the definition.
+/// The exact output of the bank, in double precision from the definition.
 fn reference(modes: &[(f32, f32, f32)], samples: usize) -> Vec<f64> {
     reference_at(RATE, modes, samples)
 }
@@ -32,7 +32,7 @@ fn error_db(got: &[f32], wanted: &[f64]) -> f64 {
     10.0 * (error / signal).log10()
 }
 
-/// Blocks of 441 end in the middle of a quantum, as a 44.1 kHz device's do.
+/// Blocks of 441 end in the middle of a quantum, as those of a 44.1 kHz device do.
 #[test]
 fn error_stays_below_minus_100_db_whatever_the_block() {
     for modes in [
@@ -60,7 +60,7 @@ fn random_modes_are_exact_at_both_rates_alone_and_side_by_side() {
     let mut worst = [f64::NEG_INFINITY; 2];
     for rate in [48_000.0, 96_000.0] {
         for set in 0..40 {
-            // Every second bank has smooth modes only, up to just below where they end.
+            // Every second bank has smooth modes only, up to just below their limit.
             let highest = if set % 2 == 0 { 1000.0 } else { 0.0047 * rate as f32 };
             let modes: Vec<(f32, f32, f32)> = (0..8)
                 .map(|_| {
@@ -122,7 +122,7 @@ fn what_is_no_mode_is_not_struck() {
     assert!(bank.is_silent());
 }
 
-/// After minutes nothing is left in any number of the bank: what it computes then is what silence costs, nothing.
+/// After minutes every number of the bank is zero: from then on it costs no more than silence.
 #[test]
 fn a_bank_that_has_decayed_for_minutes_is_all_exact_zeros() {
     let mut bank = ModalBank::new(RATE, 16);
@@ -148,7 +148,7 @@ fn a_bank_that_has_decayed_for_minutes_is_all_exact_zeros() {
     assert_eq!(left.filter(|state| *state != 0.0).count(), 0);
 }
 
-/// The kernel that processors without fused multiplication get, which this machine would not choose.
+/// The kernel for processors without fused multiplication, which this machine would not select.
 #[test]
 fn the_plainest_kernel_is_as_exact() {
     let mut bank = ModalBank::new(RATE, 4);
@@ -195,7 +195,7 @@ fn a_mode_that_has_rung_out_frees_its_slot_and_leaves_the_others_alone() {
     let mut out = vec![0.0; 19_200];
     out.chunks_mut(96).for_each(|block| bank.render(block));
     assert_eq!(bank.active_modes(), 3);
-    // The short ones are gone after 0.05 s; what is left is the three long ones.
+    // The short ones are gone after 0.05 s; the three long ones are left.
     assert!(error_db(&out[9600..], &wanted[9600..]) < -100.0);
 }
 

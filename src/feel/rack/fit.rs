@@ -6,34 +6,35 @@ use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use super::section::Filter;
 use crate::floor::Response;
 
-/// Band in which a plate is worth moving, in hertz (paper, section 2: plates measured from 50 to 750 Hz).
+/// Band in which the plate is worth moving, in hertz (paper, section 2: plates measured from 50 to 750 Hz).
 pub(super) const BAND_HZ: [f64; 2] = [50.0, 750.0];
 
-/// Corner of the high-pass under the band: what is slower only heats the coil and moves the plate to its stops.
+/// Corner of the high-pass below the band: lower frequencies only heat the coil and drive the plate to its stops.
 const LOW_CORNER_HZ: f64 = 40.0;
 
 /// Corner of the low-pass above the band.
 const HIGH_CORNER_HZ: f64 = 950.0;
 
-/// The two halves of a fourth-order Butterworth filter.
+/// Sharpnesses of the two halves of a fourth-order Butterworth filter.
 const BUTTERWORTH: [f64; 2] = [0.541_196, 1.306_563];
 
-/// Most that the equaliser raises or lowers: what an actuator hardly does is not worth all of its power.
+/// Maximum gain and attenuation of the equaliser: a frequency that the actuator hardly moves is not worth all of its
+/// power.
 const MOST_DB: f64 = 15.0;
 
-/// Bells that an equaliser has at most.
+/// Maximum number of bells in an equaliser.
 const MOST_BELLS: usize = 8;
 
-/// An equaliser this close everywhere is good enough.
+/// Maximum error, at every point, of an equaliser that needs no further bell.
 const GOOD_ENOUGH_DB: f64 = 0.4;
 
-/// Points at which the fit is judged, evenly spread over the band's octaves.
+/// Number of points at which the error of the fit is computed, evenly spread over the band's octaves.
 const POINTS: usize = 64;
 
-/// The filters that make an actuator of this `response` flat within the band, and take away what is outside of it.
+/// The filters that make an actuator of this `response` flat within the band, and remove frequencies outside of it.
 ///
-/// The equaliser is a row of bells, each set where the response is furthest from flat, and all of
-/// them tuned together. Every bell is a filter with positive damping, so it is stable whatever was measured.
+/// The equaliser is a row of bells, each placed where the response is furthest from flat, and all of them tuned
+/// together. Every bell is a filter with positive damping, so it is stable for every measured response.
 ///
 /// # Source
 /// Levenberg-Marquardt on the error in decibels.
@@ -69,7 +70,7 @@ pub(super) fn filters(response: &Response, sample_rate: f64) -> Vec<Filter> {
     shapes
 }
 
-/// A row of bells on its way to `wanted`.
+/// A row of bells that approximates `wanted`.
 ///
 /// The parameters are a gain in decibels, and then, for each bell, the
 /// logarithms of its centre and its sharpness, and its height in decibels.
@@ -109,7 +110,7 @@ impl Fit {
         self.errors().norm_squared()
     }
 
-    /// Where the error is largest, in hertz and decibels.
+    /// Place and size of the largest error, in hertz and decibels.
     fn worst(&self) -> (f64, f64) {
         let errors = self.errors();
         let worst = errors.iamax();
@@ -209,7 +210,7 @@ mod tests {
         }
         for n in 0..200 {
             let hz = 20.0 * 1.03_f64.powi(n);
-            // A cliff is rounded by the bells, and overshoots a little.
+            // The bells round off a cliff, and overshoot a little.
             assert!(gain(hz) < MOST_DB + 3.0, "{hz:.0} Hz: {:.1} dB", gain(hz));
         }
     }

@@ -8,17 +8,17 @@ use crate::feel::mix::LANES;
 /// Length of a full rise or fall, in seconds.
 pub(super) const RAMP_S: f32 = 0.005;
 
-/// Opens and closes each channel of a group in 5 ms: for mutes, and for voices that went wrong.
+/// Opens and closes each channel of a group in 5 ms: for mutes, and for voices with faulty samples.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Gate {
-    /// Rise per sample; negative for a channel that closes.
+    /// Rise per sample; negative for a closing channel.
     slope: [f32; LANES],
     level: [f32; LANES],
     step: f32,
     muted: [bool; LANES],
     tripped: [bool; LANES],
-    /// Whether every channel is where it is heading.
+    /// Whether every channel has reached its target.
     at_rest: bool,
 }
 
@@ -36,13 +36,13 @@ impl Gate {
         }
     }
 
-    /// Mutes a channel, or no longer.
+    /// Mutes or unmutes a channel.
     pub(super) fn mute(&mut self, lane: usize, muted: bool) {
         self.muted[lane] = muted;
         self.turn(lane);
     }
 
-    /// Closes a channel until its voices are gone; false if that is being done already.
+    /// Closes a channel until its voices are gone; returns false if it is already tripped.
     pub(super) fn trip(&mut self, lane: usize) -> bool {
         let first = !self.tripped[lane];
         self.tripped[lane] = true;
@@ -50,12 +50,12 @@ impl Gate {
         first
     }
 
-    /// Whether any channel was tripped and has not been opened again.
+    /// Whether any channel is tripped.
     pub(super) fn is_tripped(&self) -> bool {
         self.tripped.iter().fold(false, |any, tripped| any | tripped)
     }
 
-    /// Opens tripped channels that have closed, and says which: their voices may be forgotten now.
+    /// Opens tripped channels that have closed, and returns them: their voices may be dropped now.
     pub(super) fn reset(&mut self) -> [bool; LANES] {
         let mut closed = [false; LANES];
         for lane in 0..LANES {
@@ -74,7 +74,7 @@ impl Gate {
         self.at_rest = false;
     }
 
-    /// Brings every channel where it is heading, at once.
+    /// Sets every channel to its target at once.
     pub(super) fn settle(&mut self) {
         if self.at_rest {
             return;
@@ -85,7 +85,7 @@ impl Gate {
         }
     }
 
-    /// Whether every channel is open and stays so: nothing to do.
+    /// Whether every channel is open and stays open.
     #[inline(always)]
     pub(super) fn is_open(&self) -> bool {
         let mut open = true;
@@ -95,7 +95,7 @@ impl Gate {
         open
     }
 
-    /// Lets a stretch of samples through, as far as the gates are open.
+    /// Multiplies a stretch of samples by the levels of the gates.
     #[inline(always)]
     pub(super) fn run(&mut self, columns: &mut [[f32; LANES]]) {
         for column in columns {
@@ -116,7 +116,7 @@ mod tests {
 
     const RATE: f32 = 48_000.0;
 
-    /// What becomes of a steady 1 in the next `samples`, on channels 0 and 1.
+    /// The output for a steady 1 in the next `samples`, on channels 0 and 1.
     fn through(gate: &mut Gate, samples: usize) -> Vec<[f32; 2]> {
         let mut columns = vec![[1.0; LANES]; samples];
         gate.run(&mut columns);

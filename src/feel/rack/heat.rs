@@ -7,26 +7,26 @@ use crate::feel::mix::LANES;
 use crate::feel::modal::multiply_add;
 use crate::floor::Drive;
 
-/// Time in which a coil warms up and cools down to 1/e; our choice, of the order of a voice coil's, not measured.
+/// Time constant of a coil's warming and cooling; our choice, of the order of a voice coil's, not measured.
 const COIL_S: f32 = 3.0;
 
-/// Time over which power is measured: some periods of the lowest mode.
+/// Time constant of the power measurement: some periods of the lowest mode.
 const POWER_S: f32 = 0.03;
 
-/// How much more than its ceiling a coil may take for each watt that it is colder.
+/// Additional power above the ceiling for each watt by which the coil is colder.
 const CREDIT: f32 = 4.0;
 
-/// Below this share of its ceiling, a coil that was turned down has recovered.
+/// Below this share of its ceiling, an attenuated coil has recovered.
 const COOL: f32 = 0.7;
 
-/// Below this share of what may be, a coil is cold.
+/// Below this share of its ceiling, a coil is cold.
 const COLD: f32 = 1e-4;
 
-/// Keeps the coils of a group of channels from being burnt.
+/// Protects the coils of a group of channels from overheating.
 ///
-/// The heat in a coil is the power put into it, averaged over some seconds. A cold coil takes any burst;
-/// the warmer it is, the less more it gets, until as much goes in as may for ever. The ceiling lies a
-/// little below the rating, so that no minute's mean exceeds that, not even one that began cold.
+/// The heat in a coil is the power put into it, averaged over some seconds. A cold coil takes any burst; the warmer
+/// it is, the smaller the allowed power, down to the ceiling for continuous power. The ceiling lies a little below
+/// the rating, so that no minute's mean exceeds it, not even for a minute that begins cold.
 ///
 /// # Source
 /// First-order thermal model `h' = (p - h) / tau`; then the energy of any time `t` is at most
@@ -34,24 +34,24 @@ const COLD: f32 = 1e-4;
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Heat {
-    /// Watts of a steady full scale.
+    /// Power of a steady full scale, in watts.
     watts: [f32; LANES],
-    /// Watts that may be for ever.
+    /// Maximum continuous power, in watts.
     ceiling: [f32; LANES],
     coil_samples: f32,
     power_samples: f32,
-    /// Mean power, long and short.
+    /// Mean power over the long and the short time.
     heat: [f32; LANES],
     power: [f32; LANES],
     gain: [f32; LANES],
-    /// Whether a channel is turned down.
+    /// Whether a channel is attenuated.
     down: [bool; LANES],
     /// Whether any coil is warm.
     warm: bool,
 }
 
 impl Heat {
-    /// Cold coils that nothing warms.
+    /// Cold coils without power.
     pub(super) fn new(sample_rate: f32) -> Self {
         Self {
             watts: [0.0; LANES],
@@ -66,16 +66,16 @@ impl Heat {
         }
     }
 
-    /// Says what drives one channel's coil.
+    /// Sets the drive of one channel's coil.
     pub(super) fn set(&mut self, lane: usize, drive: &Drive) {
         self.watts[lane] = drive.full_scale_w();
         self.ceiling[lane] = drive.long_term_w * 0.99 * 60.0 / (60.0 + COIL_S);
     }
 
-    /// Turns down what would be too much, in place; the answer is how many channels it begins to turn down.
+    /// Attenuates channels with too much power, in place; returns the number of channels newly attenuated.
     ///
-    /// `energy` is the sum of the samples' squares. No sample is beyond full scale any more, so that none that
-    /// is turned down comes back up.
+    /// `energy` is the sum of the samples' squares. The samples are within full scale already, and no later stage
+    /// amplifies them.
     #[inline(always)]
     pub(super) fn run<const FUSED: bool>(
         &mut self,
@@ -96,14 +96,14 @@ impl Heat {
         for lane in 0..LANES {
             let mean_gain = 0.5 * (self.gain[lane] + wanted[lane]);
             self.heat[lane] += (power[lane] * mean_gain * mean_gain - self.heat[lane]) * long;
-            // What comes and goes while the coil stays hot is one and the same trouble.
+            // Interruptions while the coil stays hot belong to one and the same fault.
             self.down[lane] &= (wanted[lane] < 1.0) | (self.heat[lane] > COOL * self.ceiling[lane]);
         }
         self.warm = true;
         if calm { 0 } else { self.turn::<FUSED>(columns, &wanted) }
     }
 
-    /// The gains that bring the power down to what is allowed.
+    /// The gains that reduce the power to the allowed one: `sqrt(allowed / power)`.
     fn wanted(&self, allowed: &[f32; LANES]) -> [f32; LANES] {
         let mut wanted = [1.0; LANES];
         for lane in 0..LANES {
@@ -113,7 +113,7 @@ impl Heat {
         wanted
     }
 
-    /// Applies the gains that are wanted, going there evenly.
+    /// Applies the wanted gains, in a straight line from the last ones.
     #[inline(always)]
     fn turn<const FUSED: bool>(&mut self, columns: &mut [[f32; LANES]], wanted: &[f32; LANES]) -> u32 {
         let samples = columns.len() as f32;
@@ -135,7 +135,7 @@ impl Heat {
         begun
     }
 
-    /// Lets the coils cool for so many silent samples.
+    /// Cools the coils for so many silent samples.
     pub(super) fn rest(&mut self, samples: usize) {
         if !self.warm {
             return;
@@ -163,7 +163,8 @@ mod tests {
 
     const RATE: f32 = 48_000.0;
 
-    /// Watts that a steady square wave of full scale puts into channel 2 in each second, and what was counted.
+    /// Mean power, in watts, of a steady square wave of full scale on channel 2 in each second, and the count of
+    /// attenuations.
     fn driven(heat: &mut Heat, seconds: usize) -> (Vec<f32>, u32) {
         let (mut watts, mut begun) = (Vec::new(), 0);
         for _ in 0..seconds {

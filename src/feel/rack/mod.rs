@@ -1,12 +1,12 @@
-//! What stands between the mix and the amplifiers, channel by channel.
+//! The signal path from the mix to the amplifiers, channel by channel.
 //!
 //! ```text
 //! banks, voices -> non-finite samples become silence -> filters (band, inverse equaliser) -> peak limiter
 //!               -> power limiter -> direct-current block -> clamp -> mutes and ramps -> samples
 //! ```
 //!
-//! Sixteen channels are worked on side by side. None of it looks ahead, so it adds no latency but
-//! the filters' own; a group of channels that is silent costs nothing.
+//! Sixteen channels are processed side by side. No stage looks ahead, so that the only latency is that of the
+//! filters; a silent group of channels costs nothing.
 
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
@@ -31,31 +31,31 @@ use section::{Filter, Section};
 /// Samples beyond this many full scales are a fault, not a loud cue.
 const OVERLOAD: f32 = 8.0;
 
-/// Below this (-140 dB of full scale) what is left of a sound is dropped.
+/// Below this (-140 dB of full scale) the rest of a sound is dropped.
 const SILENCE: f32 = 1e-7;
 
-/// What was not sound, and what was done about it.
+/// Counts of faulty samples and of the measures against them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Faults {
     /// Samples that were not numbers or infinite: silence now.
     pub(super) not_finite: u32,
     /// Samples beyond [`OVERLOAD`]: cut off there.
     pub(super) overloaded: u32,
-    /// Channels whose voices were silenced because of either.
+    /// Channels silenced because of either.
     pub(super) silenced: u32,
-    /// Channels that began to be turned down because they are too hot.
+    /// Channels newly attenuated because of heat.
     pub(super) heated: u32,
 }
 
-/// What all channels go through.
+/// The output stage of all channels.
 #[derive(Clone, Debug)]
 pub(super) struct Rack {
     channels: usize,
     sample_rate: f32,
     groups: Vec<Group>,
-    /// Each group's samples at hand.
+    /// The present samples of each group.
     columns: Vec<[[f32; LANES]; SPAN]>,
-    /// The response that filters were fitted to last.
+    /// The last response for which filters were fitted.
     fitted: Option<(Response, Vec<Filter>)>,
 }
 
@@ -66,12 +66,12 @@ struct Group {
     heat: Heat,
     limiter: Limiter,
     gate: Gate,
-    /// Whether silence in gives silence out.
+    /// Whether silent input gives silent output.
     idle: bool,
 }
 
 impl Rack {
-    /// A rack that lets everything through, but limited.
+    /// A rack that only limits.
     pub(super) fn new(sample_rate: u32, channels: usize) -> Self {
         let sample_rate = sample_rate as f32;
         let group = Group {
@@ -90,12 +90,12 @@ impl Rack {
         }
     }
 
-    /// Says that `channel` moves a plate by a coil that is driven like that.
+    /// Sets the drive of the coil on `channel`.
     ///
-    /// A `response` that was measured is made flat within 50 to 750 Hz, and what is outside taken away; without
-    /// one, samples keep their shape, but for direct current.
+    /// A measured `response` is made flat within 50 to 750 Hz, and frequencies outside are removed; without one,
+    /// samples keep their shape, except for direct current.
     ///
-    /// Takes memory and time, so it belongs before the start. A channel that the rack hasn't got is ignored.
+    /// Takes memory and time, so it belongs before the start. A channel beyond those of the rack is ignored.
     pub(super) fn add_actuator(&mut self, channel: usize, drive: &Drive, response: Option<&Response>) {
         let shapes = match response {
             Some(response) => self.filters_for(response),
@@ -112,7 +112,7 @@ impl Rack {
         group.heat.set(lane, drive);
     }
 
-    /// The filters for a response; those of the last are kept, since most floors have one for all.
+    /// The filters for a response; keeps those of the last one, since most floors have one response for all.
     fn filters_for(&mut self, response: &Response) -> Vec<Filter> {
         if let Some((known, shapes)) = &self.fitted
             && known == response
@@ -124,14 +124,14 @@ impl Rack {
         shapes
     }
 
-    /// Mutes a channel, or no longer, within 5 ms.
+    /// Mutes or unmutes a channel within 5 ms.
     pub(super) fn mute(&mut self, channel: usize, muted: bool) {
         if let Some(group) = self.groups.get_mut(channel / LANES) {
             group.gate.mute(channel % LANES, muted);
         }
     }
 
-    /// Forgets all that sounded, at once; coils stay as warm as they are.
+    /// Drops all sounds at once; coils keep their temperature.
     pub(super) fn clear(&mut self) {
         self.groups.iter_mut().for_each(Group::clear);
     }
@@ -181,7 +181,7 @@ impl Rack {
     }
 }
 
-/// Where in the mix a stretch of a group's samples is.
+/// The place of a stretch of a group's samples in the mix.
 #[derive(Clone, Copy)]
 struct Rows<'a> {
     mix: &'a Mix,
@@ -189,7 +189,7 @@ struct Rows<'a> {
     from: usize,
 }
 
-/// Sends a stretch of a group's samples through the rack, with the widest registers this processor has.
+/// Processes a stretch of a group's samples, with the widest registers of this processor.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 fn run<'a>(
     group: &mut Group,
@@ -215,7 +215,7 @@ impl Group {
         self.idle = true;
     }
 
-    /// Lets silent samples pass.
+    /// Advances by so many silent samples.
     fn rest(&mut self, samples: usize) {
         self.heat.rest(samples);
         self.gate.settle();
@@ -232,7 +232,7 @@ impl Group {
         let mut faults = Faults::default();
         if let Some(Rows { mix, group, from }) = rows {
             mix.add_to(group, from, gains.len(), columns);
-            // Before it is too late: a filter never recovers from NaN. Banks don't give any.
+            // Checked early: a filter never recovers from NaN. Banks don't produce any.
             let columns = &mut columns[..gains.len()];
             if !survey(columns).is_calm() {
                 faults = self.mend(columns);
@@ -261,7 +261,8 @@ impl Group {
         faults
     }
 
-    /// Silences samples that are not finite, cuts off those that are too loud, counts both, and closes their channels.
+    /// Silences samples that are not finite, cuts off those that are too large, counts both, and closes their
+    /// channels.
     fn mend(&mut self, columns: &mut [[f32; LANES]]) -> Faults {
         let mut faults = Faults::default();
         for column in columns {
@@ -281,7 +282,7 @@ impl Group {
         faults
     }
 
-    /// Makes exact zeros of what has become too small to matter, long before it would become a denormal number.
+    /// Sets tiny states to zero, long before they would become denormal numbers.
     #[inline(always)]
     fn settle(&mut self, fed: bool) {
         let mut left = self.limiter.settle();
@@ -295,10 +296,10 @@ impl Group {
     }
 }
 
-/// What a stretch of samples is like, channel by channel.
+/// Figures of a stretch of samples, channel by channel.
 struct Survey {
-    /// The largest absolute sample, as bits: without a sign, the bits of numbers are in the order of the
-    /// numbers, and those of what is infinite or no number come last.
+    /// The largest absolute sample, as bits: without a sign, the bits of numbers are in the order of the numbers, and
+    /// the bits of infinity and NaN come last.
     most: [u32; LANES],
     /// The sum of the squares.
     energy: [f32; LANES],
@@ -306,7 +307,7 @@ struct Survey {
 
 #[inline(always)]
 fn survey(columns: &[[f32; LANES]]) -> Survey {
-    /// Numbers that are worked on together: as many as sums of them fit into registers.
+    /// Numbers that are processed together: as many as sums of them fit into registers.
     const TOGETHER: usize = 4 * LANES;
     let (mut most, mut energy) = ([0_u32; TOGETHER], [0.0_f32; TOGETHER]);
     let (whole, rest) = columns.as_flattened().as_chunks::<TOGETHER>();
@@ -337,7 +338,7 @@ impl Survey {
         self.loudest() <= OVERLOAD
     }
 
-    /// The largest absolute sample; infinite or no number if any is.
+    /// The largest absolute sample; infinity or NaN if any sample is.
     #[inline(always)]
     fn loudest(&self) -> f32 {
         let mut all = 0;
@@ -350,8 +351,8 @@ impl Survey {
 
 /// Writes the columns of all groups into frames.
 ///
-/// Frame by frame rather than group by group: a group's part of a frame mostly lies across two cache lines, and what is
-/// written in order is written once.
+/// Frame by frame rather than group by group: a group's part of a frame mostly spans two cache lines, and writing in
+/// order writes each line once.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 fn write(groups: &[[[f32; LANES]; SPAN]], out: &mut [f32], channels: usize) {
     for (n, frame) in out.chunks_exact_mut(channels).enumerate() {

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use crate::feel::mix::LANES;
 use crate::feel::modal::multiply_add;
 
-/// What a second-order filter does to a signal.
+/// The coefficients of a second-order filter.
 ///
 /// # Source
 /// Trapezoidal state-variable filter, written out as a matrix: A. Simper, "Linear Trapezoidal Integrated
@@ -20,35 +20,35 @@ pub(super) struct Filter {
     g: f64,
     /// Damping, 1 over the sharpness.
     k: f64,
-    /// How much of the input, the band-pass and the low-pass makes the output.
+    /// Shares of the input, the band-pass and the low-pass in the output.
     mix: [f64; 3],
 }
 
 impl Filter {
-    /// Lets through what is above `hz`.
+    /// A high-pass: passes frequencies above `hz`.
     pub(super) fn high_pass(hz: f64, sharpness: f64, sample_rate: f64) -> Self {
         let k = sharpness.recip();
         Self { g: (PI * hz / sample_rate).tan(), k, mix: [1.0, -k, -1.0] }
     }
 
-    /// Lets through what is below `hz`.
+    /// A low-pass: passes frequencies below `hz`.
     pub(super) fn low_pass(hz: f64, sharpness: f64, sample_rate: f64) -> Self {
         Self { g: (PI * hz / sample_rate).tan(), k: sharpness.recip(), mix: [0.0, 0.0, 1.0] }
     }
 
-    /// Raises what is around `hz` by `db`.
+    /// A bell: raises frequencies around `hz` by `db`.
     pub(super) fn bell(hz: f64, sharpness: f64, db: f64, sample_rate: f64) -> Self {
         let root = 10_f64.powf(db / 40.0);
         let k = (sharpness * root).recip();
         Self { g: (PI * hz / sample_rate).tan(), k, mix: [1.0, k * (root * root - 1.0), 0.0] }
     }
 
-    /// The same, `factor` times as loud.
+    /// This filter with its output times `factor`.
     pub(super) fn louder(self, factor: f64) -> Self {
         Self { mix: self.mix.map(|part| part * factor), ..self }
     }
 
-    /// Amplification of a sine of `hz`, in decibels.
+    /// Gain for a sine of `hz`, in decibels.
     pub(super) fn gain_db(&self, hz: f64, sample_rate: f64) -> f64 {
         // s = j w: real parts in w^0 and w^2, imaginary ones in w.
         let w = (PI * hz / sample_rate).tan() / self.g;
@@ -63,9 +63,9 @@ impl Filter {
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Section {
-    /// From the two states and the input to the next states: rows of three.
+    /// Coefficients from the two states and the input to the next states: rows of three.
     next: [[f32; LANES]; 6],
-    /// From the two states and the input to the output.
+    /// Coefficients from the two states and the input to the output.
     out: [[f32; LANES]; 3],
     states: States,
 }
@@ -73,14 +73,14 @@ pub(super) struct Section {
 type States = [[f32; LANES]; 2];
 
 impl Section {
-    /// Lets everything through as it is.
+    /// Filters with an output equal to the input.
     pub(super) fn straight() -> Self {
         let mut section = Self { next: [[0.0; LANES]; 6], out: [[0.0; LANES]; 3], states: [[0.0; LANES]; 2] };
         section.out[2] = [1.0; LANES];
         section
     }
 
-    /// Gives one channel its filter.
+    /// Sets the filter of one channel.
     pub(super) fn set(&mut self, lane: usize, filter: &Filter) {
         let Filter { g, k, mix: [m0, m1, m2] } = *filter;
         let a1 = (1.0 + g * (g + k)).recip();
@@ -96,10 +96,10 @@ impl Section {
         }
     }
 
-    /// Filters a stretch of samples in their place, by each of `sections` in turn.
+    /// Filters a stretch of samples in place, by each of `sections` in turn.
     #[inline(always)]
     pub(super) fn run_all<const FUSED: bool>(sections: &mut [Self], columns: &mut [[f32; LANES]]) {
-        // In pairs: one works on a sample while the other waits for its own last result.
+        // In pairs: one processes a sample while the other waits for its own last result.
         let (pairs, rest) = sections.as_chunks_mut::<2>();
         for [first, second] in pairs {
             let (mut one, mut two) = (first.states, second.states);
@@ -133,7 +133,7 @@ impl Section {
         }
     }
 
-    /// The numbers it remembers, to be cleared of trifles.
+    /// The states, for the removal of tiny values.
     pub(super) fn states(&mut self) -> &mut [[f32; LANES]] {
         &mut self.states
     }
@@ -147,7 +147,7 @@ mod tests {
 
     const RATE: f64 = 96_000.0;
 
-    /// What a filter does to a sine once it has settled, measured.
+    /// The measured gain of a filter for a sine, after it has settled.
     fn measured_db(filter: &Filter, hz: f64) -> f64 {
         let mut section = Section::straight();
         section.set(3, filter);

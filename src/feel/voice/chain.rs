@@ -8,21 +8,21 @@ use std::f32::consts::PI;
 use super::{LANES, Row, tangent, within};
 use crate::feel::{Band, Resonance};
 
-/// Filters beside each other that ring, and filters in a row that keep the band.
+/// Number of parallel resonances, and of filters in series that limit the band.
 const RINGS: usize = 2;
 const STAGES: usize = 4;
 
-/// Filters in a row that make a narrow band.
+/// Number of filters in series that make a narrow band.
 const NARROW: usize = 2;
 
-/// Where the band's filters begin to work, within the band, so that little is left outside.
+/// Corners of the band's filters as factors of its ends: inside the band, so that little power is left outside.
 const INSET: (f32, f32) = (1.12, 0.86);
 
-/// What shapes the exciting force of eight voices: two resonances beside the bare force, then four filters in a row.
+/// Shapes the exciting force of eight voices: two resonances beside the bare force, then four filters in a row.
 ///
 /// # Source
-/// Trapezoidal state-variable filter, stable however it is retuned:
-/// A. Simper, "Linear Trapezoidal Integrated State Variable Filter", 2013.
+/// Trapezoidal state-variable filter, stable under every change of tuning: A. Simper, "Linear Trapezoidal Integrated
+/// State Variable Filter", 2013.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Chain {
@@ -31,16 +31,16 @@ pub(super) struct Chain {
     stages: [Filter; STAGES],
 }
 
-/// The same filter in every lane, each tuned for itself.
+/// The same filter in every lane, each with its own tuning.
 #[derive(Clone, Debug)]
 struct Filter {
     a: [Row; 3],
-    /// Shares of the input, the band and the low output.
+    /// Shares of the input, the band-pass and the low-pass in the output.
     mix: [Row; 3],
     state: [Row; 2],
 }
 
-/// What a filter lets through.
+/// The pass band of a filter.
 #[derive(Clone, Copy, Debug)]
 enum Pass {
     Band,
@@ -48,14 +48,14 @@ enum Pass {
     High,
 }
 
-/// The pair of sharpnesses of which a Butterworth filter of fourth order is made.
+/// Sharpnesses of the two halves of a fourth-order Butterworth filter.
 const BUTTERWORTH: [f32; 2] = [0.541_2, 1.306_6];
 
 impl Chain {
     pub(super) const SILENT: Self =
         Self { rings: [Filter::SILENT; RINGS], bare: [0.0; LANES], stages: [Filter::SILENT; STAGES] };
 
-    /// Forgets what rings in one lane.
+    /// Resets the state of one lane.
     pub(super) fn rest(&mut self, lane: usize) {
         for filter in self.rings.iter_mut().chain(&mut self.stages) {
             filter.state[0][lane] = 0.0;
@@ -63,7 +63,7 @@ impl Chain {
         }
     }
 
-    /// Makes one lane a material that keeps to `band`; `bare` is the factor of the bare force.
+    /// Sets one lane to a material within `band`; `bare` is the factor of the bare force.
     pub(super) fn material(
         &mut self,
         lane: usize,
@@ -75,7 +75,7 @@ impl Chain {
         for (filter, resonance) in self.rings.iter_mut().zip(resonances) {
             let hz = within(resonance.hz, 20.0, 1000.0);
             let sharpness = (PI * hz * within(resonance.decay_s, 0.001, 0.2)).max(0.5);
-            // An impulse of one sample makes it ring with this amplitude, whatever its frequency and decay.
+            // An impulse of one sample makes it ring with this amplitude, for every frequency and decay.
             let share = within(resonance.amplitude, 0.0, 1.0) * rate / (2.0 * PI * hz);
             filter.tune(lane, hz, sharpness, rate);
             filter.mix_in(lane, [0.0, share, 0.0]);
@@ -89,14 +89,14 @@ impl Chain {
         }
     }
 
-    /// Makes one lane let a narrow band around `hz` through, for [`Chain::step_narrow`].
+    /// Sets one lane to a narrow band around `hz`, for [`Chain::step_narrow`].
     pub(super) fn narrow(&mut self, lane: usize, hz: f32, sharpness: f32, rate: f32) {
         for filter in &mut self.stages[..NARROW] {
             filter.set(lane, hz, sharpness, Pass::Band, rate);
         }
     }
 
-    /// The next sample of lanes that let a narrow band through.
+    /// The next sample of lanes with a narrow band.
     #[inline(always)]
     pub(super) fn step_narrow(&mut self, force: Row) -> Row {
         let mut sum = force;
@@ -106,7 +106,7 @@ impl Chain {
         sum
     }
 
-    /// The next sample of lanes that are materials: `force` strikes the two resonances, `bare` goes by them.
+    /// The next sample of lanes with materials: `force` strikes the two resonances, `bare` bypasses them.
     #[inline(always)]
     pub(super) fn step(&mut self, force: [Row; RINGS], bare: Row) -> Row {
         let mut sum = [0.0; LANES];
@@ -125,7 +125,7 @@ impl Chain {
         sum
     }
 
-    /// Takes out what is too faint to be felt, before it becomes denormal numbers, which are slow to compute with.
+    /// Sets tiny states to zero before they become denormal numbers, which are slow to compute with.
     pub(super) fn settle(&mut self) {
         for filter in self.rings.iter_mut().chain(&mut self.stages) {
             for row in &mut filter.state {

@@ -1,21 +1,21 @@
-//! What goes down while something more important plays.
+//! Attenuation of voices while a more important effect plays.
 
 use crate::feel::loudspeakers::NEAREST;
 use crate::feel::{MAX_SPOTS, Manner};
 
-/// Time in which what is ducked goes down, and comes back, to 1/e, in seconds (our choice: before a click's peak
-/// is over, and slowly enough not to be felt as one).
+/// Time constants of ducking and of the recovery, in seconds (our choice: before a click's peak is over, and slow
+/// enough not to be felt as one).
 const DOWN_S: f32 = 0.004;
 const UP_S: f32 = 0.06;
 
-/// Longest time that one click keeps others down, however long it rings.
+/// Maximum time for which one click ducks others, even if it rings longer.
 const LONGEST_S: f32 = 0.5;
 
-/// How far everything that lasts goes down on each channel while something more important plays.
+/// Attenuation of all lasting voices on each channel while a more important effect plays.
 #[derive(Clone, Debug)]
 pub(super) struct Ducks {
     channels: Vec<Duck>,
-    /// Whether any of them is down.
+    /// Whether any channel is ducked.
     active: bool,
 }
 
@@ -40,11 +40,11 @@ impl Ducks {
         self.active = false;
     }
 
-    /// Keeps others down on `channel` for some seconds; `owner` is the voice that wants it, if it is one.
+    /// Ducks other voices on `channel` for some seconds; `owner` is the voice that requests it, if any.
     pub(super) fn press(&mut self, channel: usize, manner: &Manner, seconds: f32, owner: Option<usize>) {
         let Some(duck) = self.channels.get_mut(channel).filter(|_| manner.duck_db > 0.0) else { return };
         let depth = (-0.115_129_25 * manner.duck_db.min(60.0)).exp();
-        // The most important one counts, and of several such the deepest.
+        // The highest priority counts; of several such, the deepest.
         if duck.left_s <= 0.0 || (manner.priority, -depth) >= (duck.priority, -duck.depth) {
             duck.depth = depth;
             duck.priority = manner.priority;
@@ -54,7 +54,8 @@ impl Ducks {
         self.active = true;
     }
 
-    /// Moves on by some seconds.
+    /// Advances by some seconds: `gain += (target - gain) * dt / (T + dt)`, with T the time constant of the
+    /// direction.
     pub(super) fn step(&mut self, seconds: f32) {
         if !self.active {
             return;
@@ -73,7 +74,7 @@ impl Ducks {
         }
     }
 
-    /// What is left of voice number `voice` on `channel`.
+    /// The gain of voice number `voice` on `channel`.
     #[inline]
     pub(super) fn gain(&self, channel: usize, voice: usize, priority: u8) -> f32 {
         if !self.active {
@@ -86,5 +87,5 @@ impl Ducks {
     }
 }
 
-/// The channels that a voice reaches: those it goes to, and as many that it has just left.
+/// Maximum number of channels of a voice: those under it, and as many that it has just left.
 pub(super) const MAX_REACHES: usize = 2 * (MAX_SPOTS + NEAREST);

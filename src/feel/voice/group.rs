@@ -7,7 +7,7 @@ use super::stick::{self, Stick};
 use super::{LANES, Row, within};
 use crate::feel::{Band, Lasting, Material};
 
-/// Which model drives a group.
+/// The model of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Model {
     Hiss,
@@ -25,7 +25,7 @@ impl Model {
     }
 }
 
-/// How one voice is driven now.
+/// The present input of one voice.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Drive {
     /// Slip speed, in metres per second.
@@ -39,7 +39,7 @@ pub(super) struct Drive {
 /// Eight voices of one model.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
-    /// What drives it; of no meaning while no lane is used.
+    /// The model; undefined while no lane is used.
     model: Model,
     used: [bool; LANES],
     chain: Chain,
@@ -64,7 +64,7 @@ impl Group {
         !self.used.contains(&true)
     }
 
-    /// A lane for this model; `None` if there is none left, or another model has the group.
+    /// A lane for this model; `None` if none is left, or if the group has another model.
     pub(super) fn claim(&mut self, model: Model) -> Option<usize> {
         if self.is_silent() {
             self.model = model;
@@ -74,7 +74,7 @@ impl Group {
         Some(lane)
     }
 
-    /// Gives a lane back.
+    /// Frees a lane.
     pub(super) fn release(&mut self, lane: usize) {
         self.used[lane] = false;
         self.chain.rest(lane);
@@ -83,7 +83,7 @@ impl Group {
         self.stick.rest(lane);
     }
 
-    /// Sets what does not change while a voice lasts.
+    /// Sets the constants of a voice.
     pub(super) fn prepare(&mut self, lane: usize, effect: &Lasting, band: Band, rate: f32) {
         if let Some(Material { resonances, bare, .. }) = effect.material() {
             // The bare push of an impact has an area of 1; its height is that over its length.
@@ -96,7 +96,7 @@ impl Group {
         }
     }
 
-    /// Sets how a voice is driven.
+    /// Sets the present input of a voice.
     pub(super) fn tune(&mut self, lane: usize, effect: &Lasting, drive: Drive, band: Band, rate: f32) {
         match effect {
             Lasting::Friction(_) => self.hiss.tune(lane, &mut self.chain, drive.hz, 1.0, band, rate),

@@ -14,10 +14,10 @@ use crate::feel::Band;
 /// Sharpness of each of the two band-passes: as wide as possible with 95 % of the power inside 50 to 750 Hz.
 const Q: f32 = 2.0;
 
-/// How far a noise's centre keeps from the ends of its band, as factors, for the same reason.
+/// Minimum distance of a noise's centre from the ends of its band, as factors, for the same reason.
 const KEEP: (f32, f32) = (1.5, 1.55);
 
-/// Noise and tones of eight voices: white noise and a turning phasor, to be narrowed by two band-passes.
+/// Noise and tones of eight voices: white noise and a turning phasor, narrowed by two band-passes.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Hiss {
@@ -39,7 +39,7 @@ impl Hiss {
         }
     }
 
-    /// Makes one lane silent; its tone will begin at zero.
+    /// Silences one lane; its next tone begins at zero.
     pub(super) fn rest(&mut self, lane: usize) {
         self.noise[lane] = 0.0;
         self.tone[lane] = 0.0;
@@ -47,7 +47,8 @@ impl Hiss {
         self.phasor[1][lane] = 0.0;
     }
 
-    /// Tunes one lane and its part of `chain`: as strong as a tone of amplitude 1, of which `noise` (0 to 1) is noise.
+    /// Tunes one lane and its part of `chain`: as strong as a tone of amplitude 1, with `noise` (0 to 1) as the share
+    /// of noise.
     pub(super) fn tune(
         &mut self,
         lane: usize,
@@ -64,13 +65,12 @@ impl Hiss {
         };
         let hz = narrow.clamp(hz);
         chain.narrow(lane, hz, Q, rate);
-        // White noise in -1..1 has a mean square of 1/3; a pair of band-passes lets pi/4 * centre/Q hertz of it
-        // through.
+        // White noise in -1..1 has a mean square of 1/3; a pair of band-passes passes pi/4 * centre/Q hertz of it.
         let through = FRAC_PI_4 * hz / Q / (0.5 * rate) / 3.0;
         // A sine's root mean square is its amplitude over the root of two.
         self.noise[lane] = (0.5 * noise / through).sqrt();
         self.tone[lane] = (1.0 - noise).sqrt();
-        // A turn by an angle from the tangent of its half: of length 1 but for rounding.
+        // Rotation by an angle from the tangent of its half: of length 1 except for rounding.
         let t = tangent(PI * hz / rate);
         let norm = 1.0 / (1.0 + t * t);
         self.turn[0][lane] = (1.0 - t * t) * norm;
@@ -96,7 +96,7 @@ impl Hiss {
     }
 }
 
-/// Fills `out` with the next samples, using the widest registers this processor has.
+/// Fills `out` with the next samples, with the widest registers of this processor.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(super) fn render(hiss: &mut Hiss, chain: &mut Chain, out: &mut [Row]) {
     for row in out {

@@ -8,39 +8,39 @@ use multiversion::multiversion;
 use super::chain::Chain;
 use super::{LANES, Row, random, seeds, within};
 
-/// Most impacts per sample: beyond, there are no single ones to be felt anyway.
+/// Maximum number of impacts per sample: beyond it no single impact can be felt.
 const FASTEST: f32 = 0.5;
 
-/// Ridges and grains of eight voices: pushes of a certain length that follow each other by distance or by chance.
+/// Ridges and grains of eight voices: pushes of a certain length, at even or at random distances.
 ///
-/// A push is an impulse through two equal low-passes of first order: it has an
-/// area of 1, and pushes that overlap add up.
+/// A push is an impulse through two equal low-passes of first order, `y += soft * (x - y)`: it has an area of 1, and
+/// overlapping pushes add up.
 ///
 /// # Source
-/// That grains are impulses by chance into resonances is the idea of P. R. Cook, "Physically informed sonic
-/// modeling (PhISM)", Computer Music Journal 21(3), 1997; his decaying energy has no counterpart here, since a foot
-/// that slides drives it all the time.
+/// Grains as random impulses into resonances are the idea of P. R. Cook, "Physically informed sonic modeling
+/// (PhISM)", Computer Music Journal 21(3), 1997; his decaying energy has no counterpart here, since a sliding foot
+/// drives it all the time.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Impacts {
     bits: [u32; LANES],
-    /// Way since the last impact and to the next one, in mean distances, and way per sample.
+    /// Distance since the last impact and up to the next one, in mean distances, and distance per sample.
     way: Row,
     next: Row,
     speed: Row,
-    /// Part of a push that comes in one sample.
+    /// Gain of the two low-passes.
     soft: Row,
     strike: [Row; 2],
     smooth: [[Row; 2]; 2],
     nature: [Nature; LANES],
 }
 
-/// How impacts follow each other.
+/// The distribution of the impacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Nature {
     /// At even distances, varied by this share.
     Ridges(f32),
-    /// By chance, with this spread of sizes.
+    /// At random, with this spread of sizes.
     Grains(f32),
 }
 
@@ -58,7 +58,7 @@ impl Impacts {
         }
     }
 
-    /// Makes one lane silent; a foot that begins to slide soon meets the first impact.
+    /// Silences one lane; a foot that begins to slide soon meets the first impact.
     pub(super) fn rest(&mut self, lane: usize) {
         self.way[lane] = 0.0;
         self.next[lane] = 0.5;
@@ -70,7 +70,7 @@ impl Impacts {
         }
     }
 
-    /// Sets one lane: impacts per sample, and how many samples each lasts.
+    /// Sets one lane: impacts per sample, and the length of each in samples.
     pub(super) fn tune(&mut self, lane: usize, nature: Nature, per_sample: f32, width: f32) {
         self.nature[lane] = nature;
         self.speed[lane] = if per_sample > 0.0 { per_sample.min(FASTEST) } else { 0.0 };
@@ -117,7 +117,8 @@ impl Impacts {
             let (next, strikes) = match self.nature[lane] {
                 Nature::Ridges(uneven) => (1.0 + 0.8 * uneven * (2.0 * a - 1.0), [1.0 - 0.7 * uneven * b; 2]),
                 Nature::Grains(spread) => {
-                    // Between all alike and few large ones: the fourth power of chance has a fifth as its mean.
+                    // Between equal sizes and few large ones: the fourth power of a random number has a mean of a
+                    // fifth.
                     let size = 1.0 - spread + spread * 5.0 * b * b * b * b;
                     // Each grain strikes one resonance more and the other less.
                     (-(1.0 - a).ln(), [size * 2.0 * c, size * 2.0 * (1.0 - c)])
@@ -130,7 +131,7 @@ impl Impacts {
         }
     }
 
-    /// Takes out what is too faint to be felt, before it becomes denormal numbers.
+    /// Sets tiny states to zero before they become denormal numbers.
     pub(super) fn settle(&mut self) {
         for value in self.smooth.iter_mut().flatten().flatten() {
             if *value < 1e-15 {
@@ -140,7 +141,7 @@ impl Impacts {
     }
 }
 
-/// Fills `out` with the next samples, using the widest registers this processor has.
+/// Fills `out` with the next samples, with the widest registers of this processor.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(super) fn render(impacts: &mut Impacts, chain: &mut Chain, out: &mut [Row]) {
     for row in out {

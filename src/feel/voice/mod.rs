@@ -1,8 +1,7 @@
-//! Voices for what lasts: frictions, textures, grains, tones.
+//! Voices for lasting effects: frictions, textures, grains, tones.
 //!
-//! None of it moves anything above 1 kHz, so that all of it is computed at about
-//! 12 kHz and interpolated: an eighth of the work at 96 kHz. Eight voices of one
-//! model are computed side by side.
+//! No voice moves anything above 1 kHz, so that all are computed at about 12 kHz and interpolated: an eighth of the
+//! work at 96 kHz. Eight voices of one model are computed side by side.
 //!
 //! ```text
 //! SustainedCues, tones -> Voices -> Group of eight: Hiss | Impacts | Stick -> Chain (resonances, band) -> mix
@@ -26,10 +25,10 @@ const LANES: usize = 8;
 /// One sample of each of the voices side by side.
 type Row = [f32; LANES];
 
-/// The rate near which voices are computed, in hertz: a dozen times what they move at most.
+/// The rate near which voices are computed, in hertz: a dozen times their highest frequency.
 const LOW_HZ: f32 = 12_000.0;
 
-/// How many samples of a device make one of the voices, and how many of those make a second.
+/// Number of device samples per sample of the voices, and the sample rate of the voices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LowRate {
     divisor: usize,
@@ -52,7 +51,7 @@ fn random(bits: &mut u32) -> f32 {
     (*bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// `tan(x)` for 0 to 0.4, which is the eighth part of the low rate: off by less than 3e-5.
+/// `tan(x)` for 0 to 0.4, an eighth of the low rate: off by less than 3e-5.
 #[inline(always)]
 fn tangent(x: f32) -> f32 {
     let square = x * x;
@@ -64,7 +63,7 @@ fn seeds(group: usize) -> [u32; LANES] {
     std::array::from_fn(|lane| 0x9E37_79B9_u32.wrapping_mul((group * LANES + lane) as u32 * 2 + 1))
 }
 
-/// `value` brought to `low..=high`; `low` for NaN.
+/// `value` clamped to `low..=high`; `low` for NaN.
 #[inline(always)]
 fn within(value: f32, low: f32, high: f32) -> f32 {
     if value >= low { value.min(high) } else { low }

@@ -1,4 +1,4 @@
-//! All voices: which effect gets which, and which one ends when there are too many.
+//! All voices: assigns effects to voices, and selects the one that is stolen when there are too many.
 
 use super::duck::Ducks;
 use super::group::{Group, Model};
@@ -8,16 +8,16 @@ use crate::feel::loudspeakers::Loudspeakers;
 use crate::feel::mix::{Mix, Wiring};
 use crate::feel::{Cue, MAX_SUSTAINED, Manner, SustainedCue, SustainedCues, Tone};
 
-/// Enough for [`MAX_SUSTAINED`] voices however they fall on the models.
+/// Enough for [`MAX_SUSTAINED`] voices with every distribution over the models.
 const GROUPS: usize = MAX_SUSTAINED / LANES + 5;
 
-/// A sustained cue that was not renewed for this long is over: its sender may have stopped.
+/// A sustained cue without an update for this long is over: its sender may have stopped.
 const STALE_S: f32 = 0.05;
 
-/// All voices of what lasts.
+/// All voices of lasting effects.
 ///
 /// # Real-time
-/// No allocation; without a voice nothing is computed.
+/// No allocation; without a voice no computation.
 #[derive(Clone, Debug)]
 pub(in crate::feel) struct Voices {
     rate: LowRate,
@@ -25,7 +25,7 @@ pub(in crate::feel) struct Voices {
     voices: Vec<Voice>,
     groups: Vec<Group>,
     ducks: Ducks,
-    /// Device samples since the last one of the low rate.
+    /// Device samples since the last sample of the low rate.
     phase: usize,
     ramp: Vec<f32>,
     /// Samples since the last [`Voices::follow`].
@@ -33,12 +33,12 @@ pub(in crate::feel) struct Voices {
     active: usize,
 }
 
-/// What became of something that was to be played.
+/// The result of starting a voice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::feel) struct Started {
     /// Spots that no actuator can play.
     pub(in crate::feel) unfelt: u32,
-    /// Voices that had to make room, also the new one itself if it was the least important.
+    /// Voices stolen, including the new one itself if it had the lowest priority.
     pub(in crate::feel) stolen: u32,
 }
 
@@ -66,7 +66,7 @@ impl Voices {
         self.ducks.clear();
     }
 
-    /// Takes the sustained cues as they are now; a sustained cue that is no longer among them fades out.
+    /// Takes the present sustained cues; a sustained cue that is no longer among them fades out.
     pub(in crate::feel) fn follow(
         &mut self,
         sustained: &SustainedCues,
@@ -111,12 +111,12 @@ impl Voices {
         started
     }
 
-    /// Keeps what lasts down on `channel` while a click of this `manner` rings.
+    /// Ducks lasting voices on `channel` while a click of this `manner` rings.
     pub(in crate::feel) fn duck(&mut self, channel: usize, manner: &Manner, seconds: f32) {
         self.ducks.press(channel, manner, seconds, None);
     }
 
-    /// The voice that plays `sustained_cue` already, or one for it.
+    /// The voice that plays `sustained_cue` already, or a new one.
     fn voice_for(&mut self, sustained_cue: &SustainedCue, started: &mut Started) -> Option<usize> {
         let model = Model::of(&sustained_cue.effect);
         let plays = |voice: &Voice| {
@@ -152,8 +152,8 @@ impl Voices {
         Some(number)
     }
 
-    /// A free voice with a lane of `model`; if there is none, that of the least important one and of several the
-    /// faintest, unless the new one is itself less important.
+    /// A free voice with a lane of `model`. If there is none, steals the voice with the lowest priority, the faintest
+    /// of several, unless the new one has a lower priority itself.
     fn claim(&mut self, model: Model, manner: Manner, loudness: f32, started: &mut Started) -> Option<usize> {
         loop {
             let free = self.voices.iter().position(|voice| voice.state == State::Free);
@@ -184,7 +184,7 @@ impl Voices {
         }
     }
 
-    /// A lane of `model`; a group that the model has already is better than a fresh one.
+    /// A lane of `model`; a group that already has the model is better than a fresh one.
     fn lane(&mut self, model: Model) -> Option<(usize, usize)> {
         for fresh in [false, true] {
             for (number, group) in self.groups.iter_mut().enumerate() {

@@ -9,16 +9,16 @@ use crate::feel::loudspeakers::{PER_NEWTON, Panned};
 use crate::feel::mix::{FAINT, Mix, Output, Wiring};
 use crate::feel::{Friction, Hum, Lasting, Manner, Spots, SustainedCue, Tone};
 
-/// Time in which level, speed and pitch follow the foot to 1/e.
+/// Time constant with which level, speed and pitch follow the foot: `y += (x - y) * dt / (FOLLOW_S + dt)`.
 const FOLLOW_S: f32 = 0.004;
 
-/// Time in which a new sustained cue fades in, and one that is over fades out.
+/// Time in which a new sustained cue fades in, and a finished one fades out.
 const FADE_S: f32 = 0.015;
 
-/// Strongest that one voice plays, in newtons: far above anything an actuator gives.
+/// Maximum level of one voice, in newtons: far above the range of any actuator.
 const STRONGEST_N: f32 = 1000.0;
 
-/// One thing that lasts, as it sounds now.
+/// One lasting effect in its present state.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Voice {
     pub(super) key: u32,
@@ -27,10 +27,10 @@ pub(super) struct Voice {
     pub(super) manner: Manner,
     pub(super) group: usize,
     pub(super) lane: usize,
-    /// What the foot does, as the voice follows it, and as it is.
+    /// The smoothed input, and its target.
     now: Wish,
     wanted: Wish,
-    /// The tone being played, and the time since its start.
+    /// The tone in progress, and the time since its start.
     tone: Option<Tone>,
     clock_s: f32,
     /// Rises to 1 in [`FADE_S`] and falls to 0 in the same time when the sustained cue is over.
@@ -44,7 +44,7 @@ pub(super) struct Voice {
 pub(super) enum State {
     #[default]
     Free,
-    /// A sustained cue that is renewed again and again.
+    /// A sustained cue with regular updates.
     Sustained,
     /// A tone that ends by itself.
     Sounding,
@@ -60,28 +60,28 @@ struct Wish {
     hz: f32,
 }
 
-/// A channel under the foot, or one it has just left; or that of a loudspeaker nearby.
+/// A channel under the foot, a channel that it has just left, or the channel of a loudspeaker nearby.
 #[derive(Clone, Copy, Debug)]
 struct Reach {
     output: Output,
     weight: f32,
     wanted: f32,
-    /// The gain that the last part ended with.
+    /// The gain at the end of the last part.
     gain: f32,
 }
 
-/// A stretch of samples to be added, and where the device's samples lie between the voices'.
+/// A stretch of samples to be added, and the place of the device's samples between the voices'.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span<'a> {
     pub(super) start: usize,
     pub(super) samples: usize,
-    /// Device samples since the last one of the low rate.
+    /// Device samples since the last sample of the low rate.
     pub(super) phase: usize,
     /// 0, 1, 2, … over the number of device samples per sample of the low rate.
     pub(super) ramp: &'a [f32],
 }
 
-/// Most samples that are added at once.
+/// Maximum number of samples that are added at once.
 pub(super) const STEP: usize = 64;
 
 impl Voice {
@@ -90,12 +90,12 @@ impl Voice {
         Self { key, ..Self::default() }
     }
 
-    /// The same in this lane.
+    /// This voice in this lane.
     pub(super) fn in_lane(self, group: usize, lane: usize) -> Self {
         Self { group, lane, ..self }
     }
 
-    /// A voice for a tone, heard from now on; the second number is how many spots no actuator can play.
+    /// A voice for a tone, audible from now on; the second value is the number of spots without an actuator.
     pub(super) fn sounding(
         tone: &Tone,
         manner: Manner,
@@ -114,13 +114,13 @@ impl Voice {
         };
         let unfelt = voice.reach(spots, wiring, true);
         voice.sound(heard);
-        // Where it begins there is nothing to slide from.
+        // At the start there is no earlier place to move from.
         voice.reaches.iter_mut().for_each(|reach| reach.weight = reach.wanted);
         (voice, unfelt)
     }
 
-    /// Heads for what the sustained cue is now; the answer is how many spots of a new sustained cue no actuator can
-    /// play.
+    /// Sets the target to the present sustained cue; returns the number of spots without an actuator, for a new
+    /// sustained cue.
     pub(super) fn follow(&mut self, sustained_cue: &SustainedCue, wiring: &Wiring, heard: &Panned) -> u32 {
         let new = self.state == State::Free;
         self.wanted = wish(sustained_cue);
@@ -136,7 +136,7 @@ impl Voice {
         unfelt
     }
 
-    /// Heads for these spots.
+    /// Sets the targets for these spots.
     fn reach(&mut self, spots: &Spots, wiring: &Wiring, new: bool) -> u32 {
         for reach in &mut self.reaches {
             reach.wanted = 0.0;
@@ -153,10 +153,10 @@ impl Voice {
         unfelt
     }
 
-    /// Heads for these loudspeakers as well; to be called after [`Voice::reach`].
+    /// Sets the targets for these loudspeakers as well; to be called after [`Voice::reach`].
     fn sound(&mut self, heard: &Panned) {
         for Output { channel, per_newton } in heard {
-            // Where it is heard changes as the foot moves: that is a weight, so that nothing jumps.
+            // The place of the sound changes as the foot moves: a weight expresses it, so that nothing jumps.
             let output = Output { channel: *channel, per_newton: PER_NEWTON };
             self.want(output, per_newton / PER_NEWTON);
         }
@@ -176,17 +176,17 @@ impl Voice {
         let _ = self.reaches.try_push(Reach { output, weight: 0.0, wanted: weight, gain: 0.0 });
     }
 
-    /// The channels that it is felt on and heard from.
+    /// The channels on which it is felt or heard.
     pub(super) fn channels(&self) -> impl Iterator<Item = usize> + '_ {
         self.reaches.iter().map(|reach| reach.output.channel)
     }
 
-    /// How loud it is now, for the choice of the one that makes room.
+    /// Its present level, for the selection of the voice to steal.
     pub(super) fn loudness(&self) -> f32 {
         self.now.level_n * self.fade
     }
 
-    /// Moves on by `seconds`; the answer is how it is driven now.
+    /// Advances by `seconds`; returns the present input of the model.
     pub(super) fn step(&mut self, seconds: f32) -> Drive {
         let pull = seconds / (FOLLOW_S + seconds);
         if let Some(tone) = &self.tone {
@@ -211,7 +211,7 @@ impl Voice {
         Drive { speed: self.now.speed, force: self.now.force, hz: self.now.hz }
     }
 
-    /// Whether it can be given back.
+    /// Whether it can be freed.
     pub(super) fn is_over(&self) -> bool {
         match self.state {
             State::Fading => self.fade == 0.0,
@@ -220,7 +220,7 @@ impl Voice {
         }
     }
 
-    /// Adds its lane of `low` to its channels, its gain going evenly from the last part's to this one's.
+    /// Adds its lane of `low` to its channels; the gain goes in a straight line from the last part's to this one's.
     pub(super) fn add(&mut self, number: usize, low: &[Row], mix: &mut Mix, ducks: &Ducks, span: &Span<'_>) {
         let mut own = [0.0; STEP];
         self.interpolate(low, &mut own[..span.samples], span);
@@ -262,7 +262,7 @@ impl Voice {
     }
 }
 
-/// What a sustained cue wants of its voice.
+/// The targets for a sustained cue.
 fn wish(sustained_cue: &SustainedCue) -> Wish {
     let level = |level: f32| within(level, 0.0, STRONGEST_N);
     let speed_m_s = within(sustained_cue.speed_m_s, 0.0, 20.0);
@@ -284,8 +284,8 @@ fn wish(sustained_cue: &SustainedCue) -> Wish {
         Lasting::Texture(_) | Lasting::Grains(_) => {
             let Some(material) = sustained_cue.effect.material() else { return Wish::default() };
             let force = share(sustained_cue.force.0, material.full_force.0);
-            // Impacts grow with the root of the speed and come with the speed: their power is as that of a level
-            // that is linear in it.
+            // The level of an impact grows with the root of the speed, and its rate with the speed: their power
+            // equals that of a level that is linear in the speed.
             let hit = share(speed_m_s, material.full_speed_m_s).sqrt();
             let level_n = felt(level(material.level.0 * material.trim) * force * hit);
             Wish { level_n, speed: speed_m_s, force, hz: 0.0 }
@@ -293,12 +293,12 @@ fn wish(sustained_cue: &SustainedCue) -> Wish {
     }
 }
 
-/// `level`, or zero if it is below any that is felt: one that fades for ever would end in denormal numbers.
+/// `level`, or zero if it is too low to be felt: an endless fade would end in denormal numbers.
 fn felt(level: f32) -> f32 {
     if level > 1e-6 { level } else { 0.0 }
 }
 
-/// `value` as a share of `full`, 0 to 1; 0 where that is not a number.
+/// `value` as a share of `full`, 0 to 1; 0 if that is not a number.
 fn share(value: f32, full: f32) -> f32 {
     let share = value / full;
     if share > 0.0 { share.min(1.0) } else { 0.0 }

@@ -11,25 +11,26 @@ use super::chain::Chain;
 use super::{LANES, Row, random, seeds, within};
 use crate::feel::StickSlip;
 
-/// How much farther the spring of the sole stretches than the bristles bend before the sole lets go (our choice).
+/// Stretch of the sole's spring in units of the bristles' bend at the breakaway (our choice).
 const BEND: f32 = 16.0;
 
-/// Up to this share of the breakaway bristles only bend and nothing creeps (our choice, as in the paper's figures).
+/// Up to this share of the breakaway, bristles only bend, without creep (our choice, as in the paper's figures).
 const ELASTIC: f32 = 0.7;
 
 /// Damping of the sole on its spring, as a share of the critical one (our choice: a foot is soft).
 const DAMPING: f32 = 0.08;
 
-/// Damping of the bristles, of the same kind (our choice: so that a sole that sticks does not ring on).
+/// Damping of the bristles, in the same units (our choice: so that a sole that sticks does not ring on).
 const BRISTLE_DAMPING: f32 = 0.3;
 
-/// Forces, stretches and bends beyond this many static frictions do not come from this model; they are cut off.
+/// Maximum of forces, stretches and bends, in static frictions: this model does not exceed it; larger values are cut
+/// off.
 const BOUND: f32 = 4.0;
 
 /// Soles of eight voices that stick to the plate and slip.
 ///
-/// All without dimension: forces in static frictions, stretches in those that
-/// a static friction makes, so that every foot's numbers are near 1.
+/// All values are without dimension: forces in static frictions, stretches in those of a static friction, so that
+/// every foot's numbers are near 1.
 ///
 /// ```text
 /// stretch' = drive - slip
@@ -39,14 +40,13 @@ const BOUND: f32 = 4.0;
 /// G(slip)  = glide + (1 - glide) / (1 + (slip / let_go)^2)              the Stribeck curve
 /// ```
 ///
-/// The bend is stepped implicitly, so that it can't overshoot however fast the
-/// slip; the sole takes the force that follows from it; all are bounded. So it
-/// is stable for whatever it is driven with.
+/// The bend is stepped implicitly, so that it cannot overshoot at any slip; the sole takes the resulting force; all
+/// values are bounded. So it is stable for every input.
 ///
 /// # Source
-/// See [`StickSlip`]. Ours differs in three points: the creep rises by a cubic instead of a sine, the Stribeck
-/// curve is the rational one of D. P. Hess and A. Soom (1990) instead of an exponential (neither needs a
-/// transcendental function per sample), and the friction varies by chance with the roughness.
+/// See [`StickSlip`]. Ours differs in three points: the creep rises by a cubic instead of a sine, the Stribeck curve
+/// is the rational one of D. P. Hess and A. Soom (1990) instead of an exponential (neither needs a transcendental
+/// function per sample), and the friction varies at random with the roughness.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Stick {
@@ -86,7 +86,7 @@ impl Stick {
         }
     }
 
-    /// A sole at rest.
+    /// Sets a sole at rest.
     pub(super) fn rest(&mut self, lane: usize) {
         for row in [&mut self.stretch, &mut self.slip, &mut self.bend, &mut self.force, &mut self.waver] {
             row[lane] = 0.0;
@@ -96,7 +96,7 @@ impl Stick {
 
     /// Sets one lane: the foot moves at `speed` metres per second and presses with a `share` of the full force.
     pub(super) fn tune(&mut self, lane: usize, stick: &StickSlip, speed: f32, share: f32, rate: f32) {
-        // Who presses harder draws the sole farther before it lets go.
+        // A foot that presses harder drags the sole farther before it breaks away.
         let stretch_m = (within(stick.stretch_m, 1e-4, 0.1) * within(share, 0.05, 1.0)).max(1e-4);
         let per_sample = (stretch_m * rate).recip();
         self.drive[lane] = if speed > 0.0 { (speed * per_sample).min(1.0) } else { 0.0 };
@@ -109,7 +109,7 @@ impl Stick {
         self.bristle[lane] = 2.0 * BRISTLE_DAMPING / (angle * BEND.sqrt());
     }
 
-    /// The next friction force of each lane, and how it changed.
+    /// The next friction force of each lane, and its change.
     #[inline(always)]
     fn next(&mut self) -> (Row, Row) {
         let (mut force, mut change) = ([0.0; LANES], [0.0; LANES]);
@@ -119,7 +119,7 @@ impl Stick {
             let (slip, bend) = (self.slip[lane], self.bend[lane]);
             let fast = slip * self.let_go[lane];
             let glide = self.glide[lane];
-            // Only what slips feels the surface change beneath it.
+            // Only a slipping sole feels the surface change beneath it.
             let moves = fast.abs().min(1.0);
             let rough = 1.0 + 1.5 * self.rough[lane] * self.waver[lane] * moves;
             let curve = (glide + (1.0 - glide) / (1.0 + fast * fast)) * rough.max(0.2);
@@ -141,7 +141,7 @@ impl Stick {
         (force, change)
     }
 
-    /// Takes out what is too faint to be felt, before it becomes denormal numbers.
+    /// Sets tiny states to zero before they become denormal numbers.
     pub(super) fn settle(&mut self) {
         for row in [&mut self.slip, &mut self.bend, &mut self.waver] {
             for value in row {
@@ -153,7 +153,7 @@ impl Stick {
     }
 }
 
-/// Fills `out` with the next samples, using the widest registers this processor has.
+/// Fills `out` with the next samples, with the widest registers of this processor.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(super) fn render(stick: &mut Stick, chain: &mut Chain, out: &mut [Row]) {
     for row in out {
@@ -189,14 +189,14 @@ mod tests {
         }
     }
 
-    /// The friction force of a second at this speed and share of the full force.
+    /// The friction force over one second at this speed and share of the full force.
     fn forces(stick: &StickSlip, speed: f32, share: f32) -> Vec<f32> {
         let mut lanes = Stick::new(0);
         lanes.tune(2, stick, speed, share, RATE);
         (0..RATE as usize).map(|_| lanes.next().0[2]).collect()
     }
 
-    /// Times per second that the sole lets go: that the force falls through the middle between its extremes.
+    /// Number of breakaways per second: falls of the force through the middle between its extremes.
     fn slips(forces: &[f32]) -> usize {
         let steady = &forces[forces.len() / 2..];
         let (low, high) =

@@ -1,22 +1,22 @@
-//! Brings every model to the level that its author asked for, by listening to it.
+//! Balances every model to the level set by its author, by measuring its output.
 
 use super::group::{Drive, Group, Model};
 use super::{LANES, LOW_HZ};
 use crate::feel::{Band, Lasting};
 
-/// How long a model is listened to, in samples of the low rate, and how long it runs in before.
+/// Length of the measurement, in samples of the low rate, and of the run-in before it.
 const LISTEN: usize = 4000;
 const RUN_IN: usize = 600;
 
-/// The trims that are believed; a model that is silent can't be brought to a level.
+/// Range of plausible trims; a silent model can't be brought to a level.
 const TRIMS: (f32, f32) = (1e-3, 1e4);
 
 impl Lasting {
-    /// The same, its [`crate::feel::Material::trim`] such that its level is what it says, within `band`.
+    /// This model with a [`crate::feel::Material::trim`] that gives its nominal level within `band`.
     ///
-    /// It is measured from a third of a second at full force, a sole at the
-    /// speed where it is loudest and all else at full speed, which takes about
-    /// half a millisecond; not for the audio callback. Frictions and hums need none.
+    /// It is measured from a third of a second at full force, stick-slip at the speed of its highest level and all
+    /// others at full speed, which takes about half a millisecond; not for the audio callback. Frictions and hums
+    /// need none.
     #[must_use]
     pub fn balanced(mut self, band: Band) -> Self {
         let Some(material) = self.material() else { return self };
@@ -26,7 +26,8 @@ impl Lasting {
         let mut lanes = [0; LANES];
         for (number, lane) in lanes.iter_mut().enumerate() {
             *lane = group.claim(Model::of(&self)).unwrap_or(number);
-            // A sole is loudest where it sticks and slips, which is not at its fastest; all else is.
+            // A sole is loudest while it sticks and slips, not at its highest speed; all other models are loudest
+            // there.
             let slower = if matches!(self, Self::StickSlip(_)) { number as f32 / LANES as f32 } else { 0.0 };
             let drive = Drive { speed: full * (1.0 - slower), force: 1.0, hz: 0.0 };
             group.prepare(*lane, &self, band, LOW_HZ);
@@ -42,7 +43,7 @@ impl Lasting {
         let rms = if matches!(self, Self::StickSlip(_)) {
             levels.fold(0.0, f32::max)
         } else {
-            // Eight times as long, as far as chance is concerned.
+            // Eight times as long, as far as random variation is concerned.
             levels.sum::<f32>() / LANES as f32
         };
         // A sine's root mean square is its amplitude over the root of two.
