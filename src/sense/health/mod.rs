@@ -452,6 +452,7 @@ fn shares(geometry: &Geometry) -> [usize; SHARES + 1] {
     std::array::from_fn(|share| places.partition_point(|&place| place < whole * share / SHARES))
 }
 
+/// Whether all four sensors deliver, not counting those known to be broken.
 fn is_connected(quality: &[Quality; 4], sensors: &[Sensor; 4]) -> bool {
     quality.iter().zip(sensors).all(|(quality, sensor)| *quality < Quality::Stale || sensor.is_out())
 }
