@@ -92,9 +92,8 @@ const FAST_NS: i64 = 20 * SLOT_NS;
 /// empty and quiet; [`Trouble`] lists the detectable faults. These checks use the boards' own time, counted in slots
 /// and independent of the steering of the sample clock.
 ///
-/// The assembler has no clock of its own: `received` and `now` are on the source's clock; a time earlier than the
-/// last counts as the last.
-/// one that is earlier than the last counts as the last.
+/// The assembler has no clock of its own: `received` and `now` are on the source's clock; a time earlier than the last
+/// counts as the last.
 #[derive(Clone, Debug)]
 pub struct Assembler {
     floor_tiles: usize,
