@@ -1,4 +1,4 @@
-//! Fitting a sensor's law to load-cell measurements.
+//! Fits a sensor's law to load-cell measurements.
 
 use levenberg_marquardt::TerminationReason::NoImprovementPossible;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
@@ -13,7 +13,7 @@ use crate::units::Newtons;
 pub struct LoadPoint {
     /// Sensor output.
     pub volts: f32,
-    /// Force by the load cell, tare included if the plate rests on the sensor.
+    /// Force of the load cell, including the tare if the plate rests on the sensor.
     pub force: Newtons,
 }
 
@@ -25,21 +25,21 @@ impl LoadPoint {
     }
 }
 
-/// A fitted law and how well it follows its points.
+/// A fitted law and the quality of its fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// The law; a plausible one (`Calibration::is_plausible`).
     pub calibration: Calibration,
     /// Root mean square of the force error, as a share of the greatest force measured.
     ///
-    /// About 0.05 for the paper's parts; 0.1 or more speaks of a bad part or a wrong law.
+    /// About 0.05 for the paper's parts; 0.1 or more indicates a bad part or a wrong law.
     pub residual: f32,
 }
 
-/// Why no law follows the points.
+/// Reason for which no law fits the points.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum FitError {
-    /// Two parameters need more points than two to leave something to check.
+    /// Two parameters require more than two points for a check.
     #[error("a fit needs at least {min} measurements with positive force, not {points}", min = Fit::MIN_POINTS)]
     TooFewPoints {
         /// Points with a positive force.
@@ -51,7 +51,7 @@ pub enum FitError {
         /// Position of the measurement, from 0.
         index: usize,
     },
-    /// The voltages hardly differ, so nothing can be said of the exponent; the sensor may be disconnected.
+    /// The voltages hardly differ, so the exponent is undetermined; the sensor may be disconnected.
     #[error("the voltages of all measurements are within {spread_v} V: is the sensor connected?")]
     NoSpread {
         /// Greatest minus least voltage.
@@ -60,10 +60,10 @@ pub enum FitError {
     /// The least-squares search found no minimum.
     #[error("the fit does not converge: do the measurements belong to this sensor?")]
     NoConvergence,
-    /// The best curve leaves as much over as the same force at every voltage would.
+    /// The residual of the best curve is no less than that of a constant force.
     #[error("the force does not follow the voltage: do the measurements belong to this sensor?")]
     Unrelated,
-    /// The best law is one that no force sensor has: falling, flat or out of range.
+    /// No force sensor has the best law: it falls, is flat or out of range.
     #[error("no force sensor has the best {} law, f = {law}", law.kind().name())]
     Unphysical {
         /// Law found.
@@ -72,13 +72,13 @@ pub enum FitError {
 }
 
 impl Fit {
-    /// Fewest measurements a fit is made from.
+    /// Minimum number of measurements of a fit.
     pub const MIN_POINTS: usize = 3;
 
-    /// Least difference of voltages that tells an exponent, in volts (our choice).
+    /// Minimum difference of voltages that determines an exponent, in volts (our choice).
     const MIN_SPREAD_V: f32 = 0.05;
 
-    /// The paper's exponential law that follows `points` best; as [`Fit::of_law`].
+    /// The paper's exponential law that fits `points` best; see [`Fit::of_law`].
     ///
     /// # Errors
     /// As [`Fit::of_law`].
@@ -86,17 +86,15 @@ impl Fit {
         Self::of_law(LawKind::Exponential, points)
     }
 
-    /// The law of this kind that follows `points` best, in any order, repeated loads welcome.
+    /// The law of this kind that fits `points` best, in any order; repeated loads are useful.
     ///
-    /// The squares are those of the force error in newtons, so heavy loads
-    /// count most: that is where a foot works. Points with a force of zero or
-    /// less take part in the fit but don't count as measurements on their own.
-    /// Leave out saturated readings, which follow no law. Which of the laws a part follows,
-    /// [`Comparison`](super::Comparison) tells.
+    /// Minimises the squares of the force error in newtons, so heavy loads have the most weight: a foot works in that
+    /// range. Points with a force of zero or less enter the fit but do not count as measurements on their own. Leave
+    /// out saturated readings, which follow no law. [`Comparison`](super::Comparison) selects among the laws.
     ///
     /// # Errors
-    /// [`FitError`] tells a lack of data ([`TooFewPoints`](FitError::TooFewPoints),
-    /// [`NoSpread`](FitError::NoSpread): measure more) from data that the law does not follow.
+    /// [`FitError`] distinguishes a lack of data ([`TooFewPoints`](FitError::TooFewPoints),
+    /// [`NoSpread`](FitError::NoSpread): measure more) from data that do not follow the law.
     ///
     /// # Source
     /// `f = a exp(b v)` by least squares (paper, section 2.2), here by
@@ -106,7 +104,7 @@ impl Fit {
     }
 }
 
-/// The measurements of one sensor, checked.
+/// The measurements of one sensor, validated.
 pub(super) struct Loads {
     pub(super) volts: DVector<f64>,
     pub(super) forces: DVector<f64>,
@@ -135,14 +133,14 @@ impl Loads {
         })
     }
 
-    /// The law of this kind by the squares of the force error.
+    /// Fits the law of this kind by least squares of the force error.
     pub(super) fn fit(&self, kind: LawKind) -> Result<Fit, FitError> {
         let best = Curve::through(kind, self, None)?;
         let errors = best.modelled() - &self.forces;
         let mean = self.forces.mean();
         let around_mean: f64 = self.forces.iter().map(|force| (force - mean).powi(2)).sum();
         let law = best.calibration();
-        // A divider whose supply runs away: the force doesn't rise with the voltage as a divider's.
+        // A divider with a diverging supply: the force does not rise with the voltage like that of a divider.
         if !law.numbers().into_iter().all(f32::is_finite) {
             return Err(FitError::NoConvergence);
         }
@@ -158,14 +156,14 @@ impl Loads {
     }
 }
 
-/// A law on its way to the least squares, in parameters that leave it rising and are of order one: `(ln a, b)` of
-/// the exponential and the power law, `(ln a, ln (s - end))` of the divider, `(a, a z)` of the straight line.
+/// A law during the least-squares search, in parameters that keep it rising and are of order one: `(ln a, b)` of the
+/// exponential and the power law, `(ln a, ln (s - end))` of the divider, `(a, a z)` of the straight line.
 pub(super) struct Curve<'a> {
     kind: LawKind,
     loads: &'a Loads,
-    /// What each error is multiplied by; `None` leaves newtons.
+    /// Weight of each error; `None` leaves newtons.
     weights: Option<&'a DVector<f64>>,
-    /// Least supply of a divider: its end lies above all measurements.
+    /// Minimum supply of a divider: its end lies above all measurements.
     end: f64,
     params: Vector2<f64>,
 }
@@ -185,14 +183,14 @@ impl<'a> Curve<'a> {
         }
         let (curve, report) = LevenbergMarquardt::new().with_patience(100).minimize(curve);
         match report.termination {
-            // The steps became smaller than single bits: there is the minimum.
+            // The steps became smaller than single bits: the minimum.
             NoImprovementPossible(_) => Ok(curve),
             reason if reason.was_successful() => Ok(curve),
             _ => Err(FitError::NoConvergence),
         }
     }
 
-    /// Where the search starts; for a straight line, where it ends.
+    /// Start of the search; for a straight line, its result.
     fn start(&self) -> Result<Vector2<f64>, FitError> {
         let start = match self.kind {
             LawKind::Exponential => self.log_line(|volts| volts),
@@ -223,7 +221,7 @@ impl<'a> Curve<'a> {
         Vector2::new(mean_f - b * mean_v, b)
     }
 
-    /// The best of some dividers whose supplies reach from just above the measurements to far beyond.
+    /// The best of several dividers with supplies from just above the measurements to far beyond.
     fn nearest_divider(&self) -> Vector2<f64> {
         let tried = (-7..=7).filter_map(|step| {
             let above = f64::from(step) * 0.7 + self.end.max(1e-3).ln();
@@ -268,7 +266,8 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// Change of the modelled force with the second parameter, at measurement `index` where it is `modelled`.
+    /// Derivative of the modelled force with respect to the second parameter, at measurement `index` with the value
+    /// `modelled`.
     fn slope(&self, index: usize, modelled: f64) -> f64 {
         let v = self.loads.volts[index];
         match self.kind {
@@ -295,7 +294,7 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// What it misses each measurement by, weighted.
+    /// Weighted error of each measurement.
     pub(super) fn errors(&self) -> DVector<f64> {
         self.weighted(self.modelled() - &self.loads.forces)
     }
@@ -349,7 +348,7 @@ mod tests {
 
     use super::*;
 
-    /// By `scipy.optimize.curve_fit` on the points of the test that uses it: both numbers and the residual.
+    /// By `scipy.optimize.curve_fit` on the points of the test below: both parameters and the residual.
     const SCIPY: [(LawKind, [f32; 2], f32); 4] = [
         (LawKind::Exponential, [10.881, 0.786_848], 0.020_650_4),
         (LawKind::Power, [5.979_21, 2.743_09], 0.021_752_2),
@@ -370,13 +369,14 @@ mod tests {
     fn parameters_come_back_within_one_percent_through_two_percent_of_noise() {
         let mut rng = Pcg64Mcg::seed_from_u64(7);
         let noise = Normal::new(1.0, 0.02).unwrap();
-        // Parts at both ends of the spread underfoot simulates.
+        // Parts at both ends of the spread in underfoot's simulation.
         for law in [
             Calibration::NOMINAL,
             Calibration::exponential(0.625, 1.41),
             Calibration::exponential(0.375, 1.27),
         ] {
-            // Eight seconds of a slow press at 1 kHz: the heavy end pins the curve, so a, far from it, needs many.
+            // Eight seconds of a slow press at 1 kHz: the heavy end determines the curve, so `a`, far from it, needs
+            // many points.
             let mut points = ramp(law, 8000);
             for point in &mut points {
                 point.force = point.force * noise.sample(&mut rng);
@@ -394,7 +394,7 @@ mod tests {
         for law in [
             Calibration::exponential(4.4e-6, 3.7),
             Calibration::of(LawKind::Power, [2.2, 3.1]),
-            // Nearly nothing at one volt.
+            // Nearly zero at one volt.
             Calibration::of(LawKind::Power, [2e-11, 19.0]),
             Calibration::of(LawKind::Divider, [35.0, 5.05]),
             Calibration::of(LawKind::Divider, [35.0, 40.0]),
@@ -447,7 +447,7 @@ mod tests {
     fn residual_is_a_share_of_the_greatest_force() {
         let mut points = ramp(Calibration::NOMINAL, 51);
         let full = points.last().unwrap().force;
-        // Alternating errors of 5 % of full scale can't be fitted away.
+        // No fit can remove alternating errors of 5 % of full scale.
         for (index, point) in points.iter_mut().enumerate() {
             point.force += full * if index % 2 == 0 { 0.05 } else { -0.05 };
         }
@@ -468,7 +468,7 @@ mod tests {
         let unplugged = vec![LoadPoint::new(0.0, Newtons(20.0)); 10];
         assert_eq!(Fit::of(&unplugged), Err(FitError::NoSpread { spread_v: 0.0 }));
 
-        // The wires are swapped: volts fall as the load grows.
+        // The wires are swapped: the voltage falls as the load grows.
         let falling: Vec<_> = good.iter().map(|p| LoadPoint::new(5.0 - p.volts, p.force)).collect();
         assert!(matches!(Fit::of(&falling), Err(FitError::Unphysical { .. })), "{:?}", Fit::of(&falling));
     }

@@ -14,14 +14,14 @@ pub(super) struct Clusters {
     /// The cluster of each loaded tile, and of each of the last frame.
     of: Vec<u32>,
     of_last: Vec<u32>,
-    /// Loaded tiles that are in no cluster yet.
+    /// Loaded tiles without a cluster so far.
     unassigned: TileSet,
-    /// The tiles of the cluster being found, by their places in tile-index order.
+    /// The tiles of the present cluster, by their places in tile-index order.
     found: Vec<u32>,
 }
 
 impl Clusters {
-    /// Room for every tile of a floor, so that finding clusters never allocates.
+    /// Reserves room for every tile of a floor, so that finding clusters never allocates.
     pub(super) fn new(geometry: &Geometry) -> Self {
         let tiles = geometry.tile_count().min(4096);
         Self {
@@ -45,7 +45,7 @@ impl Clusters {
         for block in 0..unassigned.block_count() {
             while let Some(first) = unassigned.pop(block) {
                 let (cluster, start) = (spans.len() as u32, members.len());
-                // What was found is the queue of tiles still to look around from.
+                // The tiles found are also the queue of tiles whose neighbours are still to be examined.
                 found.clear();
                 found.push(first);
                 let mut next = 0;
@@ -64,13 +64,13 @@ impl Clusters {
         }
     }
 
-    /// The cluster of the last frame to which the tile at position `before` of its list belonged; `None` past its end.
+    /// The cluster of the last frame that contained the tile at position `before` of its list; `None` past its end.
     #[inline]
     pub(super) fn of_last(&self, before: u32) -> Option<u32> {
         self.of_last.get(before as usize).copied()
     }
 
-    /// Where the members of one cluster stand among those of all; `None` past the last.
+    /// Range of one cluster among the members of all; `None` past the last.
     pub(super) fn span(&self, cluster: usize) -> Option<Range<usize>> {
         self.spans.get(cluster).cloned()
     }

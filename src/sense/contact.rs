@@ -1,4 +1,4 @@
-//! Contacts: what presses the floor in one place.
+//! Contacts: feet and objects that press the floor in one place.
 
 use glam::Vec2;
 use serde::Serialize;
@@ -16,13 +16,13 @@ pub struct TileLoad {
     pub tile: TileId,
     /// Its place in tile-index order.
     pub index: usize,
-    /// What the contact presses on this tile, positive.
+    /// Force of the contact on this tile, positive.
     pub force: Newtons,
-    /// Where that part acts, in floor metres.
+    /// Centroid of that part, in floor metres.
     pub centroid: Vec2,
 }
 
-/// How uncertain a position is: the symmetric 2 x 2 covariance matrix, in square metres.
+/// Uncertainty of a position: the symmetric 2 x 2 covariance matrix, in square metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Covariance {
     /// Variance eastwards.
@@ -41,7 +41,7 @@ impl Covariance {
         Self { xx: variance, xy: 0.0, yy: variance }
     }
 
-    /// Half axes of the ellipse that holds the true point 95 times in 100, longer one first, in metres.
+    /// Half axes of the ellipse that contains the true point in 95 of 100 cases, longer one first, in metres.
     ///
     /// # Source
     /// Square roots of the eigenvalues times sqrt(5.991), the 95 % quantile of
@@ -69,11 +69,10 @@ impl Covariance {
 
 /// One foot (or other object) on the floor.
 ///
-/// `Contact::default()` is a nameless contact of no force at the origin, for
-/// filling in what one doesn't care about.
+/// `Contact::default()` is a contact without name and force at the origin, as a default for the other fields.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contact {
-    /// Its name, the same for as long as it stays down.
+    /// Its identifier, constant as long as it stays down.
     pub id: ContactId,
     /// Force-weighted centroid, in floor metres; always finite.
     pub centroid: Vec2,
@@ -83,24 +82,24 @@ pub struct Contact {
     pub velocity: Vec2,
     /// The tiles that carry it, heaviest first, at least one.
     pub tiles: SmallVec<[TileLoad; 4]>,
-    /// How uncertain `centroid` is. A contact of a few newtons may be uncertain by
-    /// several centimetres, and should then operate nothing.
+    /// Uncertainty of `centroid`. A contact of a few newtons may be uncertain by several centimetres, and should then
+    /// operate nothing.
     pub covariance: Covariance,
-    /// Whether it shares its tiles with another contact in a way the forces cannot
-    /// tell apart: the sum of the two is sure, each one's part is a guess.
+    /// Whether it shares its tiles with another contact so that the forces do not determine the division: the sum of
+    /// the two is reliable, each one's part is an estimate.
     pub ambiguous: bool,
-    /// Whether it was taken out of what another contact carried, and has carried no tile by itself since: it may not be a
-    /// foot. It is `ambiguous` as well, and works no control that has a guard.
+    /// Whether it was split from another contact and has carried no tile by itself since: it may be no foot. It is
+    /// `ambiguous` as well, and operates no control with a guard.
     pub split: bool,
-    /// The worst quality among the tiles that carry it; never worse than
-    /// [`Quality::Degraded`], since tiles of which less is known carry no contact.
+    /// The worst quality among the tiles that carry it; never worse than [`Quality::Degraded`], since worse tiles
+    /// carry no contact.
     pub quality: Quality,
     /// The paper's difference vector between the centroids of its two heaviest tiles,
     /// heavier minus lighter; `None` on a single tile.
     ///
-    /// Its direction hints at the foot's: along the foot where that is a line,
-    /// turned towards the seam's normal the rounder the foot is (a disc always
-    /// gives the normal), and its sign says nothing about heel and toe.
+    /// Its direction indicates that of the foot: along the foot where that is a line, turned towards the seam's
+    /// normal the rounder the foot is (a disc always gives the normal). Its sign contains no information about heel
+    /// and toe.
     ///
     /// # Source
     /// Paper, section 3.2 and figure 7.

@@ -1,48 +1,48 @@
-//! What the sensors at a tile's four corners say of each other.
+//! Relations between the readings of the sensors at a tile's four corners.
 //!
-//! Corners are in the order sw, se, nw, ne: the neighbours of a corner differ from it in one bit of its
-//! number, its diagonal in both.
+//! Corners are in the order sw, se, nw, ne: the neighbours of a corner differ from it in one bit of its number, its
+//! diagonal in both.
 
 use super::Quality;
 
-/// A corner that reads this little has lifted off, or is about to: what rests on it by weight is gone.
+/// Reading below which a corner has lifted off, or is about to: the plate's weight on it is gone.
 const LIFTED_N: f32 = -2.0;
 
-/// How far a lost sensor's force estimated from the other three is off, as a share of the tile's force (one
-/// standard deviation; measured on simulated floors of parts and supports as the paper's).
+/// Error of a lost sensor's force estimated from the other three, as a share of the tile's force (one standard
+/// deviation; measured on simulated floors with parts and supports like the paper's).
 const ESTIMATED: f32 = 0.15;
 
-/// How far a sensor is off that nobody has calibrated, as a share of its reading (parts differ by a quarter).
+/// Error of an uncalibrated sensor, as a share of its reading (parts differ by a quarter).
 const UNSURE: f32 = 0.2;
 
-/// How far the force at a sensor that reads "at least" may be above its reading, as a share of it, where
-/// no other tells (our choice).
+/// Possible excess of the force at a sensor at the end of its range over its reading, as a share of the reading,
+/// without evidence from the others (our choice).
 const AT_LEAST: f32 = 0.5;
 
-/// What it carries then for each newton that it reads: of loads just beyond the end there are more than of loads
-/// far beyond (our choice: the worst error of points of 400 N is 1.9 instead of 2.4 cm, at the cost of up to 7 mm for
+/// Estimated load per newton of its reading in that case: loads just beyond the end are more frequent than loads far
+/// beyond (our choice: the worst error of points of 400 N is 1.9 instead of 2.4 cm, at the cost of up to 7 mm for
 /// those just beyond).
 const BEYOND: f32 = 1.1;
 
-/// How far a sensor that reads "at least" may be below what it carries where others tell, and how far above it where
-/// its part strays from its law, as shares of its reading (our choice: of seven pairs tried, those with three to five
-/// times as much below as above told people's feet apart best).
+/// Possible error of a sensor at the end of its range with evidence from the others, as shares of its reading: below
+/// the load, and above it if its part deviates from its law (our choice: of seven pairs tried, those with three to
+/// five times as much below as above separated people's feet best).
 const BELOW: f32 = 0.3;
 const ABOVE: f32 = 0.1;
 
-/// How far it is off where the others do tell, as a share of the tile's force and for each sensor that is at
-/// its end (one standard deviation; a little more than is measured on simulated floors with position maps).
+/// Error of its force with evidence from the others, as a share of the tile's force and for each sensor at its end
+/// (one standard deviation; a little more than measured on simulated floors with position maps).
 const TOLD: f32 = 0.03;
 
-/// Whether a floor can produce such forces: no NaN, none above 1 MN.
+/// Whether a floor can produce these forces: no NaN, none above 1 MN.
 pub(super) fn is_possible(forces: &[f32; 4]) -> bool {
-    // All four are looked at: that takes less time than deciding after each.
+    // All four are checked: that takes less time than a branch after each.
     forces.iter().fold(true, |all, force| all & (force.abs() <= 1e6))
 }
 
-/// What the other three corners say this one carries, in newtons; below zero where it lifts off.
+/// Load of this corner as estimated from the other three (N); below zero where it lifts off.
 ///
-/// How that is to be read, [`told`] says.
+/// [`told`] gives the meaning of the estimate.
 ///
 /// # Source
 /// Four equal springs under a rigid plate: f_sw + f_ne = f_se + f_nw.
@@ -50,22 +50,22 @@ pub(super) fn expected(forces: [f32; 4], corner: usize) -> f32 {
     forces[corner ^ 1] + forces[corner ^ 2] - forces[corner ^ 3]
 }
 
-/// How [`expected`] of a corner is to be read.
+/// Meaning of the [`expected`] value of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Told {
-    /// As it is, but for unequal supports and gains.
+    /// The exact load, except for unequal supports and gains.
     Exactly,
-    /// This corner carries that much or more.
+    /// A lower bound of the load.
     AtLeast,
-    /// Nothing is known.
+    /// No information.
     Nothing,
 }
 
-/// What the other three say of `corner`, some of which have `lifted` off their supports.
+/// Evidence of the other three about `corner`, some of which have `lifted` off their supports.
 ///
 /// # Source
-/// Springs push but do not pull: with its diagonal in the air, a corner carries what is [`expected`] or more, with a
-/// neighbour in the air that or less, for the plate tips over it.
+/// Springs push but do not pull: with its diagonal in the air, a corner carries the [`expected`] load or more; with a
+/// neighbour in the air, that load or less, since the plate tips over it.
 pub(super) fn told(lifted: [bool; 4], corner: usize) -> Told {
     if lifted[corner ^ 1] || lifted[corner ^ 2] {
         Told::Nothing
@@ -81,12 +81,11 @@ pub(super) fn has_lifted(force: f32) -> bool {
     force < LIFTED_N
 }
 
-/// The forces of a tile's sensors, one unknown filled in, and how far they can be trusted.
+/// The forces of a tile's sensors, with one unknown estimated, and their quality.
 ///
-/// With one sensor out, its force is estimated from the other three: four equal
-/// springs under a rigid plate carry f_sw + f_ne = f_se + f_nw. The tile is then
-/// [`Quality::Degraded`]. With two out, or numbers no floor can produce (NaN,
-/// above 1 MN), `None`: such a tile carries no contact.
+/// If one sensor is out, its force is estimated from the other three: four equal springs under a rigid plate carry
+/// f_sw + f_ne = f_se + f_nw. The tile is then [`Quality::Degraded`]. With two out, or numbers that no floor can
+/// produce (NaN, above 1 MN), returns `None`: such a tile carries no contact.
 #[must_use]
 #[inline]
 pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4], Quality)> {
@@ -110,10 +109,10 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
     is_possible(&forces).then_some((forces, worst))
 }
 
-/// The forces of a tile some of whose sensors, the [`Quality::Degraded`] ones, are at their ends and read "at least":
-/// as the plate's other corners say, or a little more than they read where these can't.
+/// The forces of a tile with sensors at the ends of their ranges, the [`Quality::Degraded`] ones: as estimated from
+/// the plate's other corners, or a little more than the reading without evidence from these.
 ///
-/// Near its end a part may also read more than it carries: then it is lowered.
+/// Near its end a part may also read too much: then the force is lowered.
 pub(super) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
     let at_end = quality.map(|quality| quality == Quality::Degraded);
     let lifted = forces.map(has_lifted);
@@ -128,16 +127,17 @@ pub(super) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
     })
 }
 
-/// What the reading of `corner` lacks of what it carries, on a plate that rests on all its supports: of what does not
-/// add up, each sensor that is `at_end` bears as much as it may be wrong in the way that mends it.
+/// Correction of the reading of `corner` on a plate that rests on all its supports: the imbalance is divided among
+/// the sensors `at_end` by the errors that each may have in the direction that reduces it.
 ///
 /// # Source
 /// The most likely forces given f_sw + f_ne = f_se + f_nw ([`expected`]), known to [`TOLD`], and readings known to
-/// [`BELOW`] and [`ABOVE`]: what is missing goes to each in proportion to its variance.
+/// [`BELOW`] and [`ABOVE`]: each sensor receives a part of the imbalance in proportion to its variance.
 fn lacking(forces: [f32; 4], at_end: [bool; 4], corner: usize) -> f32 {
     let missing = expected(forces, corner) - forces[corner];
     let variance = |other: usize| {
-        // To mend it, the diagonal must change as this one does, the neighbours the other way.
+        // To reduce the imbalance, the diagonal must change in the same direction as this corner, the neighbours in
+        // the opposite one.
         let rises = (missing > 0.0) == (other == corner || other == corner ^ 3);
         let wrong = if rises { BELOW } else { ABOVE } * forces[other];
         if at_end[other] { wrong * wrong } else { 0.0 }
@@ -147,8 +147,8 @@ fn lacking(forces: [f32; 4], at_end: [bool; 4], corner: usize) -> f32 {
     missing * variance(corner) / all
 }
 
-/// The standard deviation of each of `forces` beyond what is unknown of any sensor, in newtons, by the quality of
-/// the sensors; `may_start` as in [`super::ForceFrame::may_start`].
+/// The standard deviation of each of `forces` beyond the general uncertainty of sensors (N), by the quality of the
+/// sensors; `may_start` as in [`super::ForceFrame::may_start`].
 pub(super) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may_start: bool) -> [f32; 4] {
     let whole: f32 = forces.iter().sum();
     let at_end = quality.iter().filter(|&&quality| quality == Quality::Degraded).count() as f32;
@@ -162,28 +162,28 @@ pub(super) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may_start: bo
             if is_told { unseen.min(TOLD * at_end * whole) } else { unseen }
         }
         Quality::Stale | Quality::Faulty => {
-            // Once the diagonal has lifted off, all that this corner bears beyond is unseen.
+            // Once the diagonal has lifted off, any further load on this corner is not visible.
             ESTIMATED * whole + (-forces[corner ^ 3]).max(0.0)
         }
     };
     std::array::from_fn(one)
 }
 
-/// Least load at which corners contradict each other, in newtons.
+/// Minimum load at which corners can contradict each other (N).
 const CONTRADICTS_N: f32 = 30.0;
 
-/// How far the sums of a tile's diagonals may differ, as a share of its load, by unequal supports and gains (two to
-/// three standard deviations), and by a foot that lies across a plate that bends.
+/// Maximum difference between the sums of a tile's diagonals, as a share of its load, due to unequal supports and
+/// gains (two to three standard deviations), and due to a foot across a plate that bends.
 const UNEQUAL: f32 = 0.15;
 const ACROSS: f32 = 0.15;
 
 /// Share of a tile's load below which a corner may be in the air.
 const IN_THE_AIR: f32 = 0.03;
 
-/// The standard deviation of each of `forces` by what no plate, rigid or bent, lets its corners read together, in
-/// newtons: of a sensor that is dead under its load, or at its end, on the very frame.
+/// The standard deviation of each of `forces` due to a combination that no plate, rigid or bent, allows (N): it shows
+/// a sensor that is dead under its load, or at its end, in the same frame.
 ///
-/// A diagonal that carries too little lacks what the other has too much, unless the other has a corner in the air.
+/// A diagonal that carries too little lacks the excess of the other, unless the other has a corner in the air.
 ///
 /// # Source
 /// Plate on four springs: f_sw - f_se - f_nw + f_ne lies between zero (rigid) and that of the load's place (limp).
@@ -247,7 +247,7 @@ mod tests {
 
     #[track_caller]
     fn nearly(found: [f32; 4], expected: [f32; 4]) {
-        // A fortieth of the tile's load: what the plate tells is known to a little more.
+        // A fortieth of the tile's load: slightly above the accuracy of the plate estimate.
         assert!(
             found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 18.0),
             "{found:?}"
@@ -258,7 +258,7 @@ mod tests {
     fn a_sensor_at_its_end_carries_about_what_the_others_say() {
         let at_sw = [END, Quality::Live, Quality::Live, Quality::Live];
         nearly(mended([200.0, 130.0, 230.0, 110.0], at_sw), FOOT);
-        // A part that strays from its law near its end reads too much there.
+        // A part that deviates from its law near its end reads too much there.
         nearly(mended([290.0, 130.0, 230.0, 110.0], at_sw), FOOT);
         assert_eq!(mended([0.0; 4], at_sw), [0.0; 4]);
     }
@@ -274,8 +274,8 @@ mod tests {
 
     #[test]
     fn of_two_neighbours_that_disagree_the_one_that_reads_too_much_comes_down_as_the_other_goes_up() {
-        // A foot of 1150 N. Its south-east sensor ends at 306 N; the north-east one reads 565 N where it carries some
-        // 460: taken at its word it would put 490 N on the south-east one, and 1360 N on the tile.
+        // A foot of 1150 N. Its south-east sensor ends at 306 N; the north-east one reads 565 N under about 460 N:
+        // unchanged, it would put 490 N on the south-east one, and 1360 N on the tile.
         let east = [Quality::Live, END, Quality::Live, END];
         let [sw, se, nw, ne] = mended([115.0, 306.0, 193.0, 565.0], east);
         assert_eq!((sw, nw), (115.0, 193.0));
@@ -285,12 +285,12 @@ mod tests {
 
     #[test]
     fn beside_a_corner_in_the_air_nothing_is_told_but_that_it_is_more() {
-        // A very heavy foot over sw, ne in the air: nw and se are its neighbours, and carry what they read.
+        // A very heavy foot over sw, ne in the air: nw and se are its neighbours, and their readings are their loads.
         let over_sw = [685.0, 335.0, 245.0, -11.0];
         let south = [END, END, Quality::Live, Quality::Live];
         assert_eq!(mended(over_sw, south), [753.5, 368.5, 245.0, -11.0]);
         assert_eq!(extra_sigma(over_sw, south, false)[1], 0.5 * 335.0);
-        // With all on their supports the plate tells it six times as well.
+        // With all on their supports the plate estimate is six times as accurate.
         let flat = extra_sigma(FOOT, [END, Quality::Live, Quality::Live, Quality::Live], false);
         assert_eq!(flat, [21.6, 0.0, 0.0, 0.0]);
     }

@@ -1,4 +1,4 @@
-//! The foot that points in a region.
+//! The foot that operates a region.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::units::{Instant, Newtons};
 /// The contact that operates the controls of one region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cursor {
-    /// Which contact.
+    /// Its identifier.
     pub contact: ContactId,
     /// Its centroid, in floor metres.
     pub position: Vec2,
@@ -27,26 +27,26 @@ impl Cursor {
     }
 }
 
-/// How much heavier a rival must be, for how long, to become the cursor.
+/// Margin and time by which a rival must be heavier to become the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stickiness {
     /// The rival's force over the cursor's, at least 1.
     pub margin: f32,
-    /// How long it must stay above the margin without a break.
+    /// Time for which it must stay above the margin without interruption.
     pub patience: Duration,
 }
 
 impl Default for Stickiness {
-    /// 15 % heavier for 50 ms: two feet of nearly equal force never make the cursor flicker (our choice).
+    /// 15 % heavier for 50 ms: two feet of nearly equal force do not make the cursor flicker (our choice).
     fn default() -> Self {
         Self { margin: 1.15, patience: Duration::from_millis(50) }
     }
 }
 
-/// Picks one region's cursor: the contact with the largest force in it, and stays with it.
+/// Picks one region's cursor: the contact with the largest force in it, with hysteresis.
 ///
-/// Only contacts whose centroid lies inside the region count; a foot that
-/// stands beside it never becomes the cursor, however heavy.
+/// Only contacts with their centroid inside the region count; a foot beside it never becomes the cursor, at any
+/// weight.
 ///
 /// # Source
 /// Largest force in the active region: paper, section 4.2. The stickiness is ours.
@@ -54,37 +54,35 @@ impl Default for Stickiness {
 pub struct CursorPicker {
     stickiness: Stickiness,
     current: Option<ContactId>,
-    /// Since when a rival has been heavy enough.
+    /// Time since which a rival has been heavy enough.
     challenged: Option<Instant>,
     held: Option<ContactId>,
 }
 
 impl CursorPicker {
-    /// A picker that is in no hurry to change its mind as `stickiness` says.
+    /// A picker with the hysteresis `stickiness`.
     #[must_use]
     pub fn new(stickiness: Stickiness) -> Self {
         Self { stickiness, ..Self::default() }
     }
 
-    /// Makes `contact` the cursor for as long as it is down, wherever it goes; `None` lets go.
+    /// Makes `contact` the cursor as long as it is down, at any place; `None` releases it.
     ///
-    /// For a control that has captured the foot that drags it. Once the contact
-    /// lifts, the hold is over.
+    /// For a control that has captured the foot that drags it. The hold ends when the contact lifts.
     pub fn hold(&mut self, contact: Option<ContactId>) {
         self.held = contact;
     }
 
     /// The cursor of region `area` among `contacts` at time `now`; `None` without a contact in it.
     ///
-    /// A `now` earlier than the last one counts as no time passed.
+    /// A `now` earlier than the last one counts as zero elapsed time.
     pub fn update(&mut self, area: Rect, contacts: &[Contact], now: Instant) -> Option<Cursor> {
         self.choose(contacts, |contact| area.contains(contact.centroid), now)
     }
 
-    /// The cursor among those `contacts` that `may` be it, at time `now`; `None` if none may.
+    /// The cursor among the `contacts` for which `may` is true, at time `now`; `None` if there is none.
     ///
-    /// A held contact is the cursor whether or not it may. A `now` earlier than
-    /// the last one counts as no time passed.
+    /// A held contact is the cursor in any case. A `now` earlier than the last one counts as zero elapsed time.
     pub fn choose(
         &mut self,
         contacts: &[Contact],
@@ -101,7 +99,7 @@ impl CursorPicker {
         }
         let inside = || contacts.iter().filter(|contact| may(contact));
         let heaviest = inside().max_by(|a, b| {
-            // Of two equal ones the older, so that the order of the list never matters.
+            // Of two equal ones the older, so that the order of the list does not matter.
             a.force.0.total_cmp(&b.force.0).then(b.id.cmp(&a.id))
         });
         let current = inside().find(|contact| Some(contact.id) == self.current);

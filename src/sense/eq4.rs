@@ -10,17 +10,16 @@ use super::pool::ContactPool;
 use super::uncertainty::SensorUncertainty;
 use crate::units::Newtons;
 
-/// Marks a contact that has not gone on.
+/// Marks a contact that has ended.
 const NONE: u32 = u32::MAX;
 
-/// How far a contact may have come in one frame without sharing a tile with its old self, in metres.
+/// Maximum movement of a contact in one frame without a common tile with its last position (m).
 const JUMP_M: f32 = 0.1;
 
-/// The paper's own method: one contact per group of connected tiles, named by continuity.
+/// The paper's own method: one contact per group of connected tiles, with identifiers by continuity.
 ///
-/// A group goes on under the name that most of its force had in the last frame.
-/// Where two groups meet, the heavier name stays; where one falls apart, the
-/// heavier part keeps the name.
+/// A group keeps the identifier that most of its force had in the last frame. Where two groups merge, the heavier
+/// identifier stays; where one splits, the heavier part keeps it.
 ///
 /// # Source
 /// x_c = Σ w_k x_ck, w_k = F_k / F over the group's tiles (paper, Eq. 4), but
@@ -32,19 +31,19 @@ pub(super) struct Eq4 {
     /// The contacts of the last frame and of this one, in the order of their clusters.
     last: Vec<Named>,
     now: Vec<Named>,
-    /// What each tile of this frame's clusters carries, in the order of their members.
+    /// Load of each tile of this frame's clusters, in the order of their members.
     loads: Vec<TileLoad>,
     /// Clusters of this frame, heaviest first: the bits of its force, inverted, and its number.
     by_force: Vec<u64>,
-    /// Clusters of this frame, and of the last one until those of this one are known, by name.
+    /// Clusters of this frame, and of the last one until those of this one are known, by identifier.
     by_name: Vec<u32>,
-    /// Clusters that got a new name, in the order of names.
+    /// Clusters with a new identifier, in the order of identifiers.
     new: Vec<u32>,
-    /// The last time between two frames, and the smoothing that goes with it.
+    /// The last time between two frames, and the smoothing gain for it.
     smoothing: (f32, f32),
 }
 
-/// A cluster, and what it is called.
+/// A cluster and its identifier.
 #[derive(Clone, Copy, Debug)]
 struct Named {
     id: ContactId,
@@ -53,15 +52,15 @@ struct Named {
     velocity: Vec2,
     covariance: Covariance,
     quality: Quality,
-    /// Which clusters of the last frame its tiles belonged to.
+    /// The clusters of the last frame that contained its tiles.
     before: Before,
-    /// The cluster of the next frame that goes on under the name.
+    /// The cluster of the next frame that keeps the identifier.
     successor: u32,
-    /// Force of the cluster being named that lies on this one's tiles.
+    /// Force of the cluster being identified on this one's tiles.
     claim: f32,
 }
 
-/// The clusters of the last frame to which a cluster's tiles belonged.
+/// The clusters of the last frame that contained a cluster's tiles.
 #[derive(Clone, Copy, Debug)]
 enum Before {
     Nothing,
@@ -108,7 +107,7 @@ impl Eq4 {
         }
     }
 
-    /// Eq. 4 of every cluster.
+    /// Applies Eq. 4 to every cluster.
     fn weigh(&mut self, tiles: &LoadedTiles, clusters: &Clusters) {
         self.now.clear();
         self.loads.clear();
@@ -151,11 +150,11 @@ impl Eq4 {
         }
     }
 
-    /// Names every cluster, heavier ones first.
+    /// Assigns an identifier to every cluster, heavier ones first.
     fn name(&mut self, tiles: &LoadedTiles, clusters: &Clusters, dt: f32) {
         self.new.clear();
         self.by_force.clear();
-        // Forces are positive: their bits are in their own order.
+        // Positive forces sort like their bits.
         let key =
             |(cluster, named): (u32, &Named)| u64::from(!named.force.to_bits()) << 32 | u64::from(cluster);
         self.by_force.extend((0..).zip(&self.now).map(key));
@@ -181,7 +180,7 @@ impl Eq4 {
         }
     }
 
-    /// The contact of the last frame that goes on as this cluster.
+    /// The contact of the last frame that continues as this cluster.
     fn recognise(&mut self, tiles: &LoadedTiles, clusters: &Clusters, cluster: u32) -> Option<u32> {
         let Named { before, centroid, .. } = self.now[cluster as usize];
         let best = match before {
@@ -192,7 +191,7 @@ impl Eq4 {
         best.or_else(|| self.nearest(centroid))
     }
 
-    /// Of the contacts that share tiles with this cluster, the one with most of its force.
+    /// The contact with most of this cluster's force among those that share tiles with it.
     #[cold]
     fn strongest_claim(&mut self, tiles: &LoadedTiles, clusters: &Clusters, cluster: u32) -> Option<u32> {
         let members = clusters.get(cluster as usize).unwrap_or_default();
@@ -215,17 +214,18 @@ impl Eq4 {
         best
     }
 
-    /// The contact nearest to a point, if it is near: a point load may leave one tile for the next between two frames.
+    /// The contact nearest to a point, if it is near: a point load may move from one tile to the next between two
+    /// frames.
     #[cold]
     fn nearest(&self, point: Vec2) -> Option<u32> {
         let away = |past: &Named| past.centroid.distance(point);
         let left = (0..).zip(&self.last).filter(|(_, past)| past.successor == NONE && away(past) <= JUMP_M);
-        // Of two as near, the heavier one.
+        // At equal distance, the heavier one.
         let nearer = |a: &Named, b: &Named| away(a).total_cmp(&away(b)).then(b.force.total_cmp(&a.force));
         left.min_by(|(_, a), (_, b)| nearer(a, b)).map(|(past, _)| past)
     }
 
-    /// Orders clusters by name: those that go on are in order, new names are higher.
+    /// Orders clusters by identifier: continuing ones are in order, new identifiers are higher.
     fn put_in_order(&mut self) {
         let Self { last, now, by_name, new, .. } = self;
         by_name.retain_mut(|cluster| {
@@ -233,13 +233,13 @@ impl Eq4 {
             *cluster != NONE
         });
         by_name.extend_from_slice(new);
-        // Names begin again after four billion. What is in order already is only looked through.
+        // Identifiers wrap after four billion. Sorting an ordered list takes a single pass.
         by_name.sort_unstable_by_key(|&cluster| now[cluster as usize].id);
     }
 }
 
 impl Named {
-    /// Tells what is known of it; `loads` are its tiles'.
+    /// Fills `contact`; `loads` are those of its tiles.
     fn describe(&self, loads: &[TileLoad], contact: &mut Contact) {
         contact.centroid = self.centroid;
         contact.force = Newtons(self.force);
@@ -252,7 +252,7 @@ impl Named {
 }
 
 impl Before {
-    /// With one more tile, which belonged to `cluster`.
+    /// Adds one tile, which belonged to `cluster`.
     fn and(self, cluster: Option<u32>) -> Self {
         match (self, cluster) {
             (_, None) => self,
@@ -263,7 +263,7 @@ impl Before {
     }
 }
 
-/// Weight of a new velocity against the old one: a first-order low-pass of 25 ms.
+/// Gain of a new velocity, 1 − exp(−dt/τ): a first-order low-pass with τ = 25 ms.
 pub(super) fn smoothing(dt: f32) -> f32 {
     1.0 - (-dt / 0.025).exp()
 }

@@ -10,28 +10,27 @@ use crate::units::Instant;
 
 const COLUMNS: [&[&str]; 1] = [&["t_s", "col", "row", "f_sw", "f_se", "f_nw", "f_ne"]];
 
-/// Latest time in a table, in seconds: a year.
+/// Maximum time in a table, in seconds: a year.
 const LATEST_S: f64 = 31_557_600.0;
 
 /// Reads a force table, one instant at a time.
 ///
-/// CSV with the columns `t_s,col,row,f_sw,f_se,f_nw,f_ne`: seconds, tile, calibrated
-/// and tared newtons. The rows of one instant are consecutive, times rise, and a
-/// tile that an instant doesn't name carries no load then.
+/// CSV with the columns `t_s,col,row,f_sw,f_se,f_nw,f_ne`: seconds, tile, calibrated and tared newtons. The rows of
+/// one instant are consecutive, times rise, and a tile without a row in an instant carries no load then.
 ///
-/// Lines that cannot be read are left out and stand in [`Self::problems`]: a field that is missing, too many or no
-/// number, a tile off the floor or named twice in one instant, a time that breaks the order, is below 0 or beyond a
-/// year. Of two neighbours in the wrong order the line that fits less with the lines around it is left out.
+/// Lines that cannot be read are skipped and listed in [`Self::problems`]: a field that is missing, surplus or not a
+/// number, a tile off the floor or listed twice in one instant, a time that breaks the order, is below 0 or beyond a
+/// year. Of two neighbours in the wrong order, the line that fits the surrounding lines less is skipped.
 #[derive(Debug)]
 pub struct ForceTable<R> {
     table: Table<R>,
     geometry: Geometry,
     row: Row,
-    /// Loads read ahead, at most three: enough to find the one whose time is wrong.
+    /// Loads read ahead, at most three: enough to find the one with the wrong time.
     ahead: VecDeque<Load>,
-    /// Time of the last load that was given.
+    /// Time of the last load returned.
     last_s: Option<f64>,
-    /// Tiles named in the current instant, to be cleared for the next.
+    /// Tiles of the current instant, to be cleared for the next.
     named: Vec<usize>,
 }
 
@@ -50,17 +49,17 @@ impl<R: BufRead> ForceTable<R> {
     /// A table for a floor of this geometry; reads and checks the header.
     ///
     /// # Errors
-    /// [`TableError`] if the header is of another table, or `reader` fails.
+    /// [`TableError`] if the header belongs to another table, or `reader` fails.
     pub fn new(reader: R, geometry: Geometry) -> Result<Self, TableError> {
         let table = Table::new(reader, &COLUMNS)?;
         let (row, ahead, named) = (Row::default(), VecDeque::new(), Vec::new());
         Ok(Self { table, geometry, row, ahead, last_s: None, named })
     }
 
-    /// Fills `frame` with the next instant and gives its time in seconds; `None` at the end.
+    /// Fills `frame` with the next instant and returns its time in seconds; `None` at the end.
     ///
-    /// `frame` must be the one filled last time, or [`ForceFrame::empty`] of the
-    /// same geometry: only the tiles named last time are cleared.
+    /// `frame` must be the one filled last time, or [`ForceFrame::empty`] of the same geometry: only the tiles of the
+    /// last instant are cleared.
     ///
     /// # Errors
     /// Those of the reader.
@@ -90,7 +89,7 @@ impl<R: BufRead> ForceTable<R> {
         Ok(Some(first.t_s))
     }
 
-    /// Everything wrong with the lines so far.
+    /// The problems of the lines so far.
     #[must_use]
     pub fn problems(&self) -> &TableProblems {
         self.table.problems()
@@ -109,7 +108,7 @@ impl<R: BufRead> ForceTable<R> {
         Ok(next)
     }
 
-    /// Reads ahead and leaves out lines until the first two loads ahead are in the order of time.
+    /// Reads ahead and skips lines until the first two loads ahead are in the order of time.
     fn settle_order(&mut self) -> io::Result<()> {
         loop {
             self.read_ahead(2)?;
@@ -121,7 +120,7 @@ impl<R: BufRead> ForceTable<R> {
             self.read_ahead(3)?;
             let third = self.ahead.get(2).map(|third| third.t_s);
             let fits_before = self.last_s.is_none_or(|last| second.t_s >= last);
-            // At the end of the table nothing follows that could decide: the first load of all is believed.
+            // At the end of the table no later line can decide: the first load counts as right.
             let is_first_wrong =
                 fits_before && third.map_or(self.last_s.is_some(), |third| third < first.t_s);
             let (wrong, problem) = if is_first_wrong {
@@ -213,7 +212,7 @@ mod tests {
         assert!(problem(&"9".repeat(100_000)).contains("line 2: longer than"));
     }
 
-    /// Five instants of one tile, the line of `broken` among them replaced.
+    /// Five instants of one tile, with the line number `broken` replaced.
     fn times_without(broken: usize, by: &str) -> (Vec<f64>, Vec<String>) {
         let mut rows: Vec<String> = (0..5).map(|step| format!("{step},0,0,1,1,1,1")).collect();
         by.clone_into(&mut rows[broken]);
@@ -229,7 +228,7 @@ mod tests {
             for place in 0..5 {
                 let (times, problems) = times_without(place, line);
                 let others: Vec<f64> = (0..5).filter(|step| *step != place).map(|step| step as f64).collect();
-                // A time that is too late stands in order where nothing follows it.
+                // A time that is too late is in order at the end of the table.
                 if line.starts_with("9999") && place == 4 {
                     assert_eq!((times.len(), problems.len()), (5, 0));
                     continue;
@@ -267,7 +266,7 @@ mod tests {
             let _ = read(&format!("{HEADER}\n{rows}"));
         }
 
-        /// Whatever stands between them, good lines are read.
+        /// Good lines are read between any other lines.
         #[test]
         fn good_lines_are_read_whatever_stands_between_them(
             junk in proptest::collection::vec("[0-9a-z.,;\"#\t ]{0,30}", 6),

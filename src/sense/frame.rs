@@ -9,24 +9,25 @@ use crate::units::{Instant, Newtons};
 /// The forces of all sensors at one instant, calibrated and tared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForceFrame {
-    /// When the forces acted, on the floor's sample clock.
+    /// Time at which the forces acted, on the floor's sample clock.
     pub at: Instant,
-    /// When the packet that completed the frame arrived; equals `at` where no network is involved.
+    /// Arrival of the packet that completed the frame; equals `at` without a network.
     pub received: Instant,
-    /// Newtons per tile (tile-index order), each in [`crate::floor::Corner::ALL`] order.
-    /// Always finite: a reading that is not leaves the sensor's last good one in its place (0 if it
-    /// never had one) and marks it [`Quality::Faulty`]; so does a sample that never came, which
-    /// marks nothing until the board counts as silent.
+    /// Newtons per tile (tile-index order), each in [`crate::floor::Corner::ALL`] order. Always finite: a reading
+    /// that is not finite keeps the sensor's last good one (0 if there was none) and marks it [`Quality::Faulty`]. A
+    /// missing sample also keeps the last one, but marks nothing until the board is silent.
     pub forces: Vec<[f32; 4]>,
-    /// How far each of `forces` can be trusted.
+    /// Quality of each of `forces`.
     pub quality: Vec<[Quality; 4]>,
-    /// Per tile, whether its forces may start an engagement. They may not with a sensor at
-    /// the end of its range, where the force is "at least", or with one that reads a load to
-    /// which the rest of its plate does not answer. Keeping and ending one is always allowed.
+    /// Per tile, whether its forces may start an engagement. They may not if a sensor is at the end of its range,
+    /// where its force is a lower bound, or reads a load to which the rest of its plate does not respond. They may
+    /// always keep and end one.
     pub may_start: Vec<bool>,
-    /// Per tile, why its readings may not hold a control with the guard `HoldToRun`; `None` where they may.
+    /// Per tile, the reason for which its readings may not hold a control with the guard `HoldToRun`; `None` where
+    /// they may.
     pub hold_doubts: Vec<Option<HoldDoubt>>,
-    /// Why the newtons may be wrong all over the floor; `None` where they come from this floor's calibration.
+    /// Reason for which the newtons may be wrong all over the floor; `None` if they come from this floor's
+    /// calibration.
     /// With a fault, controls with the guard `HoldToRun` are off.
     pub calibration_fault: Option<CalibrationFault>,
 }
@@ -47,11 +48,10 @@ impl ForceFrame {
         }
     }
 
-    /// Adds a point load where it lies, shared by the tile's four sensors as an ideal rigid plate shares it.
+    /// Adds a point load, divided among the tile's four sensors as by an ideal rigid plate.
     ///
-    /// A load beyond the floor, or one that is not finite, adds nothing. For
-    /// apps without hardware and for tests; `crate::sim` has plates, feet and
-    /// sensors with their faults.
+    /// A load beyond the floor, or one that is not finite, adds nothing. For apps without hardware and for tests;
+    /// `crate::sim` has plates, feet and sensors with their faults.
     ///
     /// # Source
     /// Eq. 2 of the paper solved for four equal springs: `f_i = F/4 (1 + s_i . a)`, with the load's

@@ -1,25 +1,25 @@
-//! Why the readings of a plate may not hold a control.
+//! Reasons for which the readings of a plate may not hold a control.
 
 use std::fmt;
 
 use serde::Serialize;
 
-/// Why the readings of a plate may not hold a control with the guard `HoldToRun`.
+/// Reason for which the readings of a plate may not hold a control with the guard `HoldToRun`.
 ///
-/// Such a control must end within 150 ms of the moment at which readings stand still. That is possible only where a
-/// sensor's own noise makes it improbable that its readings repeat under a foot that keeps still.
+/// Such a control must end within 150 ms after its readings have become constant. That is possible only where a
+/// sensor's own noise makes repeated readings improbable under a foot that keeps still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum HoldDoubt {
-    /// The noise of its sensors is not known yet: they were idle for less than a tenth of a second since the start, or
-    /// read nothing while they are idle.
+    /// The noise of its sensors is still unknown: they have been idle for less than a tenth of a second since the
+    /// start, or they read zero while idle.
     Unlearned,
-    /// Its sensors repeat themselves even while they work: their noise is less than one count, or they are sampled so
-    /// seldom that a reading stays the same for longer than 8 ms.
+    /// Its sensors repeat their readings even while they work: their noise is less than one count, or their sampling
+    /// is so slow that a reading stays constant for longer than 8 ms.
     Coarse,
-    /// Two or more of its sensors have repeated, for 100 ms, what they had read before, which their noise makes
-    /// improbable: they stand still.
+    /// Two or more of its sensors have repeated their readings for 100 ms, which is improbable with their noise: the
+    /// converters are frozen.
     Repeats,
 }
 
@@ -35,7 +35,7 @@ impl HoldDoubt {
     }
 }
 
-/// One sentence for people.
+/// One sentence for the user.
 impl fmt::Display for HoldDoubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

@@ -1,74 +1,75 @@
-//! Which law a sensor follows.
+//! Selection of the law that a sensor follows.
 
 use nalgebra::DVector;
 
 use super::calibration::{Curve, Fit, FitError, LoadPoint, Loads};
 use crate::floor::LawKind;
 
-/// How each law follows a sensor's measurements, and which of them the sensor follows.
+/// The fit of each law to a sensor's measurements, and the law selected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
-    /// One of each law, in [`LawKind::ALL`] order.
+    /// One candidate per law, in [`LawKind::ALL`] order.
     pub candidates: [Candidate; 4],
-    /// The law that the sensor follows; `None` where no law fits.
+    /// The selected law; `None` where no law fits.
     pub chosen: Option<LawKind>,
 }
 
-/// One law beside the others.
+/// The fit of one law in comparison with the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
-    /// Which law.
+    /// The law.
     pub kind: LawKind,
-    /// Its best fit, by the squares of the force error; a law that fails is not compared.
+    /// Its best fit, by least squares of the force error; a law without a fit is not compared.
     pub fit: Result<Fit, FitError>,
-    /// By how much its information criterion exceeds that of the best candidate (see [`Comparison::of`]):
-    /// 0 for the best, infinite for a law that fails or where there are too few measurements to compare.
+    /// Excess of its information criterion over that of the best candidate (see [`Comparison::of`]): 0 for the best,
+    /// infinite for a law without a fit or with too few measurements for a comparison.
     pub excess: f32,
 }
 
-/// Measurements that compare laws of two parameters and a spread; with fewer the corrected criterion divides by zero.
+/// Minimum number of measurements for a comparison of laws with two parameters and a spread; with fewer, the
+/// corrected criterion divides by zero.
 const LEAST_COMPARED: usize = 5;
 
-/// The excess up to which the paper's law is kept: a model within 2 of the best has substantial support.
+/// Maximum excess at which the paper's law is selected: a model within 2 of the best has substantial support.
 ///
 /// # Source
 /// Burnham and Anderson, Model Selection and Multimodel Inference, 2002, section 2.6.
 const PAPER_KEPT: f64 = 2.0;
 
-/// The excess up to which a straight line is preferred to a curve: from 4 on a model has considerably less support
-/// (the same source). A power law whose exponent is near one and a divider whose supply is far are straight lines but
-/// for the noise they follow: by the least excess alone, one of six made-up linear parts gets another law's name
-/// through 2 % of noise.
+/// Maximum excess at which a straight line is preferred to a curve: from 4 on a model has considerably less support
+/// (the same source). A power law with an exponent near one and a divider with a distant supply are straight lines
+/// except for the noise that they follow: by the least excess alone, 2 % of noise gives one of six synthetic linear
+/// parts another law.
 const STRAIGHT_KEPT: f64 = 4.0;
 
-/// The voltage up to which a reading says only that the load is light: 0.5 % of the converter's range, its offset and
-/// noise. A part whose law starts at a force, as the paper's, reads nothing below it.
+/// Voltage up to which a reading shows only that the load is light: 0.5 % of the converter's range, its offset and
+/// noise. A part with a law that starts at a force, such as the paper's, reads zero below it.
 const NOTHING_V: f32 = 0.025;
 
-/// An error that every load has, as a share of the greatest: a light one is not known to a share of itself.
+/// Error of every load, as a share of the maximum: light loads have no constant relative error.
 const LIGHT: f64 = 0.005;
 
-/// The error below which laws are not told apart, as a share: better than this no bench knows its forces (our choice).
+/// Relative error below which laws are indistinguishable: no bench knows its forces better (our choice).
 const BENCH: f64 = 1e-3;
 
 impl Comparison {
-    /// Fits every law to `points` and chooses one.
+    /// Fits every law to `points` and selects one.
     ///
-    /// Each law is fitted by [`Fit::of_law`]. They are compared by Akaike's information criterion, for which the
-    /// errors are taken as normal with one of two spreads, whichever gives the law the lower value: the same in newtons
-    /// at every load, or in proportion to the load. Every law has two parameters and a spread, so the criterion's terms
-    /// for their number, and its correction for few measurements, are the same for all. Errors that
-    /// resemble their neighbour's (hysteresis, a wave that no law follows) are not independent evidence: the
-    /// difference is scaled by the share of measurements that count as independent. Readings of next to nothing are
-    /// left out of the comparison, as saturated ones are.
+    /// [`Fit::of_law`] fits each law. Akaike's information criterion compares them, with normal errors of one of two
+    /// spreads, the one with the lower value for the law: constant in newtons, or in proportion to the load. Every
+    /// law has two parameters and a spread, so the criterion's terms for their number, and its correction for few
+    /// measurements, are the same for all. Errors that resemble their neighbours (hysteresis, a wave that no law
+    /// follows) are not independent evidence: the difference is scaled by the share of measurements that count as
+    /// independent. Readings of next to nothing are left out of the comparison, like saturated ones.
     ///
-    /// The paper's exponential law stays where its excess is at most 2, then a straight line where its excess is at
-    /// most 4; otherwise the law with the least value is chosen. Fewer than five measurements compare nothing: the
-    /// first law that fits is chosen, the paper's before all others.
+    /// The paper's exponential law is selected if its excess is at most 2, then a straight line if its excess is at
+    /// most 4; otherwise the law with the lowest value. Fewer than five measurements permit no comparison: the first
+    /// law that fits is selected, in an order that begins with the paper's.
     ///
     /// # Source
     /// `AIC = n ln(RSS / n) + 2 k` (Burnham and Anderson, 2002, section 2.2), with weighted squares for proportional
-    /// errors; `n (1 - r) / (1 + r)` independent values of n whose neighbours correlate by r (Bartlett, 1935).
+    /// errors; `n (1 - r) / (1 + r)` independent values of n with a correlation r between neighbours (Bartlett,
+    /// 1935).
     #[must_use]
     pub fn of(points: &[LoadPoint]) -> Self {
         let loads = match Loads::of(points) {
@@ -120,32 +121,32 @@ impl Comparison {
         }
     }
 
-    /// The chosen law's fit.
+    /// The fit of the selected law.
     ///
     /// # Errors
-    /// Why the exponential law does not fit, where no law does.
+    /// The error of the exponential law, if no law fits.
     pub fn fit(&self) -> Result<Fit, FitError> {
         self.candidate(self.chosen.unwrap_or(LawKind::Exponential)).fit
     }
 }
 
-/// The law that is taken where nothing can be compared.
+/// The law selected without a comparison.
 fn first_that_fits(candidates: &[Candidate; 4]) -> Option<LawKind> {
     candidates.iter().find(|candidate| candidate.fit.is_ok()).map(|candidate| candidate.kind)
 }
 
-/// How the errors of the measurements are taken to spread.
+/// Assumed spread of the measurement errors.
 struct Spread {
     /// Reciprocal of each measurement's standard deviation, to a common factor.
     weights: DVector<f64>,
     /// Least variance of a weighted error.
     least: f64,
-    /// What the weights add to the criterion.
+    /// Contribution of the weights to the criterion.
     constant: f64,
 }
 
 impl Spread {
-    /// The same at every load.
+    /// Constant at every load.
     fn same(loads: &Loads) -> Self {
         let least = (BENCH * loads.forces.max()).powi(2);
         Self { weights: DVector::repeat(loads.forces.len(), 1.0), least, constant: 0.0 }
@@ -164,12 +165,12 @@ impl Spread {
 struct Criterion {
     kind: LawKind,
     value: f64,
-    /// Weighted errors that it was computed from.
+    /// Weighted errors of the fit.
     errors: DVector<f64>,
 }
 
 impl Criterion {
-    /// Under the spread that suits the law better; `None` if it can be fitted under neither.
+    /// The criterion under the spread with the lower value; `None` if neither permits a fit.
     fn least(kind: LawKind, loads: &Loads, spreads: &[Spread]) -> Option<Self> {
         let under = spreads.iter().filter_map(|spread| {
             let errors = Curve::through(kind, loads, Some(&spread.weights)).ok()?.errors();
@@ -181,7 +182,8 @@ impl Criterion {
     }
 }
 
-/// The share of `errors` that count as independent, in the order of the voltages: 1 where neighbours don't resemble.
+/// Share of `errors` that count as independent, in the order of the voltages: (1 − r) / (1 + r) with the correlation
+/// r of neighbours, 1 if they are uncorrelated.
 fn independent_share(loads: &Loads, errors: &DVector<f64>) -> f64 {
     let mut order: Vec<usize> = (0..errors.len()).collect();
     order.sort_by(|one, other| loads.volts[*one].total_cmp(&loads.volts[*other]));
@@ -195,7 +197,7 @@ mod tests {
     use super::*;
     use crate::floor::Calibration;
 
-    /// `count` loads evenly over the volts up to 4.8, off by a share that `error` gives for each.
+    /// `count` loads at even steps of voltage up to 4.8 V, each with the relative error `error`.
     fn bench(law: Calibration, count: usize, error: impl Fn(usize) -> f32) -> Vec<LoadPoint> {
         let volts = |step: usize| 4.8 * (step + 1) as f32 / count as f32;
         (0..count)
@@ -203,7 +205,7 @@ mod tests {
             .collect()
     }
 
-    /// Two percent up and down in an order that no curve follows.
+    /// Two per cent up and down in an order that no curve follows.
     fn jagged(step: usize) -> f32 {
         [0.02, -0.02, -0.02, 0.02, -0.02, 0.02, 0.02, -0.02][step % 8]
     }
@@ -226,7 +228,7 @@ mod tests {
 
     #[test]
     fn a_straight_line_is_not_called_a_power_of_one() {
-        // The error grows with the load as if the line bent a little.
+        // The error grows with the load as if the line were slightly bent.
         let bent = |step: usize| jagged(step) + 2e-4 * step as f32;
         let compared = Comparison::of(&bench(Calibration::of(LawKind::Linear, [80.0, 0.0]), 24, bent));
         assert_eq!(compared.chosen, Some(LawKind::Linear), "{compared:?}");

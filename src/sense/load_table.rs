@@ -1,4 +1,4 @@
-//! Tables of load-cell measurements, and what they say of each sensor.
+//! Tables of load-cell measurements, and the evaluation of each sensor by them.
 
 use std::io::BufRead;
 
@@ -13,50 +13,50 @@ use crate::units::Newtons;
 pub struct LoadTable {
     /// The sensors measured, by tile index and corner.
     pub sensors: Vec<SensorLoads>,
-    /// Lines left out, columns not read.
+    /// Skipped lines and unread columns.
     pub notes: TableNotes,
 }
 
 /// One sensor's measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorLoads {
-    /// Which sensor.
+    /// The sensor.
     pub sensor: SensorId,
-    /// What was measured, in the order of the table, saturated readings left out.
+    /// The measurements, in the order of the table, without saturated readings.
     pub points: Vec<LoadPoint>,
-    /// Readings left out because they are at 98 % of the converter's range or above.
+    /// Number of readings left out because they are at 98 % of the converter's range or above.
     pub saturated: usize,
 }
 
-/// What to make of a sensor.
+/// Verdict on a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// It follows its law as parts do.
+    /// It follows its law as well as typical parts.
     Good,
-    /// It can be used, but places positions badly.
+    /// It is usable, but with large position errors.
     Poor,
-    /// Nothing can be said: measure it again.
+    /// The measurements are insufficient: measure it again.
     Unmeasured,
-    /// It is beyond repair.
+    /// It is broken.
     Replace,
 }
 
-/// A sensor judged by its measurements.
+/// A sensor's evaluation by its measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judgement {
-    /// What to make of it.
+    /// The verdict.
     pub verdict: Verdict,
-    /// The law it follows and what that leaves over, or why it has none.
+    /// Its law and the residual, or the reason for which it has none.
     pub fit: Result<Fit, FitError>,
-    /// How the other laws follow it.
+    /// The fit of all laws.
     pub laws: Comparison,
 }
 
 impl Verdict {
-    /// Up to this residual a sensor is good: real parts miss their law by about 8 % of full scale (our choice).
+    /// Maximum residual of a good sensor: real parts miss their law by about 8 % of full scale (our choice).
     pub const GOOD: f32 = 0.08;
 
-    /// Up to this residual a sensor is usable (our choice).
+    /// Maximum residual of a usable sensor (our choice).
     pub const POOR: f32 = 0.15;
 
     /// The word for it: `good`, `poor`, `unmeasured` or `replace`.
@@ -77,14 +77,13 @@ const COLUMNS: [&[&str]; 2] =
 impl LoadTable {
     /// Reads a CSV table with the columns `col,row,corner,volts,newtons` or `col,row,corner,counts,newtons`.
     ///
-    /// One line per measurement, in any order: the sensor's tile and corner
-    /// (`sw`, `se`, `nw`, `ne`), its output (0 to 5 volts, or 0 to 65535
-    /// counts) and what the load cell read (-100 to 10000 newtons, the plate's
-    /// weight included if it rests on the sensor). Lines that cannot be read are left out and stand in
+    /// One line per measurement, in any order: the sensor's tile and corner (`sw`, `se`, `nw`, `ne`), its output (0
+    /// to 5 volts, or 0 to 65535 counts) and the reading of the load cell (-100 to 10000 newtons, including the
+    /// plate's weight if it rests on the sensor). Lines that cannot be read are skipped and listed in
     /// [`Self::notes`].
     ///
     /// # Errors
-    /// [`TableError`] if the header is of another table, or `reader` fails.
+    /// [`TableError`] if the header belongs to another table, or `reader` fails.
     pub fn read(reader: impl BufRead, geometry: &Geometry) -> Result<Self, TableError> {
         let mut table = Table::new(reader, &COLUMNS)?;
         let (header, mut row) = (table.header(), Row::default());
@@ -125,7 +124,7 @@ impl LoadTable {
     }
 }
 
-/// A mean of several readings need not be whole.
+/// Accepts fractions: a mean of several readings need not be an integer.
 fn volts_of(counts: f32) -> f32 {
     counts * (Calibration::FULL_SCALE_VOLTS / f32::from(u16::MAX))
 }
@@ -135,7 +134,7 @@ fn corner(name: &str) -> Option<Corner> {
 }
 
 impl SensorLoads {
-    /// Finds the law that the sensor follows and says what to make of the sensor.
+    /// Selects the law of the sensor and evaluates the sensor.
     #[must_use]
     pub fn judge(&self) -> Judgement {
         let laws = Comparison::of(&self.points);
@@ -144,7 +143,7 @@ impl SensorLoads {
             Ok(fit) if fit.residual <= Verdict::GOOD => Verdict::Good,
             Ok(fit) if fit.residual <= Verdict::POOR => Verdict::Poor,
             Ok(_) => Verdict::Replace,
-            // A sensor at its end stops under every load; so does one that always reads full scale.
+            // A sensor at its end stays there under every load; so does one that always reads full scale.
             Err(FitError::TooFewPoints { .. }) if self.saturated >= Fit::MIN_POINTS => Verdict::Replace,
             Err(FitError::TooFewPoints { .. } | FitError::NotFinite { .. }) => Verdict::Unmeasured,
             Err(_) if !self.was_loaded() => Verdict::Unmeasured,
@@ -244,7 +243,7 @@ mod tests {
         assert!(power.fit.unwrap().residual < 0.002, "{:?}", power.fit);
         let exponential = power.laws.candidate(LawKind::Exponential).fit.unwrap();
         assert!((0.015..0.06).contains(&exponential.residual), "{exponential:?}");
-        // What is linear misses the paper's law so far that it would be replaced.
+        // By the paper's law, a linear part would miss so far that it would have to be replaced.
         let linear = loads(volts().map(|v| (v, 80.0 * (v - 0.1)))).judge();
         assert_eq!((linear.verdict, linear.laws.chosen), (Verdict::Good, Some(LawKind::Linear)));
     }
@@ -267,7 +266,7 @@ mod tests {
         assert_eq!(loads(steps().map(|k| (0.0, 10.0 * k))).judge().verdict, Verdict::Replace);
         assert_eq!(loads(steps().map(|k| (2.0, 10.0 * k))).judge().verdict, Verdict::Replace);
         assert_eq!(loads(steps().map(|k| (5.0 - 0.2 * k, 10.0 * k))).judge().verdict, Verdict::Replace);
-        // Shorted to the supply: nothing but saturated readings.
+        // Shorted to the supply: saturated readings only.
         let shorted = SensorLoads { saturated: 20, ..loads([]) };
         assert_eq!(shorted.judge().verdict, Verdict::Replace);
         // One load only, two points only, none.

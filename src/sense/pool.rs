@@ -1,15 +1,14 @@
-//! Contacts in objects that are used again.
+//! Contacts in reused objects.
 
 use smallvec::SmallVec;
 
 use super::Quality;
 use super::contact::{Contact, ContactId, Covariance, TileLoad};
 
-/// The contacts of one frame, in objects that are used again and again.
+/// The contacts of one frame, in reused objects.
 ///
-/// A contact on many tiles keeps its list on the heap; using the objects again
-/// keeps those lists too, so nothing is allocated once the floor has been as
-/// full as it gets.
+/// A contact on many tiles keeps its list on the heap; reuse of the objects keeps those lists too, so that nothing is
+/// allocated once the floor has been at its fullest.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactPool {
     contacts: Vec<Contact>,
@@ -17,7 +16,7 @@ pub(super) struct ContactPool {
 }
 
 impl ContactPool {
-    /// A pool of `contacts` contacts to begin with, each with room for [`ROOM`] tiles.
+    /// A pool of `contacts` contacts at first, each with room for [`ROOM`] tiles.
     pub(super) fn with_capacity(contacts: usize) -> Self {
         let mut pool = Self { contacts: Vec::with_capacity(contacts), used: 0 };
         pool.contacts.resize_with(contacts, roomy);
@@ -28,7 +27,7 @@ impl ContactPool {
         self.used = 0;
     }
 
-    /// A contact called `id` with nothing else known of it.
+    /// A contact with the identifier `id` and default values.
     #[inline]
     pub(super) fn add(&mut self, id: ContactId) -> &mut Contact {
         if self.used == self.contacts.len() {
@@ -55,7 +54,7 @@ impl ContactPool {
     }
 }
 
-/// Tiles that a contact of the pool holds without allocating: two feet on four tiles each, and some.
+/// Number of tiles that a contact of the pool holds without allocation: two feet on four tiles each, and a few more.
 const ROOM: usize = 12;
 
 fn roomy() -> Contact {
@@ -63,12 +62,12 @@ fn roomy() -> Contact {
 }
 
 impl Contact {
-    /// Orders the tiles, heaviest first, and takes the difference vector from them.
+    /// Sorts the tiles, heaviest first, and derives the difference vector from them.
     pub(super) fn finish(&mut self) {
         let order = |a: &TileLoad, b: &TileLoad| b.force.0.total_cmp(&a.force.0).then(a.index.cmp(&b.index));
         match &mut self.tiles[..] {
             [] | [_] => {}
-            // As of most that are on several.
+            // The usual case of several tiles.
             [first, second] => {
                 if order(first, second).is_gt() {
                     std::mem::swap(first, second);

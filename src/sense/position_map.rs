@@ -1,4 +1,4 @@
-//! Fitting a tile's position map to known points pressed on it.
+//! Fits a tile's position map to known points pressed on it.
 
 use glam::Vec2;
 use nalgebra::{DMatrix, DVector};
@@ -10,31 +10,31 @@ use crate::floor::{Corner, Geometry, PositionMap};
 /// One known point, pressed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Press {
-    /// Where it was pressed, in metres from the tile's centre.
+    /// True place, in metres from the tile's centre.
     pub at: Vec2,
-    /// What the tile's sensors read, calibrated and tared, in newtons ([`Corner::ALL`] order).
+    /// Readings of the tile's sensors, calibrated and tared, in newtons ([`Corner::ALL`] order).
     pub forces: [f32; 4],
-    /// With which force, in newtons, if that is known.
+    /// Pressing force in newtons, if known.
     pub force: Option<f32>,
 }
 
 impl Press {
-    /// Where Eq. 3 alone puts it, in metres from the tile's centre.
+    /// Place by Eq. 3 alone, in metres from the tile's centre.
     fn estimate(&self, geometry: &Geometry) -> Vec2 {
         Wrench::of_corners(self.forces, geometry.sensor_reach_m()).arm(0.5 * geometry.pitch_m())
     }
 }
 
-/// A known point and where the floor put it, when nothing is known of the single sensors.
+/// A known point and its place as measured by the floor, without the readings of single sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sighting {
-    /// Where it was pressed, in metres from the tile's centre.
+    /// True place, in metres from the tile's centre.
     pub at: Vec2,
-    /// Where the floor put it, in metres from the tile's centre.
+    /// Measured place, in metres from the tile's centre.
     pub estimate: Vec2,
 }
 
-/// A fitted map and what it does to the points it was fitted to.
+/// A fitted map and its effect on the points of the fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapFit {
     /// The map.
@@ -43,22 +43,22 @@ pub struct MapFit {
     pub points: usize,
     /// Errors without the map.
     pub before: Errors,
-    /// Errors with it, each point by a map that was fitted without it and its neighbours.
+    /// Errors with it, each point by a map fitted without it and its neighbours.
     pub after: Errors,
 }
 
-/// How far points are found from where they were pressed, in metres.
+/// Distances between the measured and the true places, in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// Half of them are off by no more.
+    /// Median.
     pub median_m: f32,
-    /// All but 5 % are off by no more.
+    /// 95th percentile.
     pub p95_m: f32,
-    /// The worst.
+    /// Maximum.
     pub worst_m: f32,
 }
 
-/// Why no map was fitted to a tile.
+/// Reason for which no map fits a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum MapError {
     /// Too few points.
@@ -67,51 +67,49 @@ pub enum MapError {
         /// Points that could be used.
         points: usize,
     },
-    /// The points leave a part of the tile out.
+    /// The points do not cover a part of the tile.
     #[error("the points leave the {side} of the tile out: press nearer to that edge")]
     NoSpread {
-        /// Which part.
+        /// The part.
         side: &'static str,
     },
     /// A point is not a number.
     #[error("point {index} is not a finite number")]
     NotFinite {
-        /// Which, from 0.
+        /// Its index, from 0.
         index: usize,
     },
-    /// No correction brings points that it hasn't seen closer to where they were pressed.
+    /// No correction brings points outside of the fit closer to their true places.
     #[error("no map improves on none: {rms_mm:.1} mm are left of {before_mm:.1} mm")]
     NoBetter {
-        /// Root mean square of what the best map leaves.
+        /// Root mean square error with the best map.
         rms_mm: f32,
-        /// Root mean square without a map.
+        /// Root mean square error without a map.
         before_mm: f32,
     },
 }
 
 impl MapFit {
-    /// Fewest points a map is made from: as many as a bend has numbers, and some to check.
+    /// Minimum number of points of a map: the number of parameters of a bend, and some to check.
     pub const MIN_POINTS: usize = 16;
 
-    /// How near to each edge points must come, as a share of half the plate (our choice).
+    /// Required reach of the points towards each edge, as a share of half the plate (our choice).
     const REACH: f32 = 0.6;
 
-    /// Parts into which the places are divided, each tried on the map of the others.
+    /// Number of folds of the cross-validation, each tested on the map of the others.
     const FOLDS: usize = 5;
 
-    /// The map of a tile by the points pressed on it, in any order, with any forces.
+    /// The map of a tile from the points pressed on it, in any order, with any forces.
     ///
-    /// Points pressed with several forces each, from a light foot's to a
-    /// person's weight, teach most. Leave out saturated readings. The known
-    /// force, where given, also corrects what the tile weighs.
+    /// Points pressed with several forces each, from a light foot's to a person's weight, give the best map. Leave
+    /// out saturated readings. The known force, where given, also corrects the measured weight.
     ///
     /// # Errors
-    /// [`MapError`]; all but [`MapError::NoBetter`] ask for more points.
+    /// [`MapError`]; all but [`MapError::NoBetter`] require more points.
     ///
     /// # Source
-    /// Balance of moments of each point, `Σ gᵢ(fᵢ) (xᵢ − x) = 0`, linear in the trims of `gᵢ`,
-    /// and a cubic polynomial for what is left, both by ridge regression; whether trims, bends
-    /// or both are used is decided by five-fold cross-validation.
+    /// Balance of moments of each point, `Σ gᵢ(fᵢ) (xᵢ − x) = 0`, linear in the trims of `gᵢ`, and a cubic polynomial
+    /// for the remaining error, both by ridge regression; five-fold cross-validation selects trims, bends or both.
     pub fn of_presses(presses: &[Press], geometry: &Geometry) -> Result<Self, MapError> {
         let usable = |press: &Press| {
             press.at.is_finite() && press.forces.iter().chain(&press.force).all(|force| force.is_finite())
@@ -134,7 +132,7 @@ impl MapFit {
         best(&pressed, |press| press.at, geometry, candidates, found)
     }
 
-    /// The map of a tile by points seen through the whole floor; only bends can be learnt from them.
+    /// The map of a tile from points measured through the whole floor; they determine bends only.
     ///
     /// # Errors
     /// As [`MapFit::of_presses`].
@@ -162,16 +160,16 @@ impl Errors {
     }
 }
 
-/// Lighter presses say nothing of a place, in newtons.
+/// Force below which a press shows no place (N).
 const LEAST_N: f32 = 10.0;
 
-/// Where a map puts a press.
+/// Place of a press by a map.
 fn placed(map: &PositionMap, press: &Press, geometry: &Geometry) -> Vec2 {
     let forces = map.trimmed(press.forces);
     map.unbent(Press { forces, ..*press }.estimate(geometry), geometry)
 }
 
-/// The best of the maps that `candidates` makes of points, each kind judged by points it has not seen.
+/// The best of the maps that `candidates` fits to points, each kind evaluated on points outside of the fit.
 fn best<T: Copy, const KINDS: usize>(
     points: &[T],
     at: impl Fn(&T) -> Vec2,
@@ -215,19 +213,19 @@ fn best<T: Copy, const KINDS: usize>(
     }
 }
 
-/// The share of the error that a map may leave, so that none is made of noise (our choice).
+/// Maximum share of the error that a useful map leaves, so that no map is fitted to noise (our choice).
 const WORTH_IT: f32 = 0.97;
 
 fn rms(distances: &[f32]) -> f32 {
     (distances.iter().map(|distance| distance * distance).sum::<f32>() / distances.len().max(1) as f32).sqrt()
 }
 
-/// Which fold each point belongs to; points of one place share one.
+/// The fold of each point; points of one place share one.
 fn folds(places: impl Iterator<Item = Vec2>) -> Vec<usize> {
     let mut seen: Vec<(i32, i32)> = Vec::new();
     places
         .map(|place| {
-            // Places closer than a centimetre are one.
+            // Places closer than a centimetre count as one.
             let key = ((place.x * 100.0).round() as i32, (place.y * 100.0).round() as i32);
             let number = seen.iter().position(|&other| other == key).unwrap_or_else(|| {
                 seen.push(key);
@@ -238,7 +236,7 @@ fn folds(places: impl Iterator<Item = Vec2>) -> Vec<usize> {
         .collect()
 }
 
-/// Whether points reach to all four sides.
+/// Checks that the points reach all four sides.
 fn spread(places: impl Iterator<Item = Vec2>, geometry: &Geometry) -> Result<(), MapError> {
     let least = MapFit::REACH * 0.5 * geometry.tile_m();
     let (low, high) =
@@ -250,16 +248,16 @@ fn spread(places: impl Iterator<Item = Vec2>, geometry: &Geometry) -> Result<(),
     }
 }
 
-/// The trims that balance the moments of all presses best.
+/// The trims that balance the moments of all presses best, by least squares.
 fn trims(presses: &[Press], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 4] {
     const COUNT: usize = 4 * PositionMap::TRIMS;
     let reach = geometry.sensor_reach_m();
     let mut sums = Normal::new(COUNT);
     for press in presses {
         let total: f32 = press.forces.iter().sum();
-        // Each newton metre off balance moves the centroid by one part of the force.
+        // An unbalanced moment divided by the force is a displacement of the centroid.
         let weight = f64::from(1.0 / (reach * total.max(FULL_N)));
-        // Each row: the four trims that count at each sensor.
+        // Each row: the four trims in effect at each sensor.
         let mut rows = [[(0, 0.0); 16]; 3];
         let mut left = [0.0; 3];
         for (corner, &force) in Corner::ALL.iter().zip(&press.forces) {
@@ -300,14 +298,14 @@ fn trims(presses: &[Press], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 
     })
 }
 
-/// Presses below this force count less, for their errors are the sensors' zeros, in newtons.
+/// Force below which presses have less weight, since their errors are the sensors' zeros (N).
 const FULL_N: f32 = 30.0;
 
-/// How strongly trims are held near zero, and near straight lines from load to load (our choice, by trying).
+/// Ridge weights that hold trims near zero, and near straight lines from load to load (our choice, by trying).
 const TRIM_SIZE: f64 = 0.002;
 const TRIM_BEND: f64 = 0.01;
 
-/// The bends that bring all sightings closest to where they belong.
+/// The bends that bring all sightings closest to their true places, by least squares.
 fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BENDS]; 2] {
     let half = 0.5 * geometry.pitch_m();
     let of_axis = |along: fn(Vec2) -> f32| {
@@ -328,10 +326,10 @@ fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BEN
     [of_axis(|shift| shift.x), of_axis(|shift| shift.y)]
 }
 
-/// How strongly bends are held near zero (our choice).
+/// Ridge weight that holds bends near zero (our choice).
 const BEND_SIZE: f64 = 0.3;
 
-/// To four decimals: files stay short, and a hundredth of a per cent is nothing.
+/// Rounds to four decimals: files stay short, and a hundredth of a per cent is negligible.
 fn rounded(number: f32) -> f32 {
     (f64::from(number * 1e4).round() / 1e4) as f32
 }
@@ -348,7 +346,7 @@ impl Normal {
         Self { matrix: DMatrix::zeros(unknowns, unknowns), right: DVector::zeros(unknowns) }
     }
 
-    /// Asks for the sum of these unknowns, each times its factor, to be `value`.
+    /// Adds the equation: the sum of these unknowns, each times its factor, is `value`.
     fn add(&mut self, factors: &[(usize, f64)], value: f64) {
         for &(i, a) in factors {
             self.right[i] += a * value;
@@ -356,7 +354,7 @@ impl Normal {
         self.hold(factors, 1.0);
     }
 
-    /// Asks for the sum of these unknowns, each times its factor, to be near zero.
+    /// Adds a penalty of this `strength` on the squared sum of these unknowns, each times its factor.
     fn hold(&mut self, factors: &[(usize, f64)], strength: f64) {
         for &(i, a) in factors {
             for &(j, b) in factors.iter().filter(|&&(j, _)| j <= i) {
@@ -365,7 +363,7 @@ impl Normal {
         }
     }
 
-    /// The unknowns; zero if the equations have no solution, which what holds them rules out.
+    /// The unknowns; zero if the equations have no solution, which the penalties rule out.
     fn solve(self) -> DVector<f64> {
         let unknowns = self.right.len();
         let solved = self.matrix.cholesky().map(|cholesky| cholesky.solve(&self.right));
@@ -379,7 +377,7 @@ mod tests {
 
     const REACH: f32 = 0.132;
 
-    /// A raster of 9 x 9 points, each pressed with some forces; `gain` is what each sensor makes of a force.
+    /// A raster of 9 x 9 points, each pressed with some forces; `gain` is the gain of each sensor at a force.
     fn presses(share: f32, gain: impl Fn(usize, f32) -> f32) -> Vec<Press> {
         let mut presses = Vec::new();
         for step in 0..81_u8 {
@@ -401,13 +399,13 @@ mod tests {
 
     #[test]
     fn gains_that_follow_the_load_are_found_without_knowing_the_force() {
-        // Each part strays by up to 15 % in a wave of its own over its load.
+        // Each part deviates by up to 15 % in a wave of its own over its load.
         let gain = |sensor: usize, load: f32| 1.0 + 0.15 * (load / 60.0 + sensor as f32).sin();
         let found = fit(&presses(0.9, gain)).unwrap();
         assert_eq!(found.points, 324);
         assert!(found.before.p95_m > 0.012, "{found:?}");
         assert!(found.after.p95_m < 0.003, "{found:?}");
-        // And between the places and forces it was made from.
+        // The same between the places and forces of the fit.
         let at = Vec2::new(0.031, -0.067);
         let forces = Corner::ALL.map(|corner| {
             let load = 0.25 * 140.0 * (1.0 + corner.direction().dot(at / REACH));
@@ -419,7 +417,7 @@ mod tests {
 
     #[test]
     fn a_known_force_mends_the_weight_as_well() {
-        // All sensors read a tenth too little: places are right, weights are not.
+        // All sensors read a tenth too low: places are right, weights are not.
         let mut pressed = presses(0.9, |sensor, load| 0.9 + 0.05 * (load / 80.0 + sensor as f32).sin());
         for press in &mut pressed {
             let load: f32 = press.forces.iter().sum();
@@ -445,7 +443,7 @@ mod tests {
         let mut broken = good.clone();
         broken[3].forces[1] = f32::NAN;
         assert_eq!(fit(&broken), Err(MapError::NotFinite { index: 3 }));
-        // Places that have nothing to do with what was pressed teach nothing.
+        // Places unrelated to the presses give no map.
         let mut swapped = presses(0.9, |_, _| 1.0);
         let places: Vec<_> = swapped.iter().map(|press| press.at).collect();
         for (number, press) in swapped.iter_mut().enumerate() {

@@ -13,20 +13,20 @@ use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId, TileId};
 pub struct PressTable {
     /// The tiles pressed, in tile-index order.
     pub tiles: Vec<TilePoints>,
-    /// Presses left out because a sensor was at 98 % of its converter's range or above.
+    /// Number of presses left out because a sensor was at 98 % of its converter's range or above.
     pub saturated: usize,
-    /// Lines left out, columns not read.
+    /// Skipped lines and unread columns.
     pub notes: TableNotes,
 }
 
 /// The points pressed on one tile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TilePoints {
-    /// Which tile.
+    /// The tile.
     pub tile: TileId,
-    /// With what each sensor read; empty if the table has places only.
+    /// Points with the readings of the sensors; empty if the table has places only.
     pub presses: Vec<Press>,
-    /// With where the floor put them; empty if the table has the sensors' forces.
+    /// Points with their measured places; empty if the table has the sensors' forces.
     pub sightings: Vec<Sighting>,
 }
 
@@ -43,13 +43,13 @@ const SIGHTINGS: usize = 2;
 impl PressTable {
     /// Reads a CSV table of points pressed on `floor`, all lengths in floor metres.
     ///
-    /// With the columns `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if the pressing force is
-    /// known): the point, its tile, and what the tile's sensors read, calibrated and tared. With
-    /// `true_x_m,true_y_m,est_x_m,est_y_m`: the point and where the floor put it without a map. Lines that cannot be
-    /// read are left out and stand in [`Self::notes`].
+    /// With the columns `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if the pressing force is known): the
+    /// point, its tile, and the readings of the tile's sensors, calibrated and tared. With
+    /// `true_x_m,true_y_m,est_x_m,est_y_m`: the point and its place as measured by the floor without a map. Lines
+    /// that cannot be read are skipped and listed in [`Self::notes`].
     ///
     /// # Errors
-    /// [`TableError`] if the header is of another table, or `reader` fails.
+    /// [`TableError`] if the header belongs to another table, or `reader` fails.
     pub fn read(reader: impl BufRead, floor: &Floor) -> Result<Self, TableError> {
         let mut table = Table::new(reader, &COLUMNS)?;
         let (header, mut row) = (table.header(), Row::default());
@@ -73,12 +73,12 @@ impl PressTable {
     }
 }
 
-/// A place in one direction, in floor metres.
+/// A coordinate, in floor metres.
 fn place<R: BufRead>(table: &mut Table<R>, row: &Row, field: usize) -> Option<f32> {
     table.number(row, field, -1e4..=1e4).map(|place| place as f32)
 }
 
-/// The point of a row and where the floor put it.
+/// The point of a row and its measured place.
 fn sighting<R: BufRead>(table: &mut Table<R>, row: &Row, geometry: &Geometry) -> Option<(TileId, Sighting)> {
     let [x, y, est_x, est_y] = std::array::from_fn(|field| place(table, row, field));
     let (at, estimate) = (Vec2::new(x?, y?), Vec2::new(est_x?, est_y?));
@@ -130,22 +130,22 @@ fn points(tiles: &mut Vec<Option<TilePoints>>, index: Option<usize>, tile: TileI
     tiles[index].get_or_insert_with(|| TilePoints { tile, presses: Vec::new(), sightings: Vec::new() })
 }
 
-/// Whether a sensor reads as much as its converter can.
+/// Whether a sensor is at the end of its converter's range.
 fn is_saturated(floor: &Floor, tile: TileId, forces: [f32; 4]) -> bool {
     let tares = floor.geometry.index(tile).and_then(|tile| floor.tare.get(tile));
     Corner::ALL.into_iter().zip(forces).any(|(corner, force)| {
         let law = floor.law(SensorId { tile, corner });
         let tare = tares.map_or(0.0, |tares| tares[corner.index()].0);
-        // Boards that calibrate themselves leave no law here to judge by.
+        // The law of boards that calibrate themselves is not known here.
         law != Calibration::NOMINAL && force + tare >= law.force(law.saturated()).0
     })
 }
 
 impl TilePoints {
-    /// The tile's map by these points.
+    /// The tile's map from these points.
     ///
     /// # Errors
-    /// What [`MapFit::of_presses`] and [`MapFit::of_sightings`] give.
+    /// Those of [`MapFit::of_presses`] and [`MapFit::of_sightings`].
     pub fn fit(&self, floor: &Floor) -> Result<MapFit, MapError> {
         if self.presses.is_empty() {
             MapFit::of_sightings(&self.sightings, &floor.geometry)

@@ -1,21 +1,21 @@
-//! How far a value can be trusted.
+//! The quality of a value.
 
 use serde::Serialize;
 
-/// How far a value can be trusted; no force, tile or board travels without one.
+/// Quality of a value; every force, tile and board has one.
 ///
-/// Only `Live` data may start an engagement; `Degraded` may where a layout
-/// allows it. Anything worse may only end one. Ordered from best to worst.
+/// Only `Live` data may start an engagement; `Degraded` may where a layout allows it. Anything worse may only end
+/// one. Ordered from best to worst.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Quality {
     /// Fresh and plausible.
     Live,
-    /// Usable with a larger error: a neighbour sensor is out, a converter saturates, packets are being lost.
+    /// Usable with a larger error: a neighbouring sensor is out, a converter saturates, packets are lost.
     Degraded,
-    /// Nothing new for too long.
+    /// Outdated: no new value within the time-out.
     #[default]
     Stale,
-    /// Known to be wrong.
+    /// Wrong.
     Faulty,
 }

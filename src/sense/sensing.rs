@@ -1,4 +1,4 @@
-//! Frames in, contacts out, by either method.
+//! From force frames to contacts, by either method.
 
 use std::time::Duration;
 
@@ -14,28 +14,28 @@ use crate::floor::{Geometry, PositionMap};
 use crate::parallel;
 use crate::units::Instant;
 
-/// How contacts are made from tile forces.
+/// Method that derives contacts from tile forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// The paper's own: one contact per group of connected tiles (Eq. 4).
     Eq4,
-    /// Feet followed through time, several in one group of tiles.
+    /// Feet tracked over time, several in one group of tiles.
     #[default]
     Tracker,
 }
 
-/// What sensing assumes about the floor.
+/// Assumptions about the floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensingConfig {
-    /// From which force on a tile counts as loaded.
+    /// Force above which a tile counts as loaded.
     pub threshold: LoadThreshold,
-    /// What is not known about the sensors.
+    /// Uncertainty of the sensors.
     pub uncertainty: SensorUncertainty,
 }
 
-/// From force frames to contacts, one frame at a time.
+/// Converts force frames to contacts, one frame at a time.
 ///
-/// The same frames always give the same contacts, to the bit.
+/// The same frames always give bit-identical contacts.
 #[derive(Clone, Debug)]
 pub struct Sensing {
     tiles: LoadedTiles,
@@ -44,7 +44,7 @@ pub struct Sensing {
     last: Option<Instant>,
 }
 
-/// What makes contacts from loaded tiles.
+/// The method's state.
 #[derive(Clone, Debug)]
 enum Maker {
     Eq4(Box<Clusters>, Box<Eq4>),
@@ -52,7 +52,7 @@ enum Maker {
 }
 
 impl Sensing {
-    /// Sensing on a floor of this geometry, with nobody on it yet.
+    /// Sensing on an empty floor of this geometry.
     #[must_use]
     pub fn new(geometry: Geometry, method: Method) -> Self {
         Self::with_config(geometry, method, SensingConfig::default())
@@ -76,7 +76,7 @@ impl Sensing {
         }
     }
 
-    /// The same, each tile corrected by its map; in tile-index order, tiles past the end have none.
+    /// Corrects each tile by its map; in tile-index order, tiles past the end have none.
     #[must_use]
     pub fn with_maps(mut self, maps: &[Option<PositionMap>]) -> Self {
         self.tiles.set_maps(maps);
@@ -85,12 +85,11 @@ impl Sensing {
 
     /// The contacts after `frame`, ordered by id.
     ///
-    /// Frames are taken at the times they carry; one that is no later than the
-    /// last counts as no time passed. A frame of another floor's size is read
-    /// as far as both go.
+    /// Frames count at their own times; for one that is no later than the last, no time passes. A frame of another
+    /// floor's size is read up to the smaller of both sizes.
     ///
     /// # Real-time
-    /// Allocates nothing once the floor has been as full as it gets.
+    /// Allocates nothing once the floor has been at its fullest.
     pub fn update(&mut self, frame: &ForceFrame) -> &[Contact] {
         let dt = self.last.map_or(0.0, |last| seconds(frame.at.since(last)));
         self.last = Some(frame.at);
@@ -101,7 +100,7 @@ impl Sensing {
                 clusters.update(tiles);
                 eq4.update(tiles, clusters, dt, pool);
             }
-            // Who helps wakes while the loaded tiles are found.
+            // The helper threads wake while the loaded tiles are found.
             Maker::Tracker(tracker) => parallel::with_pool_awake(tracker.feet(), || {
                 tiles.update(frame);
                 tracker.update(tiles, dt, pool);
@@ -116,17 +115,17 @@ impl Sensing {
         self.pool.contacts()
     }
 
-    /// What each tile felt in the last frame, in tile-index order.
+    /// The reading of each tile in the last frame, in tile-index order.
     pub fn tiles(&self) -> impl ExactSizeIterator<Item = TileReading> + '_ {
         (0..self.tiles.geometry().tile_count()).map(|index| self.tiles.reading(index))
     }
 }
 
-/// The seconds that have passed from one frame to another one `elapsed` later.
+/// The elapsed time in seconds from one frame to another one `elapsed` later.
 ///
-/// Boards sample once a millisecond, and the clock that dates frames is steered by up to 500 ppm: to two computers the
-/// same frames are not equally far apart. Where times are that near to whole milliseconds, those have passed, so that
-/// both see the same.
+/// Boards sample once a millisecond, and the frame clock is steered by up to 500 ppm: two computers see the same
+/// frames at slightly different intervals. Intervals this close to whole milliseconds are rounded, so that both get
+/// the same result.
 fn seconds(elapsed: Duration) -> f32 {
     const STEERED_US: u128 = 2;
     let millis = (elapsed.as_micros() + 500) / 1000;
@@ -211,7 +210,7 @@ mod tests {
         for step in 0..600_u16 {
             let mut frame = ForceFrame::empty(&geometry);
             frame.at = Instant::from_millis(step.into());
-            // Three steps of a point that slides over seams and corners, with a pause between.
+            // Three passes of a point that slides over seams and corners, with a pause between.
             if step % 200 < 180 {
                 let at = Vec2::splat(0.2 + f32::from(step % 200) * 0.002);
                 press(&mut frame, &geometry, at, 200.0);
@@ -225,7 +224,7 @@ mod tests {
     #[test]
     fn a_light_contact_is_less_certain_than_a_heavy_one() {
         let geometry = Geometry::default();
-        // Of load cells with maps: otherwise each part's law and memory outweigh its zero.
+        // Load cells with maps: otherwise each part's law and memory outweigh its zero.
         let config =
             SensingConfig { uncertainty: SensorUncertainty::without_memory(), ..SensingConfig::default() };
         let mut sensing =
@@ -255,7 +254,7 @@ mod tests {
         assert_eq!(readings[0], TileReading { centroid: None, ..TileReading::live() });
     }
 
-    /// The names of all contacts of a point with this force and place after so many milliseconds, in order.
+    /// The identifiers of all contacts of a point with this force and place after `millis` milliseconds, in order.
     fn names_of(point: impl Fn(f32) -> (f32, Vec2), millis: u16) -> Vec<u32> {
         let geometry = Geometry::default();
         let mut sensing = Sensing::new(geometry, Method::Tracker);
@@ -274,8 +273,8 @@ mod tests {
 
     #[test]
     fn a_foot_that_leaves_over_the_tip_of_its_toes_stays_one() {
-        // As recorded walkers do: it never rests for 0.2 s, and with a sixth of the weight left the centre of pressure
-        // runs at 2.5 m/s.
+        // As for recorded walkers: the foot never rests for 0.2 s, and with a sixth of the weight left the centre of
+        // pressure moves at 2.5 m/s.
         let toe_off = |milli: f32| {
             let [rolling, leaving, running] = [180.0, 600.0, 680.0].map(|from| (milli - from).max(0.0));
             ((800.0 - 8.2 * leaving).max(130.0), Vec2::new(0.31 + 0.00017 * rolling + 0.0025 * running, 0.45))

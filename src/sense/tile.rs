@@ -7,19 +7,19 @@ use super::corners::{self, known_corners};
 use crate::floor::{Geometry, PositionMap, TileId};
 use crate::units::Newtons;
 
-/// What one tile feels as a whole.
+/// The reading of one tile as a whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TileReading {
     /// Sum of its four sensors.
     pub force: Newtons,
-    /// Where its load acts, in floor metres; `None` where it is too light to
-    /// tell, or too few sensors are known.
+    /// Centroid of its load, in floor metres; `None` if the load is too light to locate, or too few sensors are
+    /// known.
     pub centroid: Option<Vec2>,
-    /// How far both can be trusted.
+    /// Quality of both.
     pub quality: Quality,
 }
 
-/// Force and moment of one tile, the whole of what four corner sensors under a rigid plate can say.
+/// Force and moment of one tile: all that four corner sensors under a rigid plate can measure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
     /// Total force F, in newtons.
@@ -42,8 +42,8 @@ impl Wrench {
     /// `corners` (sw, se, nw, ne).
     ///
     /// # Source
-    /// F = Σ fᵢ, F x_c = Σ fᵢ xᵢ over the four sensors (paper, Eq. 2-3). The plate's
-    /// own load f_p has been taken off sensor by sensor by the tare, which is the same thing.
+    /// F = Σ fᵢ, F x_c = Σ fᵢ xᵢ over the four sensors (paper, Eq. 2-3). The tare has subtracted the plate's own load
+    /// f_p sensor by sensor, which is equivalent.
     #[must_use]
     pub fn of_corners([sw, se, nw, ne]: [f32; 4], reach_m: f32) -> Self {
         Self {
@@ -52,10 +52,9 @@ impl Wrench {
         }
     }
 
-    /// Where the load acts relative to the tile's centre, kept on the plate of half side `half_m`.
+    /// Position of the load relative to the tile's centre, limited to the plate of half side `half_m`.
     ///
-    /// Noise may put the quotient beyond the plate, where no load can be.
-    /// Meaningless for a force of zero or less.
+    /// Noise may put the quotient beyond the plate, where no load can be. Meaningless for a force of zero or less.
     #[must_use]
     pub fn arm(&self, half_m: f32) -> Vec2 {
         (self.moment / self.force).clamp(Vec2::splat(-half_m), Vec2::splat(half_m))
@@ -65,59 +64,61 @@ impl Wrench {
 /// One tile with a load on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadedTile {
-    /// Which tile.
+    /// Its identifier.
     pub tile: TileId,
     /// Its place in tile-index order.
     pub index: u32,
     /// Its centre, in floor metres.
     pub centre: Vec2,
-    /// What its sensors read, in [`crate::floor::Corner::ALL`] order, one unknown filled in.
+    /// Readings of its sensors, in [`crate::floor::Corner::ALL`] order; an unknown one is estimated.
     pub corners: [f32; 4],
     /// Its force and moment; the force is positive.
     pub wrench: Wrench,
-    /// Standard deviation of each of `corners` beyond what is unknown of any sensor, in newtons:
-    /// zero but for one that is estimated from the others, at the end of its range, or contradicted by the others.
+    /// Standard deviation of each of `corners` beyond the general uncertainty of sensors, in newtons: zero except for
+    /// a sensor that is estimated from the others, at the end of its range, or in contradiction to the others.
     pub extra_sigma: [f32; 4],
     /// Standard deviation of the white noise of each of `corners`, in newtons, as measured while the tile was idle;
-    /// zero on a floor on which it is too small to matter.
+    /// zero on a floor with negligible noise.
     pub noise_n: f32,
-    /// How much of `wrench` is taken to be left by a recent load, in newtons; 0 under heavy loads.
+    /// Estimated part of `wrench` that remains from a recent load, in newtons; 0 under heavy loads.
     pub left_n: f32,
-    /// Where the load acts, in floor metres: on the tile's plate, or up to a few centimetres beside it
-    /// if part of the load lies on tiles around it that are too light to count themselves.
+    /// Position of the load, in floor metres: on the tile's plate, or up to a few centimetres beside it if part of
+    /// the load lies on surrounding tiles that are too light to count themselves.
     pub centroid: Vec2,
-    /// [`Quality::Live`], or [`Quality::Degraded`] with a sensor estimated or suspect.
+    /// [`Quality::Live`], or [`Quality::Degraded`] if a sensor is estimated or suspect.
     pub quality: Quality,
-    /// What the force counts for in a centroid over several tiles.
+    /// Weight of the force in a centroid over several tiles.
     weight: f32,
-    /// Standard deviation of the position along each axis that the tile's map leaves, in metres; `None` without a map.
+    /// Standard deviation of the position along each axis after correction by the tile's map (m); `None` without a
+    /// map.
     mapped_m: Option<f32>,
-    /// What the zeros of tiles that the load strays to add to a moment's variance, per variance of a sensor's zero:
-    /// four times the squared distance from the centroid, in square metres.
+    /// Contribution of the zeros of surrounding tiles with a part of the load to a moment's variance, per variance of
+    /// a sensor's zero: four times the squared distance from the centroid (m²).
     strayed_m2: f32,
-    /// Which sensors are estimated from the others, one bit each.
+    /// Sensors estimated from the others, one bit each.
     lost: u8,
-    /// What is left in `corners` of what sensors read before they were lost or found again.
+    /// Remaining blend in `corners` from the readings before a sensor was lost or returned.
     lag: [f32; 4],
-    /// What of the force lies on tiles around this one that are too light to be listed themselves.
+    /// Part of the force on surrounding tiles that are too light to be listed themselves.
     strayed: f32,
 }
 
-/// Noise of a loaded sensor, as a share of what it carries: a force that grows by `exp(1.34 v)` makes 0.3 to 1.3 % of
-/// the 2 to 10 mV of its converter (the paper's parts). It is not seen while a tile is idle, and part of the gain where
-/// uncertainty is told. With twice as much, two feet close together are told apart later.
+/// Noise of a loaded sensor, as a share of its load: a force that grows by `exp(1.34 v)` turns the 2 to 10 mV of its
+/// converter into 0.3 to 1.3 % (the paper's parts). An idle tile does not show it, and the reported uncertainty
+/// contains it as part of the gain. Twice as much would delay the separation of two close feet.
 const LOADED_NOISE: f64 = 0.01;
 
-/// Below this force a tile counts for nothing in a centroid, from the other one on in full, in newtons (our
-/// choice: two and eight deviations of what four sensors add up to on an empty floor whose zeros were followed).
+/// Force below which a tile has no weight in a centroid, and above which it has full weight (N) (our choice: two and
+/// eight deviations of the sum of four sensors on an empty floor with tracked zeros).
 pub(super) const NO_WEIGHT: f32 = 0.5;
 pub(super) const FULL_WEIGHT: f32 = 2.0;
 
-/// What `force` on one tile counts for in a centroid over several.
+/// Weight of `force` on one tile in a centroid over several.
 ///
-/// Between nothing and all there is no jump, so that a foot sliding over a seam gains its next tile gradually.
+/// It rises continuously from zero to the full force, so that a foot sliding over a seam gains its next tile
+/// gradually.
 pub(super) fn counted(force: f32) -> f32 {
-    // Most loads count in full, and need no division.
+    // Most loads have full weight and need no division.
     if force >= FULL_WEIGHT {
         return force;
     }
@@ -127,26 +128,26 @@ pub(super) fn counted(force: f32) -> f32 {
 /// The 95th percentile of a distance in the plane over its standard deviation along each axis.
 const P95_PER_DEVIATION: f32 = 2.4477;
 
-/// How a tile gets from what a sensor read to what the others say of it, or back, without a jump of its
-/// centroid that could be taken for another foot.
+/// Blends a tile from a sensor's reading to the estimate from the others, or back, without a jump of its centroid
+/// that could look like another foot.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lag {
-    /// Sensors that are estimated now, one bit each.
+    /// Sensors estimated now, one bit each.
     lost: u8,
-    /// What the tile's sensors read before, the last lag, and which sensors were estimated then.
+    /// The tile's corners before, the last lag, and the sensors estimated then.
     before: Option<([f32; 4], [f32; 4], u8)>,
-    /// What is left of the last lag.
+    /// Decay factor of the last lag.
     fade: f32,
 }
 
-/// How long the way from one to the other takes, in seconds (e-fold; our choice: a slow shift of weight).
+/// Time constant of the blend (s) (our choice: a slow shift of weight).
 const LAG_S: f32 = 0.08;
 
-/// Lag that is over, in newtons.
+/// Lag below which the blend ends (N).
 const NO_LAG_N: f32 = 0.05;
 
 impl Lag {
-    /// The lag of a tile whose sensors have `quality`, `dt` seconds after it was as `before`.
+    /// The lag of a tile with sensors of `quality`, `dt` seconds after the state `before`.
     pub(super) fn new(quality: [Quality; 4], before: Option<&LoadedTile>, dt: f32) -> Self {
         let bit = |(corner, quality): (usize, Quality)| u8::from(quality >= Quality::Stale) << corner;
         let lost = quality.into_iter().enumerate().map(bit).sum();
@@ -158,7 +159,7 @@ impl Lag {
         }
     }
 
-    /// What to add to `corners`.
+    /// Lag to add to `corners`.
     fn of(&self, corners: [f32; 4]) -> [f32; 4] {
         let Some((read, lag, lost)) = self.before else { return [0.0; 4] };
         std::array::from_fn(|corner| {
@@ -171,20 +172,20 @@ impl Lag {
 }
 
 impl LoadedTile {
-    /// What the tile's force counts for in a centroid over several tiles.
+    /// Weight of the tile's force in a centroid over several tiles.
     pub(super) fn weight(&self) -> f32 {
         self.weight
     }
 
-    /// What its map leaves along each axis, in metres (standard deviation); `None` without one.
+    /// Standard deviation along each axis after correction by its map (m); `None` without one.
     pub(super) fn mapped_m(&self) -> Option<f32> {
         self.mapped_m
     }
 
-    /// Standard deviation of the noise of each of its sensors under this load, in newtons.
+    /// Standard deviation of the noise of each of its sensors under this load (N).
     pub(super) fn loaded_noise_n(&self) -> f64 {
         let under_load = LOADED_NOISE * 0.25 * f64::from(self.wrench.force);
-        // As on most floors: not worth a square root.
+        // As on most floors: saves a square root.
         if self.noise_n == 0.0 { under_load.abs() } else { f64::from(self.noise_n).hypot(under_load) }
     }
 
@@ -192,7 +193,7 @@ impl LoadedTile {
         self.strayed_m2
     }
 
-    /// What the tile itself feels.
+    /// The reading of the tile itself.
     pub(super) fn reading(&self, geometry: &Geometry) -> TileReading {
         let half = Vec2::splat(0.5 * geometry.pitch_m());
         TileReading {
@@ -202,7 +203,7 @@ impl LoadedTile {
         }
     }
 
-    /// Adds `force` at `point` of a tile around this one that is too light to be listed itself.
+    /// Adds `force` at `point` of a surrounding tile that is too light to be listed itself.
     pub(super) fn add_strayed(&mut self, force: f32, point: Vec2) {
         self.weight += force;
         self.strayed += force;
@@ -219,16 +220,16 @@ impl LoadedTile {
         self.extra_sigma = std::array::from_fn(|corner| extra[corner].max(self.extra_sigma[corner]));
     }
 
-    /// Whether nothing of its past has to be remembered: every sensor was live, and none has just been found or lost.
+    /// Whether it needs no state from its past: every sensor was live, and none has just been lost or returned.
     #[inline]
     pub(super) fn is_settled(&self) -> bool {
         self.lost == 0 && self.lag == [0.0; 4]
     }
 
-    /// The tile at `place` with live sensors that read `corners`; `None` unless they add up to at
-    /// least `least` and more than nothing. `map` corrects them and the place.
+    /// The tile at `place` with live sensors that read `corners`; `None` unless their sum is at least `least` and
+    /// positive. `map` corrects the corners and the position.
     ///
-    /// The corners are read in place: handed over by value, the copy cost plain Eq. 4 a sixth of its time.
+    /// The corners are passed by reference: by value, the copy took a sixth of plain Eq. 4's time.
     #[inline]
     pub(super) fn new(
         place: Place,
@@ -243,8 +244,8 @@ impl LoadedTile {
         }
     }
 
-    /// As [`Self::new`], with sensors of any quality, `dt` seconds after it was as `before`; beside it
-    /// what the tile carries, if some of what its sensors read is not to be counted.
+    /// Like [`Self::new`], with sensors of any quality, `dt` seconds after the state `before`; also returns the
+    /// tile's load if some of its sensors' readings do not count.
     #[cold]
     #[inline(never)]
     pub(super) fn of_any_quality(
@@ -256,7 +257,7 @@ impl LoadedTile {
         before: Option<&Self>,
         dt: f32,
     ) -> (Option<f32>, Option<Self>) {
-        // What one sensor tells of another holds as well as both are known.
+        // The map applies first: the estimate of a sensor from the others requires corrected readings.
         let known = known_corners(map.map_or(forces, |map| map.trimmed(forces)), quality);
         let is_lost = quality.iter().any(|&quality| quality >= Quality::Stale);
         let carried = is_lost.then(|| known.map_or(0.0, |(corners, _)| corners.iter().sum()));
@@ -312,7 +313,7 @@ impl LoadedTile {
     }
 }
 
-/// Which tile, and where.
+/// A tile and its position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     tile: TileId,

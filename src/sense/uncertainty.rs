@@ -1,4 +1,4 @@
-//! How uncertain a centroid is, by what sensors leave open.
+//! Uncertainty of a centroid due to the uncertainty of the sensors.
 
 use glam::{Vec2, Vec4};
 
@@ -6,90 +6,88 @@ use super::contact::Covariance;
 use super::tile::LoadedTile;
 use crate::floor::Geometry;
 
-/// What is not known about the sensors, however well they are calibrated.
+/// The uncertainty that remains after calibration of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorUncertainty {
     /// Standard deviation of a sensor's zero, in newtons.
     pub offset_n: f32,
-    /// Standard deviation of a sensor's gain after calibration under light loads, as a share of the reading; half as
-    /// much again from 60 N on, where parts stray farther from their laws. Beyond 180 N it stays what it is there in
-    /// newtons.
+    /// Standard deviation of a sensor's gain after calibration under light loads, as a share of the reading; one and
+    /// a half times as much from 60 N on, where parts deviate farther from their laws. Beyond 180 N it stays constant
+    /// in newtons.
     pub gain: f32,
-    /// Standard deviation of what hysteresis and creep put on a reading, as a share of it; no calibration removes that.
+    /// Standard deviation due to hysteresis and creep, as a share of the reading; no calibration removes it.
     pub memory: f32,
-    /// Standard deviation of what plates that bend, seams that touch and crosstalk put on each sensor of a tile, as a
+    /// Standard deviation of each sensor of a tile due to plates that bend, seams that touch and crosstalk, as a
     /// share of the tile's load.
     pub misplaced: f32,
 }
 
-/// The arm over which what a map leaves of a place is what it leaves of each sensor, in metres: about a sensor's
-/// distance from the load (by the coverage of points and feet of 50 to 400 N on simulated floors, as the next two).
+/// Arm that converts a map's remaining position error into an error of each sensor (m): about a sensor's distance
+/// from the load (by the coverage of points and feet of 50 to 400 N on simulated floors, as the next two).
 const ARM_M: f32 = 0.125;
 
-/// What it leaves of a sensor that carries next to nothing, in parts of that.
+/// Error of a sensor that carries next to nothing, in units of that error.
 const LIGHT: f32 = 0.25;
 
-/// The load at which one part more is left, in newtons; it grows with the square, up to the gain of a tile without
-/// a map: few presses teach a sensor how it reads near the end of its range.
+/// Load at which one more unit of error remains (N); it grows with the square, up to the gain of a tile without a
+/// map: few presses calibrate a sensor near the end of its range.
 const HEAVY_N: f32 = 102.0;
 
-/// The load from which on the gain of a tile without a map is as uncertain as it gets, in newtons.
+/// Load above which the gain of a tile without a map has its maximum uncertainty (N).
 const STRAYS_N: f32 = 60.0;
 
-/// How much more uncertain it is there than under a light load, as a share (both by the same coverage).
+/// Additional uncertainty there relative to that under a light load (both by the same coverage).
 const STRAYS: f32 = 0.55;
 
-/// The load from which on it is not the share but the newtons that stay as uncertain: a law is fitted to those.
+/// Load above which the uncertainty is constant in newtons and not as a share, because the fit of a law minimises
+/// newtons.
 const FITTED_N: f32 = 180.0;
 
-/// The load from which on a part may be compressing towards its end, in newtons, and how much its standard deviation
-/// then grows for each newton more.
+/// Load above which a part may compress towards its end (N), and growth of its standard deviation per further newton.
 ///
-/// A part that ends smoothly at 300 N, `r = f (1 + (f / 300)^6)^(-1/6)`, hides 2 N at a reading of 200 N, 17 N at 250 N
-/// and 55 N at 280 N: the share is the mean of what it hides there, and half of the simulated parts end later.
+/// A part that ends smoothly at 300 N, `r = f (1 + (f / 300)^6)^(-1/6)`, hides 2 N at a reading of 200 N, 17 N at 250
+/// N and 55 N at 280 N: the factor is the mean of these, and half of the simulated parts end later.
 const COMPRESSES_N: f32 = 200.0;
 const COMPRESSES: f32 = 0.4;
 
-/// The least force over which what is not known of the sensors is spread, in newtons: lighter contacts are not placed
-/// at all.
+/// Minimum force over which the sensors' uncertainty is spread (N): lighter contacts have no position at all.
 const LEAST_N: f32 = 2.0;
 
-/// Standard deviation of what each sensor of a tile that the load strays to carries without being counted, in newtons
-/// (by the same coverage, of feet of 50 N).
+/// Standard deviation of the uncounted load on each sensor of a surrounding tile with a part of the load (N) (by the
+/// same coverage, of feet of 50 N).
 const UNSEEN_N: f32 = 0.27;
 
 impl Default for SensorUncertainty {
-    /// A ninth of a newton of offset, 10.7 % of gain: what remains once an empty floor's zeros have been followed,
-    /// and after a calibration.
+    /// A ninth of a newton of offset, 10.7 % of gain: the remainder with tracked zeros of an empty floor, and after a
+    /// calibration.
     ///
-    /// The paper's 5 % (section 2.2) are of full scale. Of a reading it is more, and the ellipses hold 95 % of
-    /// the true places on simulated parts like the paper's with this much. Force-sensing resistors remember: a
-    /// hysteresis of 10 % from lowest to highest (evenly spread, 2.9 %) and a creep of 5 % a decade, of which the time
+    /// The paper's 5 % (section 2.2) are of full scale. Of a reading it is more, and with this value the ellipses
+    /// cover 95 % of the true places on simulated parts like the paper's. Force-sensing resistors have memory: a
+    /// hysteresis of 10 % from lowest to highest (uniform, 2.9 %) and a creep of 5 % a decade, of which the time
     /// under load leaves a decade open (2.9 %), are a maker's figures, together 4 %. A plate of 12 mm plywood on soft
-    /// feet puts some 2 % of its load on the wrong corners (by the coverage of all scenes on such floors).
+    /// feet puts about 2 % of its load on the wrong corners (by the coverage of all scenes on such floors).
     fn default() -> Self {
         Self { offset_n: 0.11, gain: 0.107, memory: 0.04, misplaced: 0.02 }
     }
 }
 
 impl SensorUncertainty {
-    /// Of sensors that neither lag nor creep, such as load cells, under rigid plates that touch nothing.
+    /// The uncertainty of sensors without lag and creep, such as load cells, under rigid plates that touch nothing.
     #[must_use]
     pub fn without_memory() -> Self {
         Self { memory: 0.0, misplaced: 0.0, ..Self::default() }
     }
 
-    /// Covariance, in square metres, of a centroid at `point` that carries `force` newtons in all, as far as the
-    /// sensors of `tile` cause; those of all its tiles add up.
+    /// Covariance, in square metres, of a centroid at `point` that carries `force` newtons in all, due to the sensors
+    /// of `tile`; the covariances of all its tiles add up.
     ///
-    /// `share` of the tile's load is the contact's own: its gain errors count for that part.
+    /// `share` of the tile's load is the contact's own: the gain errors of that part count.
     ///
     /// # Source
-    /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ:
-    /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + (memory fᵢ)² + (misplaced Σ f)² + noise² + extra², the
-    /// last for a sensor that is estimated, not calibrated or at the end of its range. The gain is that of
-    /// [`SensorUncertainty::gain`] under the sensor's load; on a tile with a position map it follows from what that
-    /// leaves ([`crate::floor::PositionMap::residual_m`]).
+    /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ: ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² +
+    /// (memory fᵢ)² + (misplaced Σ f)² + noise² + extra², the last for a sensor that is estimated, not calibrated or
+    /// at the end of its range. The gain is that of [`SensorUncertainty::gain`] under the sensor's load; on a tile
+    /// with a position map it follows from the map's residual ([`crate::floor::PositionMap::residual_m`]).
     #[must_use]
     #[inline]
     pub fn covariance(
@@ -119,8 +117,8 @@ impl SensorUncertainty {
         }
     }
 
-    /// Standard deviation of what the gains of four sensors that carry `loads` put on them, in newtons, on a tile
-    /// whose map leaves `mapped_m` along each axis.
+    /// Standard deviation of four sensors with `loads` due to their gains (N), on a tile with a residual of
+    /// `mapped_m` along each axis after its map.
     fn misread_n(&self, loads: Vec4, mapped_m: Option<f32>) -> Vec4 {
         let strays = Vec4::ONE + STRAYS * (loads / STRAYS_N).clamp(Vec4::ZERO, Vec4::ONE);
         let hidden = COMPRESSES * (loads - COMPRESSES_N).max(Vec4::ZERO);

@@ -1,4 +1,4 @@
-//! One board: its packets that wait, its sensors' calibration and tare.
+//! One board: its waiting packets, and its sensors' calibration and tare.
 
 use smallvec::SmallVec;
 
@@ -14,10 +14,10 @@ use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
 
-/// How much more than nothing a sensor must read on the empty floor to be missed there, in newtons.
+/// Force above the zero-count reading from which a sensor of the empty floor counts as loaded (N).
 const RESTS_N: f32 = 1.0;
 
-/// One board: its stream, its wiring, and what it read in the slots that wait.
+/// One board: its stream, its wiring, and its samples in the waiting slots.
 #[derive(Clone, Debug)]
 pub(super) struct BoardTrack {
     pub(super) stream: Stream,
@@ -25,37 +25,37 @@ pub(super) struct BoardTrack {
     number: usize,
     geometry: Geometry,
     channels: Vec<Option<Channel>>,
-    /// The same, as sensors are worked on side by side. Most boards have one wide window, which lies here: frames are
-    /// made board by board, and what is next in memory is fetched ahead.
+    /// The same channels as windows for vector operations. Most boards have one wide window, which is stored inline:
+    /// frames are made board by board, and the next board's memory is prefetched.
     wide: SmallVec<[Window<WIDE>; 1]>,
     narrow: Vec<Window<NARROW>>,
-    /// In which buffers a packet of it waits.
+    /// Buffers in which a packet of this board waits.
     waits: [bool; BUFFERS],
-    /// In which buffer its last packet is, and whether that was no news under a load.
+    /// Buffer of its last packet, and whether that packet repeated the one before under a load.
     last: Option<usize>,
     repeats: bool,
-    /// Whether any of its packets had counts, which only the floor's calibration makes newtons of. The type of a later
-    /// packet changes nothing: a board that has sent counts once needs calibration.
+    /// Whether any of its packets had counts, which only the floor's calibration converts to newtons. Later packets
+    /// with newtons do not reset it: a board that has sent counts once needs calibration.
     has_sent_counts: bool,
-    /// Whether nobody has calibrated some of its sensors.
+    /// Whether some of its sensors are uncalibrated.
     has_nominal: bool,
     /// Whether it sends under another board's address.
     is_swapped: bool,
     tare: TareState,
 }
 
-/// What one channel measures. Small, for a large floor has many.
+/// The sensor of one channel. Small, since a large floor has many.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Channel {
     pub(super) tile: u32,
     pub(super) corner: Corner,
-    /// Whether its law is the nominal part's, since nobody has measured its own.
+    /// Whether it uses the nominal part's law, without a calibration of its own.
     pub(super) is_nominal: bool,
-    /// Counts from which on it reads "at least".
+    /// Counts at and above which the reading is a lower bound.
     pub(super) saturated: u16,
     pub(super) calibration: Calibration,
     pub(super) tare: f32,
-    /// Whether so much rests on it while the floor is empty that it never reads nothing.
+    /// Whether the plate's weight on it is so large that it never reads zero.
     pub(super) bears: bool,
 }
 
@@ -118,7 +118,7 @@ impl BoardTrack {
         self.channels.len()
     }
 
-    /// Number of lanes of all its windows, whether a channel reads them or not.
+    /// Number of lanes of all its windows, with or without a channel.
     pub(super) fn lane_count(&self) -> usize {
         WIDE * self.wide.len() + NARROW * self.narrow.len()
     }
@@ -127,13 +127,13 @@ impl BoardTrack {
         self.waits[buffer]
     }
 
-    /// Keeps `readings` until the frame of `buffer`'s slot is made; true if they are news.
+    /// Keeps `readings` until the frame of `buffer`'s slot is made; returns true if they are new.
     ///
-    /// They are not if they are, bit for bit, those of the packet before, although something rests on the board: a
-    /// converter that works is noisy, and a foot never keeps still to a count.
+    /// They are not new if they equal, bit for bit, those of the packet before while the board carries a load: a
+    /// working converter is noisy, and a foot never keeps still to a count.
     ///
-    /// That holds only where a sensor under load has shown so much noise that a repetition is improbable. An empty board
-    /// may repeat itself.
+    /// This requires a sensor under load with noise that makes a repetition improbable. An empty board may repeat its
+    /// readings.
     pub(super) fn store(
         &mut self,
         buffer: usize,
@@ -154,12 +154,12 @@ impl BoardTrack {
         !self.repeats
     }
 
-    /// Whether its last packet said nothing new under a load.
+    /// Whether its last packet repeated the one before under a load.
     pub(super) const fn repeats(&self) -> bool {
         self.repeats
     }
 
-    /// Whether a sensor whose noise is known carries something.
+    /// Whether a sensor with known noise carries a load.
     fn bears_load(&self, sample: &Sample, health: &Health) -> bool {
         let zero = |tile, corner| health.tells(tile, corner).then(|| health.zero(tile, corner));
         let wide = self.wide.iter().flat_map(|window| window.net(sample, zero));
@@ -167,7 +167,7 @@ impl BoardTrack {
         all.any(|force| force > LOUD_N)
     }
 
-    /// Forgets what waits in `buffer`; true if there was something.
+    /// Discards the packet in `buffer`; returns true if there was one.
     pub(super) fn clear(&mut self, buffer: usize) -> bool {
         std::mem::take(&mut self.waits[buffer])
     }
@@ -192,18 +192,18 @@ impl BoardTrack {
         self.is_swapped = swapped;
     }
 
-    /// Whether the floor file says what its sensors read on the empty floor.
+    /// Whether the floor file holds the readings of its sensors on the empty floor.
     pub(super) const fn has_known_tare(&self) -> bool {
         matches!(self.tare, TareState::FromFloor)
     }
 
-    /// By how many newtons the middle one of this board's sensors would miss its tare if it read `mean`; `None` if that
-    /// is not for its channels, or if it would miss it by no less than `below`. `misses` is space for sorting.
+    /// Median distance of this board's sensors from their tares for the readings `mean` (N); `None` if `mean` does
+    /// not fit its channels, or if the median is `below` or more. `misses` is space for sorting.
     pub(super) fn misfit(&self, mean: &Sample, below: Option<f32>, misses: &mut Vec<f32>) -> Option<f32> {
         if mean.len() != self.channels.len() {
             return None;
         }
-        // To count is far less work than to sort, and most places fit worse than the best so far.
+        // Counting is far cheaper than sorting, and most places fit worse than the best so far.
         if below.is_some_and(|below| !self.misses_by_less(mean, below)) {
             return None;
         }
@@ -218,7 +218,8 @@ impl BoardTrack {
         Some(*misses.select_nth_unstable_by(middle, f32::total_cmp).1)
     }
 
-    /// Whether the middle one of this board's sensors would miss its tare by less than `below` if it read `mean`.
+    /// Whether the median distance of this board's sensors from their tares for the readings `mean` is less than
+    /// `below`.
     fn misses_by_less(&self, mean: &Sample, below: f32) -> bool {
         let wide = self.wide.iter().map(|window| count_misses_wide(window, mean, below));
         let counts = wide.chain(self.narrow.iter().map(|window| window.count_misses(mean, below)));
@@ -226,7 +227,7 @@ impl BoardTrack {
         less > known / 2
     }
 
-    /// How far all of its values can be trusted.
+    /// Quality of all of its values.
     pub(super) fn quality(&self) -> Quality {
         if !self.stream.presence.is_live() || self.is_taring() {
             Quality::Stale
@@ -241,7 +242,7 @@ impl BoardTrack {
         matches!(self.tare, TareState::Measuring(_))
     }
 
-    /// Starts averaging the tare afresh, if it is being measured.
+    /// Restarts the average of a tare that is being measured.
     pub(super) fn interrupt_tare(&mut self) {
         if let TareState::Measuring(meter) = &mut self.tare {
             meter.interrupt();
@@ -265,8 +266,7 @@ impl BoardTrack {
             .map(|channel| (channel.tile as usize, channel.corner, Newtons(channel.tare)))
     }
 
-    /// Writes what it read in `buffer` into `frame` and frees its place there; without a sample there,
-    /// what it read last stays.
+    /// Writes its sample in `buffer` into `frame` and frees the buffer; without a sample there, the last values stay.
     pub(super) fn apply(
         &mut self,
         buffer: Option<usize>,
@@ -291,7 +291,7 @@ impl BoardTrack {
         }
     }
 
-    /// Writes calibrated and tared forces; gives the number of bad readings.
+    /// Writes calibrated and tared forces; returns the number of bad readings.
     fn write(&self, sample: &Sample, quality: Quality, frame: &mut ForceFrame, health: &mut Health) -> u64 {
         let trust = Trust { quality, is_swapped: self.is_swapped, is_foreign: health.is_foreign() };
         let mut bad = 0;

@@ -1,14 +1,14 @@
-//! What the boards have read in the slots that wait for others.
+//! Buffers for the boards' samples in the slots that wait for other boards.
 
 use super::sample::Sample;
 
-/// How many slots may wait for their boards at once.
+/// Maximum number of slots that wait for their boards.
 pub(super) const BUFFERS: usize = 8;
 
-/// A place for each board's sample in each slot that waits.
+/// One sample for each board in each waiting slot.
 ///
-/// Those of one slot lie side by side, as they are written and read: mostly no more than one slot waits, and what lies
-/// between samples would be fetched for nothing.
+/// The samples of one slot are contiguous, in the order of access: mostly only one slot waits, and gaps between
+/// samples would waste memory bandwidth.
 #[derive(Clone, Debug)]
 pub(super) struct Buffers {
     boards: usize,
@@ -20,7 +20,7 @@ impl Buffers {
         Self { boards, samples: vec![Sample::EMPTY; BUFFERS * boards] }
     }
 
-    /// What the board of this number has read in the slot of this buffer, or of an earlier one.
+    /// The sample of this board in the slot of this buffer, or in an earlier slot.
     pub(super) fn sample(&self, buffer: usize, board: usize) -> &Sample {
         &self.samples[buffer * self.boards + board]
     }

@@ -8,13 +8,13 @@ pub(super) const SLOT_NS: i64 = 1_000_000;
 /// Largest difference in speed between sample clock and receive clock, in nanoseconds per slot (500 ppm).
 const MAX_STEER_NS: i64 = 500;
 
-/// Time in which an error would be steered out, in slots (1 s).
+/// Time over which an error is steered out, in slots (1 s).
 const STEER_SLOTS: i64 = 1000;
 
-/// Error from which on the clock is set rather than steered; only ever forward.
+/// Error above which the clock is set instead of steered; only ever forward.
 const SET_NS: i64 = 100_000_000;
 
-/// Nanoseconds on the receive clock; moments past 146 years count as that.
+/// Nanoseconds on the receive clock, at most 146 years.
 pub(super) fn nanos(instant: Instant) -> i64 {
     const END: u64 = 1 << 62;
     instant.micros().saturating_mul(1000).min(END).cast_signed()
@@ -37,7 +37,7 @@ impl SampleClock {
         Self { base_slot: 0, base_ns: start_ns, slot_ns: SLOT_NS }
     }
 
-    /// When `slot` is.
+    /// Time of `slot`.
     pub(super) const fn at_ns(&self, slot: i64) -> i64 {
         self.base_ns.saturating_add(slot.saturating_sub(self.base_slot).saturating_mul(self.slot_ns))
     }
@@ -52,9 +52,8 @@ impl SampleClock {
         self.slot_before(ns + self.slot_ns / 2)
     }
 
-    /// Corrects the clock from `slot` on; `error_ns` is how much later than
-    /// their slots' times packets arrive. Gives back how far the clock was set
-    /// forward, zero if it was only steered.
+    /// Corrects the clock from `slot` on; `error_ns` is the delay of packets after their slots' times. Returns by how
+    /// much the clock was set forward, zero if it was only steered.
     pub(super) fn correct(&mut self, slot: i64, error_ns: i64) -> i64 {
         self.base_ns = self.at_ns(slot);
         self.base_slot = slot;
@@ -69,13 +68,13 @@ impl SampleClock {
     }
 }
 
-/// Packets that a window needs before its least delay means something.
+/// Minimum number of packets in a window for its least delay to be valid.
 const ENOUGH: u32 = 16;
 
-/// Time that a window must cover, so that one burst of delayed packets is not taken for the rule.
+/// Minimum length of a window, so that one burst of delayed packets does not determine it.
 const WINDOW_NS: i64 = 48_000_000;
 
-/// The least delay of one board's packets: delay only ever adds to the truth, so the least is nearest to it.
+/// The least delay of one board's packets: delays only add to the true time, so the least is nearest to it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Arrivals {
     window: Option<Window>,
@@ -97,13 +96,13 @@ impl Arrivals {
         window.least_ns = window.least_ns.min(delay_ns);
     }
 
-    /// The least delay lately; `None` before the first packet.
+    /// The least recent delay; `None` before the first packet.
     pub(super) fn least_ns(&self) -> Option<i64> {
         let window = self.window.map(|window| window.least_ns);
         window.into_iter().chain(self.last_least_ns).min()
     }
 
-    /// Ends the window if it has seen enough, and gives its least delay.
+    /// Ends the window if it has enough packets, and returns its least delay.
     pub(super) fn close(&mut self, now_ns: i64) -> Option<i64> {
         let window = self.window?;
         if window.packets < ENOUGH || now_ns - window.start_ns < WINDOW_NS {
@@ -114,7 +113,7 @@ impl Arrivals {
         self.last_least_ns
     }
 
-    /// Adapts what was noted when the slots' times move by `by_ns`.
+    /// Adapts the delays when the slots' times move by `by_ns`.
     pub(super) fn slots_moved(&mut self, by_ns: i64) {
         if let Some(window) = &mut self.window {
             window.least_ns -= by_ns;
@@ -124,7 +123,7 @@ impl Arrivals {
         }
     }
 
-    /// Forgets everything: the board starts anew.
+    /// Resets everything: the board starts anew.
     pub(super) fn forget(&mut self) {
         *self = Self::default();
     }

@@ -1,4 +1,4 @@
-//! Packets of boards in, frames of the whole floor out.
+//! Assembles the packets of boards into frames of the whole floor.
 
 mod board;
 mod buffers;
@@ -30,25 +30,25 @@ use crate::floor::{Floor, SensorId, TileId};
 use crate::units::{Instant, Newtons};
 use crate::wire::{LinkCounters, LinkState, SensorPacket};
 
-/// A slot is taken for complete when a board has delivered one this much later.
+/// A slot counts as complete when a board has delivered one this many slots later.
 const AHEAD: i64 = 2;
 
-/// The same on a part of a floor, where other computers forward what some boards send. One that is busy for a few
-/// milliseconds costs a delay, not a tenth of its boards' packets (our choice; six programs on two cores lost 2 to 3 %
-/// of what was forwarded with 2, and none with 6).
+/// The same on a part of a floor, where other computers forward the packets of some boards. A computer that is busy
+/// for a few milliseconds then causes a delay instead of the loss of a tenth of its boards' packets (our choice; six
+/// programs on two cores lost 2 to 3 % of the forwarded packets with 2, and none with 6).
 const AHEAD_OF_PART: i64 = 6;
 
-/// A slot still incomplete this long after its last packet is passed on when time passes without packets.
+/// Time without packets after which an incomplete slot is released, since its last packet.
 const PATIENCE_NS: i64 = 3 * SLOT_NS;
 
-/// How often the boards' slots and the clock are compared with the receive clock.
+/// Interval at which the boards' slots and the clock are compared with the receive clock.
 const ALIGN_NS: i64 = 64 * SLOT_NS;
 
-/// Slots of all boards that lie this much ahead of their packets are moved back: steering would take a minute, and a
-/// board that counts a thousandth too fast would lead the clock away.
+/// Lead of the slots of all boards over their packets above which the slots are moved back: steering would take a
+/// minute, and a board that counts a thousandth too fast would pull the clock away.
 const FAST_NS: i64 = 20 * SLOT_NS;
 
-/// Puts the packets of all boards together into one calibrated, tared [`ForceFrame`] per millisecond.
+/// Assembles the packets of all boards into one calibrated, tared [`ForceFrame`] per millisecond.
 ///
 /// ```text
 /// loop {
@@ -60,46 +60,40 @@ const FAST_NS: i64 = 20 * SLOT_NS;
 /// }
 /// ```
 ///
-/// **Slots.** Each board counts its own samples, and boards start at different
-/// times. A board's first packet is given the common millisecond (slot) nearest
-/// to its arrival; from there its sequence number counts slots. Crystals drift:
-/// a board more than 0.75 ms off the others is moved by a slot, which leaves
-/// out or repeats one sample. Delay is judged by the quickest packet of some
-/// 64 ms, so that jitter moves nothing.
+/// **Slots.** Each board counts its own samples, and boards start at different times. A board's first packet receives
+/// the common millisecond (slot) nearest to its arrival; from there its sequence number counts slots. Crystals drift:
+/// a board more than 0.75 ms off the others is moved by a slot, which leaves out or repeats one sample. The fastest
+/// packet of about 64 ms determines the delay, so jitter moves nothing.
 ///
-/// **Rates.** The pace of a board that sends more or fewer than 1000 packets a second is measured within a
-/// second; its samples then go to the slots in which they arrive, the first where several do. Beyond
+/// **Rates.** The assembler measures within a second the pace of a board that sends more or fewer than 1000 packets a
+/// second; the board's samples then go to the slots in which they arrive, the first where several do. Beyond
 /// [`crate::wire::BOARD_RATES_HZ`] its sensors are [`Quality::Degraded`].
 ///
-/// **Time.** A frame's `at` is its slot's time on a sample clock that follows
-/// the receive clock by at most 500 ppm, or is set forward when it is more than
-/// 100 ms behind. It is never more than 100 ms ahead, whatever boards send. It grows from frame to frame, by 1 ms unless slots were lost
-/// altogether. Where packets are stamped with exact milliseconds, as by a
-/// simulated floor, `at` is exact to the microsecond.
+/// **Time.** A frame's `at` is its slot's time on a sample clock that follows the receive clock by at most 500 ppm,
+/// or is set forward when it is more than 100 ms behind. It is never more than 100 ms ahead, at any packet rate. It
+/// grows from frame to frame, by 1 ms unless slots were lost altogether. If packets carry exact millisecond stamps,
+/// as those of a simulated floor do, `at` is exact to the microsecond.
 ///
-/// **Completeness.** A frame is ready when every board that reported within the last
-/// 100 ms has delivered its slot or a later one, or when any board is two slots
-/// ahead; six on a part of a larger floor. Boards without a sample in the slot keep their last values. What
-/// comes later than that, comes twice, or comes after silence and was more than
-/// 20 ms on its way, is dropped and counted.
+/// **Completeness.** A frame is ready when every board that reported within the last 100 ms has delivered its slot or
+/// a later one, or when any board is two slots ahead; six on a part of a larger floor. Boards without a sample in the
+/// slot keep their last values. The assembler drops and counts packets that come later than that, come twice, or come
+/// after silence and were more than 20 ms on their way.
 ///
-/// **Trust.** A board without a usable sample for 100 ms becomes
-/// [`Quality::Stale`], and so does one that rebooted, for at least one frame. Readings that
-/// repeat those of the packet before, all of them and under a load, are not usable where the sensors'
-/// noise makes that improbable: the converters stand still ([`BoardStatus::frozen`]). The sensors of a tile become
-/// [`Quality::Stale`] as well if two of them do so by themselves ([`Assembler::repeating`]).
-/// It returns with its next sample, but only after a clean second if outages
-/// follow each other within two seconds. More than 10 % of lost packets within
-/// a second, or a sensor at 98 % of its range, or one that sends counts and was never
-/// calibrated ([`Floor::uncalibrated`]), means [`Quality::Degraded`]; a
-/// reading that is not a number [`Quality::Faulty`].
+/// **Trust.** A board without a usable sample for 100 ms becomes [`Quality::Stale`], and so does one that rebooted,
+/// for at least one frame. Readings of a loaded board that all repeat those of the packet before are not usable if
+/// the sensors' noise makes that improbable: the converters are frozen ([`BoardStatus::frozen`]). The sensors of a
+/// tile become [`Quality::Stale`] as well if two of them repeat by themselves ([`Assembler::repeating`]). A stale
+/// board returns with its next sample, but only after a clean second if outages follow each other within two seconds.
+/// More than 10 % of lost packets within a second, a sensor at 98 % of its range, or a sensor that sends counts and
+/// was never calibrated ([`Floor::uncalibrated`]) means [`Quality::Degraded`]; a reading that is not a number means
+/// [`Quality::Faulty`].
 ///
-/// **Health.** Each sensor is compared with the other three of its plate, and its
-/// zero is followed while its tile is empty and quiet; [`Trouble`] says what can be found. Time is
-/// the boards' own there: slots, however the sample clock is steered.
+/// **Health.** Each sensor is compared with the other three of its plate, and its zero is tracked while its tile is
+/// empty and quiet; [`Trouble`] lists the detectable faults. These checks use the boards' own time, counted in slots
+/// and independent of the steering of the sample clock.
 ///
-/// It has no clock of its own: `received` and `now` are on the source's clock;
-/// one that is earlier than the last counts as the last.
+/// The assembler has no clock of its own: `received` and `now` are on the source's clock; a time earlier than the last
+/// counts as the last.
 #[derive(Clone, Debug)]
 pub struct Assembler {
     floor_tiles: usize,
@@ -108,27 +102,27 @@ pub struct Assembler {
     /// `None` before the first packet.
     clock: Option<SampleClock>,
     now_ns: i64,
-    /// When the first packet came.
+    /// Arrival of the first packet.
     first_packet_ns: Option<i64>,
     swept_ns: i64,
-    /// No board falls silent before this.
+    /// No board becomes silent before this time.
     patient_until_ns: i64,
     aligned_ns: i64,
     /// Slots that wait for boards, earliest first.
     waiting: ArrayVec<Waiting, BUFFERS>,
-    /// How many boards frames wait for.
+    /// Number of boards for which frames wait.
     awaited: usize,
-    /// No board had reached a later slot before the packet that is sorted in.
+    /// Latest slot that any board had reached before the present packet.
     front: i64,
-    /// By how many slots one board must be ahead for them to wait no longer.
+    /// Number of slots by which one board must be ahead for slots to wait no longer.
     ahead: i64,
     /// The last slot made into a frame.
     done: i64,
-    /// Whether the waiting slots are taken for complete.
+    /// Whether the waiting slots count as complete.
     flush: bool,
-    /// Whether a board fell silent and no frame has said so yet.
+    /// Whether a board became silent and no frame has reported it yet.
     has_news: bool,
-    /// Whether frames are passed on: not before the tare is known.
+    /// Whether frames are released: not before the tare is known.
     started: bool,
     frame: ForceFrame,
     health: Health,
@@ -138,29 +132,29 @@ pub struct Assembler {
     delays: Vec<(i64, usize)>,
 }
 
-/// How long after the first packet boards may still be silent without being missed.
+/// Time after the first packet during which a silent board does not count as missing.
 const GATHERING_NS: i64 = 100_000_000;
 
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     slot: i64,
     buffer: usize,
-    /// Awaited boards that have delivered this slot or a later one.
+    /// Number of awaited boards that have delivered this slot or a later one.
     passed: usize,
-    /// When its last packet came.
+    /// Arrival of its last packet.
     received: Instant,
 }
 
-/// How one board is doing.
+/// State of one board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardStatus {
-    /// How far its sensors can be trusted, each by itself perhaps less.
+    /// Quality of all its sensors; a single sensor may be worse.
     pub quality: Quality,
     /// Time since its last usable packet; `None` if none has come.
     pub age: Option<Duration>,
-    /// Share of its packets lost or too late over the last second, 0 to 1.
+    /// Share of its packets that were lost or too late over the last second, 0 to 1.
     pub loss: f32,
-    /// Whether it is stale because all it reads has stood still for 100 ms under a load.
+    /// Whether it is stale because all its readings have been constant for 100 ms under a load.
     pub frozen: bool,
     /// Samples by which its crystal has run slower (positive) or faster than the common clock.
     pub slips: i64,
@@ -173,9 +167,8 @@ impl Assembler {
         Self::with_tare(floor, Tare::FromFloor)
     }
 
-    /// An assembler for the boards of `floor`. With [`Tare::AtStart`] no frame
-    /// is passed on until the boards that reported at first have been tared; one that
-    /// appears later is stale until it is.
+    /// An assembler for the boards of `floor`. With [`Tare::AtStart`] it releases no frame until the boards that
+    /// reported at first have been tared; a board that appears later is stale until it is tared.
     #[must_use]
     pub fn with_tare(floor: &Floor, tare: Tare) -> Self {
         let boards: Vec<_> =
@@ -211,10 +204,10 @@ impl Assembler {
         }
     }
 
-    /// Takes one packet; afterwards [`Assembler::ready`] should be called until it gives `None`.
+    /// Takes one packet; the caller should then call [`Assembler::ready`] until it returns `None`.
     ///
-    /// Packets of boards this floor does not have, or with another number of
-    /// readings than the board has channels, are counted and dropped.
+    /// Counts and drops packets of boards that this floor does not have, and packets with another number of readings
+    /// than the board has channels.
     pub fn take(&mut self, packet: &SensorPacket) {
         let number = usize::from(packet.board);
         match self.boards.get(number) {
@@ -228,24 +221,25 @@ impl Assembler {
         }
     }
 
-    /// Lets time pass without a packet, so that silence is noticed; `now` is on the source's clock.
+    /// Advances time without a packet, so that silence is detected; `now` is on the source's clock.
     ///
-    /// Call it at least every 10 ms for a lost floor to be noticed within 120 ms.
+    /// Call it at least every 10 ms to detect a lost floor within 120 ms.
     pub fn poll(&mut self, now: Instant) {
         self.pass_time(nanos(now));
         let waited = self.waiting.last().map_or(0, |waiting| self.now_ns - nanos(waiting.received));
         self.flush |= waited >= PATIENCE_NS;
     }
 
-    /// The next frame, if one is complete; call until `None`. A frame of which
-    /// eight later ones wait is dropped and its packets counted as late.
+    /// The next frame, if one is complete; call until `None`. A frame with eight later ones waiting is dropped and
+    /// its packets counted as late.
     pub fn ready(&mut self) -> Option<&ForceFrame> {
         loop {
             let (slot, buffer, received) = if self.is_due() {
                 let first = self.waiting.remove(0);
                 (first.slot, Some(first.buffer), first.received)
             } else if self.started && self.waiting.is_empty() && self.has_news {
-                // Nobody delivers: only the news that boards fell silent. Before the first frame it is news to nobody.
+                // No board delivers: the frame only reports that boards became silent. Before the first frame there
+                // is nothing to report.
                 let clock = self.clock.as_ref()?;
                 let slot = clock.slot_before(self.now_ns).max(self.done.saturating_add(1));
                 (slot, None, instant(self.now_ns))
@@ -261,8 +255,8 @@ impl Assembler {
         }
     }
 
-    /// Whether a slot is complete, or taken for it: [`Assembler::ready`] gives its frame, unless the tare is not known
-    /// yet.
+    /// Whether a slot is complete or counts as complete: [`Assembler::ready`] then returns its frame, unless the tare
+    /// is still unknown.
     pub(crate) fn is_due(&self) -> bool {
         self.waiting.first().is_some_and(|first| {
             let newest = self.waiting.last().map_or(first.slot, |last| last.slot);
@@ -270,9 +264,9 @@ impl Assembler {
         })
     }
 
-    /// Whether packets arrive, as of the last packet or poll.
+    /// State of the link as of the last packet or poll.
     ///
-    /// While the boards report for the first time, one after the other, the floor is still awaited.
+    /// While the boards report for the first time, one after the other, the link is still waiting.
     #[must_use]
     pub fn link_state(&self) -> LinkState {
         let presences = || self.boards.iter().map(|board| &board.stream.presence);
@@ -288,7 +282,7 @@ impl Assembler {
         }
     }
 
-    /// Of how many boards usable packets arrive, as of the last packet or poll, and how many the floor has.
+    /// Number of boards with usable packets, as of the last packet or poll, and number of boards of the floor.
     #[must_use]
     pub fn boards_live(&self) -> (u32, u32) {
         let count = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
@@ -296,7 +290,7 @@ impl Assembler {
         (count(live.count()), count(self.boards.len()))
     }
 
-    /// How board `number` is doing, as of the last packet or poll; `None` if the floor has no such board.
+    /// State of board `number`, as of the last packet or poll; `None` if the floor has no such board.
     #[must_use]
     pub fn board(&self, number: u16) -> Option<BoardStatus> {
         let board = self.boards.get(usize::from(number))?;
@@ -310,7 +304,7 @@ impl Assembler {
         })
     }
 
-    /// What became of the tare; while boards differ, the one that needs attention most.
+    /// Result of the tare; if boards differ, the most urgent one.
     #[must_use]
     pub fn tare_outcome(&self) -> TareOutcome {
         let urgency = |outcome: &TareOutcome| match outcome {
@@ -325,7 +319,7 @@ impl Assembler {
         outcomes.max_by_key(urgency).unwrap_or(unheard)
     }
 
-    /// The tare in use, per tile and corner as in [`Floor::tare`]; zero for sensors that no board reads.
+    /// The tare in use, per tile and corner as in [`Floor::tare`]; zero for sensors without a board.
     #[must_use]
     pub fn tare(&self) -> Vec<[Newtons; 4]> {
         let mut tare = vec![[Newtons::ZERO; 4]; self.floor_tiles];
@@ -335,30 +329,30 @@ impl Assembler {
         tare
     }
 
-    /// Number of sensors whose counts are taken for those of a nominal part, since the floor says
-    /// nothing of them; [`Floor::uncalibrated`] names them. Their forces may be off by a quarter
-    /// and more, and are [`Quality::Degraded`].
+    /// Number of sensors whose counts are converted by the nominal part's law, because the floor has no calibration
+    /// for them; [`Floor::uncalibrated`] names them. Their forces may be off by a quarter and more, and are
+    /// [`Quality::Degraded`].
     #[must_use]
     pub fn uncalibrated(&self) -> usize {
         self.boards.iter().map(BoardTrack::uncalibrated).sum()
     }
 
-    /// Whether the empty floor, at the start, read otherwise than the floor's tare says on most of its tiles:
-    /// it is the file of another floor, or one from long ago. All sensors are [`Quality::Degraded`] then.
+    /// Whether, at the start, the empty floor differed from the floor's tare on most of its tiles: the file belongs
+    /// to another floor or is outdated. All sensors are [`Quality::Degraded`] then.
     #[must_use]
     pub fn is_foreign(&self) -> bool {
         self.health.is_foreign()
     }
 
-    /// The boards that have changed places, and how often they have: each that is out of its place comes with the one
-    /// whose empty tiles it reads, which is out of its place too. Two have been swapped, more follow each other in a
-    /// ring. Their sensors are [`Quality::Faulty`] until that is mended. Found only where the floor's tare comes from
-    /// its file.
+    /// Number of changes of board places, and the boards that have changed places: each misplaced board comes with
+    /// the board whose empty tiles it reads, which is misplaced too. Two boards have been swapped, more form a ring.
+    /// Their sensors are [`Quality::Faulty`] until they are back in their places. Requires a tare from the floor
+    /// file.
     pub fn swapped(&self) -> (u64, impl Iterator<Item = (u16, u16)> + '_) {
         self.swaps.places()
     }
 
-    /// Writes how the sensors are doing, as of the last frame, into `health`.
+    /// Writes the health of the sensors, as of the last frame, into `health`.
     pub fn health(&self, health: &mut SensorHealth) {
         health.recount(self.frame.quality.iter());
         health.uncalibrated = u32::try_from(self.uncalibrated()).unwrap_or(u32::MAX);
@@ -370,32 +364,32 @@ impl Assembler {
             .sort_by_key(|(sensor, _)| (sensor.tile.row, sensor.tile.column, sensor.corner.index()));
     }
 
-    /// The sensors that are in trouble, as of the last frame.
+    /// The sensors with faults, as of the last frame.
     pub fn troubles(&self) -> impl Iterator<Item = (SensorId, Trouble)> + '_ {
         self.health.troubles()
     }
 
-    /// How often a sensor fell into trouble or got out of it; unchanged if [`Assembler::troubles`] is.
+    /// Number of times that a sensor fault began or ended; constant as long as [`Assembler::troubles`] is.
     #[must_use]
     pub const fn trouble_changes(&self) -> u64 {
         self.health.changes()
     }
 
-    /// How far each sensor's zero has drifted from its tare and was followed, per tile and corner as in
-    /// [`Floor::tare`]; at most 20 % of the sensor's range.
+    /// Drift of each sensor's zero from its tare, as tracked, per tile and corner as in [`Floor::tare`]; at most 20 %
+    /// of the sensor's range.
     #[must_use]
     pub fn drift(&self) -> impl ExactSizeIterator<Item = [Newtons; 4]> + '_ {
         self.health.drift()
     }
 
-    /// How much the floor's sensors are found to creep, as a share of their load for each decade of time: 0 to 0.1.
-    /// What lingers of a load is taken off accordingly; below 0.02, nothing is.
+    /// Estimated creep of the floor's sensors, as a share of their load for each decade of time: 0 to 0.1. The creep
+    /// correction is proportional to it; below 0.02 there is none.
     #[must_use]
     pub const fn creep(&self) -> f32 {
         self.health.creep()
     }
 
-    /// What came in and what was dropped; datagrams and refusals are counted by the source.
+    /// Counters of received and dropped packets; the source counts datagrams and refusals.
     #[must_use]
     pub fn counters(&self) -> LinkCounters {
         LinkCounters {
@@ -406,21 +400,21 @@ impl Assembler {
         }
     }
 
-    /// How often the load of a tile changed faster than a body changes it (by 300 N in a millisecond), and the
-    /// last such tile with its change in newtons. Such a tile is [`Quality::Faulty`] for 100 ms.
+    /// Number of changes of a tile's load that are faster than those by a body (300 N in a millisecond), and the last
+    /// such tile with its change in newtons. Such a tile is [`Quality::Faulty`] for 100 ms.
     #[must_use]
     pub fn jumps(&self) -> (u64, Option<(TileId, f32)>) {
         self.health.jumps()
     }
 
-    /// How often two or more sensors of a tile have repeated, for 100 ms and under a load, what they had read before,
-    /// although their noise makes that improbable; and the tiles whose sensors do so now or did in the last 100 ms. These
+    /// Number of times that two or more sensors of a tile have repeated their readings for 100 ms under a load
+    /// although their noise makes that improbable, and the tiles with such sensors now or in the last 100 ms. These
     /// are [`Quality::Stale`].
     pub fn repeating(&self) -> (u64, impl Iterator<Item = TileId> + '_) {
         self.health.repeating()
     }
 
-    /// Moves time on and notices silence, at most once a millisecond.
+    /// Advances time and detects silence, at most once a millisecond.
     fn pass_time(&mut self, now_ns: i64) {
         self.now_ns = self.now_ns.max(now_ns);
         if self.clock.is_none() || self.now_ns - self.swept_ns < SLOT_NS {
@@ -431,7 +425,7 @@ impl Assembler {
             return;
         }
         let mut gave_out = false;
-        // Whoever reports from now on has as much time again.
+        // Boards that report from now on have the full time-out again.
         self.patient_until_ns = self.now_ns + SILENT_NS;
         for board in &mut self.boards {
             if board.stream.presence.pass(self.now_ns) {
@@ -450,7 +444,7 @@ impl Assembler {
         }
     }
 
-    /// Counts anew which boards frames wait for and which have passed the waiting slots.
+    /// Recounts the awaited boards and those that have passed each waiting slot.
     fn count_awaited(&mut self) {
         let awaited = || self.boards.iter().filter(|board| board.stream.awaited);
         self.awaited = awaited().count();
@@ -476,7 +470,7 @@ impl Assembler {
         if place.restarted || !board.stream.awaited {
             board.stream.awaited = true;
             if self.awaited == 0 {
-                // After silence on all boards the others are likely to return as well.
+                // After silence of all boards the others will probably return as well.
                 self.expect_all();
             }
             self.count_awaited();
@@ -492,13 +486,13 @@ impl Assembler {
         self.align();
     }
 
-    /// Waits for every board a while, as if all had just reported.
+    /// Waits for every board for a while, as if all had just reported.
     fn expect_all(&mut self) {
         self.boards.iter_mut().for_each(|board| board.stream.expect(self.now_ns));
         self.awaited = self.boards.len();
     }
 
-    /// Starts the sample clock with the first packet of all.
+    /// Starts the sample clock with the first packet.
     fn start(&mut self) -> SampleClock {
         self.expect_all();
         self.done = -1;
@@ -506,7 +500,7 @@ impl Assembler {
         *self.clock.insert(SampleClock::new(self.now_ns))
     }
 
-    /// Notes that a board that was at slot `head` has now reached `slot`.
+    /// Counts a board that was at slot `head` and has now reached `slot`.
     fn pass_slots(&mut self, head: Option<i64>, slot: i64) {
         for waiting in &mut self.waiting {
             waiting.passed += usize::from(head < Some(waiting.slot) && waiting.slot <= slot);
@@ -522,7 +516,7 @@ impl Assembler {
         waiting.received = waiting.received.max(packet.received);
         let board = &mut self.boards[number];
         if board.has(waiting.buffer) {
-            // The board has just slipped back a slot: one of its samples is left out.
+            // The board has just slipped back by a slot: this sample is left out.
             return;
         }
         let buffer = waiting.buffer;
@@ -534,10 +528,10 @@ impl Assembler {
         self.boards[number].set_swapped(self.swaps.of(number).is_some());
     }
 
-    /// Makes room for `slot`, which board `number` has reached, at `place` among the waiting ones.
+    /// Inserts `slot`, which board `number` has reached, at `place` among the waiting slots.
     fn open(&mut self, mut place: usize, slot: i64, number: usize) {
         if self.waiting.is_full() {
-            // Only if the caller left frames unread.
+            // Happens only if the caller left frames unread.
             let oldest = self.waiting.remove(0);
             self.done = oldest.slot;
             self.release(oldest.buffer);
@@ -546,7 +540,7 @@ impl Assembler {
         let taken = |buffer: &usize| self.waiting.iter().any(|waiting| waiting.buffer == *buffer);
         let Some(buffer) = (0..BUFFERS).find(|buffer| !taken(buffer)) else { return };
         let has_passed = |board: &&BoardTrack| board.stream.awaited && board.stream.head_slot() >= Some(slot);
-        // Whoever opens a slot is mostly the first to reach it: no need to ask all the others.
+        // The board that opens a slot is mostly the first to reach it: skip the others.
         let may_have_passed =
             if slot > self.front { &self.boards[number..=number] } else { self.boards.as_slice() };
         let passed = may_have_passed.iter().filter(has_passed).count();
@@ -559,11 +553,11 @@ impl Assembler {
         }
     }
 
-    /// Makes the frame of `slot`; false if the tare is still being measured.
+    /// Makes the frame of `slot`; returns false if the tare is still being measured.
     fn complete(&mut self, slot: i64, buffer: Option<usize>, received: Instant) -> bool {
         let at_ns = self.clock.as_ref().map_or(0, |clock| clock.at_ns(slot));
-        // When it was sampled by the boards' own count: how this computer's clock is steered changes nothing of what is
-        // found of sensors, which two computers that sense the same would else find differently.
+        // Sampling time by the boards' own count. The steering of this computer's clock must not influence the sensor
+        // checks; two computers with the same packets would find different faults.
         let sampled_ns = slot.max(0).saturating_mul(SLOT_NS);
         self.done = slot;
         let (mut is_taring, mut is_swapped, mut lacks_laws) = (false, false, false);
@@ -580,10 +574,10 @@ impl Assembler {
             self.frame.at = instant(at_ns).max(next);
             self.frame.received = received;
             self.health.inspect(&mut self.frame, instant(sampled_ns));
-            // Whatever the laws are, on a floor with swapped boards they are those of other sensors.
+            // On a floor with swapped boards all laws belong to other sensors.
             let faults = [
                 (is_swapped, CalibrationFault::BoardsSwapped),
-                // Through nominal laws the empty floor reads otherwise than any tare says.
+                // With nominal laws the empty floor matches no tare.
                 (lacks_laws, CalibrationFault::Missing),
                 (self.health.is_foreign(), CalibrationFault::OtherFloor),
             ];
@@ -596,7 +590,7 @@ impl Assembler {
         self.started
     }
 
-    /// Compares each board's slots with its packets' arrival, and the clock with all of them.
+    /// Compares each board's slots with the arrival of its packets, and the clock with all of them.
     fn align(&mut self) {
         let Some(clock) = &mut self.clock else { return };
         if self.now_ns - self.aligned_ns < ALIGN_NS {
@@ -610,7 +604,7 @@ impl Assembler {
             slipped += u64::from(stream.adopt_pace(self.now_ns, clock));
             match stream.least_delay(self.now_ns) {
                 Some(delay) if stream.keeps_time() => self.delays.push((delay, number)),
-                // At another rate it is no clock for the others, and follows the receive clock by itself.
+                // A board at another rate is no reference for the others and follows the receive clock by itself.
                 Some(delay) => slipped += stream.slip(delay).unsigned_abs(),
                 None => {}
             }
@@ -618,7 +612,7 @@ impl Assembler {
         if !self.delays.is_empty() {
             let middle = (self.delays.len() - 1) / 2;
             let common = self.delays.select_nth_unstable(middle).1.0;
-            // Nothing arrives before it was sampled: slots that lie further ahead are moved back, and not the clock.
+            // Nothing arrives before its sampling: slots that lie further ahead are moved back, and the clock is not.
             let common = if common < -FAST_NS { 0 } else { common };
             for &(delay, number) in &self.delays {
                 slipped += self.boards[number].stream.slip(delay - common).unsigned_abs();
@@ -637,7 +631,7 @@ impl Assembler {
     }
 }
 
-/// The moment `ns` nanoseconds after the clock's start; the start itself if that is negative.
+/// The time `ns` nanoseconds after the clock's start; the start itself if that is negative.
 fn instant(ns: i64) -> Instant {
     Instant::from_micros(ns.max(0).cast_unsigned() / 1000)
 }

@@ -1,4 +1,4 @@
-//! How many slots of the sample clock lie between two packets of a board.
+//! The number of sample clock slots between two packets of a board.
 
 use arrayvec::ArrayVec;
 
@@ -8,28 +8,29 @@ use crate::wire::BOARD_RATES_HZ;
 /// Time between two marks.
 const MARK_NS: i64 = 250 * SLOT_NS;
 
-/// Silence after which earlier marks say nothing: the board may have stood still meanwhile.
+/// Silence after which earlier marks are invalid: the board may have stopped counting meanwhile.
 const GAP_NS: i64 = 100 * SLOT_NS;
 
-/// Most marks: eight seconds.
+/// Maximum number of marks: eight seconds.
 const MARKS: usize = 33;
 
-/// By which share a pace must differ from the one in use, over so many marks: a burst of delayed packets shifts half a
-/// second by a fifth, but not both of its halves, and eight seconds by less than a thousandth. Crystals differ by 0.0002.
+/// Relative difference from the pace in use that a measured pace must have, for each number of marks. A burst of
+/// delayed packets shifts half a second by a fifth, but not both of its halves, and eight seconds by less than a
+/// thousandth. Crystals differ by 0.0002.
 const DIFFERENCES: [(usize, f64); 3] = [(2, 0.05), (8, 0.006), (32, 0.0015)];
 
-/// A board at this pace sends once a millisecond.
+/// The pace of a board that sends once a millisecond.
 const ONE: f64 = 1.0;
 
-/// How many slots lie between two packets, and the measurement of it.
+/// The number of slots between two packets, and its measurement.
 ///
-/// At one packet a millisecond that is exactly 1, whatever a crystal adds: the sample clock is steered by such boards.
+/// At one packet a millisecond it is exactly 1, regardless of crystal drift: such boards steer the sample clock.
 /// Boards at another rate are mapped to the slots in which their packets arrive.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     /// Slots between two packets.
     slots: f64,
-    /// When packets arrived, and their positions in the stream.
+    /// Arrival times of packets, and their positions in the stream.
     marks: ArrayVec<(i64, i64), MARKS>,
     last_ns: i64,
 }
@@ -46,18 +47,18 @@ impl Pace {
         self.slots == ONE
     }
 
-    /// Whether the board's rate is outside of what is understood ([`BOARD_RATES_HZ`]).
+    /// Whether the board's rate is outside the supported range ([`BOARD_RATES_HZ`]).
     pub(super) fn is_odd(&self) -> bool {
         let [lowest, highest] = BOARD_RATES_HZ.map(f64::from);
         !(lowest..=highest).contains(&(1000.0 / self.slots))
     }
 
-    /// How many slots after position 0 this position lies.
+    /// Number of slots between position 0 and this position.
     pub(super) fn slots(&self, position: i64) -> i64 {
         if self.is_one() { position } else { (position as f64 * self.slots).floor() as i64 }
     }
 
-    /// Notes the position of a packet that is further on than all before.
+    /// Notes the position of a packet further on than all before.
     pub(super) fn note(&mut self, now_ns: i64, position: i64) {
         if now_ns - self.last_ns > GAP_NS {
             self.marks.clear();
@@ -72,7 +73,7 @@ impl Pace {
         self.marks.push((now_ns, position));
     }
 
-    /// Takes the pace that was measured, if it is another one; whether it is.
+    /// Adopts a measured pace that differs; returns whether it does.
     pub(super) fn adopt(&mut self) -> bool {
         let Some(slots) = DIFFERENCES.iter().find_map(|(spans, share)| self.measured(*spans, *share)) else {
             return false;
@@ -102,7 +103,7 @@ impl Pace {
             .then_some(whole)
     }
 
-    /// Forgets everything: the board starts anew.
+    /// Resets the measurement: the board starts anew.
     pub(super) fn forget(&mut self) {
         self.marks.clear();
     }
@@ -114,7 +115,7 @@ mod tests {
 
     const MS: i64 = SLOT_NS;
 
-    /// The pace after packets that arrive so, and when it was last changed.
+    /// The pace after packets with these arrival times, and the time of its last change.
     fn after(packets: impl Iterator<Item = i64>) -> (f64, i64) {
         let (mut pace, mut changed) = (Pace::default(), 0);
         for (position, arrives_ns) in (0..).zip(packets) {
@@ -154,7 +155,7 @@ mod tests {
 
     #[test]
     fn what_a_network_does_changes_no_pace() {
-        // Every third millisecond a packet is 2 ms late; every 300 ms nothing comes for 90 ms, and then all at once.
+        // Every third millisecond a packet is 2 ms late; every 300 ms none comes for 90 ms, and then all at once.
         let late = |n: i64| {
             let ms = if n % 300 > 210 { n - n % 300 + 300 } else { n };
             ms * MS + if n % 3 == 0 { 2 * MS } else { 0 }
@@ -162,7 +163,7 @@ mod tests {
         let mut arrivals: Vec<i64> = (0..30_000).map(late).collect();
         arrivals.sort_unstable();
         assert_eq!(after(arrivals.into_iter()).0, ONE);
-        // From one moment on, all of them are 80 ms late.
+        // After packet 5000 all packets are 80 ms late.
         let shifted = (0..30_000).map(|n| if n < 5000 { n * MS } else { (n + 80) * MS });
         assert_eq!(after(shifted).0, ONE);
     }

@@ -1,20 +1,20 @@
-//! Whether a board is heard, silent or flapping.
+//! The presence of a board: unheard, live, silent or on probation.
 
 use super::clock::SLOT_NS;
 
 /// Silence after which a board's values are stale.
 pub(super) const SILENT_NS: i64 = 100 * SLOT_NS;
 
-/// An outage this soon after the last return is flapping.
+/// An outage within this time of the last return is flapping.
 const FLAPPING_NS: i64 = 2000 * SLOT_NS;
 
-/// How long a flapping board must deliver before it is believed again.
+/// Time for which a flapping board must deliver before it is live again.
 const PROBATION_NS: i64 = 1000 * SLOT_NS;
 
-/// Silence that starts the probation anew.
+/// Silence that restarts the probation.
 const PROBATION_GAP_NS: i64 = 20 * SLOT_NS;
 
-/// Whether one board delivers.
+/// Presence of one board, as a state machine:
 ///
 /// ```text
 /// Unheard  --data--> Live
@@ -32,14 +32,14 @@ pub(super) struct Presence {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum State {
-    /// Nothing has come yet.
+    /// No packet yet.
     #[default]
     Unheard,
     Live,
     Silent {
         flapping: bool,
-        /// Whether a frame has carried the news; until then the board may not return,
-        /// or whoever reads the frames would never learn of the outage.
+        /// Whether a frame has reported the outage; until then the board may not return, or readers of the frames
+        /// would miss the outage.
         shown: bool,
     },
     Probation {
@@ -48,22 +48,22 @@ enum State {
 }
 
 impl Presence {
-    /// Whether its values may be acted on.
+    /// Whether its values may be used.
     pub(super) const fn is_live(&self) -> bool {
         matches!(self.state, State::Live)
     }
 
-    /// Whether anything usable has ever come.
+    /// Whether it has ever sent a usable packet.
     pub(super) const fn has_reported(&self) -> bool {
         !matches!(self.state, State::Unheard)
     }
 
-    /// Whether it went silent and no frame has said so yet.
+    /// Whether it became silent and no frame has reported it yet.
     pub(super) const fn has_news(&self) -> bool {
         matches!(self.state, State::Silent { shown: false, .. })
     }
 
-    /// When its last usable packet came.
+    /// Arrival of its last usable packet.
     pub(super) const fn used_ns(&self) -> Option<i64> {
         self.used_ns
     }
@@ -88,19 +88,19 @@ impl Presence {
         State::Live
     }
 
-    /// Notes that time has passed; true if the board has just gone silent.
+    /// Advances time; returns true if the board has just become silent.
     pub(super) fn pass(&mut self, now_ns: i64) -> bool {
         let silent = self.used_ns.is_some_and(|used| now_ns - used >= SILENT_NS);
         silent && self.interrupt(now_ns)
     }
 
-    /// When it goes silent unless something usable comes; `None` if it is not heard.
+    /// Time at which it becomes silent without a usable packet; `None` if it is silent already or was never heard.
     pub(super) fn silent_at_ns(&self) -> Option<i64> {
         let is_heard = matches!(self.state, State::Live | State::Probation { .. });
         self.used_ns.filter(|_| is_heard).map(|used| used + SILENT_NS)
     }
 
-    /// Makes the board silent now, because its stream broke off; true if it was not before.
+    /// Makes the board silent now, because its stream was interrupted; returns false if it was silent before.
     pub(super) fn interrupt(&mut self, now_ns: i64) -> bool {
         let flapping = match self.state {
             State::Live => self.returned_ns.is_some_and(|returned| now_ns - returned < FLAPPING_NS),
@@ -111,7 +111,7 @@ impl Presence {
         true
     }
 
-    /// Notes that a frame has carried its state.
+    /// Notes that a frame has reported its state.
     pub(super) const fn show(&mut self) {
         if let State::Silent { shown, .. } = &mut self.state {
             *shown = true;
@@ -122,16 +122,16 @@ impl Presence {
 /// Slots per bucket of the loss meter.
 const BUCKET: u32 = 100;
 
-/// Slots that the loss meter looks back on: one second.
+/// Slots covered by the loss meter: one second.
 const SECOND: u32 = 1000;
 
-/// Buckets for that second, and the one being filled.
+/// Buckets for that second, and the one in progress.
 const BUCKETS: usize = 11;
 
 /// Share of lost packets above which a board is degraded.
 const DEGRADED: f32 = 0.10;
 
-/// Share of lost packets below which it is good again.
+/// Share of lost packets below which it recovers.
 const GOOD: f32 = 0.08;
 
 /// The share of one board's packets that were lost or came too late, over the last second.
@@ -143,21 +143,21 @@ pub(super) struct LossMeter {
 }
 
 impl LossMeter {
-    /// Share of a second's packets that were missed, 0 to 1; a second not yet over counts in full.
+    /// Share of a second's packets that were missed, 0 to 1; an incomplete second counts in full.
     pub(super) fn share(&self) -> f32 {
         let (expected, missed) =
             self.buckets.iter().fold((0, 0), |sum, bucket| (sum.0 + bucket.0, sum.1 + bucket.1));
         missed as f32 / expected.max(SECOND) as f32
     }
 
-    /// Whether too much was missed.
+    /// Whether the loss is too high.
     pub(super) const fn is_degraded(&self) -> bool {
         self.degraded
     }
 
-    /// Notes one packet more, used or not, after `skipped` that did not come.
+    /// Counts one packet, used or not, after `skipped` missing ones.
     pub(super) fn pass(&mut self, skipped: u32, used: bool) {
-        // An outage longer than what the meter covers fills it once, not for ever.
+        // An outage longer than the meter's span fills it only once.
         let skipped = skipped.min(SECOND);
         self.buckets[0].0 += skipped + 1;
         self.buckets[0].1 += skipped + u32::from(!used);
@@ -169,12 +169,12 @@ impl LossMeter {
         }
     }
 
-    /// Notes that a packet counted as lost came in time after all.
+    /// Corrects the count for a packet that was counted as lost but came in time.
     pub(super) fn found(&mut self) {
         self.buckets[0].1 = self.buckets[0].1.saturating_sub(1);
     }
 
-    /// Forgets the past: after an outage only what follows counts.
+    /// Resets the meter: after an outage only later packets count.
     pub(super) fn forget(&mut self) {
         *self = Self::default();
     }
@@ -186,8 +186,8 @@ mod tests {
 
     const MS: i64 = SLOT_NS;
 
-    /// Runs a board that delivers in each millisecond for which `up` says so, a frame each time;
-    /// gives the milliseconds in which it is live.
+    /// Runs a board that delivers in each millisecond for which `up` is true, one frame each; returns the
+    /// milliseconds in which it is live.
     fn live_during(span: i64, up: impl Fn(i64) -> bool) -> Vec<i64> {
         let mut presence = Presence::default();
         let mut live = Vec::new();

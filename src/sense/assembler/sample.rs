@@ -1,4 +1,4 @@
-//! What one board has read in one millisecond, kept until its frame is made.
+//! The readings of one board in one millisecond, kept until its frame is made.
 
 use arrayvec::ArrayVec;
 use multiversion::multiversion;
@@ -6,7 +6,7 @@ use multiversion::multiversion;
 use crate::floor::Calibration;
 use crate::wire::{MAX_CHANNELS, Readings};
 
-/// The readings of one board, channel by channel, so that many are worked on side by side.
+/// The readings of one board, channel by channel, laid out for vector operations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Sample {
     Counts(Counts),
@@ -14,18 +14,18 @@ pub(super) enum Sample {
     Newtons(ArrayVec<f32, MAX_CHANNELS>),
 }
 
-/// Counts apart from which of them are missing: half of what [`Readings`] take.
+/// Counts, apart from the bits of missing ones: half the size of [`Readings`].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
     length: u8,
-    /// Bit n says that channel n gave nothing, or that the board has not got it.
+    /// Bit n is set if channel n has no reading or does not exist.
     missing: u64,
-    /// Zero where nothing was given.
+    /// Zero without a reading.
     values: [u16; MAX_CHANNELS],
 }
 
 impl Sample {
-    /// Of no channels.
+    /// A sample without channels.
     pub(super) const EMPTY: Self =
         Self::Counts(Counts { length: 0, missing: u64::MAX, values: [0; MAX_CHANNELS] });
 
@@ -43,7 +43,7 @@ impl Sample {
         }
     }
 
-    /// Takes in `readings`; true if they are, count for count, what was here before.
+    /// Stores `readings`; returns true if they equal the previous ones, count for count.
     pub(super) fn replace(&mut self, readings: &Readings) -> bool {
         match (&mut *self, readings) {
             (Self::Counts(kept), Readings::Counts(counts)) => kept.replace(counts),
@@ -59,7 +59,7 @@ impl Sample {
         }
     }
 
-    /// What a channel with this `law` has read, in newtons, tare not yet taken off; NaN if nothing.
+    /// The reading of a channel with this `law` in newtons, before subtraction of the tare; NaN without a reading.
     pub(super) fn force(&self, channel: usize, law: &Calibration) -> f32 {
         match self {
             Self::Counts(counts) if counts.is_missing(channel) => f32::NAN,
@@ -70,31 +70,31 @@ impl Sample {
 }
 
 impl Counts {
-    /// What the `LANES` channels from `first` on have read, zero where nothing; `None` if there are not so many.
+    /// The readings of the `LANES` channels from `first` on, zero without one; `None` if there are fewer channels.
     #[inline(always)]
     pub(super) fn run<const LANES: usize>(&self, first: usize) -> Option<&[u16; LANES]> {
         self.values.get(first..)?.first_chunk()
     }
 
-    /// What each of these channels has read, zero where nothing.
+    /// The readings of these channels, zero without one.
     #[inline(always)]
     pub(super) fn pick<const LANES: usize>(&self, channels: &[u8; LANES]) -> [u16; LANES] {
         channels.map(|channel| self.values[usize::from(channel) % MAX_CHANNELS])
     }
 
-    /// Whether any channel that the board has got gave nothing.
+    /// Whether any existing channel has no reading.
     #[inline(always)]
     pub(super) const fn is_any_missing(&self) -> bool {
         self.missing != not_there(self.length)
     }
 
-    /// Whether a channel gave nothing.
+    /// Whether a channel has no reading.
     #[inline(always)]
     pub(super) const fn is_missing(&self, channel: usize) -> bool {
         channel >= MAX_CHANNELS || self.missing >> channel & 1 != 0
     }
 
-    /// Adds what each channel has read to its sum, which becomes NaN where nothing was read.
+    /// Adds the reading of each channel to its sum, which becomes NaN without a reading.
     pub(super) fn add_to(&self, sums: &mut [f32]) {
         for (sum, value) in sums.iter_mut().zip(&self.values) {
             *sum += f32::from(*value);
@@ -119,14 +119,14 @@ impl Counts {
     }
 }
 
-/// Makes `values` what `counts` are; whether any was another before, and whether any is missing.
+/// Copies `counts` to `values`; returns whether any differed before, and whether any is missing.
 ///
-/// Without branches, over plain numbers: compiled for what the processor offers.
+/// Without branches, over plain numbers, compiled for each vector instruction set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn take_in(values: &mut [u16; MAX_CHANNELS], counts: &[Option<u16>]) -> (bool, bool) {
     let (mut changed, mut is_any_missing) = (0, false);
     for (value, count) in values.iter_mut().zip(counts) {
-        // `unwrap_or` looks first whether there is a count to read; this reads it anyway.
+        // `unwrap_or` checks for a count before reading it; this reads it in any case.
         let given = count.map_or(0, u32::from);
         changed |= given ^ u32::from(*value);
         is_any_missing |= count.is_none();
@@ -135,7 +135,7 @@ fn take_in(values: &mut [u16; MAX_CHANNELS], counts: &[Option<u16>]) -> (bool, b
     (changed != 0, is_any_missing)
 }
 
-/// The bits of the channels that a board with so many has not got.
+/// The bits of the channels that a board with `length` channels does not have.
 const fn not_there(length: u8) -> u64 {
     match u64::MAX.checked_shl(length as u32) {
         Some(bits) => bits,

@@ -1,42 +1,42 @@
-//! What a packet's sequence number says: next, lost, repeated, late, restarted.
+//! Classifies packets by their sequence numbers: next, lost, repeated, late, restarted.
 
-/// How far back a packet may lie and still be a straggler rather than a sign of a reboot.
+/// Maximum distance behind the latest packet at which a packet is a straggler and not a sign of a reboot.
 const WINDOW: u32 = 100;
 
-/// How many packets in a row must agree before a jump in the numbers is believed.
+/// Number of consecutive packets that must agree before a jump in the numbers is accepted.
 const CONFIRMED: u8 = 3;
 
-/// What one packet's sequence number says.
+/// Verdict on one packet's sequence number.
 ///
 /// Positions count on where the 32-bit numbers wrap, so they can be compared and subtracted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// Further on than any packet before; `skipped` numbers in between have not come so far.
+    /// Further on than any packet before; `skipped` numbers in between are still missing.
     Next {
         /// Its place in the stream.
         position: i64,
-        /// Numbers left out.
+        /// Number of missing packets.
         skipped: u32,
     },
-    /// Overtaken by others on the way; comes for the first time.
+    /// Overtaken by later packets; comes for the first time.
     Straggler {
         /// Its place in the stream.
         position: i64,
         /// Whether it had been counted as skipped.
         missed: bool,
     },
-    /// Came before.
+    /// Repeated.
     Duplicate,
-    /// Fits nothing: a damaged number, or the first sign of a reboot.
+    /// Inconsistent: a damaged number, or the first sign of a reboot.
     OutOfOrder,
-    /// Third in a row that agree on a new beginning; the stream starts anew at `position`.
+    /// Third consecutive packet that agrees with a new start; the stream starts again at `position`.
     Restart {
         /// Its place in the new stream.
         position: i64,
     },
 }
 
-/// Follows the sequence numbers of one board.
+/// Tracks the sequence numbers of one board.
 ///
 /// ```text
 /// number - latest   looks early   verdict
@@ -48,8 +48,8 @@ pub(super) enum Verdict {
 /// below -100                      OutOfOrder, at the third in a row Restart
 /// ```
 ///
-/// A packet cannot arrive before it was sampled, so a number too large for the
-/// time that has passed is a damaged one: that is what "looks early" means.
+/// A packet cannot arrive before its sampling, so a number too large for the elapsed time is damaged: it "looks
+/// early".
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     latest: Option<Latest>,
@@ -60,9 +60,9 @@ pub(super) struct Sequence {
 struct Latest {
     number: u32,
     position: i64,
-    /// Bit k: the packet k before the latest has come.
+    /// Bit k: the packet k before the latest has arrived.
     came: u128,
-    /// How many positions before the latest belong to this stream, at most [`WINDOW`].
+    /// Number of positions before the latest that belong to this stream, at most [`WINDOW`].
     known: u32,
 }
 
@@ -73,13 +73,13 @@ struct Jump {
 }
 
 impl Sequence {
-    /// The place in the stream of the furthest packet so far.
+    /// Position in the stream of the furthest packet so far.
     pub(super) fn position(&self) -> Option<i64> {
         self.latest.map(|latest| latest.position)
     }
 
-    /// Judges the packet with this `number`; `early` says whether a position
-    /// lies further ahead than the time passed allows.
+    /// Classifies the packet with this `number`; `early` returns whether a position lies further ahead than the
+    /// elapsed time allows.
     pub(super) fn judge(&mut self, number: u32, early: impl FnOnce(i64) -> bool) -> Verdict {
         let Some(latest) = &mut self.latest else { return self.begin(number) };
         let step = number.wrapping_sub(latest.number).cast_signed();
@@ -128,7 +128,7 @@ impl Sequence {
         if agreeing < CONFIRMED {
             Verdict::OutOfOrder
         } else if (0..=WINDOW).contains(&step.cast_unsigned()) {
-            // A little ahead of time: the way has become shorter.
+            // Slightly early: the transmission delay has become shorter.
             self.advance(number, step.unsigned_abs())
         } else {
             self.begin(number);
@@ -145,7 +145,7 @@ mod tests {
         Verdict::Next { position, skipped: 0 }
     }
 
-    /// Judges numbers that all come in good time.
+    /// Classifies numbers that all come in time.
     fn judge(sequence: &mut Sequence, numbers: impl IntoIterator<Item = u32>) -> Vec<Verdict> {
         numbers.into_iter().map(|number| sequence.judge(number, |_| false)).collect()
     }

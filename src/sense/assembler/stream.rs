@@ -1,4 +1,4 @@
-//! One board's packets, from sequence numbers to slots of the sample clock.
+//! Maps one board's packets from sequence numbers to slots of the sample clock.
 
 use super::clock::{Arrivals, SLOT_NS, SampleClock};
 use super::pace::Pace;
@@ -6,22 +6,22 @@ use super::presence::{LossMeter, Presence, SILENT_NS};
 use super::sequence::{Sequence, Verdict};
 use crate::wire::LinkCounters;
 
-/// After silence, a sample older than this, beyond its board's usual delay, tells nothing about the
-/// foot now: it was held up on the way, and newer ones follow.
+/// Age beyond its board's usual delay above which a sample after silence is useless: it was held up on the way, and
+/// newer ones follow.
 const TOO_OLD_NS: i64 = 20 * SLOT_NS;
 
-/// A packet this much earlier than any other of its board lately is out of order: a slot too early.
+/// Lead over all recent packets of the board above which a packet is out of order: a slot too early.
 const EARLY_NS: i64 = 3 * SLOT_NS / 4;
 
-/// How far a board's samples may lie from their slots before it slips: more than half a slot, so
-/// that a board on the border does not slip to and fro.
+/// Distance of a board's samples from their slots above which it slips: more than half a slot, so that a board on the
+/// border does not slip to and fro.
 const SLIP_NS: i64 = 3 * SLOT_NS / 4;
 
-/// A slot this far ahead of the receive clock is not used: the board sends more than one packet a millisecond, and its
-/// pace is not known yet.
+/// Lead over the receive clock above which a slot is not used: the board sends more than one packet a millisecond,
+/// and its pace is not known yet.
 const AHEAD_NS: i64 = 100 * SLOT_NS;
 
-/// The packets of one board, and the slots they belong to.
+/// The packets of one board, and their slots.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stream {
     pub(super) presence: Presence,
@@ -35,16 +35,16 @@ pub(super) struct Stream {
     offset: i64,
     /// Slots by which `offset` has been moved since the stream began.
     slips: i64,
-    /// When any packet last came from it, usable or not; frames wait for boards that reported lately.
+    /// Arrival of its last packet, usable or not; frames wait for boards that reported recently.
     last_packet_ns: i64,
 }
 
-/// Where a packet belongs.
+/// The slot of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     /// Its slot.
     pub(super) slot: i64,
-    /// Whether it came in time for it.
+    /// Whether the packet came in time for it.
     pub(super) usable: bool,
     /// Whether its board has just rebooted.
     pub(super) restarted: bool,
@@ -57,12 +57,12 @@ impl Stream {
         self.awaited = true;
     }
 
-    /// Whether the board has been silent for too long to wait for it.
+    /// Whether the board has been silent for too long for frames to wait for it.
     pub(super) const fn is_overdue(&self, now_ns: i64) -> bool {
         self.awaited && now_ns - self.last_packet_ns >= SILENT_NS
     }
 
-    /// When it will next be silent or overdue if no packet comes; never if it is neither heard nor awaited.
+    /// Time at which it becomes silent or overdue without a packet; never if it is neither heard nor awaited.
     pub(super) fn patient_until_ns(&self) -> i64 {
         let overdue = if self.awaited { self.last_packet_ns + SILENT_NS } else { i64::MAX };
         self.presence.silent_at_ns().map_or(overdue, |silent| silent.min(overdue))
@@ -77,17 +77,17 @@ impl Stream {
         self.pace.slots(position) + self.offset
     }
 
-    /// Whether it sends one packet a millisecond, so that the sample clock may be steered by it.
+    /// Whether it sends one packet a millisecond, so that it may steer the sample clock.
     pub(super) fn keeps_time(&self) -> bool {
         self.pace.is_one()
     }
 
-    /// Whether its rate is outside of what is understood.
+    /// Whether its rate is outside the supported range.
     pub(super) fn is_odd(&self) -> bool {
         self.pace.is_odd()
     }
 
-    /// Goes by the pace that was measured, if it is another one; whether it is.
+    /// Adopts a measured pace that differs; returns whether it does.
     pub(super) fn adopt_pace(&mut self, now_ns: i64, clock: &SampleClock) -> bool {
         let Some(position) = self.sequence.position() else { return false };
         let is_other = self.pace.adopt();
@@ -103,9 +103,8 @@ impl Stream {
         self.slips
     }
 
-    /// Finds the slot of the packet numbered `sequence` that arrived at
-    /// `now_ns`, `done` being the last slot made into a frame; `None` if the
-    /// packet is dropped, which is counted.
+    /// Finds the slot of the packet numbered `sequence` that arrived at `now_ns`; `done` is the last slot made into a
+    /// frame. Returns `None` for a dropped packet, and counts it.
     pub(super) fn place(
         &mut self,
         sequence: u32,
@@ -190,17 +189,17 @@ impl Stream {
         let was_live = self.presence.is_live();
         self.presence.deliver(now_ns);
         if !was_live {
-            // What was lost in an outage says nothing about what follows.
+            // Losses during an outage do not count afterwards.
             self.loss.forget();
         }
     }
 
-    /// The least delay of its packets lately, once enough have come to tell; asked for now and then.
+    /// The least recent delay of its packets, once there are enough; called at intervals.
     pub(super) fn least_delay(&mut self, now_ns: i64) -> Option<i64> {
         self.arrivals.close(now_ns)
     }
 
-    /// Moves the board to other slots if its packets lie `off_ns` from theirs; gives how many.
+    /// Moves the board to other slots if its packets lie `off_ns` from theirs; returns the number of slots.
     pub(super) fn slip(&mut self, off_ns: i64) -> i64 {
         if off_ns.abs() <= SLIP_NS {
             return 0;
@@ -212,7 +211,7 @@ impl Stream {
         slots
     }
 
-    /// Adapts to slots' times that have moved by `by_ns`.
+    /// Adapts the delays to slots' times that have moved by `by_ns`.
     pub(super) fn slots_moved(&mut self, by_ns: i64) {
         self.arrivals.slots_moved(by_ns);
     }

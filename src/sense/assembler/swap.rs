@@ -1,64 +1,65 @@
-//! Boards that send under each other's addresses: noticed from what their plates weigh.
+//! Detects boards that send under each other's addresses by the readings of their empty plates.
 //!
-//! The floor file has what each sensor reads on the empty floor. Parts differ by a quarter, so what the sensors of a
-//! board read there is as good as a signature. Boards each of which fits the next one's tares, and the last the
-//! first one's, have changed places: two have been swapped, or more have moved on by one in a ring.
+//! The floor file holds the reading of each sensor on the empty floor. Parts differ by a quarter, so the readings of
+//! a board's sensors form a signature. A set of boards has changed places if each fits the tares of the next and the
+//! last fits those of the first: two boards have been swapped, or more have moved on by one in a ring.
 
 use crate::wire::Readings;
 
 use super::board::BoardTrack;
 use super::sample::Sample;
 
-/// Every how many milliseconds what a board reads is looked at: what rests there changes no faster.
+/// Interval at which a board's readings enter the mean, in milliseconds: the empty plates change no faster.
 const EVERY: i64 = 8;
 
-/// Looks whose mean is compared: within a sixteenth of a second, in which 2 mV of noise become a few millinewtons.
+/// Number of readings in a mean: within a sixteenth of a second, which reduces 2 mV of noise to a few millinewtons.
 const BLOCK: i64 = 8;
 
-/// By how much the middle one of a board's sensors must miss its tare for the board to be suspected, in newtons: less
-/// than parts that differ by a quarter do under a plate of 6 N, more than one day's drift of the middle one (our
-/// choice).
+/// Median distance of a board's sensors from their tares above which the board is suspect (N): less than that of
+/// parts that differ by a quarter under a plate of 6 N, more than one day's median drift (our choice).
 const LEAST_N: f32 = 0.1;
 
-/// Which share of what the boards of a ring miss their own tares by they may miss the next one's by (our choice).
+/// Maximum distance of a ring's boards from the next board's tares, as a share of that from their own tares (our
+/// choice).
 const SHARE: f32 = 0.25;
 
-/// Places that a board which misses its own tares is compared with after each block: on a floor where all do, such as a
-/// crowded one, each comparison with all would cost more than everything else (our choice).
+/// Number of places with which a board far from its own tares is compared after each block. On a floor where all
+/// boards are, such as a crowded one, each comparison with all places would take longer than the rest of the work
+/// (our choice).
 const COMPARED: usize = 8;
 
-/// Times in a row that a board, compared with all places, must seem to be in the same one.
+/// Number of consecutive comparisons with all places that must agree on the same place.
 const AGREEING: u8 = 2;
 
-/// Who has changed places with whom, as far as that is known.
+/// The boards that have changed places, as far as known.
 #[derive(Clone, Debug)]
 pub(super) struct Swaps {
     blocks: Vec<Block>,
-    /// For each board that is out of its place, the one in whose place it is.
+    /// For each misplaced board, the board whose place it occupies.
     found: Vec<Option<u16>>,
-    /// How often `found` has changed.
+    /// Number of changes of `found`.
     changes: u64,
-    /// Space for the ring that is looked at.
+    /// Space for the ring under examination.
     ring: Vec<u16>,
     /// Space for sorting.
     misses: Vec<f32>,
 }
 
-/// What one board reads, averaged.
+/// Mean of one board's readings.
 #[derive(Clone, Debug, Default)]
 struct Block {
     sums: Vec<f32>,
     packets: u32,
     is_counts: bool,
-    /// By how much it missed its own tares.
+    /// Distance from its own tares (N).
     own: f32,
-    /// How many other places it has been compared with since it was last compared with all.
+    /// Number of other places compared since the last full comparison.
     compared: usize,
-    /// The place that fits best among those, and by how much it misses that one's tares.
+    /// The best of these places, and the distance from its tares.
     nearest: Option<(f32, u16)>,
-    /// The same, when it was last compared with all.
+    /// The same at the last full comparison.
     best: Option<(f32, u16)>,
-    /// The place that it seemed to be in then, if not its own, and how many times in a row.
+    /// The place found then, if not its own, and the number of consecutive times.
     seen: (Option<u16>, u8),
 }
 
@@ -78,17 +79,17 @@ impl Swaps {
         }
     }
 
-    /// Takes what board `number` read in the millisecond of `slot`.
+    /// Takes the readings of board `number` in the millisecond of `slot`.
     pub(super) fn note(&mut self, number: usize, slot: i64, sample: &Sample, boards: &[BoardTrack]) {
-        // Each board at a time of its own, for all at once would make one frame in 64 take twice as long.
+        // Each board has its own turn: all at once would double the time of one frame in 64.
         let turn = slot.wrapping_add(number as i64);
-        // Alone, a board has no other to change places with.
+        // A single board cannot change places.
         if turn % EVERY != 0 || boards.len() < 2 || !boards[number].has_known_tare() {
             return;
         }
         let block = &mut self.blocks[number];
         block.add(sample);
-        // A block whose last packet is lost goes on to the end of the next.
+        // A block with a lost last packet continues to the end of the next one.
         if turn / EVERY % BLOCK != 0 {
             return;
         }
@@ -105,8 +106,8 @@ impl Swaps {
         }
     }
 
-    /// Compares what board `number` reads with some more places; whether it has been compared with all that it may be
-    /// in.
+    /// Compares the readings of board `number` with some more places; returns whether the comparison covers all
+    /// possible places.
     fn compare(&mut self, number: usize, mean: &Sample, boards: &[BoardTrack]) -> bool {
         let Self { blocks, misses, .. } = self;
         let block = &mut blocks[number];
@@ -134,13 +135,13 @@ impl Swaps {
         true
     }
 
-    /// The place that board `number` is in, if it is another one's and the ring closes, which is then in `self.ring`.
+    /// The place of board `number`, if it is another board's and the ring closes; the ring is then in `self.ring`.
     fn place(&mut self, number: usize) -> Option<u16> {
         let Self { blocks, ring, .. } = self;
         ring.clear();
         let (mut apart, mut exchanged) = (0.0, 0.0);
         let mut reader = number;
-        // A ring that closes elsewhere has not come back after as many steps as there are boards.
+        // A ring that closes without this board has not returned to it after as many steps as there are boards.
         for _ in 0..blocks.len() {
             let (by, place) = blocks[reader].best?;
             ring.push(u16::try_from(reader).ok()?);
@@ -154,7 +155,7 @@ impl Swaps {
         None
     }
 
-    /// Takes board `number` for one that is in the ring just looked at, or in its own place if there is none.
+    /// Marks board `number` as a member of the ring just examined, or as in its own place if there is none.
     fn believe(&mut self, number: usize) {
         let Self { found, ring, .. } = self;
         let is_found = self.blocks[number].seen.0.is_some();
@@ -175,12 +176,12 @@ impl Swaps {
         self.changes += 1;
     }
 
-    /// The board in whose place board `number` is, if not in its own.
+    /// The board whose place board `number` occupies, if not its own.
     pub(super) fn of(&self, number: usize) -> Option<u16> {
         self.found.get(number).copied().flatten()
     }
 
-    /// Each board that is out of its place with the one in whose place it is, and how often that has changed.
+    /// The number of changes, and each misplaced board with the board whose place it occupies.
     pub(super) fn places(&self) -> (u64, impl Iterator<Item = (u16, u16)> + '_) {
         let places = (0..).zip(&self.found);
         (self.changes, places.filter_map(|(one, place)| place.map(|place| (one, place))))
@@ -200,7 +201,7 @@ impl Block {
         }
     }
 
-    /// What each channel has read on average, if it gave something every time.
+    /// Mean reading of each channel, if it has one in every packet.
     fn finish(&mut self) -> Sample {
         let packets = self.packets as f32;
         let means = self.sums.drain(..).map(|sum| sum / packets);

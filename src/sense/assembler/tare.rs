@@ -1,22 +1,22 @@
-//! The tare, measured while the floor is empty and quiet.
+//! Measurement of the tare while the floor is empty and quiet.
 
 use std::time::Duration;
 
 use crate::floor::{Floor, SensorId};
 use crate::units::Newtons;
 
-/// Where the force on the empty floor, taken off every reading, comes from.
+/// Source of the tare, the force on the empty floor, which is subtracted from every reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Tare {
     /// From the floor's description.
     #[default]
     FromFloor,
-    /// Measured on each board's first samples, while nobody stands on the floor.
+    /// Measured on each board's first samples, while the floor is empty.
     AtStart(TareRules),
 }
 
 impl Tare {
-    /// What suits this floor: its own tare if it has one, otherwise one measured at the start.
+    /// The suitable choice for this floor: its own tare if it has one, otherwise one measured at the start.
     #[must_use]
     pub fn suited_to(floor: &Floor) -> Self {
         let has_one = floor.tare.iter().flatten().any(|&tare| tare != Newtons::ZERO);
@@ -24,22 +24,22 @@ impl Tare {
     }
 }
 
-/// When a floor counts as empty and quiet enough to measure its tare.
+/// Conditions under which a floor is empty and quiet enough to measure its tare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TareRules {
-    /// How long to average.
+    /// Averaging time.
     pub span: Duration,
-    /// Standard deviation of a sensor, while averaging, above which somebody moves on the floor.
+    /// Standard deviation of a sensor during the average above which a person moves on the floor.
     pub quiet: Newtons,
-    /// Mean of a sensor above which something stands on the floor: more than plate and actuator weigh.
+    /// Mean of a sensor above which the floor is loaded: more than the weight of plate and actuator.
     pub most: Newtons,
-    /// How long to go on trying before the floor's own tare is used after all.
+    /// Time-out after which the floor's own tare is used.
     pub patience: Duration,
 }
 
 impl Default for TareRules {
-    /// Half a second, 0.5 N, 60 N, five seconds. Chosen by us: the built-in sensor's own noise is
-    /// near 0.02 N, a person standing still sways by several newtons and puts some 90 N on a corner.
+    /// Half a second, 0.5 N, 60 N, five seconds (our choice): the built-in sensor's own noise is near 0.02 N; a
+    /// person standing still sways by several newtons and puts about 90 N on a corner.
     fn default() -> Self {
         Self {
             span: Duration::from_millis(500),
@@ -50,38 +50,38 @@ impl Default for TareRules {
     }
 }
 
-/// What became of the tare.
+/// Result of the tare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TareOutcome {
-    /// The floor's own tare is in use, as asked.
+    /// The floor's own tare is in use, as requested.
     FromFloor,
-    /// It is being measured; keep off the floor.
+    /// The measurement is running; the floor must stay empty.
     Measuring,
-    /// It was measured.
+    /// The tare has been measured.
     Taken,
     /// The floor was never quiet; its own tare is in use.
     Refused {
         /// The worst sensor.
         sensor: SensorId,
-        /// What it read on average.
+        /// Mean of its readings.
         mean: Newtons,
-        /// By how much its readings scattered.
+        /// Standard deviation of its readings.
         deviation: Newtons,
     },
 }
 
-/// What a tare meter found.
+/// Result of a tare meter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Found {
-    /// Mean of each channel; `None` for one that never gave a good reading.
+    /// Mean of each channel; `None` for a channel without a good reading.
     Quiet(Vec<Option<f32>>),
-    /// It was never quiet.
+    /// The floor was never quiet.
     Noisy {
         /// The worst channel.
         channel: usize,
-        /// What it read on average.
+        /// Mean of its readings.
         mean: Newtons,
-        /// By how much its readings scattered.
+        /// Standard deviation of its readings.
         deviation: Newtons,
     },
 }
@@ -90,9 +90,9 @@ pub(super) enum Found {
 #[derive(Clone, Debug)]
 pub(super) struct TareMeter {
     rules: TareRules,
-    /// When the first sample of all came.
+    /// Time of the first sample.
     begun_ns: Option<i64>,
-    /// When the present average began.
+    /// Start of the present average.
     span_began_ns: Option<i64>,
     channels: Vec<Moments>,
 }
@@ -126,7 +126,7 @@ impl TareMeter {
         Self { rules, begun_ns: None, span_began_ns: None, channels: vec![Moments::default(); channels] }
     }
 
-    /// Starts averaging afresh, after a gap in the stream; the patience runs on.
+    /// Restarts the average after a gap in the stream; the time-out continues.
     pub(super) fn interrupt(&mut self) {
         self.span_began_ns = None;
         self.channels.fill(Moments::default());
@@ -157,7 +157,7 @@ impl TareMeter {
         (give_up || matches!(found, Found::Quiet(_))).then_some(found)
     }
 
-    /// The channel furthest past the rules; `None` if all keep to them.
+    /// The channel furthest beyond the limits; `None` if all are within.
     fn worst(&self) -> Option<(usize, Moments)> {
         let excess = |moments: &Moments| {
             let scatter = moments.deviation() / f64::from(self.rules.quiet.0);
@@ -165,7 +165,7 @@ impl TareMeter {
             scatter.max(load)
         };
         let worst = self.channels.iter().enumerate().max_by(|a, b| excess(a.1).total_cmp(&excess(b.1)))?;
-        // A rule of NaN refuses rather than passes.
+        // A limit of NaN rejects the tare.
         let keeps_to_them = excess(worst.1) <= 1.0;
         (!keeps_to_them).then_some((worst.0, *worst.1))
     }

@@ -1,6 +1,6 @@
-//! From what the channels of a board read to the forces of sensors, many side by side.
+//! Converts the readings of a board's channels into the forces of sensors, many at a time.
 
-// Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
+// The loops over lanes stay plain indexed loops, which the compiler vectorises.
 #![allow(clippy::needless_range_loop)]
 
 use multiversion::multiversion;
@@ -12,40 +12,40 @@ use crate::floor::{Calibration, LawKind, exp};
 use crate::sense::health::End;
 use crate::wire::MAX_CHANNELS;
 
-/// Sensors that are worked on together: those of as many tiles as most boards have.
+/// Number of sensors converted together: those of as many tiles as most boards have.
 pub(super) const WIDE: usize = 32;
 
 /// The sensors of one tile.
 pub(super) const NARROW: usize = 4;
 
-/// Counts up to which a sensor reads nothing (0.5 %: the converter's offset and noise).
+/// Counts up to which a reading is zero (0.5 %: the converter's offset and noise).
 const NOTHING: u16 = 327;
 
-/// Flag of a sensor that a channel reads.
+/// Flag of a sensor with a channel.
 const WIRED: u8 = 1;
 
-/// Flag of a sensor on which so much rests while the floor is empty that it never reads nothing.
+/// Flag of a sensor with so much of the plate's weight on it that it never reads zero.
 const BEARS: u8 = 2;
 
-/// Flag of a sensor whose law is the nominal part's.
+/// Flag of a sensor with the nominal part's law.
 const NOMINAL: u8 = 4;
 
-/// Sensors that follow each other, tile by tile and corner by corner, and the channels that read them.
+/// Consecutive sensors, tile by tile and corner by corner, and the channels that read them.
 #[derive(Clone, Debug)]
 pub(super) struct Window<const LANES: usize> {
     /// Number of the first sensor, four to a tile.
     pub(super) first: usize,
-    /// Which channel reads each sensor, if any does.
+    /// The channel of each sensor, if it has one.
     channels: [u8; LANES],
-    /// The channel that reads the first sensor, where the others follow in the sensors' order.
+    /// The channel of the first sensor, if the other channels follow in the sensors' order.
     run: Option<u8>,
-    /// What holds for each, of [`WIRED`], [`BEARS`] and [`NOMINAL`].
+    /// Flags of each sensor: [`WIRED`], [`BEARS`] and [`NOMINAL`].
     flags: [u8; LANES],
-    /// Both numbers of exponential laws; of no meaning unless all are such.
+    /// Both parameters of exponential laws; meaningful only if all laws are exponential.
     factors: [f32; LANES],
     exponents: [f32; LANES],
     pub(super) tares: [f32; LANES],
-    /// Whether channels read all of them, and either all or none go by the nominal law.
+    /// Whether all sensors have channels, and either all or none have the nominal law.
     pub(super) is_uniform: bool,
     /// The laws, if some are not exponential.
     laws: Option<Box<Laws<LANES>>>,
@@ -55,25 +55,25 @@ pub(super) struct Window<const LANES: usize> {
 #[derive(Clone, Debug)]
 struct Laws<const LANES: usize> {
     laws: [Calibration; LANES],
-    /// Counts from which on each reads "at least".
+    /// Counts of each sensor at and above which the reading is a lower bound.
     saturated: [u16; LANES],
 }
 
-/// What the sensors of a window have read, in newtons.
+/// The readings of a window's sensors, in newtons.
 #[derive(Clone, Debug)]
 pub(super) struct Read<const LANES: usize> {
-    /// Tare not yet taken off; NaN where nothing was read.
+    /// Before subtraction of the tare; NaN without a reading.
     pub(super) forces: [f32; LANES],
     pub(super) ends: [End; LANES],
-    /// As the board sent them, 0 for a reading of nothing; of newtons a digest of their bits.
+    /// As sent by the board, 0 for a zero reading; for newtons a digest of their bits.
     pub(super) raws: [u16; LANES],
-    /// Whether the board made them of what it read.
+    /// Whether the board itself converted them to newtons.
     pub(super) by_board: bool,
 }
 
-/// The windows that `channels` are read through, on a floor with so many `sensors`.
+/// The windows for `channels` on a floor with `sensors` sensors.
 ///
-/// Of two channels that read the same sensor the later one counts; those beyond [`MAX_CHANNELS`] can't be read.
+/// Of two channels that read the same sensor the later one counts; channels beyond [`MAX_CHANNELS`] are ignored.
 pub(super) fn windows(
     channels: &[Option<Channel>],
     sensors: usize,
@@ -141,13 +141,13 @@ impl<const LANES: usize> Window<LANES> {
         self.flags[lane] & WIRED != 0
     }
 
-    /// Whether a sensor's law is the nominal part's.
+    /// Whether a sensor has the nominal part's law.
     #[inline(always)]
     pub(super) const fn is_nominal(&self, lane: usize) -> bool {
         self.flags[lane] & NOMINAL != 0
     }
 
-    /// The channel of the first lane, if those of all that are wired follow it.
+    /// The channel of the first lane, if the channels of all wired lanes follow in order.
     fn run(&self) -> Option<u8> {
         let lane = (0..LANES).find(|lane| self.is_wired(*lane))?;
         let first = usize::from(self.channels[lane]).checked_sub(lane)?;
@@ -155,7 +155,7 @@ impl<const LANES: usize> Window<LANES> {
         (0..LANES).all(follows).then_some(first as u8)
     }
 
-    /// What the sensors have read.
+    /// The readings of the sensors.
     #[inline(always)]
     pub(super) fn read(&self, sample: &Sample) -> Read<LANES> {
         match sample {
@@ -179,7 +179,8 @@ impl<const LANES: usize> Window<LANES> {
                     &picked
                 };
                 let mut read = self.convert(values);
-                // Written elsewhere first, for a list that is written one by one is kept in memory, not in registers.
+                // Written into a local list first: the compiler keeps a list written element by element in memory,
+                // not in registers.
                 if let Some(laws) = &self.laws {
                     let mut forces = [0.0; LANES];
                     for lane in 0..LANES {
@@ -201,9 +202,10 @@ impl<const LANES: usize> Window<LANES> {
         }
     }
 
-    /// Turns counts into forces by exponential laws, and says where in the converters' ranges they lie.
+    /// Converts counts into forces by exponential laws, F = a exp(b U), and classifies them by the ends of the
+    /// converters' ranges.
     ///
-    /// A sensor on which next to nothing rests while the floor is empty is never missed: it may well read nothing.
+    /// A sensor that carries next to nothing of the empty floor is never missing: it may read zero.
     #[inline(always)]
     fn convert(&self, counts: &[u16; LANES]) -> Read<LANES> {
         let (mut forces, mut ends) = ([0.0; LANES], [End::Within; LANES]);
@@ -220,8 +222,8 @@ impl<const LANES: usize> Window<LANES> {
         Read { forces, ends, raws: *counts, by_board: false }
     }
 
-    /// The net force of each sensor that is within its range and of which `zero` knows what is taken off its reading
-    /// besides its tare.
+    /// The net force of each sensor that is within its range and has an offset from `zero`, which is subtracted
+    /// together with its tare.
     pub(super) fn net<'a>(
         &'a self,
         sample: &Sample,
@@ -237,8 +239,8 @@ impl<const LANES: usize> Window<LANES> {
         })
     }
 
-    /// Of how many of the sensors it is known by how much what they have read misses their tares, and of how many it is
-    /// by less than `below`.
+    /// Number of sensors with a known distance of their readings from their tares, and number of those with a
+    /// distance below `below`.
     #[inline(always)]
     pub(super) fn count_misses(&self, sample: &Sample, below: f32) -> (u32, u32) {
         let misses = self.misses(sample);
@@ -250,7 +252,7 @@ impl<const LANES: usize> Window<LANES> {
         (known, less)
     }
 
-    /// By how much what each of the sensors has read misses its tare; NaN where that is not known.
+    /// Distance of each sensor's reading from its tare; NaN if unknown.
     #[inline(always)]
     pub(super) fn misses(&self, sample: &Sample) -> [f32; LANES] {
         let read = self.read(sample);
@@ -263,7 +265,7 @@ impl<const LANES: usize> Window<LANES> {
     }
 }
 
-/// 16 bits of a force in newtons that differ where the force does, but for one time in 65,535; 0 for no force.
+/// 16-bit digest of a force in newtons: two different forces have the same digest once in 65,535; 0 for no force.
 #[inline(always)]
 fn digest(force: f32) -> u16 {
     let bits = force.to_bits();
@@ -271,7 +273,8 @@ fn digest(force: f32) -> u16 {
     if force == 0.0 { 0 } else { (mixed as u16).max(1) }
 }
 
-/// [`Window::misses`] of a wide window, without branches, over plain arrays: compiled for what the processor offers.
+/// [`Window::misses`] of a wide window, without branches, over plain arrays, compiled for each vector instruction
+/// set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 pub(super) fn misses_wide(window: &Window<WIDE>, sample: &Sample) -> [f32; WIDE] {
     window.misses(sample)

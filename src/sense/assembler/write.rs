@@ -1,6 +1,6 @@
-//! What windows have read, into frames: tared forces and how far they can be trusted.
+//! Writes the readings of windows into frames: tared forces and their qualities.
 
-// Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
+// The loops over lanes stay plain indexed loops, which the compiler vectorises.
 #![allow(clippy::needless_range_loop)]
 
 use multiversion::multiversion;
@@ -10,52 +10,52 @@ use super::window::{NARROW, Read, WIDE, Window};
 use crate::sense::health::{End, Health, LOUD_N, Lanes};
 use crate::sense::{ForceFrame, Quality};
 
-/// More than any corner of a tile can carry, in newtons: 70 people of 70 kg on one corner. Chosen by us.
+/// Above the load of any corner of a tile (N): 70 people of 70 kg on one corner (our choice).
 const MOST_N: f32 = 50_000.0;
 
-/// How far a packet can be believed.
+/// Reliability of a packet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trust {
     pub quality: Quality,
-    /// Whether it may be another board's.
+    /// Whether it may belong to another board.
     pub is_swapped: bool,
-    /// Whether the floor may be another one.
+    /// Whether the floor may be a different one.
     pub is_foreign: bool,
 }
 
-/// What was found while it was written.
+/// Findings about the readings written.
 struct Found<const LANES: usize> {
-    /// Number of readings that were no forces.
+    /// Number of invalid readings.
     bad: u32,
-    /// Whether any sensor's newtons were used.
+    /// Whether the newtons of any sensor were used.
     is_used: bool,
-    /// Whether any sensor asks for its tile to be examined, and which.
+    /// Whether any sensor requires an examination of its tile, and the sensors that do.
     is_any_loud: bool,
     loud: [bool; LANES],
 }
 
 impl<const LANES: usize> Found<LANES> {
-    /// Readings of sensors on which nothing rests.
+    /// Readings of unloaded sensors.
     const QUIET: Self = Self { bad: 0, is_used: true, is_any_loud: false, loud: [false; LANES] };
 }
 
 impl<const LANES: usize> Window<LANES> {
-    /// Reads a sample and writes what it says.
+    /// Converts a sample and writes the result.
     #[inline(always)]
     fn take(&self, sample: &Sample, trust: Trust, into: &mut Lanes<'_, LANES>) -> Found<LANES> {
         let read = self.read(sample);
         if self.write_quiet(&read, trust, into) { Found::QUIET } else { self.write(&read, trust, into) }
     }
 
-    /// Writes what sensors read on which nothing rests, as on most of a floor: what holds for one then holds for all.
-    /// False if they do not.
+    /// Writes the readings of unloaded sensors, as on most of a floor, where one result applies to all lanes. Returns
+    /// false if the lanes differ.
     #[inline(always)]
     fn write_quiet(&self, read: &Read<LANES>, trust: Trust, into: &mut Lanes<'_, LANES>) -> bool {
         let mut forces = [0.0; LANES];
         let mut is_quiet = self.is_uniform & !trust.is_swapped;
         for lane in 0..LANES {
             forces[lane] = read.forces[lane] - self.tares[lane] - into.offsets[lane];
-            // NaN is at most nothing.
+            // The comparison is false for NaN.
             is_quiet &= forces[lane].abs() <= LOUD_N;
         }
         for lane in 0..LANES {
@@ -79,7 +79,7 @@ impl<const LANES: usize> Window<LANES> {
     /// Writes tared forces and their qualities.
     #[inline(always)]
     fn write(&self, read: &Read<LANES>, trust: Trust, into: &mut Lanes<'_, LANES>) -> Found<LANES> {
-        // All is read before anything is written: the compiler need not fear that it is the same.
+        // All lists are read before any is written, so that the compiler need not assume aliasing.
         let (offsets, mut forces) = (*into.offsets, *into.forces);
         let (mut quality, mut ends, mut guessed, mut news) =
             (*into.quality, *into.ends, *into.guessed, *into.news);
@@ -87,13 +87,13 @@ impl<const LANES: usize> Window<LANES> {
         let mut loud = [false; LANES];
         for lane in 0..LANES {
             let force = read.forces[lane] - self.tares[lane] - offsets[lane];
-            // NaN is at most nothing.
+            // The comparison is false for NaN.
             is_force[lane] = force.abs() <= MOST_N;
             is_used[lane] = is_force[lane] & self.is_wired(lane) & !trust.is_swapped;
             loud[lane] = is_used[lane] & (force.abs() > LOUD_N);
             forces[lane] = if is_used[lane] { force } else { forces[lane] };
         }
-        // One loop for each list: what does much at once becomes no vector instructions.
+        // One loop for each list: a loop that does more is not vectorised.
         for lane in 0..LANES {
             ends[lane] = if is_used[lane] { read.ends[lane] } else { ends[lane] };
         }
@@ -139,7 +139,7 @@ impl<const LANES: usize> Window<LANES> {
     }
 }
 
-/// Puts what the sensors of a wide window have read into `frame`; the answer is how many readings were no forces.
+/// Writes the readings of a wide window into `frame`; returns the number of invalid readings.
 pub(super) fn put_wide(
     window: &Window<WIDE>,
     sample: &Sample,
@@ -151,7 +151,7 @@ pub(super) fn put_wide(
     note(window.first, &write_wide(window, sample, trust, &mut lanes), sample, health)
 }
 
-/// The same for a narrow one.
+/// The same for a narrow window.
 pub(super) fn put_narrow(
     window: &Window<NARROW>,
     sample: &Sample,
@@ -174,7 +174,7 @@ fn note<const LANES: usize>(first: usize, found: &Found<LANES>, sample: &Sample,
     found.bad.into()
 }
 
-/// Over plain arrays, with one branch for all lanes: compiled for what the processor offers.
+/// Plain arrays and one branch for all lanes, compiled for each vector instruction set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn write_wide<'a>(
     window: &Window<WIDE>,

@@ -1,4 +1,4 @@
-//! What the sensors of all tiles read on average, from least to most, over 64 ms: many added side by side.
+//! Mean and range of all sensors' readings over 64 ms, computed with vector operations.
 
 use std::ops::Range;
 
@@ -6,27 +6,27 @@ use multiversion::multiversion;
 
 use super::End;
 
-/// Every how many frames a tile is visited.
+/// Number of frames between two visits to a tile.
 pub(super) const SHARES: usize = 8;
 
 /// Visits averaged into one block: 64 ms.
 const VISITS: u8 = 8;
 
-/// The blocks of all tiles that are under way. Those of one share of the floor begin and end together.
+/// The blocks in progress of all tiles. Those of one share of the floor begin and end together.
 #[derive(Clone, Debug)]
 pub(super) struct Averages {
-    /// How often each share has been visited for its block.
+    /// Number of visits to each share for its block.
     visits: [u8; SHARES],
     sums: Vec<[f32; 4]>,
     lows: Vec<[f32; 4]>,
     highs: Vec<[f32; 4]>,
-    /// The end of its converter that each sensor was at last; the high one if it ever was there.
+    /// Last position of each sensor in its converter's range; the high end if it was ever there.
     ends: Vec<[End; 4]>,
     /// Whether each tile's sensors were all connected at every visit.
     is_whole: Vec<bool>,
 }
 
-/// What one tile's sensors have read in a block.
+/// The readings of one tile's sensors in a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Readings {
     pub(super) means: [f32; 4],
@@ -49,8 +49,8 @@ impl Averages {
         }
     }
 
-    /// Adds what the sensors of all tiles read, of which those of `share` are `tiles`, and which tiles are connected;
-    /// true if the blocks of these are complete.
+    /// Adds the readings and connection states of the sensors of `tiles`, which form `share`; returns true if their
+    /// blocks are complete.
     pub(super) fn add(
         &mut self,
         share: usize,
@@ -83,7 +83,7 @@ impl Averages {
         self.visits[share] == 0
     }
 
-    /// What a tile's sensors have read in the block that is complete; `None` if they were not connected throughout.
+    /// The readings of a tile's sensors in the complete block; `None` if they were not connected throughout.
     pub(super) fn block(&self, tile: usize) -> Option<Readings> {
         let (lows, highs) = (self.lows[tile], self.highs[tile]);
         self.is_whole[tile].then(|| Readings {
@@ -95,7 +95,7 @@ impl Averages {
     }
 }
 
-/// Without branches, over plain numbers: compiled for what the processor offers.
+/// Without branches, over plain numbers, compiled for each vector instruction set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn add_forces(sums: &mut [f32], lows: &mut [f32], highs: &mut [f32], forces: &[f32]) {
     for ((sum, force), (low, high)) in sums.iter_mut().zip(forces).zip(lows.iter_mut().zip(highs)) {

@@ -1,86 +1,88 @@
-//! Undoing the creep of sensors: how a reading goes on growing under a steady force, and lingers after it.
+//! Corrects the creep of sensors: a reading goes on growing under a steady force, and a part of it remains
+//! afterwards.
 //!
 //! Force-sensing resistors creep by some per cent for each decade of time. Under a foot that hardly matters; but
-//! when it leaves, what lingers looks like a light foot that stays, for seconds. A sensor that creeps by the share
-//! c of its load for each decade reads c m more than it should, where m sums how well the load is remembered over
-//! a tenth of a second, over one, ten and a hundred seconds. How large c is, feet that leave tiles show: what is
-//! left of them, over m, is c, a moment later and a second later. What a foot leaves that goes on resting there
-//! does not fade with the memory, what comes and goes jumps: they teach nothing.
+//! after it leaves, the remainder looks like a light foot that stays, for seconds. A sensor that creeps by the share
+//! c of its load for each decade reads c m more than it should, where m is the sum of the load's exponential averages
+//! over a tenth of a second, one, ten and a hundred seconds. Feet that leave tiles show the value of c: it is the
+//! remaining reading over m, measured shortly afterwards and a second later. A foot's load that goes on resting there
+//! does not decay like m, and feet that come and go cause jumps: both are excluded.
 
 use multiversion::multiversion;
 
-/// Over which times loads are remembered, in seconds: a decade apart.
+/// Time constants of the load averages (s): a decade apart.
 const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
 
-/// Least memory of a tile, its sensors' together, that shows how they creep, in newtons.
+/// Minimum load average of a tile, its sensors together, that shows their creep (N).
 const TELLS_N: f32 = 60.0;
 
-/// What is left on a tile, as a share of its memory, that may be creep; more is load.
+/// Maximum remaining reading of a tile due to creep, as a share of its load average; more is load.
 const MOST: f32 = 0.12;
 
-/// Creep below which sensors count as free of it, and above which it is something else, as shares for each decade (the
-/// maker's figure for the usual part is 0.05).
+/// Creep below which sensors count as free of it, and above which the cause is another one, as shares for each decade
+/// (the maker's figure for the usual part is 0.05).
 const LEAST: f32 = 0.02;
 const WORST: f32 = 0.1;
 
-/// When what lingers after a foot has left a tile is examined, in seconds, and by how much, as a share of itself,
-/// the two looks may differ.
+/// Times after a foot has left a tile at which the remaining reading is examined (s), and maximum relative difference
+/// between the two looks.
 const LOOKS_S: [f32; 2] = [0.25, 1.0];
 const ALIKE: f32 = 0.25;
 
-/// What is left of the memory at the second look, at most, as a share of the first: of a tile that was loaded for
-/// minutes it fades so little that a load that rests there would look alike.
+/// Maximum ratio of the load average at the second look to that at the first: on a tile that was loaded for minutes
+/// it decays so little that a resting load would look alike.
 const FADED: f32 = 0.75;
 
-/// How much what lingers may change from one time to the next, in newtons and as a share: it fades, it never jumps.
+/// Maximum change of the remaining reading from one block to the next (N, and as a share): creep decays, it never
+/// jumps.
 const JUMP_N: f32 = 1.0;
 const JUMP: f32 = 0.2;
 
-/// How much what one foot left moves the estimate, how much more what the first one does, and which share of feet
-/// leaves less. One foot alone proves nothing.
+/// Step of the estimate for each foot, additional step for the first one, and the quantile of the feet that it
+/// tracks. One foot alone proves nothing.
 const STEP: f32 = 0.004;
 const FIRST: f32 = 0.045;
 const QUANTILE: f32 = 0.4;
 
-/// How fast what is taken off follows what is learnt, as a share a second: nobody who stands there is to feel a step.
+/// Rate (1/s) at which the creep correction is applied: a standing person must not notice a step.
 const EASE: f32 = 0.01;
 
-/// Load that leaves nothing to speak of, in newtons.
+/// Load whose remainder is negligible (N).
 const NOTHING_N: f32 = 0.5;
 
-/// How a floor's sensors creep, as far as is known.
+/// Creep of a floor's sensors, as far as known.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Creep {
-    /// Share of a load for each decade.
+    /// Estimated share of a load for each decade.
     share: f32,
-    /// What of it is taken off already.
+    /// Share in use for the correction.
     used: f32,
-    /// How many feet it was learnt from.
+    /// Number of feet in the estimate.
     feet: f32,
 }
 
-/// What the sensors of one tile remember of their loads.
+/// Load averages of the sensors of one tile.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
     loads: [[f32; 4]; TIMES_S.len()],
-    /// Whether there is anything to forget.
+    /// Whether any average is above zero.
     was_loaded: bool,
     left: Left,
 }
 
-/// What lingers on a tile that a foot has left.
+/// The remaining reading of a tile that a foot has left.
 #[derive(Clone, Copy, Debug, Default)]
 struct Left {
-    /// For how long, in seconds.
+    /// Time since (s).
     seconds: f32,
-    /// What the tile reads, in newtons.
+    /// Present reading of the tile (N).
     reads: f32,
-    /// What it read at the first look, and the memory then, in newtons.
+    /// Reading at the first look, and the load average then (N).
     first: (f32, f32),
 }
 
 impl Left {
-    /// The share of the `memory` that lingers, once it is known: when the second look agrees with the first.
+    /// The remaining share of `memory`, once it is known: when the second look agrees with the first.
     fn look(&mut self, reads: f32, memory: f32, seconds: f32) -> Option<f32> {
         let jumps = (reads - self.reads).abs() > JUMP_N + JUMP * self.reads.abs();
         self.reads = reads;
@@ -100,19 +102,19 @@ impl Left {
     }
 }
 
-/// How much of a new load each memory takes in over some time.
+/// Gain of each load average over some time: 1 − exp(−dt/τ).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parts([f32; TIMES_S.len()]);
 
 impl Parts {
-    /// Over `dt` seconds.
+    /// The gains over `dt` seconds.
     pub(super) fn of(dt: f32) -> Self {
         Self(TIMES_S.map(|time_s| 1.0 - (-dt / time_s).exp()))
     }
 }
 
 impl Creep {
-    /// Learns from what the sensors of a tile read together, nothing taken off for creep, `seconds` after the last
+    /// Updates the estimate with the sum of a tile's readings, without creep correction, `seconds` after the last
     /// look.
     pub(super) fn learn(&mut self, memory: &mut Memory, reads: f32, seconds: f32) {
         let whole: f32 = memory.sums().iter().sum();
@@ -128,19 +130,19 @@ impl Creep {
         self.share = self.share.clamp(0.0, WORST);
     }
 
-    /// Lets `dt` seconds pass.
+    /// Moves the correction towards the estimate over `dt` seconds.
     pub(super) fn ease(&mut self, dt: f32) {
         let aim = if self.share < LEAST { 0.0 } else { self.share };
         self.used += (aim - self.used).clamp(-EASE * dt, EASE * dt);
     }
 
-    /// Share of a load for each decade, as far as is known.
+    /// Estimated share of a load for each decade.
     pub(super) const fn share(&self) -> f32 {
         self.share
     }
 
-    /// Lets the time of these `parts` pass under the `forces` of some tiles, of which some are connected, and notes
-    /// what each sensor then has `crept`, in newtons.
+    /// Updates the load averages of some connected tiles with their `forces` over the time of these `parts`, and
+    /// writes the creep of each sensor to `crept` (N).
     pub(super) fn follow(
         &self,
         parts: &Parts,
@@ -153,7 +155,7 @@ impl Creep {
     }
 }
 
-/// [`Creep::follow`] for sensors that creep by `share`, compiled for what the processor offers.
+/// [`Creep::follow`] for sensors with a creep of `share`, compiled for each vector instruction set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn follow(
     share: f32,
@@ -172,7 +174,7 @@ fn follow(
 }
 
 impl Memory {
-    /// Lets some time pass under these forces; true if anything has changed.
+    /// Updates the averages with these forces, m += gain (F − m); returns whether any may have changed.
     #[inline(always)]
     fn follow(&mut self, forces: [f32; 4], Parts(parts): &Parts) -> bool {
         if !self.was_loaded && forces.iter().fold(true, |none, &force| none & (force < NOTHING_N)) {
@@ -191,7 +193,7 @@ impl Memory {
         true
     }
 
-    /// How well each sensor's load is remembered, all times together, in newtons.
+    /// Sum of each sensor's load averages (N).
     #[inline(always)]
     fn sums(&self) -> [f32; 4] {
         std::array::from_fn(|corner| self.loads.iter().map(|loads| loads[corner]).sum())
@@ -202,8 +204,8 @@ impl Memory {
 mod tests {
     use super::*;
 
-    /// Feet of 150 N per sensor step on a tile for a second and leave it for two, `times`; gives what a sensor
-    /// that creeps by `creep` then still seems to carry, and the largest error under the last foot.
+    /// Feet of 150 N per sensor step on a tile for a second and leave it for two, `times`; returns the remaining
+    /// apparent load of a sensor that creeps by `creep`, and the largest error under the last foot.
     fn walked_over(creep: f32, times: u32, left_n: f32) -> (f32, f32) {
         let (mut known, mut memory, mut truth) = (Creep::default(), Memory::default(), Memory::default());
         let parts = Parts::of(0.008);
@@ -243,11 +245,11 @@ mod tests {
     #[test]
     fn nothing_is_taken_off_sensors_that_do_not_creep() {
         assert_eq!(walked_over(0.0, 40, 0.0), (0.0, 0.0));
-        // A foot that presses and then rests there with a twentieth of that, time and again.
+        // A foot that presses and then rests there with a twentieth of that, repeatedly.
         assert_eq!(walked_over(0.0, 40, 7.5), (0.0, 0.0));
     }
 
-    /// What is learnt of a sensor that does not creep, on a tile that carries `load(seconds)` newtons.
+    /// The estimate for a sensor that does not creep, on a tile that carries `load(seconds)` newtons.
     fn learnt_under(load: impl Fn(f32) -> f32, seconds: usize) -> f32 {
         let (mut known, mut memory) = (Creep::default(), Memory::default());
         let parts = Parts::of(0.008);
@@ -263,10 +265,11 @@ mod tests {
 
     #[test]
     fn a_busy_tile_on_which_light_feet_rest_or_come_and_go_teaches_nothing() {
-        // Of a tile that is loaded for minutes the memory hardly fades within a second; nor does what rests there.
+        // On a tile that is loaded for minutes the average hardly decays within a second, and neither does a resting
+        // load.
         let rests = |at: f32| if at % 60.0 < 57.0 { 150.0 } else { 20.0 };
         assert_eq!(learnt_under(rests, 600), 0.0);
-        // After a heavy foot a light one taps twice, the second time as much lighter as creep would have faded.
+        // After a heavy foot a light one taps twice, the second time lighter by the decay of creep.
         let steps = |at: f32| match at % 3.0 {
             ..1.0 => 150.0,
             1.15..1.35 => 6.0,

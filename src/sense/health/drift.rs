@@ -1,71 +1,70 @@
-//! Following the zero of sensors that drift.
+//! Tracks the zero of sensors that drift.
 //!
-//! Whether a tile is empty is not read off the drifting value alone:
+//! The drifting value alone does not decide whether a tile is empty:
 //!
-//! - every sensor must be near its zero (3 N), and so must their sum (4 N): less than
-//!   what counts as load, so whatever stands there operates nothing anyway;
-//! - none of the eight tiles around may carry anything, for a foot's edge may reach over;
-//! - all of this must have been so, and quiet, for two seconds on end: a person sways.
-//!   For the first newton, a fifth of a second is enough; see below.
+//! - every sensor must be near its zero (3 N), and so must their sum (4 N): less than a load, so nothing that stands
+//!   there operates a control;
+//! - none of the eight tiles around may carry a load, since a foot's edge may reach over;
+//! - all of this must have been so, without motion, for two seconds: a person sways. For the first newton, a fifth of
+//!   a second is enough; see below.
 //!
-//! A foot that stands is never near zero, so no standing foot is taken off, however long
-//! it stands and creeps. The worst that can be zeroed away is a resting touch of 4 N.
+//! A standing foot is never near zero, so its load is never subtracted, for any duration of standing and creep. The
+//! largest load that can be zeroed is a resting touch of 4 N.
 //!
-//! A zero that is off by less than a newton is within what any tare leaves, and costs light
-//! feet half a centimetre: that much, about where the zero has been followed to slowly, is
-//! followed at once.
+//! An offset of less than a newton is within the error of any tare, and displaces light feet by half a centimetre:
+//! the zero follows that much, about its slowly tracked value, at once.
 
 use super::slow::Block;
 use super::trouble::{Sensor, Trouble};
 
-/// The fastest the zero follows beyond [`SMALL_N`], in newtons per second: one newton a minute.
+/// Maximum rate of the zero beyond [`SMALL_N`] (N/s): one newton a minute.
 const RATE: f32 = 1.0 / 60.0;
 
-/// How far from where it has been followed to so slowly a zero is followed at once, in newtons, after how long, and how
-/// soon, in seconds.
+/// Range about the slowly tracked zero within which the zero follows at once (N), the delay, and the time constant
+/// (s).
 const SMALL_N: f32 = 1.0;
 const MOMENT_S: f32 = 0.2;
 const SOON_S: f32 = 0.15;
 
-/// How far the zero is followed, as a share of the sensor's range.
+/// Maximum tracked offset, as a share of the sensor's range.
 pub(super) const LIMIT: f32 = 0.2;
 
-/// How far from zero a sensor, and the sum of a tile's, may be on an empty tile.
+/// Maximum reading of a sensor, and of the sum of a tile's sensors, on an empty tile (N).
 const EMPTY_N: f32 = 3.0;
 const EMPTY_SUM_N: f32 = 4.0;
 
-/// How much averages may differ while quiet, in newtons.
+/// Maximum difference of averages in a quiet period (N).
 const QUIET_N: f32 = 0.5;
 
-/// How far readings may scatter within a block on a sensor that is not noisy, in newtons.
+/// Maximum spread of readings within a block of a sensor that is not noisy (N).
 const SCATTER_N: f32 = 4.0;
 
-/// For how long a tile must be empty and quiet before its zeros are followed slowly, in seconds.
+/// Time for which a tile must be empty and quiet before its zeros move slowly (s).
 const PATIENCE_S: f32 = 2.0;
 
-/// For how long a sensor scatters on the empty tile before it is noisy, in seconds: less than two steps.
+/// Time of excessive spread on the empty tile after which a sensor is noisy (s): less than two steps.
 const NOISY_S: f32 = 1.0;
 
-/// One tile's state as far as drift is concerned.
+/// Drift state of one tile.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::sense) struct Drift {
-    /// The averages when it became quiet.
+    /// The averages at the start of the quiet period.
     since: [f32; 4],
-    /// How far each zero has been followed slowly, in newtons.
+    /// Slowly tracked offset of each zero (N).
     slowly: [f32; 4],
     quiet_for: f32,
-    /// Seconds for which each sensor has scattered on the empty tile, or has not.
+    /// Time for which each sensor has spread excessively on the empty tile (s).
     noisy_for: [f32; 4],
 }
 
 impl Drift {
-    /// Forgets what it has seen of the tile, for frames are missing, but not how far its zeros have been followed.
+    /// Resets the state after missing frames, except the slowly tracked offsets.
     pub(super) fn interrupt(&mut self) {
         *self = Self { slowly: self.slowly, ..Self::default() };
     }
 
-    /// Adds a block, and moves the `zeros` if the tile is empty and quiet; `alone`
-    /// says that no tile around it carries anything.
+    /// Adds a block, and moves the `zeros` if the tile is empty and quiet; `alone` means that no tile around it
+    /// carries a load.
     pub(super) fn follow(
         &mut self,
         block: &Block,
@@ -94,7 +93,7 @@ impl Drift {
         if self.quiet_for < MOMENT_S {
             return;
         }
-        // What it follows must not in the end look like unrest.
+        // The tracked drift itself must not count as motion.
         self.since = block.means;
         let most = if self.quiet_for < PATIENCE_S { 0.0 } else { RATE * block.seconds };
         let soon = 1.0 - (-block.seconds / SOON_S).exp();
@@ -112,7 +111,7 @@ impl Drift {
         }
     }
 
-    /// Finds sensors that scatter on an empty tile.
+    /// Finds sensors with excessive spread on an empty tile.
     fn note_noise(&mut self, block: &Block, sensors: &mut [Sensor; 4]) {
         for (corner, sensor) in sensors.iter_mut().enumerate() {
             let scatters = block.spreads[corner] > SCATTER_N;
@@ -142,7 +141,7 @@ mod tests {
                 drift.follow(&block, true, &[100.0; 4], zeros, &mut sensors);
             }
         };
-        // Eight newtons in ten minutes, as fast as a zero may drift to be followed.
+        // Eight newtons in ten minutes, just below the maximum rate of tracking.
         for tenth in 0..80_u8 {
             empty(&mut drift, &mut zeros, f32::from(tenth) / 10.0, 117);
         }

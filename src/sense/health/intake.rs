@@ -1,25 +1,25 @@
-//! Where what sensors have read is put, many side by side.
+//! The destination of sensor readings, laid out for vector operations.
 
 use super::{End, Health};
 use crate::sense::{ForceFrame, Quality};
 
-/// What is known and what is to be written of `LANES` sensors that follow each other, four to a tile.
+/// Inputs and outputs for `LANES` consecutive sensors, four to a tile.
 pub(in crate::sense) struct Lanes<'a, const LANES: usize> {
-    /// What to take off each reading besides its tare.
+    /// Offset to subtract from each reading besides its tare.
     pub offsets: &'a [f32; LANES],
     pub forces: &'a mut [f32; LANES],
     pub quality: &'a mut [Quality; LANES],
     pub ends: &'a mut [End; LANES],
-    /// The readings as the boards sent them.
+    /// The readings as sent by the boards.
     pub raws: &'a mut [u16; LANES],
-    /// Whether each goes by the nominal law.
+    /// Whether each has the nominal law.
     pub guessed: &'a mut [bool; LANES],
-    /// Whether each has been read for the frame in the making.
+    /// Whether each has been read for the present frame.
     pub news: &'a mut [bool; LANES],
 }
 
 impl Health {
-    /// The sensors from number `first` on, in tile-index order; `None` if the floor has not got so many.
+    /// The sensors from number `first` on, in tile-index order; `None` if the floor has fewer.
     #[inline]
     pub(in crate::sense) fn lanes<'a, const LANES: usize>(
         &'a mut self,
@@ -37,16 +37,16 @@ impl Health {
         })
     }
 
-    /// Notes that a sensor, by its number, asks for its tile to be examined.
+    /// Notes that a sensor, by its number, requires an examination of its tile.
     pub(in crate::sense) fn note_loud(&mut self, sensor: usize) {
         let tile = (sensor / 4) as u32;
-        // A tile may come four times if its sensors are on boards of their own, never more often.
+        // A tile may come four times if its sensors are on different boards, never more often.
         if self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
             self.loud.push(tile);
         }
     }
 
-    /// Notes that boards make newtons themselves.
+    /// Notes that boards convert to newtons themselves.
     pub(in crate::sense) fn note_newtons(&mut self) {
         if !std::mem::replace(&mut self.by_boards, true) {
             self.judge_floor();

@@ -8,40 +8,40 @@ use super::trouble::Sensor;
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Instant;
 
-/// How much the load of one tile changes at most within a millisecond, in newtons (our choice).
+/// Maximum change of the load of one tile within a millisecond (N) (our choice).
 ///
 /// # Source
-/// Walking loads a foot by 7 to 20 body weights a second (Winter 1991), that is 14 N a millisecond for
-/// 70 kg; running on the heel in shoes by some 70 (Lieberman et al. 2010), 48 N a millisecond; who stamps
-/// stays below 20. Six times the hardest of these leaves room for plates that ring, and is a third of what
-/// four sensors read that go from nothing to 60,000 counts (920 N of the nominal part). Who runs barefoot on the
-/// heel reaches 460 for a moment (the same source) and may be suspected: that ends a hold and presses nothing.
+/// Walking loads a foot by 7 to 20 body weights a second (Winter 1991), that is 14 N a millisecond for 70 kg; running
+/// on the heel in shoes by about 70 (Lieberman et al. 2010), 48 N a millisecond; a stamp stays below 20. Six times
+/// the hardest of these leaves room for plates that ring, and is a third of the reading of four sensors that go from
+/// zero to 60,000 counts (920 N of the nominal part). Running barefoot on the heel reaches 460 for a moment (the same
+/// source) and may cause a false alarm: that ends a hold and presses nothing.
 const MOST_N: f32 = 300.0;
 
-/// How long the tile is not believed after that (our choice: ten times the settling of a converter that was
-/// cut off and is back, and as long as a board may be silent).
+/// Time for which the tile is faulty after that (our choice: ten times the settling time of a converter that was cut
+/// off and is back, and the time-out of a silent board).
 const SUSPECTED_FOR: Duration = Duration::from_millis(100);
 
-/// If no sensor changes by more, its tile's load has not jumped, whichever of them are known to be out, however it is
-/// rounded.
+/// If no sensor changes by more, its tile's load has not jumped, for any set of faulty sensors and any rounding.
 const CALM_N: f32 = 0.9 * MOST_N / 4.0;
 
-/// Tiles that are looked at together.
+/// Number of tiles compared together.
 const BLOCK: usize = 16;
 
-/// Watches every tile for loads that jump.
+/// Watches all tiles for jumps of their load.
 #[derive(Clone, Debug)]
 pub(super) struct Jumps {
-    /// When each tile was last read by itself, and each block of tiles at once; `None` before the first time.
+    /// Time at which each tile was last read by itself, and each block of tiles at once; `None` before the first
+    /// time.
     at: Vec<Option<Instant>>,
     blocks_at: Vec<Option<Instant>>,
-    /// What it read then.
+    /// Readings at that time.
     forces: Vec<[f32; 4]>,
-    /// Which sensors have been read for the frame in the making.
+    /// Whether each sensor has been read for the present frame.
     news: Vec<[bool; 4]>,
-    /// Blocks of which some load may have jumped, or some sensor has not been read.
+    /// Blocks with a possible jump, or with a sensor that has not been read.
     stirred: Vec<usize>,
-    /// Until when each tile is not believed, and until when any is not.
+    /// Time until which each tile is faulty, and the latest of these times.
     suspected_until: Vec<Instant>,
     any_until: Instant,
     count: u64,
@@ -64,19 +64,20 @@ impl Jumps {
         }
     }
 
-    /// For each sensor, four to a tile, whether it has been read for the frame in the making: to be set.
+    /// For each sensor, four to a tile, whether it has been read for the present frame; the caller sets it.
     pub(super) fn news(&mut self) -> &mut [bool] {
         self.news.as_flattened_mut()
     }
 
-    /// Which sensors have been read for the frame in the making, tile by tile.
+    /// Whether each sensor has been read for the present frame, tile by tile.
     pub(super) fn read(&self) -> &[[bool; 4]] {
         &self.news
     }
 
-    /// Takes from tiles whose load has jumped, for a while, whatever quality they had.
+    /// Marks tiles with a jump of their load as faulty for a while, regardless of their quality.
     ///
-    /// Sensors known to be out do not count: a short is found by its plate, which goes on with the other three.
+    /// Sensors known to be out do not count: the plate check finds a short, and the tile continues with the other
+    /// three.
     pub(super) fn mark(&mut self, frame: &mut ForceFrame, sensors: &[[Sensor; 4]], now: Instant) {
         self.stirred.clear();
         settle(&mut self.forces, &frame.forces, &mut self.news, &mut self.blocks_at, now, &mut self.stirred);
@@ -97,7 +98,7 @@ impl Jumps {
         }
     }
 
-    /// Compares what `tile` reads with what it read before, if it has been read.
+    /// Compares the readings of `tile` with those before, if it has been read.
     fn compare(&mut self, tile: usize, forces: [f32; 4], sensors: &[Sensor; 4], now: Instant) {
         if self.news[tile] == [false; 4] {
             return;
@@ -107,7 +108,7 @@ impl Jumps {
         let elapsed = at.map(|at| now.since(at));
         let changes = (0..4).filter(|&corner| !sensors[corner].is_out());
         let jump = changes.map(|corner| forces[corner] - before[corner]).sum::<f32>().abs();
-        // After silence whatever was held is cancelled anyway, and anybody may have come.
+        // After silence all holds are cancelled anyway, and a person may have stepped on.
         let spans = elapsed.filter(|elapsed| *elapsed < SUSPECTED_FOR);
         if spans.is_some_and(|elapsed| jump > MOST_N * (1e3 * elapsed.as_secs_f32()).max(1.0)) {
             self.suspected_until[tile] = now + SUSPECTED_FOR;
@@ -117,16 +118,16 @@ impl Jumps {
         }
     }
 
-    /// How often a load jumped, and the last tile and height of it.
+    /// Number of jumps, and the tile and height of the last one.
     pub(super) const fn found(&self) -> (u64, Option<(usize, f32)>) {
         (self.count, self.last)
     }
 }
 
-/// Notes what each block of tiles reads `now`, if all of its sensors have been read and no tile's load can have jumped;
-/// the other blocks go to `stirred`.
+/// Stores the readings at `now` of each block of tiles, if all of its sensors have been read and no tile's load can
+/// have jumped; adds the other blocks to `stirred`.
 ///
-/// Compiled for what the processor offers.
+/// Compiled for each vector instruction set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn settle(
     before: &mut [[f32; 4]],
@@ -166,7 +167,7 @@ mod tests {
     use super::*;
     use crate::floor::Geometry;
 
-    /// In which milliseconds a tile that carries `newtons` of each is not believed.
+    /// The milliseconds in which a tile with `newtons` on each sensor is faulty.
     fn suspected(newtons: impl IntoIterator<Item = Option<f32>>) -> Vec<usize> {
         let geometry = Geometry::of_paper_tiles(1, 1).unwrap();
         let (mut jumps, mut frame) = (Jumps::new(1), ForceFrame::empty(&geometry));

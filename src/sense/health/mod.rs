@@ -1,4 +1,4 @@
-//! Watching the sensors: which readings can be a foot's, which sensor is broken, where zero has drifted to.
+//! Monitoring of the sensors: readings that no foot causes, broken sensors, and drift of the zero.
 //!
 //! ```text
 //! counts --calibration, tare, drift--> ForceFrame --Health--> ForceFrame with honest qualities
@@ -6,10 +6,10 @@
 //!              +------------ zero -----------------+   (only on an empty, quiet tile)
 //! ```
 //!
-//! [`plate`] knows what a rigid plate allows, [`averages`] are those of each tile over
-//! 64 ms, in which [`slow`] looks for what takes seconds, [`drift`] follows the zero, [`creep`] what
-//! lingers of a load, [`jump`] finds what no body does, [`repeats`] what no converter does that works. What must be known before a control could be pressed is decided here,
-//! in the same frame.
+//! [`plate`] models a rigid plate, [`averages`] holds the means of each tile over 64 ms, in which [`slow`] looks for
+//! faults that take seconds, [`drift`] tracks the zero, [`creep`] corrects the remainder of a load, [`jump`] finds
+//! changes too fast for a body, and [`repeats`] finds readings impossible for a working converter. Checks that must
+//! precede a press of a control run here, in the same frame.
 
 mod averages;
 mod creep;
@@ -40,37 +40,38 @@ use self::repeats::{Heard, Repeats};
 use self::slow::{GAP_S, Slow};
 use self::trouble::Sensor;
 
-/// Force beside zero from which on a tile is examined in every frame: the least that counts as load.
+/// Force beside zero above which a tile is examined in every frame (N): the least that counts as load.
 pub(super) const LOUD_N: f32 = 6.0;
 
-/// A sensor's load that grows by more in a millisecond is not a foot's: the hardest heel strike takes five to
-/// put its weight on (our choice).
+/// Maximum increase of a sensor's load by a foot within a millisecond (N): the hardest heel strike takes five to
+/// apply its weight (our choice).
 const SUDDEN_N: f32 = 30.0;
 
-/// A sensor that loses more in a millisecond is not lifted off: what rests on a corner of an empty plate (our choice).
+/// Maximum decrease of a sensor's load within a millisecond when its corner lifts (N): the load on a corner of an
+/// empty plate (our choice).
 const FELL_N: f32 = 8.0;
 
-/// Where in the converter's range a reading lies.
+/// Position of a reading in the converter's range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum End {
-    /// Where readings should be.
+    /// The normal range.
     #[default]
     Within,
-    /// Below what the sensor reads on the empty floor, and next to zero volts.
+    /// Next to zero volts, and below the sensor's reading on the empty floor.
     Low,
-    /// Next to zero volts, where it is on the empty floor as well.
+    /// Next to zero volts, as on the empty floor.
     Bare,
     /// At 98 % or above: the force is this or more.
     High,
 }
 
 impl End {
-    /// Whether nothing presses the sensor, or nothing that it can tell.
+    /// Whether the sensor carries no measurable load.
     const fn reads_nothing(self) -> bool {
         matches!(self, Self::Low | Self::Bare)
     }
 
-    /// Whether the reading alone is a reason to look at the tile.
+    /// Whether the reading alone requires an examination of the tile.
     const fn is_odd(self) -> bool {
         matches!(self, Self::Low | Self::High)
     }
@@ -78,71 +79,72 @@ impl End {
 
 /// The sensors' health on one floor.
 ///
-/// Costs nothing per frame for tiles at rest but an eighth of a visit; allocates nothing.
+/// Tiles at rest cost only an eighth of a visit per frame; allocates no memory.
 #[derive(Clone, Debug)]
 pub(super) struct Health {
     geometry: Geometry,
-    /// What each sensor reads without load beyond its tare, as followed so far.
+    /// Offset of each sensor without load beyond its tare, as tracked so far.
     zeros: Vec<[f32; 4]>,
-    /// What each reads too much besides, for it creeps, and why.
+    /// Additional offset of each due to creep.
     crept: Vec<[f32; 4]>,
-    /// Both together.
+    /// Sum of both.
     offsets: Vec<[f32; 4]>,
     memories: Vec<Memory>,
     creep: Creep,
-    /// How far the floor's plates give way to twist.
+    /// Flexibility of the floor's plates under twist.
     twist: Twist,
     /// The first tile of each share of the floor, and the end of the last one.
     shares: [usize; SHARES + 1],
-    /// When each share of the floor was last visited.
+    /// Time of the last visit to each share of the floor.
     visited: [Option<Instant>; SHARES],
-    /// How far each may be followed: 20 % of the sensor's range.
+    /// Maximum tracked offset of each: 20 % of the sensor's range.
     limits: Vec<[f32; 4]>,
     ends: Vec<[End; 4]>,
-    /// What each has read as its board sent it, 0 for nothing; of newtons a digest of their bits.
+    /// Reading of each as sent by its board, 0 for zero; for newtons a digest of their bits.
     raws: Vec<[u16; 4]>,
-    /// Sensors that go by the nominal law: what a plate allows cannot be held against forces that may be off by a
-    /// third.
+    /// Sensors with the nominal law: the plate checks do not apply to forces that may be off by a third.
     guessed: Vec<[bool; 4]>,
     sensors: Vec<[Sensor; 4]>,
     averages: Averages,
     slow: Vec<Slow>,
-    /// Which tiles' sensors were all connected when they were last visited.
+    /// Whether each tile's sensors were all connected at the last visit.
     connected: Vec<bool>,
-    /// Which tiles carry something, by their last whole blocks.
+    /// Whether each tile carries a load, by its last complete block.
     loaded: Vec<bool>,
     /// Tiles with a reading to be examined in this frame.
     loud: Vec<u32>,
-    /// Tiles with a sensor in trouble, or that may start nothing.
+    /// Tiles with a faulty sensor, or that may start nothing.
     watched: Vec<u32>,
-    /// For building the next `watched`.
+    /// Space for the next `watched`.
     spare: Vec<u32>,
-    /// Number of the frame in which each tile was last checked, and what its sensors read then.
+    /// Number of the frame in which each tile was last checked, and its sensors' readings then.
     checked: Vec<u32>,
     read: Vec<[f32; 4]>,
     number: u32,
     changes: u64,
     found: u64,
-    /// Tiles judged by their first block, and how many of them read what no empty tile of this floor should.
+    /// Number of tiles judged by their first block, and number of those with readings that no empty tile of this
+    /// floor should have.
     judged: usize,
     strange: usize,
     seen: Vec<bool>,
-    /// How many tiles of those carried something, which says nothing of their zeros.
+    /// Number of those tiles with a load, which reveal nothing of their zeros.
     laden: usize,
-    /// Whether boards make the newtons themselves: then the file says nothing of them.
+    /// Whether the boards convert to newtons themselves: then the file does not apply.
     by_boards: bool,
     is_foreign: bool,
     jumps: Jumps,
     repeats: Repeats,
 }
 
-/// How much a sensor may read at first, in newtons, on a floor that is the file's: far more than zeros drift in a day.
+/// Maximum initial reading of a sensor (N) on the floor of the file: far more than zeros drift in a day.
 const STRANGE_N: f32 = 2.0;
 
-/// From which force on a tile is taken to carry a foot: more than another floor's zeros add up to.
+/// Force above which a tile counts as carrying a foot (N): more than the sum of another floor's zeros.
 const LADEN_N: f32 = 25.0;
 
-/// The share of empty tiles that must read strangely for the floor to be another one, and how many there must be.
+/// Share of empty tiles with strange readings above which the floor is a different one, and minimum number of empty
+/// tiles.
 const MOST_TILES: f32 = 0.4;
 const FEWEST_TILES: usize = 4;
 
@@ -191,12 +193,12 @@ impl Health {
         }
     }
 
-    /// What to take off a reading of this sensor besides its tare.
+    /// Offset to subtract from a reading of this sensor besides its tare.
     pub(super) fn zero(&self, tile: usize, corner: usize) -> f32 {
         self.offsets[tile][corner]
     }
 
-    /// Marks in `frame`, whose forces have all been taken and which was `sampled` then, what cannot be trusted.
+    /// Marks unreliable readings in `frame`, which holds all forces `sampled` at that time.
     pub(super) fn inspect(&mut self, frame: &mut ForceFrame, sampled: Instant) {
         self.number = self.number.wrapping_add(1);
         let mut loud = std::mem::take(&mut self.loud);
@@ -208,7 +210,7 @@ impl Health {
                 continue;
             }
             if before != self.number.wrapping_sub(1) {
-                // It was not worth looking at: nothing to speak of lay on it.
+                // The tile was not examined: it carried hardly any load.
                 self.read[tile as usize] = [0.0; 4];
             }
             if self.look(tile as usize, frame) {
@@ -223,8 +225,8 @@ impl Health {
         self.jumps.mark(frame, &self.sensors, sampled);
     }
 
-    /// Finds the plates whose readings repeat, and learns what the noise of every [`SHARES`]th part of the floor leaves
-    /// to chance.
+    /// Finds the plates with repeated readings, and learns the probability of chance repetitions of every
+    /// [`SHARES`]th part of the floor.
     fn look_for_repeats(&mut self, frame: &mut ForceFrame, sampled: Instant) {
         let share = self.number as usize % SHARES;
         let tiles = self.shares[share]..self.shares[share + 1];
@@ -234,7 +236,7 @@ impl Health {
         repeats.visit(tiles, frame, heard, self.number / SHARES as u32);
     }
 
-    /// Looks at one tile; true if it must be examined again in the next frame.
+    /// Examines one tile; returns true if the next frame must examine it again.
     fn look(&mut self, tile: usize, frame: &mut ForceFrame) -> bool {
         let foreign = self.is_foreign();
         let (forces, ends, sensors) = (frame.forces[tile], self.ends[tile], &mut self.sensors[tile]);
@@ -263,8 +265,8 @@ impl Health {
                         Some(Trouble::Open)
                     }
                     _ if measured && alone == Some(corner) => {
-                        // On a limp plate a foot that comes down over a sensor is not answered either; but it pushes,
-                        // and not from one millisecond to the next.
+                        // On a limp plate the other sensors do not respond to a foot on one sensor either; but a foot
+                        // pushes, and not from one millisecond to the next.
                         let is_sudden = (forces[corner] - before[corner]).abs() > SUDDEN_N;
                         let is_none = is_sudden || forces[corner] < 0.0 || !self.twist.may_be_limp();
                         may_start &= is_none;
@@ -369,7 +371,7 @@ impl Health {
         }
     }
 
-    /// Whether somebody may be standing with part of a foot on this tile, by what its neighbours carry.
+    /// Whether a part of a foot may stand on this tile, by the loads of its neighbours.
     fn has_loaded_neighbour(&self, tile: usize) -> bool {
         let first = self.geometry.tile_at_index(tile);
         let around = TileBlock { first, columns: 1, rows: 1 }.grown(1);
@@ -377,33 +379,33 @@ impl Health {
         others.filter(|&other| other != tile).any(|other| self.loaded[other])
     }
 
-    /// How often a sensor has fallen ill or got well.
+    /// Number of times that a sensor became faulty or recovered.
     pub(super) const fn changes(&self) -> u64 {
         self.changes
     }
 
-    /// How often a sensor has fallen ill.
+    /// Number of times that a sensor became faulty.
     pub(super) const fn found(&self) -> u64 {
         self.found
     }
 
-    /// How often the load of a tile has jumped, and the last such tile and by how many newtons.
+    /// Number of jumps of a tile's load, and the last such tile with its jump in newtons.
     pub(super) fn jumps(&self) -> (u64, Option<(TileId, f32)>) {
         let (count, last) = self.jumps.found();
         (count, last.map(|(tile, newtons)| (self.geometry.tile_at_index(tile), newtons)))
     }
 
-    /// Whether a repetition of this sensor's readings shows that it stands still.
+    /// Whether a repetition of this sensor's readings indicates a frozen converter.
     pub(super) fn tells(&self, tile: usize, corner: usize) -> bool {
         self.repeats.tells(tile, corner)
     }
 
-    /// How often the readings of a plate have repeated, and the plates whose do now.
+    /// Number of repetitions found, and the plates that repeat now.
     pub(super) fn repeating(&self) -> (u64, impl Iterator<Item = TileId> + '_) {
         (self.repeats.count(), self.repeats.repeating().map(|tile| self.geometry.tile_at_index(tile)))
     }
 
-    /// Whether most tiles read what no empty tile of the file's floor should, at the start.
+    /// Whether, at the start, most tiles had readings that no empty tile of the file's floor should have.
     pub(super) const fn is_foreign(&self) -> bool {
         self.is_foreign
     }
@@ -415,7 +417,7 @@ impl Health {
             all_seen && empty >= FEWEST_TILES && self.strange as f32 > MOST_TILES * empty as f32;
     }
 
-    /// The sensors in trouble.
+    /// The faulty sensors.
     pub(super) fn troubles(&self) -> impl Iterator<Item = (SensorId, Trouble)> + '_ {
         self.watched.iter().flat_map(move |&tile| {
             let id = self.geometry.tile_at_index(tile as usize);
@@ -427,22 +429,21 @@ impl Health {
         })
     }
 
-    /// How much the sensors creep, as a share of their load for each decade.
+    /// Creep of the sensors, as a share of their load for each decade.
     pub(super) const fn creep(&self) -> f32 {
         self.creep.share()
     }
 
-    /// How far each sensor's zero has been followed, per tile and corner.
+    /// Tracked offset of each sensor's zero, per tile and corner.
     pub(super) fn drift(&self) -> impl ExactSizeIterator<Item = [Newtons; 4]> + '_ {
         self.zeros.iter().map(|zeros| zeros.map(Newtons))
     }
 }
 
-/// Whether all four sensors deliver, those known to be broken apart.
 /// The first tile of each share of the floor, and the end of the last one.
 ///
-/// A tile is in the same share however the whole floor is cut, so that each computer that senses it averages it over
-/// the same frames.
+/// A tile is in the same share for every division of the whole floor, so that each computer with this tile averages
+/// it over the same frames.
 fn shares(geometry: &Geometry) -> [usize; SHARES + 1] {
     let (columns, rows) = geometry.whole();
     let (columns, whole) = (usize::from(columns), usize::from(columns) * usize::from(rows));
@@ -451,6 +452,7 @@ fn shares(geometry: &Geometry) -> [usize; SHARES + 1] {
     std::array::from_fn(|share| places.partition_point(|&place| place < whole * share / SHARES))
 }
 
+/// Whether all four sensors deliver, not counting those known to be broken.
 fn is_connected(quality: &[Quality; 4], sensors: &[Sensor; 4]) -> bool {
     quality.iter().zip(sensors).all(|(quality, sensor)| *quality < Quality::Stale || sensor.is_out())
 }

@@ -1,62 +1,60 @@
-//! What a plate on four supports allows its sensors to read.
+//! The readings that a plate on four supports allows.
 //!
-//! A rigid plate leaves the sum of one diagonal equal to that of the other. One that bends, such as 12 mm of plywood
-//! on soft feet, twists: a load off both middle lines presses the corners of its own diagonal harder. How far the
-//! floor's plates give way is learnt from the feet on them, starting from plates that are taken to be rigid rather than
-//! limp: on a limp one a single corner may carry it all, so nothing that one sensor reads alone could be held against
-//! it.
+//! On a rigid plate the sum of one diagonal equals that of the other. A flexible one, such as 12 mm of plywood on
+//! soft feet, twists: a load off both middle lines presses the corners of its own diagonal harder. The flexibility of
+//! the floor's plates is learnt from the feet on them, starting with rigid plates: on a limp one a single corner may
+//! carry all of the load, so that no reading of a single sensor could indicate a fault.
 //!
 //! Corners are numbered as in [`crate::sense::corners`].
 
 use super::End;
 use crate::sense::corners::{self, Told, expected, told};
 
-/// A single sensor must read this much, in newtons, for an answer to be expected of the others (our choice).
+/// Minimum reading of a single sensor (N) for the others to respond (our choice).
 const ALONE_N: f32 = 8.0;
 
-/// An answer must be larger than this share of the lone load, from the least to the most one expects.
+/// Minimum response of the others, as a share of the lone load, with its lower and upper bounds (N).
 ///
-/// A load right over a sensor puts a third of what that one reads on each of its
-/// neighbours, until the plate lifts off diagonally, where its own weight (6 N per
-/// corner and more) then is missing.
+/// A load right over a sensor puts a third of that sensor's reading on each of its neighbours, until the plate lifts
+/// off diagonally, where its own weight (6 N per corner and more) then is missing.
 const ANSWER: f32 = 0.1;
 const LEAST_ANSWER_N: f32 = 1.0;
 const MOST_ANSWER_N: f32 = 3.0;
 
-/// How much of a tile's load the rigid-plate estimate of a corner may be off: unequal
-/// supports (a tenth) and gains (a twentieth), three deviations (our choice).
+/// Maximum error of the rigid-plate estimate of a corner, as a share of the tile's load: unequal supports (a tenth)
+/// and gains (a twentieth), three deviations (our choice).
 pub(super) const SLACK: f32 = 0.15;
 
-/// The same for a verdict from a single frame, which no later one confirms.
+/// The same for a verdict from a single frame, without confirmation by a later one.
 const AT_ONCE_SLACK: f32 = 0.3;
 
-/// How far a foot that lies across a tile's diagonal twists the plate beyond what its centre of pressure does, as a
-/// share of its force: what a print of 0.25 m at 45 degrees does is 0.14, and [`SLACK`] bears the rest (by geometry).
+/// Twist of the plate by a foot across a tile's diagonal beyond that of its centre of pressure, as a share of its
+/// force: a print of 0.25 m at 45 degrees causes 0.14, and [`SLACK`] covers the rest (by geometry).
 const ACROSS: f32 = 0.06;
 
-/// Least load of a tile that shows how its plate bends, in newtons, and the weight of evidence that is kept: about
-/// two hundred steps.
+/// Minimum load of a tile that shows the bending of its plate (N), and maximum weight of evidence: about two hundred
+/// steps.
 const BENDS_N: f32 = 80.0;
 const MOST_WEIGHT: f32 = 300.0;
 
-/// By how much of a tile's load its diagonals may differ beyond what plates allow for it to tell how they bend: a dead
-/// sensor under the middle of a foot makes a third.
+/// Maximum difference of a tile's diagonals beyond the range of plates, as a share of its load, that enters the
+/// estimate: a dead sensor under the middle of a foot makes a third.
 const FAULT: f32 = 0.2;
 
-/// Standard deviation of the twist that one block of evidence of weight 1 shows, blocks of one step being alike: twice
-/// that is allowed for (by simulated walks on plates from rigid to limp).
+/// Standard deviation of the twist from one block of evidence of weight 1, where blocks of one step are alike: the
+/// range covers twice that (by simulated walks on plates from rigid to limp).
 const BLOCK_DEVIATION: f32 = 0.3;
 
-/// Weight of evidence that plates are rigid before any foot has shown how they bend: so much that a load on one sensor
-/// alone is none a plate allows (twist of 0.6 at most), so little that the first step or two outweigh it (our choice).
+/// Prior weight of evidence of rigid plates: high enough that no allowed plate (twist of 0.6 at most) puts a load on
+/// one sensor alone, low enough that the first step or two outweigh it (our choice).
 const RIGID_WEIGHT: f32 = 1.0;
 
-/// From which twist on a load over one sensor may hardly be felt by its neighbours: they carry `(1 - twist) / 4` of it,
-/// and of one on the plate's very corner `(1 - 1.3 twist) / 4` (on simulated floors of 0.45 one sensor was accused in
-/// an hour, of 0.2 none).
+/// Twist above which the neighbours may hardly measure a load over one sensor: they carry `(1 - twist) / 4` of it,
+/// and of one on the plate's very corner `(1 - 1.3 twist) / 4` (on simulated floors of 0.45 one sensor was falsely
+/// reported in an hour, of 0.2 none).
 const LIMP: f32 = 0.3;
 
-/// How far a floor's plates give way to twist: 0 for rigid ones, 1 for such as have no stiffness of their own.
+/// Flexibility of a floor's plates under twist: 0 for rigid ones, 1 for plates without stiffness of their own.
 ///
 /// # Source
 /// Plate on four equal springs: `f_sw - f_se - f_nw + f_ne = twist * sum(F x y) / reach^2`, by least squares.
@@ -73,20 +71,21 @@ impl Default for Twist {
 }
 
 impl Twist {
-    /// The least and the most that it may be.
+    /// Lower and upper bound of the twist.
     pub(super) fn range(&self) -> (f32, f32) {
         let (middle, unsure) = (self.seen / self.weight, 2.0 * BLOCK_DEVIATION / self.weight.sqrt());
         ((middle - unsure).clamp(0.0, 1.0), (middle + unsure).clamp(0.0, 1.0))
     }
 
-    /// Whether plates may be so limp that a load over one sensor is not answered by the others.
+    /// Whether plates may be so limp that the other sensors do not respond to a load over one sensor.
     pub(super) fn may_be_limp(&self) -> bool {
         self.range().1 > LIMP
     }
 
-    /// Learns from what a loaded tile's sensors read on average, none of them lifted or at the end of its range.
+    /// Updates the estimate with the mean readings of a loaded tile's sensors, none of them lifted or at the end of
+    /// its range.
     ///
-    /// What one sensor reads alone is a limp plate or a sensor's fault: it teaches nothing.
+    /// A load on one sensor alone is either a limp plate or a sensor fault and does not enter.
     pub(super) fn learn(&mut self, forces: [f32; 4]) {
         if unanswered(forces, [false; 4]).is_some() {
             return;
@@ -94,7 +93,7 @@ impl Twist {
         let Some((diagonal, place, whole)) = diagonal(forces).filter(|&(_, _, whole)| whole > BENDS_N) else {
             return;
         };
-        // What no plate at all allows is a sensor's fault.
+        // A value beyond the range of all plates is a sensor fault.
         let wrong = diagonal - diagonal.clamp(place.min(0.0), place.max(0.0));
         if wrong.abs() > FAULT * whole {
             return;
@@ -109,8 +108,8 @@ impl Twist {
     }
 }
 
-/// By how much the one diagonal of a tile carries more, what it would by its centre of pressure if the plate were limp,
-/// and the whole load, in newtons; `None` without load, or for readings so absurd that they add up to no number.
+/// Difference between the two diagonals of a tile, the difference that its centre of pressure would cause on a limp
+/// plate, and the whole load (N); `None` without load, or for readings so absurd that they add up to no number.
 fn diagonal([sw, se, nw, ne]: [f32; 4]) -> Option<(f32, f32, f32)> {
     let whole = sw + se + nw + ne;
     let place = (se + ne - sw - nw) * (nw + ne - sw - se) / whole;
@@ -118,15 +117,16 @@ fn diagonal([sw, se, nw, ne]: [f32; 4]) -> Option<(f32, f32, f32)> {
     (whole > 1.0 && place.is_finite() && diagonal.is_finite()).then_some((diagonal, place, whole))
 }
 
-/// The nearest to `diagonal` that a plate allows whose twist lies between `low` and `high`; only plates that are known
-/// to bend are bent by how a foot lies.
+/// The allowed value nearest to `diagonal` for a plate with a twist between `low` and `high`; the heading of a foot
+/// twists only plates that are known to bend.
 fn lawful(diagonal: f32, place: f32, whole: f32, (low, high): (f32, f32)) -> f32 {
     let across = low * ACROSS * whole;
     let (one, other) = (low * place, high * place);
     diagonal.clamp(one.min(other) - across, one.max(other) + across)
 }
 
-/// What `corner` should read, of all that a plate with a twist in this range allows the nearest to what it reads.
+/// Required reading of `corner`: of all readings that a plate with a twist in this range allows, the one nearest to
+/// the actual reading.
 pub(super) fn demanded(forces: [f32; 4], corner: usize, twist: (f32, f32)) -> f32 {
     let Some((difference, place, whole)) = diagonal(forces) else { return expected(forces, corner) };
     let lacks = lawful(difference, place, whole, twist) - difference;
@@ -135,8 +135,8 @@ pub(super) fn demanded(forces: [f32; 4], corner: usize, twist: (f32, f32)) -> f3
 
 /// The sensor that alone reads a load (or the lack of one), if no foot could press like that.
 ///
-/// Sensors that are `out` say nothing; with one of its two neighbours among them there is no telling,
-/// for a load on the edge between may have no other answer.
+/// Sensors that are `out` do not count; if one of its two neighbours is among them the result is open, since a load
+/// on the edge between may have no other response.
 pub(super) fn unanswered(forces: [f32; 4], out: [bool; 4]) -> Option<usize> {
     let known = || (0..4).filter(|&corner| !out[corner]);
     let loudest = known().max_by(|&a, &b| forces[a].abs().total_cmp(&forces[b].abs()))?;
@@ -147,10 +147,10 @@ pub(super) fn unanswered(forces: [f32; 4], out: [bool; 4]) -> Option<usize> {
     (force > ALONE_N && answerable && quiet).then_some(loudest)
 }
 
-/// What the other three say about `corner`: nothing either if one of them bears more than it can read.
+/// Evidence of the other three sensors about `corner`; none if one of them is at the end of its range.
 ///
-/// A part that misses its law where it is light may read no less in the air than at rest; that it reads next to
-/// nothing tells all the same.
+/// A part that misses its law at light loads may read as much in the air as at rest; a reading next to zero is
+/// evidence all the same.
 pub(super) fn evidence(forces: [f32; 4], ends: [End; 4], corner: usize) -> Told {
     let is_beyond = (0..4).any(|other| other != corner && ends[other] == End::High);
     let lifted = [0, 1, 2, 3].map(|corner| has_lifted(forces, ends, corner));
@@ -161,13 +161,13 @@ fn has_lifted(forces: [f32; 4], ends: [End; 4], corner: usize) -> bool {
     corners::has_lifted(forces[corner]) || ends[corner].reads_nothing()
 }
 
-/// Whether `corner`, which reads nothing at all, should read more; `fell` says that it came to do so
-/// from one millisecond to the next.
+/// Whether `corner`, which reads zero, should read more; `fell` means that it began to do so from one millisecond to
+/// the next.
 ///
-/// On a tile that carries nothing it should. On one that does, a foot on the far side may have lifted it
-/// off, rightly; so it must have fallen faster than any foot lifts a corner, and half of what it reads on
-/// the empty floor must be there by what the others carry, all errors allowed for. (If the far side's own
-/// sensor is dead, and that is not known yet, the others seem to say so of a lifted corner, too.)
+/// On an unloaded tile it should. On a loaded one, a foot on the far side may have lifted it off; so it must have
+/// fallen faster than any foot lifts a corner, and the loads of the others must require half of its reading on the
+/// empty floor, within all errors. (If the far side's own sensor is dead, and that is not known yet, the others seem
+/// to require this of a lifted corner, too.)
 pub(super) fn should_bear_more(
     forces: [f32; 4],
     ends: [End; 4],
@@ -199,7 +199,7 @@ mod tests {
         // 20 N and 100 N right over sw of a plate that rests on each corner with 11 N.
         assert_eq!(unanswered([15.0, 5.0, 5.0, -5.0], NONE_OUT), None);
         assert_eq!(unanswered([88.6, 11.4, 11.4, -11.4], NONE_OUT), None);
-        // Three kilonewtons: the frame takes over, ne hangs free.
+        // Three kilonewtons: the frame carries the load, ne hangs free.
         assert_eq!(unanswered([2900.0, -6.0, -6.0, -6.0], NONE_OUT), None);
     }
 
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_lifted_corner_is_no_broken_one() {
-        // sw reads nothing, 11 N less than at rest.
+        // sw reads zero, 11 N less than at rest.
         let sw_of = |forces, ends| should_bear_more(forces, ends, NONE_OUT, 0, true, RIGID);
         let alone = [End::Low, End::Within, End::Within, End::Within];
         assert!(sw_of([-11.0, 0.1, -0.2, 0.3], alone), "nobody there");
@@ -234,10 +234,10 @@ mod tests {
         assert!(!sw_of([-11.0, 10.0, 10.0, 280.0], alone), "a foot on ne");
         assert!(!sw_of([-11.0, 300.0, -11.0, -10.0], alone), "tipped over se");
         assert!(sw_of([-11.0, -11.0, -11.0, -11.0], [End::Low; 4]), "the whole tile unplugged");
-        // The part at nw reads 1.5 N at rest where 11 N press it, and nothing in the air.
+        // The part at nw reads 1.5 N at rest under 11 N, and zero in the air.
         let east = [End::Low, End::Within, End::Bare, End::Within];
         assert!(!sw_of([-11.0, 190.0, -1.5, 90.0], east), "tipped over the east edge");
-        // ne is at the end of its range: nobody knows how much it bears.
+        // ne is at the end of its range: its load is unknown.
         let beyond = [End::Low, End::Within, End::Within, End::High];
         assert!(!sw_of([-11.0, 190.0, 180.0, 260.0], beyond), "a very heavy foot on ne");
     }
@@ -249,7 +249,7 @@ mod tests {
         let mut ends = [End::Within; 4];
         ends[1] = End::High;
         assert_eq!(evidence(forces, ends, 0), Told::Nothing);
-        // It does not speak of itself.
+        // A sensor is no evidence about itself.
         assert_eq!(evidence(forces, ends, 1), Told::Exactly);
     }
 

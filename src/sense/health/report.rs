@@ -1,25 +1,25 @@
-//! How the floor's sensors are doing, as it is told to others.
+//! The report on the health of the floor's sensors.
 
 use crate::floor::SensorId;
 use crate::sense::Quality;
 
 use super::Trouble;
 
-/// How the sensors of a floor are doing, in numbers and by name.
+/// The health of a floor's sensors, in numbers and by name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorHealth {
     /// Sensors of each quality: live, degraded, stale, faulty.
     pub counts: [u32; 4],
-    /// Sensors that count as nominal parts, since nobody has calibrated them.
+    /// Number of sensors with the nominal law, without a calibration of their own.
     pub uncalibrated: u32,
-    /// Whether the empty floor reads otherwise than its file says on most tiles.
+    /// Whether the readings of the empty floor differ from its file on most tiles.
     pub foreign: bool,
-    /// The sensors in trouble, and what is wrong with each.
+    /// The faulty sensors, each with its fault.
     pub troubles: Vec<(SensorId, Trouble)>,
 }
 
 impl SensorHealth {
-    /// How many sensors have this quality.
+    /// Number of sensors of this quality.
     #[must_use]
     pub const fn count(&self, quality: Quality) -> u32 {
         self.counts[quality as usize]
@@ -31,7 +31,7 @@ impl SensorHealth {
         self.counts[1..].iter().all(|&count| count == 0) && self.troubles.is_empty()
     }
 
-    /// Whether it is worth telling after `told`: more than that a foot saturates a tile's sensors for a moment.
+    /// Whether it is worth a report after `told`: more than a short saturation of one tile's sensors by a foot.
     #[must_use]
     pub(crate) fn is_news_after(&self, told: &Self) -> bool {
         let [_, degraded, ..] = self.counts;
@@ -50,7 +50,7 @@ impl SensorHealth {
     }
 }
 
-/// One sentence: how many sensors are not live, and the first that are in trouble.
+/// One line: "all N live", or the number of sensors of each quality, worst first.
 impl std::fmt::Display for SensorHealth {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [live, degraded, stale, faulty] = self.counts;

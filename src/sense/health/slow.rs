@@ -1,4 +1,4 @@
-//! The sensors of one tile, averaged over 64 ms: what changes too slowly for a single frame to show.
+//! The sensors of one tile, averaged over 64 ms: changes too slow to show in a single frame.
 
 use super::averages::Readings;
 use super::drift::Drift;
@@ -7,39 +7,40 @@ use super::{End, plate};
 use crate::sense::corners::{Told, has_lifted};
 use crate::units::Instant;
 
-/// Longest time between blocks that says something of change, in seconds; after a gap everything starts afresh.
+/// Maximum time between blocks for a comparison (s); after a longer gap everything restarts.
 pub(super) const GAP_S: f32 = 0.5;
 
-/// For how long a sensor must stand still while its plate demands otherwise to be stuck, in seconds: half a step.
+/// Time for which a sensor must be still although its plate requires otherwise to be stuck (s): half a step.
 const STUCK_S: f32 = 0.3;
 
-/// How long a load over one sensor goes unanswered, while nobody is near, until it is none on plates that may be
-/// limp, in seconds: whoever stands sways, and stands on more than a point.
+/// Time for which a load over one sensor may have no response, with no other load near, on plates that may be limp
+/// (s): a standing person sways, and stands on more than a point.
 const LONE_S: f32 = 1.0;
 
-/// A sensor is still if its averages stay within this much and this share of its reading:
-/// its converter's noise (2 mV are 0.3 % of the force) with room to spare.
+/// A sensor is still if its averages stay within this force and this share of its reading: its converter's noise (2
+/// mV are 0.3 % of the force) with ample margin.
 const STILL_N: f32 = 1.0;
 const STILL_SHARE: f32 = 0.02;
 
-/// How much farther than its averages the readings of a still sensor may reach, noise and hum included.
+/// Ratio of the maximum range of a still sensor's readings to that of its averages, including noise and hum.
 const STIRRED: f32 = 10.0;
 
-/// How much a load must change at a corner, besides what the plate estimate may err, to expect it to move.
+/// Change of the required load of a corner, besides the plate estimate's error, that a working sensor must follow
+/// (N).
 const CHANGE_N: f32 = 10.0;
 
-/// How far a sensor in trouble may be from what its plate demands to be right again, in newtons.
+/// Maximum distance of a faulty sensor from the plate's requirement to count as right again (N).
 const RIGHT_N: f32 = 3.0;
 
-/// From which sum on a tile counts as loaded for its neighbours' sake, in newtons.
+/// Sum above which a tile counts as loaded for its neighbours' sake (N).
 const LOADED_N: f32 = 6.0;
 
-/// What follows from the blocks of one tile so far.
+/// The state of one tile from its blocks so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slow {
     ended: Option<Instant>,
     tracks: [Track; 4],
-    /// For how long one sensor alone has read a load.
+    /// Time for which one sensor alone has read a load (s).
     lone_s: f32,
     pub(super) drift: Drift,
 }
@@ -53,7 +54,7 @@ pub(super) struct Block {
     /// Highest less lowest reading.
     pub(super) spreads: [f32; 4],
     pub(super) ends: [End; 4],
-    /// Since the block before.
+    /// Time since the block before (s).
     pub(super) seconds: f32,
 }
 
@@ -64,20 +65,20 @@ impl Block {
     }
 }
 
-/// A sensor's and its neighbours' extremes since the sensor last moved.
+/// Extremes of a sensor and of its neighbours since the sensor last moved.
 #[derive(Clone, Copy, Debug, Default)]
 struct Track {
     begun: bool,
     own: (f32, f32),
     expected: (f32, f32),
-    /// The largest load on the other corners.
+    /// Largest load on the other corners.
     load: f32,
-    /// Seconds since it should have moved.
+    /// Time since it should have moved (s).
     overdue: f32,
 }
 
 impl Slow {
-    /// The block that is complete; `None` if it has gaps, after which nothing earlier counts either.
+    /// The complete block; `None` if it has gaps, after which earlier blocks do not count either.
     pub(super) fn finish(&mut self, readings: Option<Readings>, at: Instant) -> Option<Block> {
         let seconds = self.ended.replace(at).map(|ended| at.since(ended).as_secs_f32());
         let seconds = seconds.filter(|&seconds| seconds <= GAP_S);
@@ -89,11 +90,11 @@ impl Slow {
         Some(Block { means, lows, spreads, ends, seconds })
     }
 
-    /// Finds stuck sensors, on plates whose twist lies in this range, and gives those in trouble the chance to be found
-    /// right again; `alone` says that no tile around carries anything.
+    /// Finds stuck sensors, on plates with a twist in this range, and reviews faulty ones; `alone` means that no tile
+    /// around carries a load.
     ///
-    /// A plate that tipped or a sensor that was beyond its range at any time of a block leaves a mean that
-    /// says nothing: after a stamp it is neither the load nor its absence.
+    /// If a plate tipped or a sensor was beyond its range at any time of a block, the mean is meaningless: after a
+    /// stamp it is neither the load nor its absence.
     pub(super) fn judge(&mut self, block: &Block, alone: bool, twist: (f32, f32), sensors: &mut [Sensor; 4]) {
         let out = sensors.map(|sensor| sensor.is_out());
         let (means, ends) = (block.means, block.ends);
@@ -113,7 +114,7 @@ impl Slow {
             let (sensor, own) = (&mut sensors[corner], means[corner]);
             if others.iter().any(|&other| out[other]) {
                 self.tracks[corner] = Track::default();
-                // No telling what it should read, but on an empty tile.
+                // The required reading is unknown, except on an empty tile.
                 let empty = others.iter().all(|&other| out[other] || means[other].abs() <= RIGHT_N);
                 let is_right = empty && own.abs() <= RIGHT_N && !ends[corner].is_odd();
                 sensor.review(own, is_right, alone, block.seconds);
@@ -122,12 +123,12 @@ impl Slow {
             let lifted = has_lifted(block.lows[corner]) && sensor.trouble().is_none();
             let evidence = plate::evidence(block.lows, ends, corner);
             if lifted || evidence == Told::Nothing {
-                // Neither evidence for it nor against it.
+                // No evidence in either direction.
                 continue;
             }
             let expected = plate::demanded(means, corner, twist).max(0.0);
             let slack = RIGHT_N + plate::SLACK * load;
-            // A limp plate would leave it alone with its load, too: that is not proof that the load is there.
+            // A limp plate would also leave the load on this sensor alone: that does not prove the load.
             let is_lone = plate::unanswered(means, [false; 4]) == Some(corner);
             let is_right =
                 !is_lone && own >= expected - slack && (own <= expected + slack || evidence == Told::AtLeast);
@@ -136,12 +137,12 @@ impl Slow {
                 Some(_) if is_right && !sensor.shows(slack) => {}
                 Some(_) => sensor.review(own, is_right && !ends[corner].is_odd(), alone, block.seconds),
             }
-            // A reading at the end of the range stands still rightly under a heavy foot, and what a suspect load
-            // demands of the others is not evidence.
+            // A reading at the end of the range is rightly constant under a heavy foot, and a suspect load is no
+            // basis for the requirement of the others.
             if ends[corner] == End::High || sensor.is_out() || others.iter().any(|&other| suspect[other]) {
                 self.tracks[corner] = Track::default();
             } else {
-                // With its diagonal in the air, it may rightly read more than is expected.
+                // With its diagonal in the air, it may rightly read more than the expected value.
                 let demands = (expected, if evidence == Told::AtLeast { f32::INFINITY } else { expected });
                 if self.tracks[corner].follow(own, block.spreads[corner], demands, load, block.seconds) {
                     sensor.find(Trouble::Stuck, own);
@@ -152,12 +153,13 @@ impl Slow {
 }
 
 impl Track {
-    /// Adds a block, in which its plate demanded the least and the most that are given; true if the sensor is stuck.
+    /// Adds a block with the least and the greatest reading that its plate allows; returns true if the sensor is
+    /// stuck.
     fn follow(&mut self, own: f32, spread: f32, (least, most): (f32, f32), load: f32, seconds: f32) -> bool {
         let widened = |range: (f32, f32), value: f32| (range.0.min(value), range.1.max(value));
         let reach = widened(self.own, own);
         let still = STILL_N + STILL_SHARE * own.abs();
-        // Also what moved and came back within the block did not stand still.
+        // A reading that moved and returned within the block was not still.
         if !self.begun || reach.1 - reach.0 > still || spread > STIRRED * still {
             let here = |value: f32| (value, value);
             *self = Self { begun: true, own: here(own), expected: here(least), load, overdue: 0.0 };
@@ -167,7 +169,7 @@ impl Track {
         self.expected = widened(self.expected, least);
         self.load = self.load.max(load);
         let slack = CHANGE_N + plate::SLACK * self.load;
-        // It is not only that it should have moved some time: it reads wrongly now.
+        // The sensor has not only failed to move before: its present reading is wrong.
         let amiss = (least - own).max(own - most);
         if self.expected.1 - self.expected.0 > slack && amiss > 0.5 * slack {
             self.overdue += seconds;
@@ -182,7 +184,8 @@ mod tests {
 
     #[test]
     fn a_corner_that_bears_more_with_its_diagonal_in_the_air_is_not_stuck() {
-        // As of somebody who steps off a tile over its edge: in half a second the demand falls from 130 to 72 N.
+        // As for a person who steps off a tile over its edge: in half a second the requirement falls from 130 to 72
+        // N.
         let is_stuck = |most: fn(f32) -> f32| {
             let mut track = Track::default();
             let mut demands = (0..8_u8).map(|block| (130.0 - 12.0 * f32::from(block)).max(72.0));

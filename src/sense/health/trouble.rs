@@ -1,54 +1,54 @@
-//! What can be wrong with a sensor, and when it is believed again.
+//! The faults of a sensor, and its recovery from them.
 
 use serde::Serialize;
 
 use crate::sense::Quality;
 
-/// What is wrong with a sensor.
+/// A sensor fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, thiserror::Error)]
 #[serde(rename_all = "snake_case")]
 pub enum Trouble {
-    /// No current: it reads nothing where its plate alone should make it read more.
+    /// No current: it reads zero although its plate's weight alone requires more.
     #[error("open circuit")]
     Open,
     /// Full scale while the rest of its tile carries nothing.
     #[error("short circuit")]
     Short,
-    /// Its reading stands still, dead or at any value, where its plate demands another one.
+    /// Its reading is constant, dead or at any value, where its plate requires another one.
     #[error("stuck")]
     Stuck,
-    /// It reads a load to which the other corners of its plate do not answer.
+    /// It reads a load to which the other corners of its plate do not respond.
     #[error("reads a load that is not on its plate")]
     Offset,
     /// Its zero has moved by more than 20 % of its range.
     #[error("its zero has drifted too far")]
     Drifted,
-    /// It scatters by several newtons on an empty, quiet tile.
+    /// Its readings scatter by several newtons on an empty, quiet tile.
     #[error("noisy")]
     Noisy,
 }
 
-/// How long a load without answer is only suspect, not yet known to be wrong.
+/// Time for which a load without response is only suspect, not yet a fault (s).
 const DOUBT_S: f32 = 0.5;
 
-/// How long a broken sensor must read what its plate demands before it counts as repaired.
+/// Time for which a broken sensor must read the value that its plate requires before it counts as repaired (s).
 const PROBATION_S: f32 = 1.0;
 
-/// By how much a stuck sensor must move to have come loose, in newtons.
+/// Change after which a stuck sensor counts as loose again (N).
 const LOOSE_N: f32 = 5.0;
 
-/// What is known of one sensor's health.
+/// The health of one sensor.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sensor {
     trouble: Option<Trouble>,
-    /// What it read when the trouble was found, in newtons.
+    /// Its reading when the fault was found (N).
     found_at: f32,
-    /// Seconds for which it has read what it cannot, or what it should, since.
+    /// Time since for which its reading has been wrong, and time for which it has been right (s).
     bad_for: f32,
     good_for: f32,
-    /// Whether it has moved since.
+    /// Whether the reading has moved since.
     moved: bool,
-    /// Whether it came to read so from one millisecond to the next, faster than any foot.
+    /// Whether the fault came from one millisecond to the next, faster than any foot.
     sudden: bool,
 }
 
@@ -57,7 +57,7 @@ impl Sensor {
         self.trouble
     }
 
-    /// How far its readings can be trusted at best.
+    /// Best possible quality of its readings.
     pub(super) fn quality(&self) -> Quality {
         match self.trouble {
             None => Quality::Live,
@@ -67,17 +67,17 @@ impl Sensor {
         }
     }
 
-    /// Whether its reading says nothing of the load, so that its tile goes on with the other three.
+    /// Whether its reading contains no information about the load, so that its tile continues with the other three.
     pub(super) fn is_out(&self) -> bool {
         self.quality() == Quality::Faulty
     }
 
-    /// Whether nothing may start on its tile: a load is read that may not be there.
+    /// Whether nothing may start on its tile: the reading may contain a load that is not there.
     pub(super) fn forbids_start(&self) -> bool {
         self.trouble == Some(Trouble::Offset) && !self.is_out()
     }
 
-    /// Notes a trouble found while it reads `force`; false if as much was known before.
+    /// Notes a fault found at the reading `force`; returns false if the same or a worse one was known.
     pub(super) fn find(&mut self, trouble: Trouble, force: f32) -> bool {
         let rank = |trouble| match trouble {
             None => 0,
@@ -92,23 +92,23 @@ impl Sensor {
         is_news
     }
 
-    /// Whether what is wrong with it would show where the plate's demand is known to within `slack` newtons:
-    /// under a heavy foot a load that is not on the plate goes unnoticed.
+    /// Whether its fault would show at a plate requirement known to within `slack` newtons: under a heavy foot a load
+    /// that is not on the plate is not visible.
     pub(super) fn shows(&self, slack: f32) -> bool {
         self.trouble != Some(Trouble::Offset) || slack < 0.5 * self.found_at.abs()
     }
 
-    /// Notes that its trouble came from one millisecond to the next.
+    /// Notes that its fault came from one millisecond to the next.
     pub(super) fn struck(&mut self) {
         self.sudden = true;
     }
 
-    /// Takes in what it read on average over `seconds`, and whether that is what it should read; `alone` says
-    /// that nobody stands on the tiles around.
+    /// Reviews its mean reading over `seconds`, and whether that is the required one; `alone` means that nothing
+    /// stands on the tiles around.
     ///
-    /// Only this improves its quality, and only after a second of evidence. A load without answer is
-    /// not held against it while it may be the edge of a foot on the next tile, beside a sensor
-    /// that is dead and not yet known to be.
+    /// Only this improves its quality, and only after a second of evidence. A load without response does not count as
+    /// wrong while it may be the edge of a foot on the next tile, beside a sensor that is dead and not yet known to
+    /// be.
     pub(super) fn review(&mut self, mean: f32, is_good: bool, alone: bool, seconds: f32) {
         if self.trouble.is_none() {
             return;

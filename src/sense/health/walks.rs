@@ -1,4 +1,5 @@
-//! Walks over plates from rigid to limp: sound sensors are not accused, broken ones are found within two steps.
+//! Walks over plates from rigid to limp: no fault is reported for sound sensors, and broken ones are found within two
+//! steps.
 
 use glam::Vec2;
 use rand::{RngExt, SeedableRng};
@@ -10,10 +11,11 @@ use crate::floor::{Corner, Floor};
 use crate::sense::ForceFrame;
 use crate::units::Instant;
 
-/// How far plates give way to twist: a steel tile; 20 mm and 12 mm of plywood on soft feet; 12 mm on stiff ones; limp.
+/// Flexibility of plates under twist: a steel tile; 20 mm and 12 mm of plywood on soft feet; 12 mm on stiff ones;
+/// limp.
 const TWISTS: [f32; 5] = [0.0, 0.2, 0.45, 0.7, 0.95];
 
-/// What each corner carries of the plate, in newtons: it reads that much less when it lifts.
+/// Weight of the plate on each corner (N): the reading drops by that much when the corner lifts.
 const RESTS_N: f32 = 11.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +36,7 @@ struct Step {
 }
 
 impl Step {
-    /// Ten points along the sole at this moment.
+    /// Ten points along the sole at the time `now`.
     fn points(&self, now: u32) -> impl Iterator<Item = (f32, Vec2)> + '_ {
         let phase = now.wrapping_sub(self.start) as f32 / self.stance as f32;
         let is_down = (0.0..1.0).contains(&phase);
@@ -62,7 +64,7 @@ struct Walk {
     twist: f32,
     now: u32,
     steps: Vec<Step>,
-    /// Which sensor is broken how, since when, and what it read then.
+    /// The broken sensor, its fault, its start, and the reading then.
     fault: Option<(usize, usize, Fault, u32, f32)>,
     floor: Floor,
 }
@@ -99,7 +101,7 @@ impl Walk {
             let least = (0..4).min_by(|&a, &b| forces[a].total_cmp(&forces[b])).unwrap();
             let lifts = (-RESTS_N - forces[least]).max(0.0);
             for (corner, &force) in forces.iter().enumerate() {
-                // Force and moments stay; the load goes over to the diagonal.
+                // Force and moments stay the same; the load shifts to the diagonal.
                 let sign = if corner == least || corner == least ^ 3 { 1.0 } else { -1.0 };
                 let noise = self.noise[(self.now as usize * 31 + tile * 4 + corner) % self.noise.len()];
                 let mut reads = (force + sign * lifts) * self.gains[tile][corner] + noise;
@@ -123,7 +125,7 @@ impl Walk {
         self.health.inspect(&mut self.frame, Instant::from_millis(self.now.into()));
     }
 
-    /// A step with its middle at `at`, until it has given its weight to the next.
+    /// A step with its middle at `at`, until its weight has shifted to the next one.
     fn step(&mut self, at: Vec2) {
         let stance = self.rng.random_range(550..750);
         let step = Step {
@@ -138,7 +140,7 @@ impl Walk {
         (0..stance * 4 / 5).for_each(|_| self.millisecond());
     }
 
-    /// People walk about; gives the first sensor that is accused.
+    /// People walk about; returns the first sensor reported as faulty.
     fn walk(&mut self, minutes: u32) -> Option<(u32, String)> {
         let size = self.floor.geometry.bounds().size();
         let until = self.now + minutes * 60_000;
@@ -155,7 +157,7 @@ impl Walk {
         None
     }
 
-    /// After how many steps on its tile a broken sensor is known; three if it is not after two.
+    /// Number of steps on its tile until a broken sensor is found; three if it is not found after two.
     fn steps_until_found(&mut self, tile: usize, corner: usize, fault: Fault) -> usize {
         let centre = self.floor.geometry.centre(self.floor.geometry.tile_at_index(tile));
         // It breaks in the middle of a step that does not count, if that matters.
@@ -211,7 +213,7 @@ fn broken_sensors_are_found_within_two_steps_on_plates_of_any_stiffness() {
     for (seed, twist) in (11..).zip(TWISTS) {
         for fault in [Fault::Dead, Fault::Stuck, Fault::Drifts, Fault::Noisy] {
             for learns in [false, true] {
-                // After a minute of walking one is enough; its time is what the test takes.
+                // After a minute of walking one corner is enough: the minute takes most of the test's time.
                 for corner in 0..if learns { 1 } else { 4 } {
                     let mut walk = Walk::new(twist, seed + 100 * corner as u64);
                     if learns {

@@ -1,4 +1,4 @@
-//! Which tiles carry something.
+//! Finds the tiles that carry a load.
 
 mod rims;
 mod sift;
@@ -17,10 +17,10 @@ use crate::units::{Instant, Newtons};
 /// Marks a tile without load in the map from tile to list position.
 const NONE: u32 = u32::MAX;
 
-/// Tiles examined together.
+/// Number of tiles examined together.
 const BLOCK: usize = 16;
 
-/// From which force on a tile counts as loaded.
+/// Force above which a tile counts as loaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadThreshold {
     /// An empty tile becomes loaded at this force.
@@ -30,22 +30,22 @@ pub struct LoadThreshold {
 }
 
 impl Default for LoadThreshold {
-    /// 6 N on, 4 N off: above four sensors with half a newton of offset each and
-    /// their noise, far below a tapping toe (our choice).
+    /// 6 N on, 4 N off: above four sensors with half a newton of offset each and their noise, far below a tapping toe
+    /// (our choice).
     fn default() -> Self {
         Self { on: Newtons(6.0), off: Newtons(4.0) }
     }
 }
 
-/// The tiles under load, found anew each frame.
+/// The tiles under load, found again in each frame.
 ///
-/// One pass over the floor adds four numbers per tile and compares the sum;
-/// everything after that, here and behind, grows with the loaded tiles alone.
+/// One pass over the floor adds four numbers per tile and compares the sum; the cost of all later steps grows with
+/// the loaded tiles alone.
 #[derive(Clone, Debug)]
 pub(super) struct LoadedTiles {
     geometry: Geometry,
     thresholds: Thresholds,
-    /// Which tile each one is, and its centre.
+    /// Tile of each index, and its centre.
     places: Vec<Place>,
     /// Per tile of the floor; none for the tiles past the end.
     maps: Vec<Option<PositionMap>>,
@@ -59,12 +59,12 @@ pub(super) struct LoadedTiles {
     before: Vec<u32>,
     /// The tiles of the list.
     listed: TileSet,
-    /// Tiles with one beside them that carries something and is not listed.
+    /// Tiles beside an unlisted tile with load.
     near_light: TileSet,
-    /// Whether nothing of any tile's past has to be remembered.
+    /// Whether no tile needs any state from its past.
     is_settled: bool,
     at: Option<Instant>,
-    /// Since the last frame, in seconds.
+    /// Time since the last frame (s).
     dt: f32,
 }
 
@@ -89,7 +89,7 @@ impl LoadedTiles {
         }
     }
 
-    /// Corrects each tile by its map from now on.
+    /// Corrects each tile by its map from the next frame on.
     pub(super) fn set_maps(&mut self, maps: &[Option<PositionMap>]) {
         self.maps = maps.to_vec();
     }
@@ -103,7 +103,8 @@ impl LoadedTiles {
         &self.list
     }
 
-    /// Where each tile of [`Self::list`] stood in the list of the last frame; past its end for those that were not in it.
+    /// Position of each tile of [`Self::list`] in the list of the last frame; beyond its end for tiles that were not
+    /// in it.
     pub(super) fn before(&self) -> &[u32] {
         &self.before
     }
@@ -125,7 +126,7 @@ impl LoadedTiles {
         self.place.get(index as usize).copied().filter(|&place| place != NONE)
     }
 
-    /// What the tile at `index` feels; nothing for an index past the last tile.
+    /// The reading of the tile at `index`; zero for an index past the last tile.
     pub(super) fn reading(&self, index: usize) -> TileReading {
         let force = Newtons(self.survey.sums.get(index).copied().unwrap_or_default());
         match self.place.get(index).and_then(|&place| self.list.get(place as usize)) {
@@ -134,7 +135,7 @@ impl LoadedTiles {
         }
     }
 
-    /// Takes in a frame. Tiles the frame doesn't have carry no load; tiles it has too many are not examined.
+    /// Processes a frame. Tiles missing in the frame carry no load; surplus tiles are ignored.
     pub(super) fn update(&mut self, frame: &ForceFrame) {
         let is_first = self.at.is_none();
         self.dt = self.at.map_or(0.0, |last| frame.at.since(last).as_secs_f32());
@@ -204,7 +205,7 @@ mod tests {
         tiles.update(&frame);
         let force = |index| tiles.list().iter().find(|tile| tile.index == index).unwrap().wrench.force;
         assert_eq!([force(7), force(8)], [505.0, 8.0]);
-        // Without the foot there is nobody else, whether the rim could keep a tile loaded or not.
+        // Without the foot no load remains, whether or not the rim could keep a tile loaded.
         frame.forces[7] = [0.0; 4];
         for light in [[1.0, 4.0, 0.0, 0.0], [0.5, 1.5, 0.0, 0.0]] {
             frame.forces[13] = light;

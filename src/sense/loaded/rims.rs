@@ -8,25 +8,26 @@ use crate::sense::corners::known_corners;
 use crate::sense::tile::{LoadedTile, NO_WEIGHT, Wrench, counted};
 use crate::sense::{ForceFrame, Quality};
 
-/// How far from its centre of pressure a foot presses on a tile that hardly feels it, and over which
-/// distance this grows uncertain, in metres: half a shoe (our choice).
+/// Distance from a foot's centre of pressure up to which it presses a tile that carries little, and the distance over
+/// which this becomes uncertain (m): half a shoe (our choice).
 const REACH_M: f32 = 0.16;
 const REACH_FADE_M: f32 = 0.05;
 
-/// How deep such a load lies on its tile, in metres, and the force from which on its own moment says more.
+/// Depth of such a load on its tile (m), and the force above which its own moment is more informative (N).
 const RIM_M: f32 = 0.03;
 const RIM_N: f32 = 4.0;
 
-/// How many times as much as its rim a foot carries at least on the tile it stands on (our choice).
+/// Minimum ratio of a foot's load on the tile it stands on to its rim's load (our choice).
 const FOOT_PER_RIM: f32 = 2.0;
 
 impl LoadedTiles {
-    /// Counts what lies on tiles too light to be listed to the listed tile it most likely belongs to.
+    /// Adds the load of tiles too light to be listed to the listed tile to which it most likely belongs.
     ///
-    /// The toes of a light foot over a seam press with less than what makes a tile count as loaded,
-    /// but far enough from the rest to move the centroid by centimetres.
+    /// The toes of a light foot over a seam press with less than the threshold of a tile, but far enough from the
+    /// rest to move the centroid by centimetres.
     pub(super) fn gather(&mut self, frame: &ForceFrame) {
-        // How far from its tile's centre a centroid may lie for load on the far side's neighbours to be its own.
+        // Maximum distance of a centroid from its tile's centre at which loads of the far side's neighbours may
+        // belong to it.
         let astray_m = REACH_M - 0.5 * self.geometry.pitch_m();
         let faces = |arm: f32, side: i32| match side {
             -1 => arm < astray_m,
@@ -53,9 +54,9 @@ impl LoadedTiles {
         }
     }
 
-    /// Gives the load of the unlisted tile at `index` to the listed one at `position`, if no other has a better claim.
+    /// Adds the load of the unlisted tile at `index` to the listed one at `position`, unless another one fits better.
     fn give(&mut self, index: usize, position: usize, frame: &ForceFrame) {
-        // One with a sensor out is too uncertain to say anything of so little.
+        // A tile with a lost sensor is too uncertain for so small a load.
         if frame.quality[index].iter().any(|&quality| quality >= Quality::Stale) {
             return;
         }
@@ -63,7 +64,7 @@ impl LoadedTiles {
         let centre = self.geometry.centre(self.geometry.tile_at_index(index));
         let half = 0.5 * self.geometry.pitch_m();
         let away = |listed: &LoadedTile| ((listed.centroid - centre).abs() - half).max(Vec2::ZERO).length();
-        // A rim is the smaller part of a foot, and another rim's only if there is no foot that it can be of.
+        // A rim is the smaller part of a foot; it belongs to another rim only if there is no foot for it.
         let claim = |position: usize| {
             let listed = &self.list[position];
             let (away, is_rim) = (away(listed), listed.wrench.force < FOOT_PER_RIM * self.survey.sums[index]);
@@ -82,7 +83,7 @@ impl LoadedTiles {
         let wrench = Wrench::of_corners(corners, self.geometry.sensor_reach_m());
         let force = counted(wrench.force) * share;
         if force > 0.0 {
-            // Where it acts is hardly felt, but it is the edge of a foot that stands over there.
+            // The tile hardly measures the place, but it is the edge of a foot on the listed tile.
             let rim = self.list[position].centroid - centre;
             let rim = rim.clamp(Vec2::splat(RIM_M - half), Vec2::splat(half - RIM_M));
             let sure = wrench.force * wrench.force / (wrench.force * wrench.force + RIM_N * RIM_N);

@@ -1,4 +1,4 @@
-//! From tiles that carry enough to loaded tiles.
+//! Selects the loaded tiles among the candidates.
 
 use super::survey::Survey;
 use super::tile_set::bits;
@@ -9,8 +9,8 @@ use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 
 impl LoadedTiles {
-    /// Finds the candidates of blocks in which it takes more than the sums: those that are noisy, and those with a
-    /// sensor out, of which one is estimated.
+    /// Finds the candidates of blocks that need more than the sums: noisy blocks, and blocks with a lost sensor,
+    /// which is replaced by an estimate.
     pub(super) fn reconsider(&mut self, frame: &ForceFrame) {
         let there = frame.forces.len().min(frame.quality.len()).min(self.survey.sums.len());
         for block in 0..self.survey.worst.len() {
@@ -32,9 +32,9 @@ impl LoadedTiles {
         }
     }
 
-    /// From candidates to loaded tiles.
+    /// Turns candidates into loaded tiles.
     pub(super) fn sift(&mut self, frame: &ForceFrame) {
-        // Which tiles were loaded in the last frame must be known until the new list stands.
+        // The tiles of the last frame stay available until the new list is complete.
         std::mem::swap(&mut self.list, &mut self.last);
         self.list.clear();
         self.before.clear();
@@ -69,8 +69,8 @@ impl LoadedTiles {
         }
     }
 
-    /// Puts the tile at `index` into the list if it is loaded, and says whether it is; all its sensors are live, and
-    /// nothing of its past has to be remembered.
+    /// Lists the tile at `index` if it is loaded, and returns whether it is; all its sensors are live, and it needs
+    /// no state from its past.
     #[inline]
     fn take(&mut self, frame: &ForceFrame, index: usize) -> bool {
         let forces = &frame.forces[index];
@@ -87,7 +87,7 @@ impl LoadedTiles {
         true
     }
 
-    /// As [`Self::take`], with sensors of any quality and past.
+    /// Like [`Self::take`], with sensors of any quality and past.
     #[inline(never)]
     fn examine(&mut self, frame: &ForceFrame, index: usize) -> bool {
         let past = self.last.get(self.place[index] as usize);
@@ -106,7 +106,7 @@ impl LoadedTiles {
             self.dt,
         );
         if let Some(carried) = carried {
-            // What a lost sensor reads is not a load.
+            // The reading of a lost sensor is not a load.
             self.survey.sums[index] = carried;
         }
         if before != NONE {
@@ -119,7 +119,7 @@ impl LoadedTiles {
         })
     }
 
-    /// Where the tile at `index` stood in the list of the last frame, and what it must carry; it is in no list then.
+    /// Position in the last frame's list of the tile at `index`, and its threshold; afterwards it is in no list.
     #[inline(always)]
     fn least_of(&mut self, index: usize) -> (u32, Newtons) {
         let before = std::mem::replace(&mut self.place[index], NONE);

@@ -1,4 +1,4 @@
-//! What every tile of the floor carries: the one pass over all sensors.
+//! Survey of the loads of all tiles: the one pass over all sensors.
 
 use multiversion::multiversion;
 
@@ -7,26 +7,26 @@ use crate::floor::Geometry;
 use crate::sense::tile::NO_WEIGHT;
 use crate::sense::{ForceFrame, Quality};
 
-/// The bit that tells [`Quality::Stale`] and [`Quality::Faulty`], of which one is estimated, from the better two.
+/// Bit of [`Quality::Stale`] and [`Quality::Faulty`]; a sensor with it is replaced by an estimate.
 const LOST: u8 = 2;
 
-/// What one pass over all sensors finds.
+/// Result of one pass over all sensors.
 #[derive(Clone, Debug)]
 pub(super) struct Survey {
-    /// What each tile's sensors add up to, in newtons.
+    /// Sum of each tile's sensors (N).
     pub sums: Vec<f32>,
-    /// For each tile, whether it is one of the next two; none behind the last tile.
+    /// For each tile, the bits of membership in the next two sets; none behind the last tile.
     marks: Vec<[u8; BLOCK]>,
-    /// Tiles that carry enough to be looked at.
+    /// Tiles with enough load to be examined.
     pub candidates: TileSet,
-    /// Tiles that carry more than nothing; of these the listed ones are taken out later.
+    /// Tiles with any load; the listed ones are removed later.
     pub light: TileSet,
-    /// Per block of tiles, all its sensors' qualities, one over the other.
+    /// Per block of tiles, the bitwise OR of all its sensors' qualities.
     pub worst: Vec<u8>,
 }
 
 impl Survey {
-    /// Of a floor that nobody is on.
+    /// The survey of an empty floor.
     pub(super) fn new(geometry: &Geometry) -> Self {
         let tiles = geometry.tile_count();
         Self {
@@ -38,7 +38,7 @@ impl Survey {
         }
     }
 
-    /// Takes in a frame: candidates carry `off` or more, and tiles that the frame doesn't have nothing.
+    /// Surveys a frame: candidates carry `off` or more, and tiles that the frame does not have carry nothing.
     pub(super) fn update(&mut self, frame: &ForceFrame, off: f32) {
         let Self { sums, marks, candidates, light, worst } = self;
         let there = frame.forces.len().min(frame.quality.len()).min(sums.len());
@@ -62,9 +62,9 @@ impl Survey {
     }
 }
 
-/// Adds up each tile's forces, and puts the qualities of each block's sensors one over the other.
+/// Sums each tile's forces, and combines the qualities of each block's sensors by bitwise OR.
 ///
-/// Here and below without branches, over plain arrays: compiled for what the processor offers.
+/// Here and below: no branches, plain arrays, compiled for each vector instruction set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))]
 fn add_up(sums: &mut [f32], forces: &[[f32; 4]], quality: &[[Quality; 4]], worst: &mut [u8]) {
     for (sum, [sw, se, nw, ne]) in sums.iter_mut().zip(forces) {
@@ -81,8 +81,7 @@ fn add_up(sums: &mut [f32], forces: &[[f32; 4]], quality: &[[Quality; 4]], worst
     }
 }
 
-/// Finds the tiles that carry `off` or more, and those that carry more than nothing; `marks` is room for one byte
-/// a tile.
+/// Finds the tiles that carry `off` or more, and those that carry any load; `marks` has room for one byte a tile.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))]
 fn mark(marks: &mut [[u8; BLOCK]], sums: &[f32], off: f32, candidates: &mut [u16], light: &mut [u16]) {
     for (mark, &sum) in marks.as_flattened_mut().iter_mut().zip(sums) {
@@ -97,7 +96,7 @@ fn mark(marks: &mut [[u8; BLOCK]], sums: &[f32], off: f32, candidates: &mut [u16
 /// The lowest bit of each byte, in the order of the bytes.
 #[inline(always)]
 fn low_bits(bytes: u128) -> u16 {
-    // The factor moves the bit of byte i to place 56 + i; no two sums of places are the same.
+    // The factor moves the bit of byte i to place 56 + i; no two sums of positions are equal.
     let of_eight = |bytes: u64| (bytes & 0x0101_0101_0101_0101).wrapping_mul(0x0102_0408_1020_4080) >> 56;
     (of_eight(bytes as u64) | of_eight((bytes >> 64) as u64) << 8) as u16
 }

@@ -1,78 +1,79 @@
-//! From which force on each tile counts as loaded: what its own noise and its recent load ask for.
+//! Thresholds above which tiles count as loaded, adapted to their noise and their recent load.
 //!
 //! - **Noise floor.** While a tile is idle, the differences between readings [`VISIT_S`] apart give the standard
-//!   deviation of what its sensors add up to. An offset or a slow drift is not noise, and outliers are clipped.
-//!   Where the noise comes near the threshold, the force that decides (and only that one) is smoothed, as much as it
-//!   takes and for [`SMOOTH_S`] at most; what is left after that raises the threshold.
-//! - **Residual load.** Force-sensing resistors creep, and release it as slowly as it came: what a tile's recent
-//!   load may have left behind raises its thresholds, and wears off with it.
+//!   deviation of the sum of its sensors. An offset or a slow drift is not noise, and outliers are clipped. Where the
+//!   noise approaches the threshold, the deciding force (and only that one) is smoothed, as much as necessary and
+//!   over [`SMOOTH_S`] at most; the remaining noise raises the threshold.
+//! - **Residual load.** Force-sensing resistors creep, and release a load as slowly as it came: the possible
+//!   remainder of a tile's recent load raises its thresholds, and decays with it.
 //!
-//! A quiet tile that carried nothing lately keeps the thresholds of [`LoadThreshold`].
+//! A quiet tile without recent load keeps the thresholds of [`LoadThreshold`].
 
 use super::{BLOCK, LoadThreshold, NONE};
 use crate::sense::tile::FULL_WEIGHT;
 use crate::units::Newtons;
 
-/// How often a tile's noise and residual load are brought up to date, in seconds.
+/// Interval between updates of a tile's noise and residual load (s).
 ///
-/// The mains' 50 and 60 Hz are well sampled by it: half a cycle lies between two visits, more or less.
+/// It samples the mains' 50 and 60 Hz well: two visits are about half a cycle apart.
 const VISIT_S: f32 = 0.012;
 
-/// From how many visits on end on a loaded tile carries a foot: hum that crosses the threshold does not stay above it.
+/// Number of consecutive visits after which a loaded tile carries a foot: hum that crosses the threshold does not
+/// stay above it.
 const SETTLED: u32 = 2;
 
-/// Longest time between two readings that says something of noise, in seconds.
+/// Maximum time between two readings whose difference counts as noise (s).
 const GAP_S: f32 = 0.5;
 
-/// Standard deviations above which an idle tile is taken to be loaded: of 36 tiles of 200 independent
-/// readings a second, one in three minutes goes above (normal distribution).
+/// Number of standard deviations above which an idle tile counts as loaded: of 36 tiles with 200 independent readings
+/// a second, one in three minutes exceeds it (normal distribution).
 const DEVIATIONS: f32 = 4.9;
 
 /// Mean absolute difference of two independent readings, in standard deviations of one (normal distribution: 2 / sqrt
 /// pi).
 const DIFFERENCE: f32 = 1.128;
 
-/// Clipping of differences, in means, and the least it is done at, in newtons (M-estimate of scale; 3.5 means are 2.8
-/// standard deviations).
+/// Clipping limit of differences, in means, and its minimum (N) (M-estimate of scale; 3.5 means are 2.8 standard
+/// deviations).
 const CLIP: f32 = 3.5;
 const CLIP_LEAST_N: f32 = 0.5;
 
-/// How many visits the noise is averaged over once it is known, about 1.5 s, and how many the first frame counts for.
+/// Number of visits in the noise average once it is known, about 1.5 s, and initial weight of the first frame.
 const VISITS: f32 = 128.0;
 const FIRST_VISITS: f32 = 8.0;
 
-/// How long the deciding force is smoothed at most, in seconds (e-fold): a foot is seen by so much later.
+/// Maximum time constant of the smoothed deciding force (s): it delays the detection of a foot by as much.
 const SMOOTH_S: f32 = 0.008;
 
-/// The threshold that noise may ask for at most, in newtons: a foot is seen however much a tile hisses (our choice).
+/// Maximum threshold due to noise (N): a foot is detected at any noise level (our choice).
 const MOST_N: f32 = 40.0;
 
-/// By how many standard deviations of noise the least of some hundred readings lies below what they mean (normal
+/// Number of standard deviations by which the minimum of some hundred readings lies below their mean (normal
 /// distribution: 2.5 of a hundred, 3.2 of a thousand).
 const DEPTH: f32 = 3.0;
 
-/// How long a tile stays loaded whose load may be residual, in seconds: a foot that leaves by its toes is followed to
-/// the end (recorded steps give up their last tenth of weight within 20 to 40 ms).
+/// Time for which a tile with a possibly residual load stays loaded (s): it covers a foot that leaves by its toes
+/// (recorded steps lose their last tenth of weight within 20 to 40 ms).
 const HOLD_S: f32 = 0.03;
 
-/// The times over which loads are remembered, in seconds, a decade apart as creep is stated.
+/// Time constants of the load averages (s), a decade apart as creep is specified.
 const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
 
 /// Creep of a force-sensing resistor, as a share of its load for each decade of time (maker's figure: 5 %).
 const CREEP: f32 = 0.055;
 
-/// Residual load that is not worth following, in newtons.
+/// Residual load too small to track (N).
 const NOTHING_N: f32 = 0.2;
 
 /// The thresholds of each tile, in tile-index order.
 #[derive(Clone, Debug)]
 pub(super) struct Thresholds {
     base: LoadThreshold,
-    /// Mean absolute difference of what each tile read at two visits on end, idle at both, in newtons.
+    /// Mean absolute difference of each tile's readings at two consecutive visits, idle at both (N).
     differences: Vec<f32>,
-    /// What it read at the last visit; NaN if it was not idle.
+    /// Reading at the last visit; NaN if the tile was not idle.
     read: Vec<f32>,
-    /// At how many visits on end it was loaded; an idle tile is not for long.
+    /// Number of consecutive visits at which it was loaded; short for an idle tile.
     loaded: Vec<u32>,
     /// Blocks with a noisy tile.
     noisy: Vec<bool>,
@@ -81,43 +82,43 @@ pub(super) struct Thresholds {
     smoothed_differences: Vec<f32>,
     smoothed_read: Vec<f32>,
     smoothed: Vec<f32>,
-    /// Share of a new reading in it.
+    /// Smoothing gain.
     gains: Vec<f32>,
     tiles: Vec<TileThreshold>,
     memories: Vec<[f32; TIMES_S.len()]>,
-    /// Tiles with a memory.
+    /// Tiles with a load average.
     with_memory: Vec<u32>,
-    /// Since the last visit, in seconds.
+    /// Time since the last visit (s).
     since_s: f32,
     visits: f32,
-    /// The last time between two visits, and what each memory takes in over it.
+    /// The last time between two visits, and the gain of each load average over it.
     parts: (f32, [f32; TIMES_S.len()]),
 }
 
-/// What decides of one tile.
+/// Threshold state of one tile.
 #[derive(Clone, Copy, Debug)]
 struct TileThreshold {
-    /// The threshold that noise asks for.
+    /// Threshold due to noise (N).
     on: f32,
-    /// What may be left of its recent load, in newtons.
+    /// Possible remainder of its recent load (N).
     residual: f32,
-    /// The least that it has read since it was last clearly loaded: no more can be left of that load but for what noise
-    /// takes from it.
+    /// Minimum reading since it was last clearly loaded: the remainder of that load cannot exceed it, except for
+    /// noise.
     lowest: f32,
-    /// For how long it has been loaded with no more than may be left of its recent load, in seconds.
+    /// Time for which it has been loaded with no more than the possible remainder of its recent load (s).
     left_s: f32,
 }
 
 impl TileThreshold {
-    /// What may be left of its recent load, in newtons, by the least that it has read since.
+    /// Possible remainder of its recent load, limited by the minimum reading since (N).
     fn left(&self, is_noisy: bool) -> f32 {
         let depth = if is_noisy { DEPTH / DEVIATIONS * self.on } else { 0.0 };
-        // Neither is NaN: a comparison does.
+        // Neither is NaN, so a comparison suffices.
         let most = self.lowest + depth;
         if self.residual < most { self.residual } else { most }
     }
 
-    /// Notes that it is not loaded while it reads `sum`.
+    /// Notes that it is not loaded at the reading `sum`.
     fn note_low(&mut self, sum: f32) {
         self.lowest = self.lowest.min(sum.max(0.0));
     }
@@ -148,15 +149,14 @@ impl Thresholds {
         }
     }
 
-    /// The least of all tiles' thresholds.
+    /// Minimum of all tiles' thresholds.
     pub(super) const fn least(&self) -> f32 {
         self.base.off.0
     }
 
-    /// What the tile at `index`, which reads `sum`, must carry in this frame to count as loaded, `dt` seconds after the
-    /// last one.
+    /// Threshold in this frame of the tile at `index` with the reading `sum`, `dt` seconds after the last frame.
     ///
-    /// Where the smoothed force decides, that is as little as can be placed, or more than anything carries.
+    /// Where the smoothed force decides, it is either the smallest load that can be located, or infinite.
     #[inline]
     pub(super) fn least_of(&mut self, index: usize, sum: f32, was_loaded: bool, dt: f32) -> Newtons {
         let LoadThreshold { on, off } = self.base;
@@ -181,25 +181,25 @@ impl Thresholds {
         })
     }
 
-    /// Notes that the tile at `index`, which was loaded, reads `sum`. If that is too little, what is left of its last
-    /// load goes, and does not grow again.
+    /// Notes the reading `sum` of the tile at `index`, which was loaded. If it is below the threshold, the possible
+    /// remainder of the last load decreases and does not grow again.
     pub(super) fn note(&mut self, index: usize, sum: f32) {
         if sum < self.least() {
             self.tiles[index].note_low(sum);
         }
     }
 
-    /// Whether some tile of a block is noisy, so that [`Self::deciding`] is to be asked.
+    /// Whether some tile of a block is noisy, so that [`Self::deciding`] applies.
     pub(super) fn is_noisy(&self, block: usize) -> bool {
         self.is_any_noisy && self.noisy[block]
     }
 
-    /// The force by which it is decided whether the tile at `index`, which reads `sum`, is loaded.
+    /// The force that decides whether the tile at `index` with the reading `sum` is loaded.
     pub(super) fn deciding(&self, index: usize, sum: f32) -> f32 {
         if self.is_noisy(index / BLOCK) { self.smoothed[index] } else { sum }
     }
 
-    /// What of the deciding force of the tile at `index` may be noise or left by its recent load, in newtons.
+    /// Part of the deciding force of the tile at `index` that may be noise or a remainder of its recent load (N).
     pub(super) fn unsure(&self, index: usize) -> f32 {
         let is_noisy = self.is_noisy(index / BLOCK);
         let tile = &self.tiles[index];
@@ -207,8 +207,8 @@ impl Thresholds {
         noise + tile.left(is_noisy)
     }
 
-    /// What a recent load is taken to have left on the loaded tile at `index`, which carries `force`, in newtons: all
-    /// of its residual load as long as that alone would keep it loaded, nothing from twice as much on.
+    /// Estimated remainder of a recent load on the loaded tile at `index`, which carries `force` (N): all of its
+    /// residual load as long as that alone would keep it loaded, none above twice as much.
     pub(super) fn left_n(&self, index: usize, force: f32) -> f32 {
         let tile = &self.tiles[index];
         let residual = tile.left(self.is_noisy(index / BLOCK));
@@ -220,9 +220,9 @@ impl Thresholds {
         if self.is_any_noisy { 0.5 / DIFFERENCE * self.differences[index] } else { 0.0 }
     }
 
-    /// Takes in what the first frame's tiles read: nothing is known but how well their plates' corners agree.
+    /// Initialises the noise from the first frame: only the disagreement of each plate's corners is known.
     pub(super) fn begin(&mut self, forces: &[[f32; 4]]) {
-        // Loads of any kind hardly twist a rigid plate; half of the tiles at least are like the others.
+        // No load twists a rigid plate much; at least half of the tiles are similar.
         self.read.clear();
         self.read.extend(forces.iter().map(|[sw, se, nw, ne]| (sw - se - nw + ne).abs()));
         self.read.retain(|twist| twist.is_finite());
@@ -242,7 +242,7 @@ impl Thresholds {
         self.find_noisy(0.0, 0.0);
     }
 
-    /// Smooths the deciding force of noisy tiles by a frame of what they read.
+    /// Smooths the deciding force s of noisy tiles with a frame's readings x: s += gain (x − s).
     pub(super) fn smooth(&mut self, sums: &[f32]) {
         if !self.is_any_noisy {
             return;
@@ -257,8 +257,8 @@ impl Thresholds {
         }
     }
 
-    /// Brings noise and residual load up to date, `dt` seconds after the last frame, if it is time; `place` says which
-    /// tiles are loaded.
+    /// Updates noise and residual load, `dt` seconds after the last frame, at each visit; `place` marks the loaded
+    /// tiles.
     pub(super) fn visit(&mut self, sums: &[f32], place: &[u32], list: impl Iterator<Item = u32>, dt: f32) {
         self.since_s += dt;
         if self.since_s < VISIT_S - 0.5 * dt.min(VISIT_S) && self.visits > FIRST_VISITS {
@@ -300,7 +300,7 @@ impl Thresholds {
                 self.smoothed_read[from..upto].fill(f32::NAN);
             }
             for index in from..upto {
-                // White noise loses so much; what else there is, such as hum, is measured.
+                // White noise decreases by this factor; other noise, such as hum, is measured.
                 let q = (limit / self.differences[index].max(f32::MIN_POSITIVE)).powi(2);
                 let gain = (2.0 * q / (1.0 + q)).clamp(1.0 - (-dt / SMOOTH_S).exp(), 1.0);
                 self.gains[index] = gain;
@@ -324,7 +324,7 @@ impl Thresholds {
         }
     }
 
-    /// Remembers the loads of the last `elapsed` seconds.
+    /// Updates the load averages over the last `elapsed` seconds: m += (1 − exp(−elapsed/τ)) (sum − m).
     fn remember(&mut self, sums: &[f32], list: impl Iterator<Item = u32>, elapsed: f32) {
         if self.parts.0 != elapsed {
             self.parts = (elapsed, TIMES_S.map(|time_s| 1.0 - (-elapsed / time_s).exp()));
@@ -333,7 +333,7 @@ impl Thresholds {
         for index in list {
             let residual = &mut tiles[index as usize].residual;
             if *residual == 0.0 {
-                // A trace marks it as followed.
+                // A tiny value marks it as tracked.
                 *residual = f32::MIN_POSITIVE;
                 with_memory.push(index);
             }
@@ -355,7 +355,8 @@ impl Thresholds {
     }
 }
 
-/// Takes the difference of each idle tile's reading from its last one into its mean, by `share`.
+/// Updates the mean with the difference of each idle tile's reading from its last one: mean += `share` (difference −
+/// mean).
 ///
 /// Without branches, over plain arrays.
 fn follow(differences: &mut [f32], read: &mut [f32], now: &[f32], loaded: &[u32], share: f32) {
@@ -381,12 +382,12 @@ mod tests {
     use crate::sense::ForceFrame;
     use crate::sense::loaded::{LoadThreshold, LoadedTiles};
 
-    /// A floor of 5 x 5 tiles whose sensors hiss, hum and creep.
+    /// A floor of 5 x 5 tiles with noise, hum and creep.
     struct Floor {
         tiles: LoadedTiles,
         frame: ForceFrame,
         rng: Pcg64Mcg,
-        /// Of each sensor, in newtons.
+        /// Per sensor (N).
         noise_n: f32,
         hum_n: f32,
         creep: f32,
@@ -409,8 +410,8 @@ mod tests {
             }
         }
 
-        /// `frames` of them, `dt_s` apart, under these loads; how many tiles without one counted as loaded, each frame
-        /// for itself, and how many with one did not.
+        /// Runs `frames` frames, `dt_s` apart, with these loads; returns the number of unloaded tiles that counted as
+        /// loaded, summed over the frames, and the number of loaded tiles that did not.
         fn run(&mut self, frames: u32, dt_s: f32, loads: &[(usize, f32)]) -> (u32, u32) {
             let (mut ghosts, mut missed) = (0, 0);
             for _ in 0..frames {
@@ -446,7 +447,7 @@ mod tests {
             assert!(at_first <= 2, "{noise_n} N: {at_first} at first");
             let (ghosts, _) = floor.run(5000, 0.001, &[]);
             assert!(ghosts <= 10, "{noise_n} N: {ghosts} in 5 s");
-            // Within 20 ms, and then in nearly every frame.
+            // The tile counts within 20 ms, and then in nearly every frame.
             floor.run(20, 0.001, &[(12, 30.0)]);
             let (_, missed) = floor.run(500, 0.001, &[(12, 30.0)]);
             assert!(missed <= 15, "{noise_n} N: {missed} ms of 500 without the foot");
@@ -502,11 +503,11 @@ mod tests {
             let mut ghosts = 0;
             for _ in 0..5 {
                 floor.run(frames(0.7), dt_s, &[(12, 700.0)]);
-                // The toes: a tile that was left is loaded for 30 ms more.
+                // The toes: an unloaded tile stays loaded for 30 ms more.
                 floor.run(frames(0.05), dt_s, &[]);
                 ghosts += floor.run(frames(2.0), dt_s, &[]).0;
             }
-            // Of 25 tiles for ten seconds; as many as on tiles that never carried anything.
+            // For 25 tiles in ten seconds; as many as on tiles without any earlier load.
             println!("{ghosts} every {dt_s} s at {noise_n} N");
             assert!(ghosts <= 10, "{ghosts} every {dt_s} s at {noise_n} N");
         }
@@ -517,11 +518,11 @@ mod tests {
         let mut floor = Floor::new(0.0, 0.0, 0.05);
         for _ in 0..5 {
             assert_eq!(floor.run(700, 0.001, &[(12, 700.0)]), (0, 0));
-            // A clean tile is as sensitive as ever; the one that was left is empty 31 ms later.
+            // A clean tile is as sensitive as before; the unloaded one is empty 31 ms later.
             let (ghosts, missed) = floor.run(1000, 0.001, &[(7, 6.5)]);
             assert!(ghosts <= 31 && missed == 0, "{ghosts} ms, {missed}");
         }
-        // A foot of 60 N is felt right after a step of ten times as much, one of 6.5 N after a minute.
+        // A foot of 60 N is detected right after a step of ten times as much, one of 6.5 N after a minute.
         floor.run(700, 0.001, &[(12, 700.0)]);
         floor.run(200, 0.001, &[]);
         assert_eq!(floor.run(100, 0.001, &[(12, 60.0)]).1, 0);

@@ -3,19 +3,19 @@
 use super::BLOCK;
 use crate::floor::Geometry;
 
-/// How many blocks more stand behind than before the tiles' own: bits on end are read from that many on.
+/// Number of additional blocks behind the tiles: a read of adjacent bits extends over that many.
 const BEHIND: usize = 2;
 
-/// A set of tiles of one floor, one bit for each: which of a tile's neighbours belong to it is known by three looks.
+/// A set of tiles of one floor, one bit for each; three reads find a tile's neighbours in the set.
 #[derive(Clone, Debug)]
 pub(in crate::sense) struct TileSet {
-    /// [`BLOCK`] tiles each in tile-index order, after and before so many empty blocks that every tile has all its
+    /// Blocks of [`BLOCK`] tiles in tile-index order, between enough empty blocks that every tile has all its
     /// neighbours' bits.
     blocks: Vec<u16>,
-    /// How many blocks stand before the first tile's.
+    /// Number of blocks before the first tile's.
     before: usize,
     columns: u32,
-    /// Where the bit of the first tile's south-western neighbour would be.
+    /// Position of the bit of the first tile's south-western neighbour.
     south_west: usize,
 }
 
@@ -24,7 +24,7 @@ pub(in crate::sense) struct TileSet {
 pub(in crate::sense) struct Neighbour {
     /// Its place in tile-index order.
     pub index: u32,
-    /// How many columns and rows from the other one: -1 to 1 each.
+    /// Offset in columns and rows from the other one: -1 to 1 each.
     pub east: i32,
     pub north: i32,
 }
@@ -43,7 +43,7 @@ impl TileSet {
         self.blocks.clone_from(&other.blocks);
     }
 
-    /// The blocks of the floor's tiles, of which the last may have bits to spare.
+    /// The blocks of the floor's tiles; the last may have unused bits.
     pub(super) fn blocks(&self) -> &[u16] {
         &self.blocks[self.before..self.before + self.block_count()]
     }
@@ -53,12 +53,12 @@ impl TileSet {
         &mut self.blocks[self.before..behind]
     }
 
-    /// Takes the tile at `index` out.
+    /// Removes the tile at `index`.
     pub(in crate::sense) fn remove(&mut self, index: u32) {
         self.blocks[self.before + index as usize / BLOCK] &= !(1 << (index as usize % BLOCK));
     }
 
-    /// The first tile of a block, taken out.
+    /// Removes and returns the first tile of a block.
     pub(in crate::sense) fn pop(&mut self, block: usize) -> Option<u32> {
         let bits = &mut self.blocks[self.before + block];
         let first = (*bits != 0).then(|| bits.trailing_zeros())?;
@@ -66,12 +66,12 @@ impl TileSet {
         Some((block * BLOCK) as u32 + first)
     }
 
-    /// How many blocks a floor's tiles have.
+    /// Number of blocks of a floor's tiles.
     pub(in crate::sense) fn block_count(&self) -> usize {
         self.blocks.len() - 2 * self.before - BEHIND
     }
 
-    /// Makes this the set of tiles that may have one of `others` around them; only tiles at the floor's edges may have
+    /// Sets this to the tiles that may have one of `others` around them; only tiles at the floor's edges may have
     /// none.
     pub(super) fn surround(&mut self, others: &Self) {
         let (south_west, columns) = (self.south_west, self.columns as usize);
@@ -90,7 +90,7 @@ impl TileSet {
         }
     }
 
-    /// Which of the eight tiles around the one at `index` are in the set now, in tile-index order.
+    /// The tiles of the set among the eight around the one at `index`, in tile-index order.
     #[inline]
     pub(in crate::sense) fn around(&self, index: u32) -> impl Iterator<Item = Neighbour> + use<> {
         let (south_west, columns) = (self.south_west + index as usize, self.columns);
@@ -99,7 +99,7 @@ impl TileSet {
         let north = self.three_from(south_west + 2 * columns as usize);
         let mut left = south | (here & 0b101) << 3 | north << 6;
         if left != 0 {
-            // What stands beside a row's ends are the ends of other rows.
+            // Beyond the ends of a row lie the ends of other rows.
             let column = index % columns;
             left &= if column == 0 { 0b110_110_110 } else { 0b111_111_111 };
             left &= if column + 1 == columns { 0b011_011_011 } else { 0b111_111_111 };
@@ -116,7 +116,7 @@ impl TileSet {
         })
     }
 
-    /// The bits of three tiles on end.
+    /// The bits of three adjacent tiles.
     #[inline(always)]
     fn three_from(&self, at: usize) -> u32 {
         let block = at / BLOCK;
@@ -125,7 +125,7 @@ impl TileSet {
     }
 }
 
-/// The places of the bits that are set in `block`, in their order.
+/// The positions of the set bits of `block`, in order.
 #[inline]
 pub(super) fn bits(mut block: u16) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

@@ -1,4 +1,4 @@
-//! The header of a table: its separator, and where each column stands.
+//! The header of a table: its separator, and the place of each column.
 
 use std::io::{self, BufRead};
 
@@ -8,7 +8,7 @@ use super::record::{Record, Splitter};
 use super::shown;
 use crate::format::suggest::nearest;
 
-/// The separators that tables have; the first is the usual one.
+/// Separators of tables; the first is the usual one.
 const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 
 /// A header that fits one of the expected ones.
@@ -26,9 +26,9 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads up to the header. `lines` then gives the first row.
+    /// Reads up to the header. `lines` then returns the first row.
     ///
-    /// A header may stand in a comment, as `numpy.savetxt` writes it.
+    /// A header may be in a comment, as `numpy.savetxt` writes it.
     pub(super) fn read<R: BufRead>(
         lines: &mut Lines<R>,
         expected: &[&'static [&'static str]],
@@ -64,12 +64,12 @@ impl Header {
         }
     }
 
-    /// The header written in `text`, or why it is none of the expected ones.
+    /// The header in `text`, or the reason for which it is none of the expected ones.
     fn of(text: &str, expected: &[&'static [&'static str]]) -> Result<Self, String> {
         let mut closest: Option<(usize, String)> = None;
         for separator in SEPARATORS {
             let names = split(text, separator);
-            // The longest header that fits: it reads most of the table.
+            // The longest header that fits reads most of the table.
             let mut fitting: Option<Self> = None;
             for (which, columns) in expected.iter().enumerate() {
                 match place(&names, columns) {
@@ -92,7 +92,7 @@ impl Header {
         }
         let known: Vec<String> = expected.iter().map(|columns| columns.join(",")).collect();
         let known = known.join(" or ");
-        // Of a line that shares no column with any header the expected ones are the whole answer.
+        // For a line that shares no column with any header, the expected ones are the whole message.
         match closest.filter(|(missing, _)| expected.iter().all(|columns| *missing < columns.len())) {
             Some((_, problem)) => Err(format!("{problem}; expected the header {known}")),
             None => Err(format!("expected the header {known}, found {}", shown(text))),
@@ -100,7 +100,8 @@ impl Header {
     }
 }
 
-/// The place of each column among `names`; if one is missing or there twice, how many are missing and the first problem.
+/// The place of each column among `names`; if one is missing or occurs twice, the number of missing ones and the
+/// first problem.
 fn place(names: &[String], columns: &[&'static str]) -> Result<Vec<usize>, (usize, String)> {
     let (mut places, mut missing) = (Vec::with_capacity(columns.len()), Vec::new());
     let is = |name: &String, column: &str| name.eq_ignore_ascii_case(column);
@@ -126,7 +127,7 @@ fn split(text: &str, separator: u8) -> Vec<String> {
     names.map(|name| unquoted(&String::from_utf8_lossy(name)).to_owned()).collect()
 }
 
-/// `text` without blanks around it and without quotation marks that stand behind a blank.
+/// `text` without surrounding blanks and without quotation marks after a blank.
 pub(super) fn unquoted(text: &str) -> &str {
     let text = text.trim();
     let inner = text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
@@ -137,7 +138,7 @@ fn is_blank(text: &str) -> bool {
     text.chars().all(|c| c.is_whitespace() || matches!(c, ',' | ';' | '"'))
 }
 
-/// The line in which spreadsheets are told the separator: `sep=;`.
+/// The line that declares the separator to spreadsheets: `sep=;`.
 fn is_hint(text: &str) -> bool {
     let text = text.trim_matches('"');
     text.len() <= 5 && text.get(..4).is_some_and(|begins| begins.eq_ignore_ascii_case("sep="))

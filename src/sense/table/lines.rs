@@ -2,10 +2,11 @@
 
 use std::io::{self, BufRead};
 
-/// Longest line, in bytes. A row of our widest table has some 120; tables of others may have many more columns.
+/// Maximum length of a line, in bytes. A row of our widest table has about 120; other tables may have many more
+/// columns.
 const LONGEST: usize = 64 << 10;
 
-/// Reads a table line by line. Lines end with LF, CR or both; one without an end takes no memory.
+/// Reads a table line by line. Lines end with LF, CR or both; a line without an end takes no more than the maximum.
 #[derive(Debug)]
 pub(super) struct Lines<R> {
     reader: R,
@@ -14,7 +15,7 @@ pub(super) struct Lines<R> {
     number: u64,
     /// Whether it ended with CR, which an LF may follow.
     ended_by_cr: bool,
-    /// Whether the current line is given once more.
+    /// Whether the next call returns the current line again.
     is_put_back: bool,
 }
 
@@ -23,7 +24,7 @@ pub(super) struct Lines<R> {
 pub(super) enum Line<'l> {
     /// Its bytes without the end; blank ones are lines as well.
     Bytes(&'l [u8]),
-    /// It cannot be a row, and why.
+    /// It cannot be a row, with the reason.
     Broken(&'static str),
 }
 
@@ -37,7 +38,7 @@ impl<R: BufRead> Lines<R> {
         self.number
     }
 
-    /// Gives the current line once more.
+    /// Makes the next call return the current line again.
     pub(super) const fn put_back(&mut self) {
         self.is_put_back = true;
     }
@@ -58,7 +59,7 @@ impl<R: BufRead> Lines<R> {
         }))
     }
 
-    /// Reads a line, and of one that is too long one byte too many; false at the end.
+    /// Reads a line, or the first bytes of one that is too long, one more than the maximum; returns false at the end.
     fn advance(&mut self) -> io::Result<bool> {
         self.line.clear();
         let mut is_there = false;

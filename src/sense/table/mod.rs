@@ -1,10 +1,10 @@
-//! Tables of measurements in CSV: the one reader of all of them.
+//! Tables of measurements in CSV: the reader for all of them.
 //!
 //! ```text
 //! bytes -lines-> lines -record-> fields -header-> the columns that are wanted -> numbers in range
 //! ```
 //!
-//! A line that cannot be read is left out and named; all others are read. Where semicolons separate the fields, a
+//! A line that cannot be read is skipped and reported; all others are read. Where semicolons separate the fields, a
 //! comma is the decimal mark, as spreadsheets write tables in most of Europe.
 
 mod header;
@@ -40,7 +40,7 @@ pub enum TableError {
     },
 }
 
-/// A table under reading.
+/// A table that is being read.
 #[derive(Debug)]
 pub(super) struct Table<R> {
     lines: Lines<R>,
@@ -110,7 +110,7 @@ impl<R: BufRead> Table<R> {
         }
     }
 
-    /// Why a line has too few or too many fields; empty fields at its end do not count.
+    /// The problem of a line with too few or too many fields; empty fields at its end do not count.
     fn fault_of_width(&self, record: &Record) -> Option<String> {
         let (found, filled, expected) = (record.len(), record.filled(), self.header.width);
         if filled > expected {
@@ -131,12 +131,12 @@ impl<R: BufRead> Table<R> {
         Some(format!("expected {expected} fields, found {found}{}", hint.unwrap_or_default()))
     }
 
-    /// Notes that something is wrong in one field of `row`.
+    /// Reports a problem in one field of `row`.
     pub(super) fn report(&mut self, row: &Row, field: usize, problem: String) {
         self.problems.add(row.line, self.names.get(field).copied().unwrap_or_default(), problem);
     }
 
-    /// Notes that something is wrong with `line`.
+    /// Reports a problem of `line`.
     pub(super) fn report_line(&mut self, line: u64, problem: String) {
         self.problems.add(line, "", problem);
     }
@@ -151,7 +151,7 @@ impl<R: BufRead> Table<R> {
         }
     }
 
-    /// The number in one field of `row`; anything but a finite number in the range is noted.
+    /// The number in one field of `row`; reports anything but a finite number in the range.
     pub(super) fn number(&mut self, row: &Row, field: usize, range: RangeInclusive<f64>) -> Option<f64> {
         let written = self.text(row, field);
         let number = self.parse(&written).filter(|number| range.contains(number));
@@ -169,7 +169,7 @@ impl<R: BufRead> Table<R> {
     /// The whole number of `range` in one field of `row`.
     pub(super) fn whole(&mut self, row: &Row, field: usize, range: Range<u16>) -> Option<u16> {
         let written = self.text(row, field);
-        // Programs that know floats only write 3 as 3.0.
+        // Programs without integers write 3 as 3.0.
         let number = self.parse(&written).filter(|number| number.fract() == 0.0);
         let number = number.filter(|number| (f64::from(range.start)..f64::from(range.end)).contains(number));
         if number.is_none() {

@@ -1,17 +1,17 @@
-//! Everything wrong with a table.
+//! The problems of a table.
 
 use std::fmt;
 
-/// Notes of a table that was read: the lines that were left out, and the columns that mean nothing here.
+/// Notes about a table that was read: the skipped lines, and the columns without meaning here.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TableNotes {
-    /// Everything wrong with lines.
+    /// The problems of its lines.
     pub problems: TableProblems,
     /// Names of the columns that were not read, as the header has them.
     pub unread: Vec<String>,
 }
 
-/// Something wrong with one line of a table. The line is left out; all others are read.
+/// A problem of one line of a table. The line is skipped; all others are read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableProblem {
     /// Number of the line, from 1; blank lines and comments count.
@@ -22,7 +22,7 @@ pub struct TableProblem {
     pub problem: String,
 }
 
-/// Everything wrong with the lines of a table: the first problems in full, the others counted.
+/// The problems of a table's lines: the first ones in full, the others counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TableProblems {
     shown: Vec<TableProblem>,
@@ -32,7 +32,7 @@ pub struct TableProblems {
 }
 
 impl TableProblems {
-    /// Greatest number of problems that are kept in full: as many as fit on a screen.
+    /// Maximum number of problems kept in full: as many as fit on a screen.
     pub const MOST: usize = 20;
 
     /// The first problems, in the order in which they were found.
@@ -47,7 +47,7 @@ impl TableProblems {
         self.more
     }
 
-    /// Number of lines that were left out, each of which has one problem or several.
+    /// Number of skipped lines, each with one or several problems.
     #[must_use]
     pub const fn lines(&self) -> u64 {
         self.lines
@@ -60,7 +60,7 @@ impl TableProblems {
     }
 
     pub(super) fn add(&mut self, line: u64, column: &'static str, problem: String) {
-        // All problems of one line are found before those of the next.
+        // All problems of one line come before those of the next.
         if line != self.last_line {
             self.lines += 1;
             self.last_line = line;

@@ -7,7 +7,7 @@ pub(super) struct Record {
     ends: Vec<usize>,
 }
 
-/// Splits lines into fields. Each line stands for itself: quotation marks that are never closed end with it.
+/// Splits lines into fields. Each line is independent: a quotation mark that is never closed ends with it.
 #[derive(Debug)]
 pub(super) struct Splitter {
     reader: csv_core::Reader,
@@ -31,7 +31,7 @@ impl Splitter {
         self.line.clear();
         self.line.extend_from_slice(line);
         self.line.push(b'\n');
-        // Fields are never longer than they are written, and one more than separators.
+        // Fields are never longer than their text, and there is one more than separators.
         let most = 1 + line.iter().filter(|byte| **byte == self.separator).count();
         record.bytes.clear();
         record.bytes.resize(self.line.len(), 0);
@@ -45,7 +45,7 @@ impl Splitter {
             let ends = record.ends.get_mut(fields..).unwrap_or_default();
             let (result, took, wrote, ended) = self.reader.read_record(rest, bytes, ends);
             (read, written, fields) = (read + took, written + wrote, fields + ended);
-            // An open field ends with the line: the reader asks for more and is given nothing.
+            // An open field ends with the line: the reader asks for more input and receives none.
             if !matches!(result, csv_core::ReadRecordResult::InputEmpty) {
                 break;
             }
@@ -72,7 +72,7 @@ impl Record {
         (0..self.len()).filter_map(|index| self.get(index))
     }
 
-    /// Number of fields up to the last that holds anything.
+    /// Number of fields up to the last that is not empty.
     pub(super) fn filled(&self) -> usize {
         (1..=self.len())
             .rev()

@@ -1,4 +1,4 @@
-//! Tables as programs of others write them.
+//! Tests of tables in the formats of other programs.
 
 use proptest::prelude::{any, proptest};
 
@@ -126,7 +126,7 @@ fn further_columns_are_named_and_not_read() {
     assert_eq!(rows, TWO_ROWS);
     assert_eq!(problems, ["line 4: expected 4 fields, found 2"]);
     assert_eq!(unread, ["note", "by"]);
-    // A row may lack what nobody reads.
+    // A row may lack a column that is not read.
     assert_eq!(read(b"col,volts,note\n1,2.5\n3,4.5,x").unwrap().0, TWO_ROWS);
 }
 

@@ -1,4 +1,4 @@
-//! Which track a loaded tile belongs to, and tracks that begin where no foot reaches.
+//! Association of loaded tiles with tracks, and new tracks for loads beyond all feet.
 
 use super::params::associate::{ASTRIDE_M, NOISE_ARM_M, PENDING_S};
 use super::params::state::LANDS_S;
@@ -12,7 +12,7 @@ use super::{Tracker, UNASSIGNED, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
-/// A load beyond all feet near it that may be another foot.
+/// A load beyond all feet near it that may be a new foot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pending {
     pub index: u32,
@@ -27,13 +27,13 @@ pub(super) struct Pending {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PreviousOwner {
     track: u32,
-    /// Which of these was found before it for the same tile, or `UNASSIGNED`.
+    /// The entry found before this one for the same tile, or `UNASSIGNED`.
     before: u32,
 }
 
 impl Tracker {
-    /// Finds which track reaches which tile, gives tiles out of reach to the nearest track that
-    /// may have grown onto them, and lets new feet land on the rest.
+    /// Associates tiles with the tracks that reach them, tiles out of reach with the nearest track that may have
+    /// grown onto them, and starts new tracks on the rest.
     pub(super) fn associate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         let list = tiles.list();
         self.owner.clear();
@@ -46,7 +46,7 @@ impl Tracker {
         self.unassigned.clear();
         for (position, (tile, &owner)) in (0..).zip(list.iter().zip(&self.owner)) {
             if owner == UNASSIGNED {
-                // Positive numbers are ordered as their bits.
+                // Positive floats sort like their bits.
                 self.unassigned.push((Reverse(tile.wrench.force.to_bits()), position));
             }
         }
@@ -63,7 +63,7 @@ impl Tracker {
             let beyond = |foot: &Track| {
                 foot.beyond(centroid).min(foot.lands_about(centroid)).min(foot.rims(centroid, force))
             };
-            // What was loaded already is no newcomer: it stays with the nearest of those who had it.
+            // A load that existed before starts no new track: it stays with the nearest of its previous owners.
             let known = |which: u32| self.previous_owners.get(which as usize);
             let last = known(self.last_previous_owner[position as usize]);
             let previous_owners = std::iter::successors(last, |owner| known(owner.before));
@@ -72,7 +72,7 @@ impl Tracker {
                 (self.tracks[which].centre().distance(centroid), which)
             });
             let nearest = away_s.min_by(first_of_least).or_else(|| {
-                // Who may have grown onto it has its centre of pressure within a stride.
+                // A foot that may have grown onto it has its centre of pressure within a stride.
                 let tracks = self.near.around(centroid).map(|which| (beyond(&self.tracks[which]), which));
                 tracks.filter(|&(beyond, _)| beyond < 0.0).min_by(first_of_least)
             });
@@ -81,7 +81,7 @@ impl Tracker {
                     let foot = &mut self.tracks[which];
                     foot.tiles.push(position);
                     if foot.age == 0.0 {
-                        // A foot that lands on several tiles at once: its middle is theirs.
+                        // A foot that lands on several tiles at once has their common centroid.
                         let whole = foot.force() + force;
                         let centre = foot.centre() + (centroid - foot.centre()) * (force / whole);
                         foot.state[FORCE] = whole;
@@ -92,7 +92,7 @@ impl Tracker {
                     self.owner[position as usize] = which as u32;
                 }
                 None if self.is_pending(tile, elapsed) => {
-                    // Until that is sure, it counts to the nearest.
+                    // Until confirmation the load counts towards the nearest foot.
                     let nearest = self.near.distances(centroid).min_by(first_of_least);
                     if let Some((_, which)) = nearest {
                         self.tracks[which].tiles.push(position);
@@ -111,12 +111,12 @@ impl Tracker {
         }
     }
 
-    /// Forgets loads that are gone or have been taken.
+    /// Removes pending loads that are gone or assigned.
     pub(super) fn forget_pending(&mut self) {
         self.pending.retain(|pending| pending.seen);
     }
 
-    /// Whether it is not yet sure enough that a load lies beyond all feet near it.
+    /// Whether it is still uncertain that a load lies beyond all feet near it.
     fn is_pending(&mut self, tile: &LoadedTile, elapsed: &Elapsed) -> bool {
         let (dt, keep) = (elapsed.dt, elapsed.pending);
         let place = tile.centroid.as_dvec2();
@@ -154,7 +154,7 @@ impl Tracker {
         !sure
     }
 
-    /// Finds, for each unassigned tile, the tracks that had it in the last frame.
+    /// Finds the tracks that had each unassigned tile in the last frame.
     fn find_previous_owners(&mut self, tiles: &LoadedTiles) {
         self.previous_owners.clear();
         if self.unassigned.is_empty() {
@@ -174,7 +174,7 @@ impl Tracker {
         }
     }
 
-    /// The standing foot beside which one lands at `place`, if there is one.
+    /// The standing foot beside which a foot lands at `place`, if there is one.
     fn touchdown_at(&self, place: DVec2) -> Option<Touchdown> {
         let near = self.near.distances(place);
         let (_, existing) = near.filter(|&(distance, _)| distance < ASTRIDE_M).min_by(first_of_least)?;
@@ -185,7 +185,8 @@ impl Tracker {
 }
 
 impl Track {
-    /// Takes the tiles it was noticed on, if it has just landed and is guessed to be beside all loaded tiles.
+    /// Assigns the tiles on which it was noticed to a foot in touchdown whose estimated place is beside all loaded
+    /// tiles.
     pub(super) fn keep_noticed_tiles(&mut self, tiles: &LoadedTiles) {
         if self.tiles.is_empty() && self.age < LANDS_S {
             self.tiles.extend(self.smoothed.loads.iter().filter_map(|load| tiles.position(load.index)));

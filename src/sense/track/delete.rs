@@ -1,4 +1,4 @@
-//! Feet that have left: whose place is proven empty.
+//! Deletion of feet that have left: their places are proven empty.
 
 use super::params::delete::{
     EMPTY_N, FAINT_S, FAR_M, GONE_SHARE, LIGHT_N, LIGHT_SHARE, MISPLACED, NOTICED_N, OWN_M, RECOVERS, RIM_M,
@@ -12,7 +12,7 @@ use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
 impl Tracker {
-    /// Takes away feet that are not there.
+    /// Deletes feet that are no longer there.
     pub(super) fn delete_empty(&mut self, tiles: &LoadedTiles, dt: f64) {
         let mut empty_s = std::mem::take(&mut self.empty_s);
         empty_s.resize(self.tracks.len(), 0.0);
@@ -62,14 +62,13 @@ impl Tracker {
         if foot.force() + SURE * sigma < EMPTY_N {
             return true;
         }
-        // Of three that share tiles, the division is anybody's guess: the light one is the price of a wrong one.
+        // The division among three feet on shared tiles is uncertain: the light one may result from a wrong division.
         let crowd = self.mates(foot).nth(1).is_some();
         crowd && foot.age > LANDS_S && foot.force() < GONE_SHARE * all
             || self.stands_on_nothing(foot, tiles, all)
     }
 
-    /// Whether a foot with the least part of the load `all` that is worth a track would show on tiles that carry
-    /// nothing.
+    /// Whether a foot with the smallest part of the load `all` that justifies a track would show on unloaded tiles.
     pub(super) fn stands_on_nothing(&self, foot: &Track, tiles: &LoadedTiles, all: f64) -> bool {
         let at = cell_of(foot.centre(), self.cells.pitch);
         let around = (at.y - 2..=at.y + 2)
@@ -78,25 +77,26 @@ impl Tracker {
             .map(|position| &tiles.list()[position])
             .filter(|tile| tile.centre.as_dvec2().distance(foot.centre()) < self.cells.pitch * 1.5);
         let on: f64 = near.map(|tile| foot.on(self.cells.of(tile)).share()).sum();
-        // As far as it is known where it stands.
+        // Allowance for the uncertainty of its place.
         let beside = 1.0 - on - MISPLACED;
         beside * LIGHT_N.max(GONE_SHARE * all) > NOTICED_N
     }
 
-    /// Leaves what foot `which`, which is gone, still pressed to the nearest of those it was with: that is no newcomer.
+    /// Transfers the tiles of the deleted foot `which` to the nearest foot of its group, so that its remaining load
+    /// starts no new track.
     fn transfer_tiles(&mut self, which: usize) {
         let gone = &self.tracks[which];
         let mates = self.mates.of(gone.group).filter(|&mate| self.tracks[mate].empty_s < FAINT_S);
         let away_s = mates.map(|mate| (self.tracks[mate].centre().distance(gone.centre()), mate));
-        // Farther away than a shoe is long, it is nothing of theirs.
+        // A load farther away than the length of a shoe belongs to none of them.
         let successor = away_s.filter(|&(distance, _)| distance < SHOE_M).min_by(first_of_least);
         let Some((_, successor)) = successor else { return };
         let left = std::mem::take(&mut self.tracks[which].tiles);
         self.tracks[successor].inherit(&left);
     }
 
-    /// Confirms tracks that were split from another one: those that carry a tile by themselves which no shoe reaches that
-    /// is where the other one is, and those whose other one is gone.
+    /// Confirms tracks that were split from another one: those with a tile of their own that the other foot's shoe
+    /// cannot reach, and those whose other track has ended.
     pub(super) fn confirm_split(&mut self, tiles: &LoadedTiles) {
         for which in 0..self.tracks.len() {
             let Some(from) = self.tracks[which].split_from else { continue };
@@ -107,7 +107,7 @@ impl Tracker {
         }
     }
 
-    /// Whether track `which` presses a tile by itself that is out of reach of track `other`.
+    /// Whether track `which` alone presses a tile that is out of reach of track `other`.
     fn is_apart(&self, which: usize, other: usize, list: &[LoadedTile]) -> bool {
         let (track, other) = (&self.tracks[which], &self.tracks[other]);
         track.tiles.iter().any(|position| {
@@ -123,8 +123,8 @@ impl Tracker {
         self.mates.of(foot.group).map(|mate| &*self.tracks[mate]).filter(move |mate| mate.id != id)
     }
 
-    /// Whether foot `which` is all that is left of a foot that has gone: the rim of a heavy one, on a tile that both
-    /// pressed.
+    /// Whether foot `which` is only the rim of a heavy foot, on a tile that it pressed together with a foot that has
+    /// gone.
     fn is_rim(&self, which: usize) -> bool {
         let foot = &self.tracks[which];
         let (place, force) = (foot.centre(), foot.force());
@@ -135,7 +135,7 @@ impl Tracker {
             })
     }
 
-    /// Whether it presses a tile that none of the others can reach: proof that it is still there.
+    /// Whether it presses a tile beyond the reach of all others: proof that it is still there.
     fn has_own(&self, foot: &Track, list: &[LoadedTile]) -> bool {
         foot.tiles.iter().any(|&position| {
             let place = list[position as usize].centroid.as_dvec2();

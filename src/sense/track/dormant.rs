@@ -1,9 +1,9 @@
-//! Feet that have given up their weight, but may still stand there.
+//! Feet that have lost their load but may still be there.
 //!
-//! What two feet close together carry is explained by the heavier one alone as soon as the other carries little. The
-//! lighter one then keeps its identity and its place, marked as ambiguous, and no longer takes part in the
-//! estimation. It takes part again when the common centre of pressure moves towards it, and ends when that
-//! goes elsewhere, when another foot lands, or after [`MOST_S`].
+//! The heavier of two close feet explains all of the load as soon as the other one carries little. The lighter one
+//! then becomes dormant: it keeps its identity and its place as an ambiguous contact, and leaves the estimation. It
+//! becomes active again when the common centre of pressure moves towards it. It ends when that centre moves
+//! elsewhere, when another foot lands, or after [`MOST_S`].
 
 use super::params::dormant::{ASIDE_M, AWAY_M, ENOUGH_S, MOST_S, OPEN, SAME_M, SLEEPS, WAKES};
 use super::params::tracker::STRIDE_M;
@@ -17,18 +17,18 @@ use super::touchdown::Touchdown;
 use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
 
-/// A foot that has given up its weight to another one.
+/// A foot that has lost its load to another one.
 #[derive(Clone, Debug)]
 pub(super) struct Dormant {
     pub foot: Track,
-    /// Who has its weight, and where that one stood.
+    /// The foot that carries its load, and the place of that foot before.
     pub existing: ContactId,
     from: DVec2,
     age: f64,
 }
 
 impl Tracker {
-    /// Lets feet that are no longer needed to explain what the tiles carry rest.
+    /// Makes feet dormant that are not needed to explain the loads of their tiles.
     pub(super) fn let_sleep(&mut self, tiles: &LoadedTiles, dt: f64) {
         for which in 0..self.tracks.len() {
             let foot = &self.tracks[which];
@@ -59,7 +59,7 @@ impl Tracker {
         }
     }
 
-    /// The one foot that is enough for the tiles it shares with `foot`, if that carries little.
+    /// The single foot that explains the tiles it shares with `foot`, if `foot` carries little.
     fn enough_without(&self, foot: &Track, tiles: &LoadedTiles) -> Option<(usize, Strips)> {
         if !foot.shared {
             return None;
@@ -79,7 +79,7 @@ impl Tracker {
         (spread.evidence() < OPEN).then_some((existing, strips))
     }
 
-    /// Wakes feet whose weight comes back, and ends those that have left.
+    /// Reactivates feet that carry load again, and removes those that have left.
     pub(super) fn wake(&mut self, tiles: &LoadedTiles, dt: f64) {
         let mut at = 0;
         while at < self.dormant.len() {
@@ -127,8 +127,8 @@ impl Tracker {
         }
     }
 
-    /// The identity for a foot that lands at `place`: that of one that rests there, or a new one. Others near end:
-    /// people have two feet.
+    /// The identity of a foot that lands at `place`: that of a dormant foot there, or a new one. Removes other
+    /// dormant feet within a stride, since a person has two feet.
     pub(super) fn identity(&mut self, place: DVec2) -> ContactId {
         let mut found = None;
         self.dormant.retain(|dormant| {
@@ -143,7 +143,7 @@ impl Tracker {
 }
 
 impl Track {
-    /// Bears weight again where it stood.
+    /// Carries load again in its old place.
     fn rest_again(&mut self, force: f64) {
         let place = self.centre();
         self.rest_at(force, place);
@@ -152,7 +152,7 @@ impl Track {
         self.empty_s = 0.0;
     }
 
-    /// Stands at `place` beside another foot.
+    /// Sets the foot to `place`, beside another foot.
     fn rest_at(&mut self, force: f64, place: DVec2) {
         self.stand(force, place);
         self.reset_covariance(0.02);

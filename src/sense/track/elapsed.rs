@@ -1,4 +1,4 @@
-//! What the time between two frames makes of averages: the same for every foot.
+//! Decay factors of all averages for the time between two frames: the same for every foot.
 
 use super::params::associate::PENDING_S;
 use super::params::explanation::WINDOW_S;
@@ -10,38 +10,38 @@ use super::params::state::RATE_S;
 use super::params::stillness::{MEAN_SPEED_S, REST_POINT_S, STILL_REST_POINT_S};
 use super::params::tracker::NIS_S;
 
-/// The time since the last frame, and how much of each average is left after it.
+/// The time since the last frame, and the decay factor exp(−dt/τ) of each average.
 ///
-/// Computed for each foot, these exponentials took a twentieth of the work on a crowd.
+/// Computed for each foot separately, these exponentials took a twentieth of the work on a crowd.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Elapsed {
     /// In seconds.
     pub dt: f64,
-    /// Of a lone foot's rates.
+    /// Rates of a lone foot.
     pub rates: f64,
     pub mean_speed: f64,
     pub rest_point: f64,
     pub still_rest_point: f64,
     pub smoothed: f64,
-    /// Of the outline of a foot that bears a body, and of a light one's.
+    /// Outline of a foot that carries a person, and of a light foot.
     pub outline: f64,
     pub light_outline: f64,
     pub explanation: f64,
     pub pending: f64,
     pub nis: f64,
-    /// Of the rates of feet that share tiles.
+    /// Rates of feet that share tiles.
     pub force_rate: f64,
     pub velocity: f64,
-    /// Of a lone foot's shape, where it is learnt as often as it should be.
+    /// Shape of a lone foot at the regular learning interval.
     shape: ShapeFade,
 }
 
-/// What a time makes of what was known of a foot's shape.
+/// Decay of the shape of a foot over some time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShapeFade {
     /// In seconds.
     pub dt: f64,
-    /// How much of a half width is left, and of a residual.
+    /// Decay factors of a half width and of a residual.
     pub half: f64,
     pub residual: f64,
 }
@@ -73,13 +73,13 @@ impl Elapsed {
         }
     }
 
-    /// What `since` seconds make of a lone foot's shape.
+    /// Decay factors of a lone foot's shape over `since` seconds.
     pub(super) fn shape_fade(&self, since: f64) -> ShapeFade {
         if since == self.shape.dt { self.shape } else { ShapeFade::new(since) }
     }
 }
 
-/// The time after which a shape is learnt anew with a frame every `dt` seconds, added up as it is for each foot.
+/// Time between two updates of the shape at one frame every `dt` seconds, summed as for each foot.
 fn learning_interval(dt: f64) -> f64 {
     let mut since = dt;
     while dt > 0.0 && since < LEARN_EVERY_S - 0.5 * dt {

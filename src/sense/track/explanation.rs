@@ -1,19 +1,19 @@
-//! One foot, or two that are seen as one?
+//! Does a track consist of one foot or of two?
 //!
-//! What the tiles of a single track carry is explained by one foot or by two. Both explanations are kept: their log
-//! odds are the prior, given how the track began, plus the evidence of what has been seen since:
+//! One foot or two explain the loads of a single track's tiles. The tracker keeps both explanations; their log odds
+//! are the prior, which depends on how the track began, plus the evidence since:
 //!
-//! - **Spread.** The loads of the tiles lie about their common centroid with a covariance that is a lower bound of
-//!   that of the pressure. One foot is long and narrow; two are neither.
-//! - **Standing.** A walking step never rests; who stands for longer on one contact that bears a body's weight, with
-//!   no other foot near, stands on both feet.
-//! - **Shift.** While one stands, the centre of pressure of a single foot sways by a centimetre or so. It moves farther
+//! - **Spread.** The covariance of the tile loads about their common centroid is a lower bound of that of the
+//!   pressure. One foot is long and narrow; two feet are not.
+//! - **Standing.** A walking step never rests. A single contact that carries a person for longer, with no other foot
+//!   near, is both feet.
+//! - **Shift.** In standing, the centre of pressure of a single foot sways by about a centimetre. It moves farther
 //!   when a second foot takes over weight.
 //! - **Roll.** From heel to toes within a stance, a centre of pressure travels farther than that of two feet side by
 //!   side.
 //!
-//! From even odds on the contact is ambiguous, and its ellipse is always as wide as the possibility. A second track
-//! begins once the odds pay for the risk, and the data say where it is.
+//! Above even odds the contact is ambiguous, and its ellipse always covers both possibilities. A second track begins
+//! when the odds justify the risk and the data show its place.
 
 use super::params::explanation::{
     ACCOMPANIED, ACROSS_M, ACROSS_SPREAD_M, ALONG_M, ALONG_SPREAD_M, BIRTH, HALF_STANCE_M, LONE, MOST, ROLL,
@@ -27,23 +27,23 @@ use super::state::Track;
 use super::strips::{Whole, centroid_sigma};
 use crate::sense::tile::LoadedTile;
 
-/// How the loads of some tiles lie about their centroid: the covariance of their places.
+/// The covariance of the places of some tile loads about their centroid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spread {
-    /// The mean of the variances eastwards and northwards, in square metres.
+    /// Mean of the variances eastwards and northwards (m²).
     mean: f64,
-    /// Half the difference between the two, and the covariance: what tells the widest direction.
+    /// Half the difference between the two, and the covariance: both give the widest direction.
     difference: f64,
     mixed: f64,
 }
 
 impl Spread {
-    /// Of `tiles` about `middle`.
+    /// The spread of `tiles` about `middle`.
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, middle: DVec2) -> Self {
         Self::of_arms(tiles.map(|tile| (f64::from(tile.wrench.force), tile.centroid.as_dvec2() - middle)))
     }
 
-    /// Of loads in newtons, each with its place from their centroid.
+    /// The spread of loads (N), each with its arm from their centroid.
     #[inline]
     fn of_arms(loads: impl Iterator<Item = (f64, DVec2)>) -> Self {
         let (mut xx, mut xy, mut yy, mut force) = (0.0, 0.0, 0.0, 0.0);
@@ -56,17 +56,17 @@ impl Spread {
         Self { mean: 0.5 * (xx + yy) / force, difference: 0.5 * (xx - yy) / force, mixed: xy / force }
     }
 
-    /// By how much the variances along the widest direction and across it differ from their mean.
+    /// Difference between the variance along the widest direction, or across it, and their mean.
     fn swing(&self) -> f64 {
         self.difference.hypot(self.mixed)
     }
 
-    /// Standard deviation along the widest direction, in metres.
+    /// Standard deviation along the widest direction (m).
     fn along(&self) -> f64 {
         (self.mean + self.swing()).max(0.0).sqrt()
     }
 
-    /// The same across it.
+    /// Standard deviation across it (m).
     fn across(&self) -> f64 {
         (self.mean - self.swing()).max(0.0).sqrt()
     }
@@ -76,7 +76,7 @@ impl Spread {
         DVec2::from_angle(0.5 * self.mixed.atan2(self.difference))
     }
 
-    /// Log odds for two feet.
+    /// Log odds of two feet.
     #[inline]
     pub(super) fn evidence(&self) -> f64 {
         if self.is_narrow() {
@@ -85,7 +85,7 @@ impl Spread {
         self.evidence_along() + excess(self.across(), ACROSS_M, ACROSS_SPREAD_M)
     }
 
-    /// Whether it is narrower than one foot by more than rounding can tell: squares say so without a root.
+    /// Whether it is narrower than one foot by more than rounding errors, compared by squares without a root.
     #[inline]
     fn is_narrow(&self) -> bool {
         const SURELY: f64 = 1.0 - 1e-9;
@@ -102,22 +102,22 @@ impl Spread {
     }
 }
 
-/// Half the square of by how many deviations `value` is above `limit`.
+/// ½ ((`value` − `limit`) / `deviation`)² above the limit, at most [`MOST`].
 fn excess(value: f64, limit: f64, deviation: f64) -> f64 {
     (0.5 * ((value - limit).max(0.0) / deviation).powi(2)).min(MOST)
 }
 
-/// The odds of the two explanations of one track.
+/// Log odds of the two explanations of one track.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Explanation {
-    /// Log odds of two feet against one, averaged.
+    /// Smoothed log odds of two feet against one.
     pub log_odds: f64,
 }
 
-/// What speaks for a second foot, and where it would be.
+/// Evidence of a second foot, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Second {
-    /// It takes over weight: seen by the shift from the anchor.
+    /// It takes over weight: the shift from the anchor shows it.
     Shift(DVec2),
     /// The tiles' loads lie too far apart along an axis.
     Apart(Spread),
@@ -128,10 +128,10 @@ impl Explanation {
         Self { log_odds: ACCOMPANIED }
     }
 
-    /// Takes in what the track's tiles carry now, `pitch` from tile to tile; `alone` says whether no
-    /// other foot is within a stride.
+    /// Updates the odds with the present loads of the track's tiles, at distance `pitch` from each other; `alone`
+    /// returns whether no other foot is within a stride.
     ///
-    /// Gives where the second foot is once it is worth a track.
+    /// log odds += w (evidence − log odds). Returns the place of the second foot once it justifies a track.
     pub(super) fn update(
         &mut self,
         foot: &Track,
@@ -141,7 +141,7 @@ impl Explanation {
         alone: impl FnOnce() -> bool,
         elapsed: &Elapsed,
     ) -> Option<Second> {
-        // A light contact far from all others is a foot that taps; a body stands on one foot or on two.
+        // A light contact far from all others is a tapping foot; a person stands on one foot or on two.
         let lone = !foot.accompanied && (foot.bears() || seen.force > foot.body_n);
         let prior = if lone { LONE } else { ACCOMPANIED };
         let tiles = foot.tiles.as_slice().iter().map(|&position| &list[position as usize]);
@@ -182,15 +182,15 @@ impl Explanation {
         1.0 / (1.0 + (-self.log_odds).exp())
     }
 
-    /// Whether two feet are as likely as one.
+    /// Whether two feet are more likely than one.
     pub(super) fn is_open(&self) -> bool {
         self.log_odds > 0.0
     }
 
-    /// Standard deviation of what a second foot may add to the place of the contact, in metres: its 95 % circle
-    /// holds 95 % of both explanations together.
+    /// Standard deviation that a possible second foot adds to the place of the contact (m): its 95 % circle covers 95
+    /// % of both explanations together.
     pub(super) fn hidden_m(&self) -> f64 {
-        // Far less than one in twenty, as of nearly every foot: not worth an exponential.
+        // The probability is far below one in twenty for nearly every foot, so skip the exponential.
         if self.log_odds < -3.0 {
             return 0.0;
         }
@@ -207,7 +207,7 @@ impl Explanation {
 mod tests {
     use super::*;
 
-    /// How `loads` (newtons and places along and across, in metres) lie about their centroid.
+    /// Spread of `loads` (newtons, and places along and across in metres) about their centroid.
     fn spread(loads: &[(f64, f64, f64)]) -> Spread {
         let force: f64 = loads.iter().map(|load| load.0).sum();
         let sum: DVec2 = loads.iter().map(|&(force, x, y)| DVec2::new(x, y) * force).sum();
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_heel_and_a_ball_are_one_foot_and_feet_side_by_side_two() {
-        // Half of the load on each end of a sole is as wide as one foot gets.
+        // One foot spreads at most as widely as half of the load on each end of a sole.
         assert!(spread(&[(350.0, 0.0, 0.0), (350.0, 0.17, 0.02)]).evidence() < 0.1);
         // 30 cm apart over a seam.
         assert!(spread(&[(350.0, 0.0, 0.0), (350.0, 0.0, 0.3)]).evidence() > BIRTH);

@@ -1,6 +1,6 @@
-//! Groups of feet that share tiles, each estimated on its own.
+//! Groups of feet that share tiles, each estimated separately.
 //!
-//! Two groups have no tile in common, so they are estimated in any order and on any thread with the same result.
+//! Two groups have no tile in common, so any order and any thread gives the same result.
 
 use arrayvec::ArrayVec;
 use glam::DVec2;
@@ -17,16 +17,16 @@ use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
-/// Most batches of groups that are estimated in parallel: several for each of a few threads.
+/// Maximum number of batches of groups estimated in parallel: several for each of a few threads.
 pub(super) const BATCHES: usize = 16;
 
-/// Most groups that are divided into batches at once, which bounds the space on the stack.
+/// Maximum number of groups divided into batches at once, which bounds the stack space.
 const MOST_GROUPS: usize = 256;
 
-/// The feet of a group, as many as one filter holds.
+/// The feet of a group, up to the capacity of one filter.
 type Group<'a> = ArrayVec<&'a mut Track, MOST_FEET>;
 
-/// The joint filter for one batch of groups, and the covariances that it leaves for the next frame.
+/// The joint filter for one batch of groups, and the covariances that it keeps for the next frame.
 #[derive(Clone, Debug)]
 pub(super) struct GroupEstimator {
     number: usize,
@@ -43,7 +43,7 @@ pub(super) struct Link {
 }
 
 impl Tracker {
-    /// Estimates the feet of each group that has several.
+    /// Estimates the feet of each group with several feet.
     pub(super) fn estimate_groups(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         for estimator in &mut self.estimators {
             estimator.links.clear();
@@ -59,7 +59,7 @@ impl Tracker {
                 passed = which + 1;
                 let Some(group) = groups.get_mut(number.wrapping_sub(first) as usize) else { continue };
                 if let Err(full) = group.try_push(foot) {
-                    // More feet than one filter holds: the rest go on as predicted, as guesses.
+                    // More feet than one filter holds: the rest keep their predictions and become ambiguous.
                     full.element().join(true);
                 }
             }
@@ -81,7 +81,7 @@ impl Tracker {
         }
     }
 
-    /// Numbers the groups of several in the order of their first members; gives how many there are.
+    /// Numbers the groups with several feet in the order of their first members; returns their count.
     fn number_groups(&mut self) -> u32 {
         let mut count = 0;
         self.group_numbers.clear();
@@ -107,7 +107,7 @@ impl Track {
     }
 }
 
-/// Places a foot that was put down beside a standing one; false if there is none, or nothing to be said.
+/// Places a foot that was put down beside a standing one; returns false if there is none, or no estimate yet.
 fn place_touchdown(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells) -> bool {
     let [first, second] = group.as_mut_slice() else { return false };
     let (existing, stepping) = if second.has_landed_beside(first) {
@@ -122,7 +122,7 @@ fn place_touchdown(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells) ->
     let tiles = both.iter().map(|&position| &list[position as usize]);
     let strips = Strips::of(tiles.clone(), cells.pitch);
     let sigma = centroid_sigma(tiles, strips.force, cells.pitch);
-    // Where what the filter says of both has not fitted for some time, they are looked for anew.
+    // If the filter's estimate of both feet has not fitted for some time, the touchdown is estimated again.
     if !existing.ambiguous
         && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, sigma, list, cells)
     {
@@ -137,8 +137,8 @@ impl GroupEstimator {
         Self { number, joint: Box::new(Joint::new()), links: Vec::with_capacity(room) }
     }
 
-    /// One step of the joint filter over the feet of `group`; `links` are those of the last frame, one list per
-    /// estimator.
+    /// Runs one step of the joint filter over the feet of `group`; `links` are the covariances of the last frame, one
+    /// list per estimator.
     fn estimate(
         &mut self,
         group: &mut Group<'_>,
@@ -173,8 +173,7 @@ impl GroupEstimator {
             .enumerate()
             .any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > FIRST_STEP_M);
         if leaps || !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
-            // A step so large that derivatives mean nothing: all stay where they were predicted, with a wide
-            // covariance.
+            // The step is too large for the linearisation: all feet keep their predictions, with a wide covariance.
             group.iter_mut().for_each(|foot| foot.reset_covariance(THROWN_M));
             return;
         }

@@ -1,4 +1,4 @@
-//! Feet that land where others already stand.
+//! New feet on tiles that other feet already press.
 
 use super::params::associate::NOISE_ARM_M;
 use super::params::initiate::{ADDED_N, APART_GUESS_M, APART_M, GUESSED_M, SLIDES_M_S, STANCE_M};
@@ -24,14 +24,14 @@ pub(super) struct Candidate {
     force: f64,
     place: DVec2,
     deviation: f64,
-    /// Positions of the tiles on which it was noticed, in the list of loaded tiles.
+    /// Positions in the list of loaded tiles of the tiles on which it was noticed.
     tiles: SmallVec<[u32; 4]>,
-    /// Force and place that are left to the track it is split from, where both are new.
+    /// Force and place that remain for the track from which it is split, if both are new.
     keeps: Option<(f64, DVec2)>,
 }
 
 impl Tracker {
-    /// Lets feet land on tiles that others already press.
+    /// Starts new tracks on tiles that other feet already press.
     pub(super) fn initiate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         let list = tiles.list();
         let (near, cells) = (&self.near, &self.cells);
@@ -52,7 +52,7 @@ impl Tracker {
                 })
                 .min_by(first_of_least);
             if let Some((_, other)) = nearest {
-                // Not a newcomer, but more of a foot that is already there.
+                // No new foot: the load belongs to an existing one.
                 let known = &mut self.tracks[other];
                 for &position in &candidate.tiles {
                     if !known.tiles.contains(&position) {
@@ -109,7 +109,7 @@ impl Tracker {
 }
 
 impl Track {
-    /// Notes who may have landed among the tiles of this foot, number `which` of those on the floor.
+    /// Notes a foot that may have landed among the tiles of this foot, number `which` of those on the floor.
     fn look_for_second(
         &mut self,
         which: usize,
@@ -121,11 +121,11 @@ impl Track {
         if self.shared {
             return;
         }
-        // A sensor whose quality changes moves what its tile says without any foot.
+        // A sensor whose quality changes moves the tile's reading without any foot.
         let tiles = self.tiles.as_slice();
         let quality = tiles.iter().map(|&position| list[position as usize].quality).max();
         if quality.is_some_and(|quality| quality != self.quality) {
-            // A sensor that is lost or found goes over to what the others say little by little.
+            // The estimate for a sensor that is lost or returns is blended in gradually.
             let lasts = tiles.iter().any(|&position| !list[position as usize].is_settled());
             self.on_quality_change(quality.unwrap_or_default(), lasts);
             return;
@@ -133,13 +133,13 @@ impl Track {
         let alone = || !near.is_beside_any(which);
         let second = self.second(alone, list, cells.pitch, elapsed);
         let added = if self.age > LANDS_S { self.added(list, cells) } else { None };
-        // Taken away in every frame: most feet have none, before and now.
+        // Taken out in every frame, so an absent candidate needs no write: most feet have none.
         if let Some(candidate) = added.or(second) {
             self.candidate = Some(candidate);
         }
     }
 
-    /// A foot whose load has been added to tiles where the track itself cannot have put it.
+    /// A foot that added load to tiles where this track cannot have put it.
     fn added(&self, list: &[LoadedTile], cells: &Cells) -> Option<Candidate> {
         if !self.bears() && self.velocity().length() > SLIDES_M_S {
             return None;
@@ -150,7 +150,7 @@ impl Track {
             let force = f64::from(tile.wrench.force);
             let slow = self.smoothed_load(at, tile.index);
             let added = force - slow.force;
-            // So little that the noise need not be looked at.
+            // Too little load for a look at the noise.
             if added < ADDED_N {
                 continue;
             }
@@ -160,12 +160,12 @@ impl Track {
             }
             let centre = tile.centre.as_dvec2();
             let moment = (tile.centroid.as_dvec2() - centre) * force - slow.moment;
-            // Moment of what was added about the foot's own centre of pressure.
+            // Moment of the added load about the foot's own centre of pressure.
             let about = moment + (centre - self.smoothed.centre) * added;
             let place = centre + moment / added;
             let (low, high) = cells.of(tile);
             let inside = place.cmpge(low - 0.02).all() && place.cmple(high + 0.02).all();
-            // What the foot's own sway may look like, at its own centre of pressure.
+            // The change that the foot's own sway may cause, at its own centre of pressure.
             let sway = slow.force * 0.012 + 3.5 * NOISE_ARM_M * noise;
             if inside && about.length() > added * 0.08 + sway && self.beyond(place) > sway / added {
                 let found = found.get_or_insert_default();
@@ -179,7 +179,8 @@ impl Track {
         found
     }
 
-    /// A second foot that its load tells of: where it would be. `alone` says whether no other foot is within a stride.
+    /// A second foot indicated by the track's load, with its place. `alone` returns whether no other foot is within a
+    /// stride.
     fn second(
         &mut self,
         alone: impl FnOnce() -> bool,

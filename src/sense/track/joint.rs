@@ -1,21 +1,21 @@
-//! The feet that share tiles, estimated together.
+//! Joint estimation of the feet that share tiles.
 
 use glam::DVec2;
 use multiversion::multiversion;
 
 use super::state::{EAST, FORCE, HALF_EAST, HALF_NORTH, NORTH, STATES, Track};
 
-/// Most feet that are estimated together.
+/// Maximum number of feet in one joint filter.
 pub(super) const MOST_FEET: usize = 8;
 const MOST: usize = MOST_FEET * STATES;
 
-/// Variance below which a number is as well known as it ever will be.
+/// Lower bound of the variance of a state.
 const LEAST_VARIANCE: f64 = 1e-9;
 
 /// An extended Kalman filter over the states of up to [`MOST_FEET`] feet.
 ///
-/// Tiles that two feet share say only what the two add up to; which foot has
-/// what is carried by the covariance between them. So it must be one filter.
+/// Tiles under two feet measure only the sum of both; the covariance between the feet carries their division. A
+/// separate filter for each foot would lose it.
 #[derive(Clone, Debug)]
 pub(super) struct Joint {
     states: usize,
@@ -23,19 +23,19 @@ pub(super) struct Joint {
     p: [Row; MOST],
 }
 
-/// A row of the covariance. Vectors of eight numbers do not lie across two lines of the cache.
+/// A row of the covariance. The alignment keeps vectors of eight numbers within one cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Row([f64; MOST]);
 
-/// One row of an observation's slopes: which state, how much.
+/// One entry of a Jacobian row: state and derivative.
 pub(super) type Derivative = (usize, f64);
 
-/// [`Joint::observe`], compiled for what the processor offers: nothing is added up in another order, so that the bits
-/// stay the same.
+/// [`Joint::observe`], compiled for each vector instruction set: the order of summation is the same, so the results
+/// are bit-identical.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn take_in(joint: &mut Joint, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
-    // Two or three feet are what is estimated nearly always, and loops of a known length need no count.
+    // Nearly all groups have two or three feet, and loops of a known length need no counter.
     match joint.states / STATES {
         2 => update(joint, 2, innovation, jacobian, variance),
         3 => update(joint, 3, innovation, jacobian, variance),
@@ -45,7 +45,7 @@ fn take_in(joint: &mut Joint, innovation: f64, jacobian: &[Derivative], variance
 
 #[inline(always)]
 fn update(joint: &mut Joint, feet: usize, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
-    // The numbers of one foot are one vector of the widest kind.
+    // The states of one foot fill one vector of the widest kind.
     let mut gain = [[0.0; STATES]; MOST_FEET];
     let gain = &mut gain[..feet];
     for (foot, gain) in gain.iter_mut().enumerate() {
@@ -64,7 +64,8 @@ fn update(joint: &mut Joint, feet: usize, innovation: f64, jacobian: &[Derivativ
     let scale = 1.0 / total;
     for row in 0..feet * STATES {
         let step = of(row) * scale;
-        // Never so; but a loop that may end is not vectorised across the rows, which gathers each number by itself.
+        // Never true; but the compiler vectorises a loop that may end early along the row and not across the rows,
+        // which would gather single numbers.
         if step.is_nan() {
             return 0.0;
         }
@@ -90,12 +91,12 @@ impl Joint {
         Self { states: 0, x: [0.0; MOST], p: [Row([0.0; MOST]); MOST] }
     }
 
-    /// Starts over with no feet.
+    /// Removes all feet.
     pub(super) fn clear(&mut self) {
         self.states = 0;
     }
 
-    /// Adds a foot with its own state and covariance, independent of those already in.
+    /// Adds a foot with its own state and covariance, independent of the feet added before.
     pub(super) fn add(&mut self, foot: &Track) {
         let at = self.states;
         if at + STATES > MOST {
@@ -112,7 +113,7 @@ impl Joint {
         }
     }
 
-    /// Sets the covariance between two feet that are in.
+    /// Sets the covariance between two feet of the filter.
     pub(super) fn link(&mut self, first: usize, second: usize, cross: &[[f64; STATES]; STATES]) {
         for (row, values) in cross.iter().enumerate() {
             for (column, &value) in values.iter().enumerate() {
@@ -122,14 +123,14 @@ impl Joint {
         }
     }
 
-    /// The covariance between two feet that are in.
+    /// The covariance between two feet of the filter.
     pub(super) fn cross(&self, first: usize, second: usize) -> [[f64; STATES]; STATES] {
         std::array::from_fn(|row| {
             std::array::from_fn(|column| self.p[first * STATES + row].0[second * STATES + column])
         })
     }
 
-    /// Writes one foot's state and covariance back.
+    /// Copies the state and covariance of one foot to its track.
     pub(super) fn take(&self, which: usize, foot: &mut Track) {
         let at = which * STATES;
         foot.state.copy_from_slice(&self.x[at..at + STATES]);
@@ -139,8 +140,8 @@ impl Joint {
         }
     }
 
-    /// Lets `dt` pass for one pair (value, rate): the rate fades with `fade` and is
-    /// stirred with variance `stir`.
+    /// Predicts one pair (value, rate): value += `reach` · rate, rate *= `decay`; the rate's variance grows by
+    /// `process_noise`.
     pub(super) fn drift(&mut self, value: usize, reach: f64, decay: f64, process_noise: f64) {
         let rate = value + 1;
         let n = self.states;
@@ -157,7 +158,8 @@ impl Joint {
         self.p[rate].0[rate] += process_noise;
     }
 
-    /// Lets one state relax towards `rest`, keeping `fade` of its distance, stirred with variance `stir`.
+    /// Predicts one state that relaxes towards `rest`: x = rest + `decay` (x − rest); its variance grows by
+    /// `process_noise`.
     pub(super) fn relax(&mut self, state: usize, rest: f64, decay: f64, process_noise: f64) {
         let n = self.states;
         self.x[state] = rest + decay * (self.x[state] - rest);
@@ -170,24 +172,24 @@ impl Joint {
         self.p[state].0[state] += process_noise;
     }
 
-    /// Takes in one scalar observation: what is missing from its prediction, the slopes, its variance.
+    /// Updates the filter with one scalar observation: its innovation, its Jacobian row and its variance R.
     ///
-    /// Gives back how surprising it was: the square of what is missing over the variance expected of it.
+    /// Returns the normalised innovation squared, innovation² / (H P Hᵀ + R).
     pub(super) fn observe(&mut self, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
         take_in(self, innovation, jacobian, variance)
     }
 
-    /// The force of each foot that is in.
+    /// The force of each foot in the filter.
     pub(super) fn forces(&self) -> impl Iterator<Item = f64> {
         self.x[..self.states].iter().skip(FORCE).step_by(STATES).copied()
     }
 
-    /// Keeps every state where a foot can be.
+    /// Limits every state to its possible range.
     pub(super) fn confine(&mut self, (low, high): (DVec2, DVec2)) {
         for at in (0..self.states).step_by(STATES) {
             let state = &mut self.x[at..at + STATES];
             state[FORCE] = state[FORCE].max(0.0);
-            // Where hardly any force is left, its place is what rounding makes of it.
+            // Without force, rounding alone determines the place.
             state[EAST] = state[EAST].clamp(low.x, high.x);
             state[NORTH] = state[NORTH].clamp(low.y, high.y);
             state[EAST + 1] = state[EAST + 1].clamp(-2.0, 2.0);
@@ -200,7 +202,7 @@ impl Joint {
         let n = self.states;
         for state in 0..n {
             if self.p[state].0[state] < LEAST_VARIANCE {
-                // What rounding has left of it has nothing to do with the others any more.
+                // The remainder is rounding error and has no correlation with other states.
                 for other in 0..n {
                     self.p[state].0[other] = 0.0;
                     self.p[other].0[state] = 0.0;

@@ -1,23 +1,23 @@
-//! Several feet followed through time, also where they share tiles.
+//! Tracks several feet over time, also where they share tiles.
 //!
 //! A track is one foot: force, centre of pressure, their rates, and the half widths of a patch around that centre.
 //! Each frame goes through the same steps:
 //!
-//! 1. **Predict and associate** ([`associate`]): a tile belongs to the tracks whose patch reaches it, or to one
-//!    whose shoe has room for it ([`outline`], [`reach`]). A load that no shoe covers becomes a track once
-//!    that is sure.
-//! 2. **Initiate** ([`initiate`], [`explanation`]): a track that is alone on its tiles is explained by one foot or
-//!    by two; a second track begins when two are likely enough to pay for the risk, and the data say where.
-//! 3. **Estimate**: a track that is alone is measured by Eq. 4. Tracks that share tiles are estimated together
-//!    by an extended Kalman filter ([`groups`], [`joint`], [`model`]) that predicts the force and both moments of each
-//!    column and row of tiles ([`strips`]). A foot put down beside a standing one is placed by the likelihood of each
-//!    distance ([`touchdown`]).
-//! 4. **Delete or rest** ([`delete`], [`dormant`]): a foot whose place is proven empty is gone; one that carries so
-//!    little that the other one explains all of it keeps its identity, marked, until its weight comes back or
-//!    it is proven to have left.
-//! 5. **Output** ([`output`]): contacts with their ellipses, as wide as what is not known.
+//! 1. **Predict and associate** ([`associate`]): a tile belongs to the tracks whose patch reaches it, or to a track
+//!    whose shoe has room for it ([`outline`], [`reach`]). A load that no shoe covers becomes a new track after a
+//!    short confirmation time.
+//! 2. **Initiate** ([`initiate`], [`explanation`]): one foot or two explain a track that is alone on its tiles. A
+//!    second track begins when two feet are likely enough to justify the risk and the data show the place.
+//! 3. **Estimate**: Eq. 4 measures a track that is alone. An extended Kalman filter ([`groups`], [`joint`],
+//!    [`model`]) estimates tracks that share tiles; it predicts the force and both moments of each column and row of
+//!    tiles ([`strips`]). A foot put down beside a standing one is placed by the likelihood of each distance
+//!    ([`touchdown`]).
+//! 4. **Delete or rest** ([`delete`], [`dormant`]): a foot whose place is proven empty is deleted. A foot that
+//!    carries so little that the other one explains all of the load stays as an ambiguous contact with its identity
+//!    until its load returns or it is proven to have left.
+//! 5. **Output** ([`output`]): contacts with their ellipses, sized by the remaining uncertainty.
 //!
-//! All numbers stand in [`params`], with their units and sources.
+//! [`params`] holds all numbers, with their units and sources.
 
 mod associate;
 mod delete;
@@ -64,7 +64,7 @@ use super::uncertainty::SensorUncertainty;
 use crate::floor::{Geometry, TileBlock, TileId};
 use crate::parallel;
 
-/// Follows feet over one floor.
+/// Tracks the feet on one floor.
 #[derive(Clone, Debug)]
 pub(super) struct Tracker {
     uncertainty: SensorUncertainty,
@@ -76,25 +76,26 @@ pub(super) struct Tracker {
     estimators: Vec<GroupEstimator>,
     /// Covariances between feet after the last frame, one list per estimator.
     links: Vec<Vec<Link>>,
-    /// Per foot that shares tiles, the number of its group among those of several.
+    /// For each foot that shares tiles: the number of its group among the groups of several feet.
     group_numbers: Vec<u32>,
-    /// Per loaded tile: the first foot that reaches it, or `UNASSIGNED`.
+    /// For each loaded tile: the first foot that reaches it, or `UNASSIGNED`.
     owner: Vec<u32>,
-    /// Feet with a tile that another one reaches first, each with that one.
+    /// Pairs of a foot and another one that reaches one of its tiles first.
     sharing: Vec<(u32, u32)>,
     /// All feet that share tiles, in their order.
     members: Vec<u32>,
-    /// Loaded tiles out of reach of all feet, heaviest first: the bits of the force, and the position in the list.
+    /// Loaded tiles beyond the reach of all feet, heaviest first: the bits of the force, and the position in the
+    /// list.
     unassigned: Vec<(Reverse<u32>, u32)>,
     pending: Vec<associate::Pending>,
-    /// Who had the unassigned tiles in the last frame, and per loaded tile the one of them that was found last.
+    /// Tracks that had the unassigned tiles in the last frame, and for each loaded tile the last entry found for it.
     previous_owners: Vec<associate::PreviousOwner>,
     last_previous_owner: Vec<u32>,
-    /// Per foot, for how long its place has been empty.
+    /// For each foot, the time for which its place has been empty.
     empty_s: Vec<f64>,
     near: Near,
     mates: Groups,
-    /// Each foot and its number in `tracks`, the dormant ones behind, ordered by id.
+    /// Each foot and its number in `tracks`, then the dormant feet; ordered by id.
     by_id: Vec<(ContactId, u32)>,
 }
 
@@ -108,7 +109,7 @@ struct Cells {
 }
 
 impl Cells {
-    /// Whether the floor has a column or row of this number.
+    /// Returns whether the floor has a column or row of this number.
     fn have(&self, axis: Axis, number: i32) -> bool {
         let numbers = match axis {
             Axis::East => self.block.column_range(),
@@ -145,25 +146,25 @@ impl Cells {
     }
 }
 
-/// Which of the cells of width `pitch` the place `along` is in, along one axis.
+/// Number of the cell of width `pitch` that contains the place `along`, along one axis.
 #[inline]
 fn number_of(along: f64, pitch: f64) -> i32 {
-    // So large that a sum with it has no room for a fraction, and its last bits are those of the nearest whole number.
+    // Adding a number this large leaves no bits for a fraction; the last bits of the sum are the nearest integer.
     const WHOLE: f64 = 3.0 * (1_u64 << 51) as f64;
     let number = along / pitch;
-    // The floor of it, as every processor can round: a call for each would cost more than all else here.
+    // The floor, with operations of every processor: a function call for each would dominate the run time here.
     let sum = number + WHOLE;
     let (nearest, is_above) = (sum.to_bits() as i32, sum - WHOLE > number);
     nearest.wrapping_sub(i32::from(is_above))
 }
 
-/// The same, along both axes.
+/// The cell that contains `place`: [`number_of`] along both axes.
 #[inline]
 fn cell_of(place: DVec2, pitch: f64) -> IVec2 {
     IVec2::new(number_of(place.x, pitch), number_of(place.y, pitch))
 }
 
-/// Orders by the first number, and what is equal by who came first.
+/// Orders by the first number, and equal ones by their index.
 fn first_of_least(a: &(f64, usize), b: &(f64, usize)) -> std::cmp::Ordering {
     a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
 }
@@ -196,7 +197,7 @@ impl Tracker {
         }
     }
 
-    /// How many feet it follows.
+    /// Number of feet tracked.
     pub(super) fn feet(&self) -> usize {
         self.tracks.len()
     }
@@ -229,7 +230,7 @@ impl Tracker {
         self.describe(tiles, pool);
     }
 
-    /// Lets each foot remember that others are near it, and keep the tiles it was noticed on.
+    /// Records for each foot whether others are near, and keeps the tiles on which it was noticed.
     fn note_partners(&mut self, tiles: &LoadedTiles) {
         let near = &self.near;
         parallel::for_each(&mut self.tracks, |which, foot| {
@@ -261,7 +262,7 @@ impl Tracker {
         id
     }
 
-    /// Measures feet that are alone on their tiles, estimates those that are not.
+    /// Measures the feet that are alone on their tiles and estimates the others.
     fn estimate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         parallel::for_each(&mut self.tracks, |_, foot| {
             if !foot.crowded {
@@ -271,7 +272,7 @@ impl Tracker {
         self.estimate_groups(tiles, elapsed);
     }
 
-    /// Lets each foot's slow past learn from this frame.
+    /// Updates the smoothed state of each foot with this frame.
     fn learn(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         let (list, cells) = (tiles.list(), self.cells);
         parallel::for_each(&mut self.tracks, |_, foot| foot.learn(list, &cells, elapsed));
@@ -279,7 +280,7 @@ impl Tracker {
 }
 
 impl Track {
-    /// Lets its slow past learn from this frame.
+    /// Updates its smoothed state with this frame.
     fn learn(&mut self, list: &[LoadedTile], cells: &Cells, elapsed: &Elapsed) {
         self.smooth(elapsed);
         self.roll(elapsed);

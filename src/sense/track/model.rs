@@ -1,4 +1,4 @@
-//! What the joint filter knows of feet and tiles: how feet change, and what they press.
+//! The joint filter's model: the motion of feet, and the loads that they cause on the tiles.
 
 use super::params::model::{
     FORCE_FADE_S, FORCE_RATE_N_S, HALF_FADE_S, HALF_SPREAD_M, HELD, KNOWN_SHAPE, PLACE_FADE_S,
@@ -15,7 +15,7 @@ use super::strips::{Axis, Strips};
 use super::{Cells, number_of};
 use crate::sense::tile::LoadedTile;
 
-/// Lets time pass for the feet of a group.
+/// Predicts the feet of a group over the elapsed time.
 pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], elapsed: &Elapsed) {
     let dt = elapsed.dt;
     for (which, foot) in group.iter().enumerate() {
@@ -30,7 +30,7 @@ pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], elapsed: &Elapsed
             joint.drift(at + value, fade_s * (1.0 - decay), decay, rate * rate * (1.0 - decay * decay));
         }
         if foot.age > FLAT_S && dt > 0.0 {
-            // A foot that has come down flat strays about its home: in the long run no further than `stray`.
+            // A flat foot strays about its rest point, in the long run by no more than `sway_m`.
             let spread = 2.0 * speed * speed * PLACE_FADE_S * dt;
             let away_s = DVec2::new(joint.x[at + EAST], joint.x[at + NORTH]).distance(foot.rest_point);
             let stood = group.iter().all(|other| other.age <= foot.age);
@@ -40,7 +40,7 @@ pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], elapsed: &Elapsed
                 joint.observe(rest_point - joint.x[at + place], &[(at + place, 1.0)], variance);
             }
         }
-        // What a foot is known to be shaped like, it keeps while it stays where it is.
+        // A foot keeps its known half widths while it stays in place.
         let loose = 1.0 - foot.residual_weight();
         let decay = (-dt * loose / HALF_FADE_S).exp();
         for half in [HALF_EAST, HALF_NORTH] {
@@ -49,8 +49,8 @@ pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], elapsed: &Elapsed
     }
 }
 
-/// Shows the joint filter what the tiles of its feet carry; gives back how surprising that was on average, and the
-/// force of all those tiles.
+/// Updates the joint filter with the loads of the tiles of its feet. Returns the mean NIS and the force of all those
+/// tiles.
 pub(super) fn observe(
     joint: &mut Joint,
     group: &[&mut Track],
@@ -71,7 +71,7 @@ pub(super) fn observe(
     strips.add_noise(tiles);
     let (force, middle) = (strips.force, strips.middle);
     for foot in group {
-        // Strips that a patch would reach but that carry nothing speak too.
+        // Strips without load within reach of a patch are observations too.
         for axis in Axis::BOTH {
             let wide = foot.covariance[axis.half()][axis.half()].sqrt();
             let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
@@ -82,7 +82,7 @@ pub(super) fn observe(
             }
         }
     }
-    // The whole of it, free of any patch model.
+    // Force and moments of the whole group, independent of any patch model.
     let mut jacobian = [[(0, 0.0); 2 * MOST_FEET]; 3];
     for which in 0..group.len() {
         let at = which * STATES;
@@ -96,7 +96,7 @@ pub(super) fn observe(
     let n = group.len();
     let start = joint.x;
     let now = |joint: &Joint, jacobian: &[Derivative]| -> f64 {
-        // What the linearised prediction still misses after the observations so far.
+        // The change of the linearised prediction by the observations so far.
         jacobian.iter().map(|&(state, derivative)| derivative * (joint.x[state] - start[state])).sum()
     };
     let whole: f64 = (0..n).map(|which| start[which * STATES + FORCE]).sum();
@@ -113,7 +113,7 @@ pub(super) fn observe(
             0.09 + if axis == EAST { noise.east } else { noise.north },
         );
     }
-    // Exponentials: once for each foot, and not for each of its strips.
+    // Exponentials: computed once for each foot, not for each of its strips.
     let strengths: ArrayVec<f64, MOST_FEET> = group.iter().map(|foot| foot.residual_weight()).collect();
     let mut nis = 0.0;
     for strip in &strips.strips {
@@ -142,12 +142,12 @@ pub(super) fn observe(
             innovation[0] -= f * share;
             innovation[1] -= f * moment;
             innovation[2] -= f * cross;
-            // What the patch model leaves open: force that lies on the other side of the seam
-            // through the foot, and how that force is spread along the seam.
+            // Errors of the patch model: force on the other side of the seam through the foot, and the spread of that
+            // force along the seam.
             let straddle =
                 4.0 * (share * (1.0 - share)).max((1.0 - strength) * slice.share * (1.0 - slice.share));
             let shape_error = KNOWN_SHAPE + UNKNOWN_SHAPE * (1.0 - strength);
-            // Errors of the patch model last as long as the foot is there: many frames see the same one.
+            // Errors of the patch model persist while the foot is there: they are correlated over many frames.
             let frames = foot.age.clamp(0.1, 1.0) / dt.max(1e-4);
             let strayed = frames.max(1.0) * (f * shape_error).powi(2) * straddle;
             let lever = [1.0, (0.5 * cells.pitch).copysign(place_along - middle), offset];
@@ -178,13 +178,14 @@ pub(super) fn observe(
     (nis / (3.0 * strips.strips.len() as f64), force)
 }
 
-/// The slopes of a line's force, moment and cross moment.
+/// Jacobian rows of a strip's force, moment and cross moment.
 type Rows = [ArrayVec<Derivative, { 4 * MOST_FEET }>; 3];
 
-/// Turns three observations with correlated errors into three independent ones; gives their variances.
+/// Decorrelates three observations and returns their variances.
 ///
 /// # Source
-/// R = L D Lᵀ: multiplied by the inverse of L, errors of covariance R have the diagonal covariance D.
+/// R = L D Lᵀ: multiplication by the inverse of L turns errors of covariance R into errors of the diagonal covariance
+/// D.
 fn decorrelate(innovation: &mut [f64; 3], rows: &mut Rows, mut covariance: [[f64; 3]; 3]) -> [f64; 3] {
     for pivot in 0..2 {
         for row in pivot + 1..3 {

@@ -1,4 +1,4 @@
-//! Who is near: without looking at everybody.
+//! Neighbours of a place or a foot, found without a search over all feet.
 
 use super::params::tracker::{SEEN_S, STRIDE_M};
 use glam::DVec2;
@@ -6,38 +6,38 @@ use glam::DVec2;
 use super::state::Track;
 use super::{Cells, UNASSIGNED, first_of_least};
 
-/// The feet by where they are, in squares of a stride.
+/// The feet by their places, in squares of one stride.
 ///
-/// Whoever is within a stride of a place is in its square or in one of the eight around it. Only squares with
-/// feet are ever touched: what it costs grows with the feet and not with the floor.
+/// All feet within a stride of a place are in its square or in the eight around it. Only squares with feet are
+/// accessed: the cost grows with the number of feet and not with the size of the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Near {
-    /// The floor's south-west corner.
+    /// South-west corner of the floor.
     corner: DVec2,
-    /// The place of its north-easternmost square, in squares.
+    /// Place of the north-easternmost square, in squares.
     last_square: DVec2,
-    /// Squares of a row, with the empty ones around the floor: each square of the floor has eight around it.
+    /// Squares per row, including the empty ones around the floor: each square of the floor has eight neighbours.
     row: usize,
-    /// Per square, the foot that was put there last.
+    /// For each square, the foot added last.
     last: Vec<u32>,
     tracks: Vec<Neighbour>,
 }
 
-/// Where a foot is. Kept apart from all else that is known of it, so that a look around touches little memory.
+/// The place of a foot, apart from the rest of its state, so that a search accesses little memory.
 #[derive(Clone, Copy, Debug)]
 struct Neighbour {
     place: DVec2,
     square: u32,
-    /// The foot that was put into that square before it.
+    /// The foot added to that square before this one.
     before: u32,
-    /// Whether it has been down for long enough to be another's partner.
+    /// Whether it has been down long enough to be another foot's partner.
     is_seen: bool,
-    /// From which force on feet of the same person bear their body, in newtons.
+    /// Force above which feet of the same person carry the person (N).
     body_n: f64,
 }
 
 impl Neighbour {
-    /// Whether it can be the partner of a foot from which its distance has this square.
+    /// Whether it can be the partner of a foot at this squared distance.
     #[inline]
     fn is_partner_at(&self, square: f64) -> bool {
         self.is_seen & (square < STRIDE_M * STRIDE_M)
@@ -58,7 +58,7 @@ impl Near {
         }
     }
 
-    /// Takes down where everybody is now, foot by foot in their order.
+    /// Records the places of all feet, in their order.
     pub(super) fn renew(&mut self, tracks: &[Box<Track>]) {
         for foot in &self.tracks {
             self.last[foot.square as usize] = UNASSIGNED;
@@ -81,7 +81,7 @@ impl Near {
         });
     }
 
-    /// Drops the feet that `stays` is false of; the others are numbered anew, in the same order.
+    /// Removes the feet for which `stays` is false and renumbers the others in the same order.
     pub(super) fn retain(&mut self, stays: impl Fn(usize) -> bool) {
         for foot in &self.tracks {
             self.last[foot.square as usize] = UNASSIGNED;
@@ -99,7 +99,7 @@ impl Near {
         self.tracks.truncate(kept);
     }
 
-    /// Foot `which` is elsewhere now.
+    /// Moves foot `which` to `place`.
     pub(super) fn moved(&mut self, which: usize, place: DVec2) {
         let (new, Neighbour { square: old, before, .. }) = (self.square(place), self.tracks[which]);
         self.tracks[which].place = place;
@@ -120,7 +120,7 @@ impl Near {
         (foot.square, foot.before) = (new as u32, before);
     }
 
-    /// All feet within a stride of `place` and some that are farther away, in no order.
+    /// All feet within a stride of `place`, and some that are farther away, in no particular order.
     pub(super) fn around(&self, place: DVec2) -> Around<'_> {
         self.around_square(self.square(place))
     }
@@ -131,29 +131,30 @@ impl Near {
         Around { near: self, square: first, column: 0, rows: 2, next: self.last[first] }
     }
 
-    /// The same, each with its distance from `place`, in metres.
+    /// The same, each with its distance from `place` (m).
     pub(super) fn distances(&self, place: DVec2) -> impl Iterator<Item = (f64, usize)> {
         self.around(place).map(move |which| (self.tracks[which].place.distance(place), which))
     }
 
-    /// All feet within a stride of foot `which` and some that are farther away, in no order, without that one.
+    /// All feet within a stride of foot `which` except that one, and some that are farther away, in no particular
+    /// order.
     pub(super) fn others(&self, which: usize) -> impl Iterator<Item = usize> {
         self.around_square(self.tracks[which].square as usize).filter(move |&other| other != which)
     }
 
-    /// Whether any other foot is within a stride of foot `which`.
+    /// Whether another foot is within a stride of foot `which`.
     pub(super) fn is_beside_any(&self, which: usize) -> bool {
         let place = self.tracks[which].place;
         self.is_any_other(which, |other| other.place.distance_squared(place) <= STRIDE_M * STRIDE_M)
     }
 
-    /// Whether foot `which` has a partner: another one within a stride that has been down for long enough.
+    /// Whether foot `which` has a partner: another foot within a stride that has been down long enough.
     pub(super) fn has_partner(&self, which: usize) -> bool {
         let place = self.tracks[which].place;
         self.is_any_other(which, |other| other.is_partner_at(other.place.distance_squared(place)))
     }
 
-    /// From which force on the nearest partner of foot `which` bears its body, in newtons; `None` without one.
+    /// Force above which the nearest partner of foot `which` carries the person (N); `None` without a partner.
     pub(super) fn body_n_of_partner(&self, which: usize) -> Option<f64> {
         let place = self.tracks[which].place;
         let all = self.others(which).map(|other| (self.tracks[other].place.distance_squared(place), other));
@@ -162,7 +163,7 @@ impl Near {
         distances.min_by(first_of_least).map(|(_, nearest)| self.tracks[nearest].body_n)
     }
 
-    /// Whether `is_it` is true of any other foot in the squares around foot `which`.
+    /// Whether `is_it` holds for another foot in the squares around foot `which`.
     #[inline]
     fn is_any_other(&self, which: usize, is_it: impl Fn(&Neighbour) -> bool) -> bool {
         let first = self.tracks[which].square as usize - self.row - 1;
@@ -180,7 +181,7 @@ impl Near {
         false
     }
 
-    /// The square of a place; places beyond the floor belong to its outermost squares.
+    /// The square of a place; places beyond the floor belong to the outermost squares.
     fn square(&self, place: DVec2) -> usize {
         let at = ((place - self.corner) / STRIDE_M).clamp(DVec2::ZERO, self.last_square);
         (at.y as i32 as usize + 1) * self.row + at.x as i32 as usize + 1
@@ -192,7 +193,7 @@ pub(super) struct Around<'a> {
     near: &'a Near,
     square: usize,
     column: usize,
-    /// How many rows of squares follow.
+    /// Number of rows of squares that follow.
     rows: usize,
     next: u32,
 }
@@ -233,7 +234,7 @@ mod tests {
         let block = TileBlock { first: TileId::default(), columns: 20, rows: 9 };
         let cells = Cells { pitch: 0.304, block };
         let mut rng = Pcg64Mcg::seed_from_u64(1);
-        // Some beside the floor, too: the guess of where a foot lands may lie there.
+        // Some lie beside the floor: the estimated place of a touchdown may be there.
         let mut place = || DVec2::new(rng.random_range(-0.5..6.5), rng.random_range(-0.5..3.2));
         let mut near = Near::new(&cells, 8);
         for _ in 0..20 {
@@ -246,7 +247,7 @@ mod tests {
                 tracks[which] = place();
                 near.moved(which, tracks[which]);
             }
-            // One in three has ended.
+            // Every third track has ended.
             near.retain(|which| which % 3 != 1);
             let mut number = 0..;
             tracks.retain(|_| number.next().is_none_or(|which: usize| which % 3 != 1));

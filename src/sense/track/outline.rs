@@ -1,15 +1,16 @@
-//! What one shoe can cover.
+//! The area that one shoe can cover.
 //!
-//! Everything that one foot presses lies under one shoe: within a rectangle of the shoe's length and breadth, at some
-//! heading. The points pressed so far are kept as their extents along a fan of directions; a further point can belong
-//! to the foot if some heading has room for all of them.
+//! All points that one foot presses lie under one shoe: within a rectangle of the shoe's length and breadth, at some
+//! heading. The outline keeps the extents of the points pressed so far along a fan of directions; a further point can
+//! belong to the foot if some heading has room for all of them.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::DVec2;
 use multiversion::multiversion;
 
-/// Directions of the fan, over half a turn: a shoe's breadth at 7.5 degrees off its heading is 4 mm too wide at most.
+/// Number of directions of the fan, over half a turn: at 7.5 degrees off its heading a shoe appears at most 4 mm too
+/// wide.
 const DIRECTIONS: usize = 12;
 const QUARTER: usize = DIRECTIONS / 2;
 
@@ -27,13 +28,13 @@ pub(super) struct Shoe {
     pub breadth: f64,
 }
 
-/// The lesser of two numbers. `f64::min`, which ignores NaN, costs several times as much here.
+/// The lesser of two numbers. `f64::min`, which ignores NaN, is several times slower here.
 #[inline(always)]
 fn lesser(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
-/// The greater of two numbers, as [`lesser`].
+/// The greater of two numbers; see [`lesser`].
 #[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
@@ -83,9 +84,9 @@ impl Fan {
     }
 }
 
-/// [`Outline::renew`], compiled for what the processor offers, with the same bits.
+/// [`Outline::renew`], compiled for each vector instruction set, with bit-identical results.
 ///
-/// The fan is handed over: among numbers that it knows, the compiler spares single products and spoils the vectors.
+/// The fan is an argument: with constants the compiler optimises single products away and breaks the vectorisation.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn renew(outline: &mut Outline, fan: &Fan, centre: DVec2, others: &[DVec2], keep: f64) {
     let at = fan.projections(centre);
@@ -106,19 +107,19 @@ fn renew(outline: &mut Outline, fan: &Fan, centre: DVec2, others: &[DVec2], keep
 }
 
 impl Outline {
-    /// A foot that has pressed `point` only.
+    /// The outline of a foot that has pressed only `point`.
     pub(super) fn new(point: DVec2) -> Self {
         let at = FAN.projections(point);
         Self { low: at, high: at }
     }
 
-    /// Takes in that a foot with its centre of pressure at `centre` presses `others` now: the extents are drawn towards
-    /// those of all these points, keeping `keep` of their distance, and hold them.
+    /// Updates the outline for a foot with its centre of pressure at `centre` that presses `others`. Each extent
+    /// relaxes towards that of all these points, extent = now + `keep` (extent − now), and always includes them.
     pub(super) fn renew(&mut self, centre: DVec2, others: &[DVec2], keep: f64) {
         renew(self, &FAN, centre, others, keep);
     }
 
-    /// How far `point` is beyond what `shoe` covers besides all points so far, in metres; negative within.
+    /// Distance of `point` from the area that `shoe` can cover together with all points so far (m); negative within.
     pub(super) fn beyond(&self, point: DVec2, shoe: Shoe) -> f64 {
         let at = FAN.projections(point);
         let extent = |which: usize| greater(self.high[which], at[which]) - lesser(self.low[which], at[which]);

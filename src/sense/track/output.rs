@@ -1,4 +1,4 @@
-//! Feet as contacts.
+//! Conversion of feet to contacts.
 
 use super::params::dormant::{PLACE_M, REPORTED};
 use super::params::output::{
@@ -18,7 +18,7 @@ use crate::sense::uncertainty::SensorUncertainty;
 use crate::units::Newtons;
 
 impl Tracker {
-    /// Fills `pool` with the feet as they are now, ordered by id.
+    /// Fills `pool` with the present feet, ordered by id.
     pub(super) fn describe(&mut self, tiles: &LoadedTiles, pool: &mut ContactPool) {
         let feet = self.tracks.len();
         self.by_id.clear();
@@ -50,7 +50,7 @@ impl Tracker {
 }
 
 impl Dormant {
-    /// Fills `contact`, which has nothing but its id yet; `existing` has the foot's weight.
+    /// Fills `contact`, which has only its id yet; `existing` carries the foot's load.
     fn describe(&self, existing: &Track, list: &[LoadedTile], contact: &mut Contact) {
         contact.centroid = self.foot.centre().as_vec2();
         contact.force = Newtons((REPORTED * existing.force()) as f32);
@@ -67,7 +67,7 @@ impl Dormant {
 }
 
 impl Track {
-    /// Notes how far it is told from others.
+    /// Updates whether the foot is ambiguous.
     pub(super) fn judge(&mut self) {
         if !self.shared {
             (self.nis, self.misfit) = (0.0, 0.0);
@@ -84,8 +84,8 @@ impl Track {
         self.covariance[EAST][EAST].max(self.covariance[NORTH][NORTH])
     }
 
-    /// By how much its covariance is too small: predictions that keep failing say that the feet are not what the filter
-    /// takes them for.
+    /// Covariance inflation 1 + `INFLATION` · NIS, limited by [`LOST_M`]: repeated innovations show that the filter's
+    /// model of the feet is wrong.
     fn inflation(&self) -> f64 {
         (1.0 + INFLATION * self.nis).min(LOST_M * LOST_M / self.variance()).max(1.0)
     }
@@ -94,7 +94,7 @@ impl Track {
         self.inflation() * self.variance()
     }
 
-    /// Fills `contact`, which has nothing but its id yet.
+    /// Fills `contact`, which has only its id yet.
     fn describe(
         &self,
         tiles: &LoadedTiles,
@@ -106,8 +106,8 @@ impl Track {
         contact.centroid = self.centre().as_vec2();
         contact.force = Newtons(self.force() as f32);
         contact.velocity = self.velocity().as_vec2();
-        // Of two feet of which one was taken to stand still, neither is where it is said to be if the loads do not
-        // fit. That is told; the filter goes on by its own uncertainty.
+        // If the loads do not fit two feet of which one was assumed still, both places are wrong. The contact reports
+        // that; the filter continues with its own covariance.
         let strayed_m = if self.misfit > FITS { STRAYED_M * (self.misfit - FITS).sqrt().sqrt() } else { 0.0 };
         contact.split = self.split_from.is_some();
         contact.ambiguous = self.ambiguous || contact.split;
@@ -130,7 +130,7 @@ impl Track {
             let mut load = all_of(tile);
             if self.shared {
                 share = self.divide(tile, cells, &mut load);
-                // What the others' loads are misread by is known in part, from when they stood alone.
+                // The gain errors under the other feet are known in part, from when they stood alone.
                 share += (1.0 - share) * OTHERS_MISREAD;
             }
             if load.force.0 > 0.0 {
@@ -141,7 +141,7 @@ impl Track {
                 uncertainty.covariance(tiles.geometry(), tile, share, contact.centroid, contact.force.0);
         }
         if contact.tiles.is_empty() {
-            // Its patch has come to lie beside every tile that could carry it.
+            // Its patch now lies beside every tile that could carry it.
             contact.tiles.extend(pressed.first().map(|&position| {
                 let tile = &list[position as usize];
                 TileLoad { force: Newtons(tile.wrench.force.min(contact.force.0)), ..all_of(tile) }
@@ -158,7 +158,7 @@ impl Track {
         contact.finish();
     }
 
-    /// Leaves of `load`, all that `tile` carries, what this foot presses; gives its share.
+    /// Reduces `load`, all of the load of `tile`, to this foot's part; returns its share.
     #[cold]
     fn divide(&self, tile: &LoadedTile, cells: &Cells, load: &mut TileLoad) -> f32 {
         let on = self.on(cells.of(tile));
@@ -170,7 +170,7 @@ impl Track {
     }
 }
 
-/// All that `tile` carries.
+/// The whole load of `tile`.
 fn all_of(tile: &LoadedTile) -> TileLoad {
     TileLoad {
         tile: tile.tile,
@@ -180,7 +180,7 @@ fn all_of(tile: &LoadedTile) -> TileLoad {
     }
 }
 
-/// Sorts what is in order but for a few: feet that have stood without weight are older than their place in the list says.
+/// Sorts a nearly sorted list: only feet that were dormant are older than their positions indicate.
 fn sort_few<T: Ord>(list: &mut [T]) {
     for at in 1..list.len() {
         if list[at] < list[at - 1] {

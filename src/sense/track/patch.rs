@@ -1,8 +1,8 @@
-//! The pressed patch of a foot, and what of it falls on one tile.
+//! The pressed patch of a foot, and its part on one tile.
 
 use glam::DVec2;
 
-/// How much of a patch falls into an interval along one axis, with its first moment and their slopes.
+/// The part of a patch within an interval along one axis, its first moment, and the derivatives of both.
 ///
 /// # Source
 /// The pressure along one axis is the parabola k(u) = 3/4 (1 − u²), u = (t − c) / h,
@@ -14,18 +14,18 @@ pub(super) struct Slice {
     pub share: f64,
     /// First moment of that share about the interval's middle, in metres.
     pub moment: f64,
-    /// Slopes of `share` against the patch's middle c and half width h, per metre.
+    /// Derivatives of `share` with respect to the patch's middle c and half width h (1/m).
     pub share_by: [f64; 2],
-    /// Slopes of `moment` against c and h.
+    /// Derivatives of `moment` with respect to c and h.
     pub moment_by: [f64; 2],
 }
 
 impl Slice {
-    /// The part of the patch with its middle at `c` and half width `h` that falls between `low` and `high`.
+    /// The part of the patch with its middle at `c` and half width `h` between `low` and `high`.
     #[inline]
     pub(super) fn new(low: f64, high: f64, c: f64, h: f64) -> Self {
         let middle = 0.5 * (low + high);
-        // Most patches lie on one tile or the other.
+        // Most patches lie entirely on one tile.
         if low - c >= h || high - c <= -h {
             return Self::default();
         }
@@ -56,11 +56,11 @@ impl Slice {
 }
 
 impl Slice {
-    /// The slice one expects if the half width `h` is only known to within a standard deviation of `sigma`.
+    /// The expected slice for a half width `h` with a standard deviation of `sigma`.
     ///
-    /// A patch that just doesn't reach a seam has no slope there: nothing the
-    /// next tile carries could widen it. Looking at a narrower and a wider one
-    /// instead gives the slope over the range that matters.
+    /// A patch that just misses a seam has a zero derivative there, so that no load of the next tile could widen it.
+    /// The mean of a narrower and a wider patch, and their difference quotient, give the derivative over the relevant
+    /// range.
     pub(super) fn with_sigma(low: f64, high: f64, c: f64, h: f64, sigma: f64) -> Self {
         if sigma < 0.002 {
             return Self::new(low, high, c, h);
@@ -78,7 +78,7 @@ impl Slice {
     }
 }
 
-/// What of a foot's patch falls on one tile.
+/// The part of a foot's patch on one tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct PatchOnTile {
     pub east: Slice,
@@ -86,7 +86,7 @@ pub(super) struct PatchOnTile {
 }
 
 impl PatchOnTile {
-    /// The part on the cell from `low` to `high` of a patch around `centre` with half widths `half`.
+    /// The part on the cell from `low` to `high` of the patch around `centre` with half widths `half`.
     pub(super) fn new(low: DVec2, high: DVec2, centre: DVec2, half: DVec2) -> Self {
         Self {
             east: Slice::new(low.x, high.x, centre.x, half.x),

@@ -1,4 +1,4 @@
-//! What can belong to a foot: where else one shoe may press.
+//! The loads that can belong to a foot: the area that one shoe can press.
 
 use super::params::reach::{
     AHEAD_M_S, AROUND_LIGHT_M, AROUND_M, BEYOND_M, BORNE, HALVES, NOTED, NOTED_M, NOTED_PER_NOISE, RIM,
@@ -16,12 +16,11 @@ use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
 impl Track {
-    /// How far `point` is beyond what can belong to this foot, in metres; negative within.
+    /// Distance of `point` from the area that can belong to this foot (m); negative within.
     ///
-    /// All its centres of pressure since it landed, and everything else it
-    /// presses, lie under one shoe. Until it has come down flat, nothing is known
-    /// of where the shoe's other end lies; from then on what it presses is around
-    /// its centre of pressure, as its past foretells it: a newcomer draws along what is measured.
+    /// All its centres of pressure since it landed, and everything else it presses, lie under one shoe. Until the
+    /// foot is flat, the place of the shoe's other end is unknown; from then on the foot presses around its centre of
+    /// pressure, as the smoothed state predicts it: the measured one moves towards a new foot.
     pub(super) fn beyond(&self, point: DVec2) -> f64 {
         let beyond = self.outline.beyond(point, SHOE);
         if self.age <= FLAT_S {
@@ -31,20 +30,20 @@ impl Track {
         beyond.max(point.distance(self.smoothed.centre) - around)
     }
 
-    /// Adds what it presses now to what it has pressed of late.
+    /// Updates the outline with the points pressed now.
     pub(super) fn note_outline(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
         let centre = self.centre();
         let mut pressed: ArrayVec<DVec2, MOST_NOTED> = ArrayVec::new();
         if !self.shared {
             let tiles = self.tiles.as_slice();
-            // On a single tile, it is the centre itself.
+            // On a single tile, the only point is the centre itself.
             let several = if tiles.len() > 1 { tiles } else { &[] };
             let least = NOTED * self.force();
             for &position in several {
                 let tile = &list[position as usize];
                 let force = f64::from(tile.wrench.force);
                 if force > least && force > NOTED_PER_NOISE * tile.loaded_noise_n() {
-                    // Never full: that many shares are more than the whole.
+                    // Never full: so many shares would exceed the whole.
                     let _ = pressed.try_push(tile.centroid.as_dvec2());
                 }
             }
@@ -55,13 +54,13 @@ impl Track {
         self.outline.renew(centre, &pressed, kept);
     }
 
-    /// How far `point` is beyond where a foot may press that has just landed, of which therefore only a part has
-    /// been seen; negative within, infinite for every other foot.
+    /// Distance of `point` from the area that a foot in touchdown, of which only a part is visible, may press (m);
+    /// negative within, infinite for every other foot.
     pub(super) fn lands_about(&self, point: DVec2) -> f64 {
         if self.age < LANDS_S { point.distance(self.centre()) - SHOE_M } else { f64::INFINITY }
     }
 
-    /// How far a light load at `point` is beyond the rim of this foot; negative within, infinite for a heavy load.
+    /// Distance of a light load at `point` from the rim of this foot (m); negative within, infinite for a heavy load.
     pub(super) fn rims(&self, point: DVec2, force: f64) -> f64 {
         let ahead = (point - self.centre()).dot(self.velocity()) > AHEAD_M_S * point.distance(self.centre());
         let (share, reach) = if self.shared {
@@ -74,7 +73,7 @@ impl Track {
         if force < share * self.force() { point.distance(self.centre()) - reach } else { f64::INFINITY }
     }
 
-    /// Lists the loaded tiles that its patch may press.
+    /// Lists the loaded tiles within reach of its patch.
     pub(super) fn reach(&mut self, tiles: &LoadedTiles, cells: &Cells) {
         self.tiles.clear();
         let reach = self.half() * HALVES + BEYOND_M;
@@ -82,7 +81,7 @@ impl Track {
         let mut high = cell_of(self.centre() + reach, cells.pitch);
         let (borne_low, borne_high) = self.borne;
         let (known_low, known_high) = (low.min(borne_low), high.max(borne_high));
-        // Where it was alone, it also presses what it pressed then.
+        // Where it was alone, it also presses the tiles that it pressed then.
         if (known_low, known_high) != (low, high) && self.is_shape_known() {
             (low, high) = (known_low, known_high);
         }
@@ -93,7 +92,7 @@ impl Track {
         });
     }
 
-    /// Notes between which columns and rows it has borne something where it was alone.
+    /// Records the range of columns and rows on which it showed load while it was alone.
     pub(super) fn note_borne(&mut self) {
         let (mut low, mut high) = NOTHING_BORNE;
         for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {
@@ -107,8 +106,8 @@ impl Track {
     }
 }
 
-/// The lowest and the highest column and row that a foot has borne something on which was never alone.
+/// Empty range of columns and rows: of a foot that was never alone.
 pub(super) const NOTHING_BORNE: (IVec2, IVec2) = (IVec2::MAX, IVec2::MIN);
 
-/// Most tiles that carry more than [`NOTED`] of a foot each.
+/// Maximum number of tiles that each carry more than [`NOTED`] of a foot.
 const MOST_NOTED: usize = (1.0 / NOTED) as usize;

@@ -1,4 +1,4 @@
-//! The shape of a foot: what is learnt of it while it stands alone, and how long that holds.
+//! The shape of a foot: learnt while it stands alone, valid near that place.
 
 use super::elapsed::{Elapsed, ShapeFade};
 use super::number_of;
@@ -10,10 +10,13 @@ use super::strips::{Axis, Residual, Strips, Whole};
 use crate::sense::tile::LoadedTile;
 
 impl Track {
-    /// Learns the patch's half widths from how seams divide a foot whose centre of pressure is known.
+    /// Learns the patch's half widths from the division at seams of a foot with a known centre of pressure.
+    ///
+    /// Each half width h relaxes as h = rest + k (h − rest), followed by a scalar Kalman update for each strip's
+    /// share and moment.
     fn learn_halves(&mut self, strips: &Strips, pitch: f64, fade: &ShapeFade) {
         let ShapeFade { dt, half: decay, .. } = *fade;
-        // The same error of the model is seen in many frames.
+        // The model error is correlated over many frames.
         let noise = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
         for axis in Axis::BOTH {
             let half = axis.half();
@@ -22,14 +25,14 @@ impl Track {
             variance = variance * decay * decay + 0.03_f64.powi(2) * (1.0 - decay * decay);
             let along = axis.along(self.centre());
             for strip in strips.strips.iter().filter(|strip| strip.axis == axis) {
-                // Where all of it or nothing lies on a strip, its width shows in nothing.
+                // Strips with all or none of the foot show nothing about its width.
                 if strip.is_divided_by_none(pitch, along, self.state[half]) {
                     continue;
                 }
                 let slice = strip.slice(pitch, along, self.state[half]);
                 let seen =
                     [strip.force / strips.force - slice.share, strip.moment / strips.force - slice.moment];
-                // A share that strays lies half a pitch from the line's middle.
+                // A wrongly placed share lies half a pitch from the strip's middle.
                 let jacobian = [slice.share_by[1], slice.moment_by[1]];
                 for (innovation, derivative, lever) in
                     [(seen[0], jacobian[0], 1.0), (seen[1], jacobian[1], 0.5 * pitch)]
@@ -44,7 +47,7 @@ impl Track {
         }
     }
 
-    /// Notes how the foot, alone on its tiles, differs from its model patch, if it is time.
+    /// Learns the difference between the foot, alone on its tiles, and its model patch, once per learning interval.
     pub(super) fn learn_shape(&mut self, list: &[LoadedTile], pitch: f64, elapsed: &Elapsed) {
         self.unlearnt_s += elapsed.dt;
         if self.alone_at.is_none() || self.unlearnt_s >= LEARN_EVERY_S - 0.5 * elapsed.dt {
@@ -54,7 +57,7 @@ impl Track {
         }
     }
 
-    /// The same, with what the time since it was last done makes of what was known.
+    /// The same, with the decay since the last update.
     fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, fade: &ShapeFade) {
         let (centre, half) = (self.centre(), self.half());
         let tiles = self.tiles.as_slice().iter().map(|&position| &list[position as usize]);
@@ -68,7 +71,7 @@ impl Track {
         }
         self.learn_halves(&strips, pitch, fade);
         let half = self.half();
-        // Slowly, so that the first touch of a newcomer, not yet known as one, hardly enters.
+        // Slow enough that the first touch of a new foot, not yet detected, has hardly any effect.
         let weight = if self.alone_at.is_none() || self.age < RESIDUAL_S { 1.0 } else { 1.0 - fade.residual };
         for residual in &mut self.residuals {
             residual.seen = false;
@@ -95,8 +98,8 @@ impl Track {
         self.alone_at = Some(before + (centre - before) * weight);
     }
 
-    /// Makes a foot that was alone until now be sure of its shape: its habits say how it
-    /// differs from the model, whatever the half widths are.
+    /// Fixes the shape of a foot that was alone until now: its shape residuals describe the difference from the
+    /// model, at any half widths.
     pub(super) fn keep_shape(&mut self) {
         if self.alone_at.is_some() {
             let unknown = (-self.alone_s / KNOWN_S).exp();
@@ -109,7 +112,8 @@ impl Track {
         }
     }
 
-    /// How much of its habits still hold: all of them where it was last alone, none a few centimetres on.
+    /// Weight of its shape residuals: exp(−(d / 0.05 m)²) (1 − exp(−t/τ)) with the distance d from its last place
+    /// alone and the time t alone.
     pub(super) fn residual_weight(&self) -> f64 {
         self.alone_at.map_or(0.0, |place| {
             let moved = place.distance(self.centre()) / 0.05;
@@ -117,7 +121,7 @@ impl Track {
         })
     }
 
-    /// Whether its habits hold well enough for its tiles to be listed. For most feet, that needs no exponential.
+    /// Whether the weight of its shape residuals suffices to list its tiles. Most feet need no exponential for that.
     pub(super) fn is_shape_known(&self) -> bool {
         const { assert!(KNOWN > 0.3 - 1e-9 && KNOWN < 0.3 + 1e-9, "between the bounds below") };
         let Some(place) = self.alone_at else { return false };
@@ -132,7 +136,7 @@ impl Track {
         self.residual_weight() > KNOWN
     }
 
-    /// Its habit on one line, times `strength`; nothing where it has none.
+    /// Its shape residual on one strip, times `strength`; zero without one.
     pub(super) fn residual_at(&self, axis: Axis, number: i32, strength: f64) -> Residual {
         self.residuals
             .iter()

@@ -1,13 +1,13 @@
-//! Who shares tiles with whom.
+//! Groups of feet that share tiles.
 
 use super::{Tracker, UNASSIGNED};
 
 /// The members of each group of feet, in their order.
 #[derive(Clone, Debug)]
 pub(super) struct Groups {
-    /// Per group, its first and its last foot.
+    /// For each group, its first and its last foot.
     ends: Vec<(u32, u32)>,
-    /// Per foot, the next one of its group.
+    /// For each foot, the next one of its group.
     next: Vec<u32>,
 }
 
@@ -16,7 +16,7 @@ impl Groups {
         Self { ends: Vec::with_capacity(room), next: Vec::with_capacity(room) }
     }
 
-    /// Starts over with `feet` feet, each a group of its own.
+    /// Resets to `tracks` feet, each in a group of its own.
     pub(super) fn part(&mut self, tracks: usize) {
         self.ends.clear();
         self.ends.extend((0..tracks as u32).map(|which| (which, which)));
@@ -24,7 +24,7 @@ impl Groups {
         self.next.resize(tracks, UNASSIGNED);
     }
 
-    /// Takes down the group of each foot, in their order; groups are numbered below `groups`.
+    /// Records the group of each foot, in their order; group numbers are below `groups`.
     pub(super) fn renew(&mut self, of_feet: impl Iterator<Item = u32>, groups: usize) {
         self.ends.clear();
         self.ends.resize(groups, (UNASSIGNED, UNASSIGNED));
@@ -35,7 +35,7 @@ impl Groups {
         }
     }
 
-    /// Brings groups that were united into the order of their `members`, of which each is given with its group.
+    /// Sorts united groups into the order of their `members`, each given with its group.
     pub(super) fn order(&mut self, members: impl Iterator<Item = (u32, u32)> + Clone) {
         for (which, group) in members.clone() {
             self.ends[group as usize] = (UNASSIGNED, UNASSIGNED);
@@ -44,7 +44,7 @@ impl Groups {
         members.for_each(|(which, group)| self.append(which, group));
     }
 
-    /// Lets foot `which` follow the members of a group.
+    /// Appends foot `which` to a group.
     fn append(&mut self, which: u32, group: u32) {
         let (first, last) = &mut self.ends[group as usize];
         match self.next.get_mut(*last as usize) {
@@ -54,7 +54,7 @@ impl Groups {
         *last = which;
     }
 
-    /// Lets the members of the group `drop` follow those of the group `keep`: in no order until the next `order`.
+    /// Appends the members of the group `drop` to those of the group `keep`, unsorted until the next `order`.
     pub(super) fn unite(&mut self, keep: u32, drop: u32) {
         let (first, last) = std::mem::replace(&mut self.ends[drop as usize], (UNASSIGNED, UNASSIGNED));
         let end = &mut self.ends[keep as usize].1;
@@ -73,7 +73,7 @@ impl Groups {
 }
 
 impl Tracker {
-    /// Numbers the groups of feet that share tiles: each foot's group is its first member's number.
+    /// Numbers the groups of feet that share tiles: the number of a group is that of its first member.
     pub(super) fn group(&mut self, tiles: usize) {
         self.owner.clear();
         self.owner.resize(tiles, UNASSIGNED);
@@ -111,7 +111,7 @@ impl Tracker {
         self.mates.order(self.members.iter().map(|&which| (which, self.tracks[which as usize].group)));
     }
 
-    /// Takes down who belongs to which group; groups are numbered below `groups`.
+    /// Records the group of each foot; group numbers are below `groups`.
     pub(super) fn renew_groups(&mut self, groups: usize) {
         self.mates.renew(self.tracks.iter().map(|foot| foot.group), groups);
     }
@@ -134,7 +134,7 @@ mod tests {
         assert_eq!((mates.of(1).count(), mates.of(4).count(), mates.of(99).count()), (0, 1, 0));
         mates.order((0..4).map(|which| (which, 0)));
         assert_eq!(mates.of(0).collect::<Vec<_>>(), [0, 1, 2, 3]);
-        // Two feet are gone since.
+        // Two feet have ended since.
         mates.renew([0, 0, 4, 0].into_iter(), 6);
         assert_eq!(mates.of(0).collect::<Vec<_>>(), [0, 1, 3]);
         assert_eq!(mates.of(4).collect::<Vec<_>>(), [2]);

@@ -1,4 +1,5 @@
-//! What the last few hundredths of a second predict of a foot: what a newcomer is measured against.
+//! The smoothed state of a foot: the prediction from its last few hundredths of a second, against which a new foot
+//! shows.
 
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -9,14 +10,14 @@ use super::patch::PatchOnTile;
 use super::state::{EAST, FORCE, NORTH, Track};
 use crate::sense::tile::LoadedTile;
 
-/// Force, place and rates of a foot as its last few hundredths of a second predict them.
+/// Force, place and rates of a foot, predicted from its last few hundredths of a second.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Smoothed {
     pub force: f64,
     pub force_rate: f64,
     pub centre: DVec2,
     pub velocity: DVec2,
-    /// Slow force and moment (about the tile's centre) per tile.
+    /// Smoothed force and moment (about the tile's centre) per tile.
     pub loads: SmallVec<[SmoothedLoad; 12]>,
 }
 
@@ -28,13 +29,14 @@ pub(super) struct SmoothedLoad {
 }
 
 impl Track {
-    /// Lets the slow past learn from where the foot is now.
+    /// Updates the smoothed state with the foot's present state.
     pub(super) fn smooth(&mut self, elapsed: &Elapsed) {
         let (dt, keep) = (elapsed.dt, elapsed.smoothed);
         if dt <= 0.0 {
             return;
         }
-        // A critically damped alpha-beta filter: no overshoot, steady motion followed without lag.
+        // A critically damped alpha-beta filter, x += α r and v += β r with residual r, α = 1 − k², β = (1 − k)² / dt
+        // and k = exp(−dt/τ): it follows steady motion without lag or overshoot.
         let (alpha, beta) = (1.0 - keep * keep, (1.0 - keep) * (1.0 - keep) / dt);
         let offset = self.centre() - self.smoothed.centre;
         let gain = self.force() - self.smoothed.force;
@@ -44,17 +46,17 @@ impl Track {
         self.smoothed.force_rate += beta * gain;
     }
 
-    /// Takes what it presses now for its slow past: nothing of what came before is to be held against it.
+    /// Restarts the smoothed state at the present force and place, so that earlier frames have no influence.
     pub(super) fn restart_smoothing(&mut self) {
         self.smoothed = Smoothed { force: self.force(), centre: self.centre(), ..Smoothed::default() };
     }
 
-    /// Lets the slow loads of its tiles learn from what it presses now, and drops those of other tiles.
+    /// Updates the smoothed loads of its tiles with its present loads, and removes those of other tiles.
     pub(super) fn learn_loads(&mut self, list: &[LoadedTile], cells: &Cells, elapsed: &Elapsed) {
         let (whole, centre, half) = (self.force(), self.centre(), self.half());
         let tiles = self.tiles.as_slice();
         let loads = &mut self.smoothed.loads;
-        // A foot that has just come to stand alone starts from what is measured.
+        // A foot that has just become alone starts from the measured loads.
         let fresh = !self.shared && loads.is_empty();
         let weight = if fresh && self.age > 0.0 { 1.0 } else { 1.0 - elapsed.smoothed };
         for (at, &position) in tiles.iter().enumerate() {
@@ -82,14 +84,14 @@ impl Track {
         }
     }
 
-    /// The slow load of the tile `index`, which is number `at` of its tiles; nothing if it had none.
+    /// Smoothed load of the tile `index`, which is number `at` of its tiles; zero if there is none.
     #[inline]
     pub(super) fn smoothed_load(&self, at: usize, index: u32) -> SmoothedLoad {
         let loads = self.smoothed.loads.as_slice();
         position_of(loads, at, index).map(|position| loads[position]).unwrap_or_default()
     }
 
-    /// Goes back to where it was predicted: the difference belongs to another foot.
+    /// Returns to the predicted state: the difference belongs to another foot.
     pub(super) fn back_to_prediction(&mut self) {
         self.state[FORCE] = self.smoothed.force.min(self.state[FORCE]);
         self.state[FORCE + 1] = self.smoothed.force_rate.clamp(-2e4, 2e4);
@@ -102,7 +104,8 @@ impl Track {
     }
 }
 
-/// Where among slow loads the one of tile `index` is, which is number `at` of a foot's tiles: mostly number `at`, too.
+/// Position among the smoothed loads of tile `index`, which is number `at` of a foot's tiles: mostly number `at`,
+/// too.
 #[inline]
 fn position_of(loads: &[SmoothedLoad], at: usize, index: u32) -> Option<usize> {
     if loads.get(at).is_some_and(|load| load.index == index) {

@@ -1,4 +1,4 @@
-//! One foot: what is known of it, and how that changes with time.
+//! The state of one foot, and its change over time.
 
 use super::params::explanation::ROLL_M;
 use super::params::state::{BODY_N, BODY_SHARE, CALM_S, HALF_REST, LEAST_BODY_N};
@@ -38,81 +38,81 @@ pub(super) struct Track {
     pub covariance: [[f64; STATES]; STATES],
     /// Whether the covariance of force and place is that of a foot measured alone.
     pub has_lone_covariance: bool,
-    /// Where it was expected before this frame, from its slow past.
+    /// Its smoothed state, which predicts it for the next frame.
     pub smoothed: Smoothed,
     /// Positions of the tiles it may press, in the list of loaded tiles.
     pub tiles: SmallVec<[u32; 12]>,
-    /// Seconds for which it has been too light to be there, less what has worn off of them.
+    /// Time for which the foot has been too light to exist, less the recovery since (s).
     pub empty_s: f64,
-    /// The most it has pressed with.
+    /// Peak force (N).
     pub peak: f64,
-    /// From which force on it bears a body: that of whom it belongs to, as far as they have been seen to walk.
+    /// Force above which this track carries a person (N), as known from the person's steps.
     pub body_n: f64,
-    /// Seconds for which another foot alone has been enough.
+    /// Time for which another foot alone has explained the loads (s).
     pub enough_s: f64,
-    /// Seconds for which not even a slow shift of weight is.
+    /// Time for which new tracks stay suppressed (s).
     pub suppressed_s: f64,
-    /// Which group of feet it is estimated with.
+    /// Number of the group of feet with which it is estimated.
     pub group: u32,
-    /// Which estimator has its links to others, if it has any, and where they begin in its list.
+    /// The estimator that holds its covariances with other feet, if it has any, and their start in its list.
     pub links_from: (usize, usize),
-    /// Whether it is one of a group of several.
+    /// Whether its group has several feet.
     pub crowded: bool,
-    /// Whether it is one more than the joint filter holds.
+    /// Whether its group has more feet than the joint filter holds.
     pub beyond_filter: bool,
-    /// Whether its part cannot be told from another's.
+    /// Whether its share is indistinguishable from that of another foot.
     pub ambiguous: bool,
     /// Whether other feet share its tiles.
     pub shared: bool,
-    /// The track that it was split from, until it has carried a tile by itself: it may not be a foot.
+    /// The track from which it was split, until it has carried a tile by itself: it may be no foot at all.
     pub split_from: Option<ContactId>,
-    /// How its shape differs from the model patch, as last seen alone.
+    /// Differences between its shape and the model patch, from its last time alone.
     pub residuals: SmallVec<[Residual; 8]>,
-    /// The lowest and the highest column and row on which these say that it has borne something.
+    /// Lowest and highest column and row on which the residuals show load.
     pub borne: (IVec2, IVec2),
-    /// How badly the joint filter's predictions have fitted lately: 0 for perfectly.
+    /// Recent mean NIS of the joint filter: 0 for a perfect fit.
     pub nis: f64,
-    /// How badly the loads fitted it and the other foot when one was last placed beside the other, which stood still; 0
+    /// Misfit of the loads when this foot and another one, which stood still, were last placed beside each other; 0
     /// once it is alone.
     pub misfit: f64,
-    /// Mean speed of its centre of pressure over the last quarter of a second.
+    /// Mean speed of its centre of pressure over the last 0.25 s (m/s).
     pub mean_speed: f64,
-    /// Seconds for which it has been alone without its shape being learnt.
+    /// Time alone since the last update of its shape (s).
     pub unlearnt_s: f64,
-    /// Seconds for which it has been alone on its tiles.
+    /// Time for which it has been alone on its tiles (s).
     pub alone_s: f64,
-    /// Where it was when last seen alone; `None` if it never was.
+    /// Its place when last measured alone; `None` before.
     pub alone_at: Option<DVec2>,
-    /// Where its centre of pressure rests while it shares tiles, and how far it strays from there.
+    /// Rest point of its centre of pressure while it shares tiles, and its stray about that point (m).
     pub rest_point: DVec2,
     pub sway_m: f64,
-    /// Seconds for which it stood still there, and since when it has moved.
+    /// Time for which it stood still there, and time for which it has moved since (s).
     pub still_s: f64,
     pub away_s: f64,
-    /// How long ago another foot was last near it, which may be of the same person; infinite if none was.
+    /// Time since another foot, possibly of the same person, was last near it (s); infinite if none was.
     pub partner_s: f64,
     /// The worst quality of its tiles, and whether that has just changed.
     pub quality: Quality,
     pub quality_changed: bool,
-    /// Beside whom it has landed.
+    /// The touchdown beside another foot.
     pub touchdown: Option<Touchdown>,
     /// Its centre of pressure when it landed.
     pub landed: DVec2,
-    /// What it has pressed of late.
+    /// The points that it has pressed recently.
     pub outline: Outline,
-    /// Where it stood still, for how long, and for how long it has been away from there.
+    /// Anchor point where it stood still, the time there and the time away from it (s).
     pub anchor: DVec2,
     pub anchored_s: f64,
     pub astray_s: f64,
-    /// How far its centre of pressure has travelled from where it landed.
+    /// Largest distance of its centre of pressure from the place of its touchdown (m).
     pub travel: f64,
-    /// Whether it has landed together with another and was never seen by itself since.
+    /// Whether it has landed together with another foot and has not been measured alone since.
     pub landed_together: bool,
-    /// Whether another foot was near it since it landed, so that it is one foot.
+    /// Whether another foot has been near it since its touchdown; then it is one foot.
     pub accompanied: bool,
-    /// Whether it is one foot or two.
+    /// Log odds of two feet against one.
     pub explanation: Explanation,
-    /// Who may have landed among its tiles in this frame.
+    /// A foot that may have landed among its tiles in this frame.
     pub candidate: Option<Candidate>,
 }
 
@@ -172,7 +172,7 @@ impl Track {
         foot
     }
 
-    /// Forgets what force and place had to do with each other and sets how sure both are.
+    /// Removes the correlations between force and place and resets their variances.
     pub(super) fn reset_covariance(&mut self, deviation: f64) {
         self.has_lone_covariance = false;
         for row in 0..HALF_EAST {
@@ -196,12 +196,12 @@ impl Track {
         }
     }
 
-    /// Whether it has borne the weight of a body.
+    /// Whether it has carried the weight of a person.
     pub(super) fn bears(&self) -> bool {
         self.peak >= self.body_n
     }
 
-    /// From which force on the feet of whom it belongs to bear their body: light people are known by their steps.
+    /// Force above which the feet of the same person carry the person: the steps of a light person lower it.
     pub(super) fn body_of_owner(&self) -> f64 {
         let stepped = self.travel > ROLL_M && self.peak > LEAST_BODY_N;
         if stepped { self.body_n.min((BODY_SHARE * self.peak).max(LEAST_BODY_N)) } else { self.body_n }
@@ -223,22 +223,22 @@ impl Track {
         DVec2::new(self.state[HALF_EAST], self.state[HALF_NORTH])
     }
 
-    /// What of it falls on the cell from `low` to `high`.
+    /// The part of its patch on the cell from `low` to `high`.
     pub(super) fn on(&self, cell: (DVec2, DVec2)) -> PatchOnTile {
         self.at(self.centre(), cell)
     }
 
-    /// What of it would fall on the cell from `low` to `high` with its centre of pressure at `centre`.
+    /// The part of its patch on the cell from `low` to `high` with the centre of pressure at `centre`.
     pub(super) fn at(&self, centre: DVec2, (low, high): (DVec2, DVec2)) -> PatchOnTile {
         PatchOnTile::new(low, high, centre, self.half())
     }
 
-    /// Whether it was put down beside `existing` while that one stood still.
+    /// Whether it was put down beside `existing` while that foot stood still.
     pub(super) fn has_landed_beside(&self, existing: &Self) -> bool {
         self.touchdown.is_some_and(|touchdown| touchdown.existing == existing.id)
     }
 
-    /// Its tiles and those of `other`, each once, as far as there is room: far more than two feet cover.
+    /// Its tiles and those of `other`, each once, up to the capacity: far more than two feet cover.
     pub(super) fn tiles_with(&self, other: &Self) -> ArrayVec<u32, 32> {
         let mut both = ArrayVec::new();
         for &position in self.tiles.iter().chain(&other.tiles) {
@@ -249,7 +249,7 @@ impl Track {
         both
     }
 
-    /// Takes over `tiles` as far as there is room without asking for memory.
+    /// Adds `tiles` without allocating memory.
     pub(super) fn inherit(&mut self, tiles: &[u32]) {
         for &position in tiles {
             if self.tiles.len() < self.tiles.capacity() && !self.tiles.contains(&position) {
@@ -258,7 +258,7 @@ impl Track {
         }
     }
 
-    /// Measures the track by the tiles that it has to itself, from now on or again.
+    /// Measures the track on tiles that no other track shares, for the first time or again.
     pub(super) fn measure(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
         let before = self.centre();
         let until_now = std::mem::replace(&mut self.shared, false);
@@ -269,7 +269,7 @@ impl Track {
             (self.anchor, self.anchored_s, self.astray_s) = (self.centre(), 0.0, 0.0);
         }
         if quality_changed {
-            // Still it stands where it stood, only seen otherwise.
+            // The foot has not moved; only the measurement has changed.
             self.rest_point = if self.suppressed_s > 0.0 {
                 self.centre()
             } else {
@@ -278,7 +278,7 @@ impl Track {
         }
     }
 
-    /// Its force and place by Eq. 4.
+    /// Measures its force and place by Eq. 4.
     fn alone(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
         let dt = elapsed.dt;
         let (mut force, mut weight) = (0.0, 0.0);
@@ -310,7 +310,7 @@ impl Track {
         self.ambiguous = false;
     }
 
-    /// Moves the slow past on by `dt` seconds.
+    /// Advances the smoothed state by `dt` seconds.
     pub(super) fn predict(&mut self, dt: f64) {
         self.age += dt;
         self.suppressed_s = (self.suppressed_s - dt).max(0.0);
@@ -319,21 +319,21 @@ impl Track {
         self.smoothed.force = (self.smoothed.force + self.smoothed.force_rate * dt).max(0.0);
     }
 
-    /// Notes that its sensors are believed more or less than before, and takes nothing of the change for a newcomer.
+    /// Notes a change of the quality of its sensors, and suppresses new tracks from it.
     ///
-    /// `lasts`: what they say goes on changing for a while.
+    /// `lasts`: the readings go on changing for a while.
     pub(super) fn on_quality_change(&mut self, quality: Quality, lasts: bool) {
         self.quality = quality;
         self.quality_changed = true;
         self.suppressed_s = if lasts { CALM_S } else { 0.0 };
     }
 
-    /// Takes nothing of what happens in the next moment for a newcomer.
+    /// Suppresses new tracks for the next [`CALM_S`].
     pub(super) fn suppress_births(&mut self) {
         self.suppressed_s = CALM_S;
     }
 
-    /// Stands alone with this force and centre of pressure from now on.
+    /// Sets the foot to this force and centre of pressure, alone.
     pub(super) fn stand(&mut self, force: f64, centre: DVec2) {
         self.state[FORCE] = force;
         self.state[EAST] = centre.x;

@@ -1,4 +1,4 @@
-//! Where a foot rests, and whether it stands still, is_slow or rolls.
+//! The rest point of a foot, and whether it stands still, is slow or rolls.
 
 use super::params::state::{FLAT_S, PARTNER_S};
 use super::params::stillness::{
@@ -16,26 +16,27 @@ impl Track {
         self.age > FLAT_S && self.still_s > STILL_S
     }
 
-    /// Whether it is down flat and hardly rolls: what draws its centre of pressure far is another foot.
+    /// Whether it is flat on the floor and hardly rolls: only another foot can move its centre of pressure far.
     pub(super) fn is_slow(&self) -> bool {
         self.stands() || self.age > FLAT_S && self.mean_speed < SLOW_M_S
     }
 
-    /// Goes on standing still at `home`.
+    /// Keeps it standing still at `rest_point`.
     pub(super) fn hold_at(&mut self, rest_point: DVec2) {
         self.rest_point = rest_point;
         self.sway_m = SWAY_LEAST_M;
         self.mean_speed = SHARED_SPEED_M_S;
     }
 
-    /// Remembers where the foot has been.
+    /// Updates the foot's peak force, mean speed, rest point and travel.
     pub(super) fn roll(&mut self, elapsed: &Elapsed) {
         let dt = elapsed.dt;
         let centre = self.centre();
         self.peak = self.peak.max(self.force());
         let rolls = !self.shared || self.age < FLAT_S && !self.landed_together;
         let speed = if rolls { self.velocity().length().min(1.0) } else { SHARED_SPEED_M_S };
-        // Weight that goes over to another foot draws it along for a moment: that is not its own.
+        // Weight that shifts to another foot moves the centre of pressure for a short time; the limit excludes that
+        // motion.
         let change = (1.0 - elapsed.mean_speed) * (speed - self.mean_speed);
         self.mean_speed += change.min(SPEED_RISE_M_S2 * dt);
         if rolls {
@@ -49,10 +50,10 @@ impl Track {
         self.stand_still(dt);
     }
 
-    /// Notes for how long its centre of pressure has stayed in one place.
+    /// Measures the time for which its centre of pressure has stayed in one place.
     fn stand_still(&mut self, dt: f64) {
         if self.partner_s <= dt && self.partner_s < PARTNER_S {
-            // On two feet one stands otherwise.
+            // Standing on two feet begins a new stance.
             (self.anchor, self.anchored_s, self.astray_s) = (self.centre(), 0.0, 0.0);
             return;
         }
@@ -69,7 +70,7 @@ impl Track {
         }
     }
 
-    /// Notes where the foot rests, and for how long it has stood still or been on the move.
+    /// Updates the rest point, and the times of standing still and of moving.
     fn rest(&mut self, elapsed: &Elapsed, rolls: bool) {
         let (centre, dt) = (self.centre(), elapsed.dt);
         if self.shared {

@@ -1,10 +1,9 @@
-//! Columns and rows of tiles: what a group of feet is measured by.
+//! Columns and rows of tiles: the observations of a group of feet.
 //!
-//! How a foot divides between two neighbouring columns depends on its width
-//! eastwards alone, and on nothing about north and south; and the moment of a
-//! whole column about an eastward axis tells how far north its load lies
-//! without any patch model. So the tiles of a group are summed by column and by
-//! row, and each sum suffers from one unknown half width only.
+//! The division of a foot between two neighbouring columns depends only on its width eastwards, not on its northward
+//! shape; and the moment of a whole column about an eastward axis shows the northward place of its load without any
+//! patch model. The loads of a group's tiles are therefore summed by column and by row, and each sum depends on one
+//! unknown half width only.
 
 use super::params::associate::NOISE_ARM_M;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -16,10 +15,10 @@ use super::patch::Slice;
 use super::state::{EAST, HALF_EAST, HALF_NORTH, NORTH};
 use crate::sense::tile::LoadedTile;
 
-/// Most columns and rows of one group that are looked at.
+/// Maximum number of columns and rows of one group that the filter observes.
 pub(super) const MOST_STRIPS: usize = 24;
 
-/// Which way a line's place is counted: columns eastwards, rows northwards.
+/// The axis along which strips are numbered: columns eastwards, rows northwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Axis {
     East,
@@ -29,7 +28,7 @@ pub(super) enum Axis {
 impl Axis {
     pub(super) const BOTH: [Self; 2] = [Self::East, Self::North];
 
-    /// Which number of a foot's state is its centre's place along the axis.
+    /// Index in a foot's state of its centre along the axis.
     pub(super) fn place(self) -> usize {
         match self {
             Self::East => EAST,
@@ -37,7 +36,7 @@ impl Axis {
         }
     }
 
-    /// Which number of a foot's state is its half width along the axis.
+    /// Index in a foot's state of its half width along the axis.
     pub(super) fn half(self) -> usize {
         match self {
             Self::East => HALF_EAST,
@@ -45,7 +44,7 @@ impl Axis {
         }
     }
 
-    /// The number of the column or row that `tile` is in.
+    /// Number of the column or row of `tile`.
     fn number(self, tile: &LoadedTile) -> i32 {
         match self {
             Self::East => tile.tile.column.into(),
@@ -76,59 +75,59 @@ pub(super) struct Strip {
     pub axis: Axis,
     pub number: i32,
     pub force: f64,
-    /// First moment along the axis about the line's middle.
+    /// First moment along the axis about the strip's middle.
     pub moment: f64,
-    /// First moment across the axis about the group's own middle.
+    /// First moment across the axis about the group's middle.
     pub cross: f64,
-    /// Variance that sensors' noise gives each of the three: in square newtons and square newton metres.
+    /// Variance of each of the three due to sensor noise (N², N² m²).
     pub noise: [f64; 3],
 }
 
 impl Strip {
-    /// A line without load.
+    /// A strip without load.
     pub(super) fn empty(axis: Axis, number: i32) -> Self {
         Self { axis, number, force: 0.0, moment: 0.0, cross: 0.0, noise: [0.0; 3] }
     }
 
-    /// Its middle along the axis, in metres.
+    /// Its middle along the axis (m).
     fn middle(&self, pitch: f64) -> f64 {
         (f64::from(self.number) + 0.5) * pitch
     }
 
-    /// The part of a patch on the line, with its middle at `c` and half width `h` along the axis.
+    /// The part on the strip of a patch with its middle at `c` and half width `h` along the axis.
     pub(super) fn slice(&self, pitch: f64, c: f64, h: f64) -> Slice {
         let low = f64::from(self.number) * pitch;
         Slice::new(low, low + pitch, c, h)
     }
 
-    /// Whether no patch with its middle at `c` and a half width of at most `h` has one of the line's edges within it:
-    /// the line has all of it or nothing.
+    /// Whether the strip's edges divide no patch with its middle at `c` and a half width of at most `h`: all of the
+    /// patch is on the strip, or none of it.
     pub(super) fn is_divided_by_none(&self, pitch: f64, c: f64, h: f64) -> bool {
         let low = f64::from(self.number) * pitch;
         let (low, high) = (low - c, low + pitch - c);
         low >= h || high <= -h || low <= -h && high >= h
     }
 
-    /// The same for a half width known to within a standard deviation of `sigma`.
+    /// Like [`Self::slice`], for a half width with a standard deviation of `sigma`.
     pub(super) fn slice_with_sigma(&self, pitch: f64, c: f64, h: f64, sigma: f64) -> Slice {
         let low = f64::from(self.number) * pitch;
         Slice::with_sigma(low, low + pitch, c, h, sigma)
     }
 }
 
-/// Standard deviation of the centroid of `tiles`, of `force` newtons together, that sensors at the end of their range
-/// or estimated from others leave open, in metres; `pitch` from tile to tile.
+/// Standard deviation of the centroid of `tiles`, of `force` newtons together, due to sensors at the end of their
+/// range or estimated from others (m); `pitch` is the distance between tiles.
 pub(super) fn centroid_sigma<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, force: f64, pitch: f64) -> f64 {
     let vague =
         tiles.flat_map(|tile| tile.extra_sigma).map(|vague| f64::from(vague * vague)).sum::<f64>().sqrt();
-    // Sensors are about half a diagonal from where the load is.
+    // The sensors are about half a diagonal away from the load.
     FRAC_1_SQRT_2 * pitch * vague / force
 }
 
-/// What some tiles carry together.
+/// The load of some tiles together.
 pub(super) struct Whole {
     pub force: f64,
-    /// Their centroid; not a number without force.
+    /// Their centroid; NaN without force.
     pub middle: DVec2,
 }
 
@@ -143,7 +142,7 @@ impl Whole {
     }
 }
 
-/// Variances that sensors' noise gives a group's force and its moments, in square newtons and square newton metres.
+/// Variances of a group's force and moments due to sensor noise (N², N² m²).
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Noise {
     pub force: f64,
@@ -163,14 +162,14 @@ pub(super) struct Strips {
 }
 
 impl Strips {
-    /// Sums up `tiles`; what is beyond [`MOST_STRIPS`] is in `force` and `middle` only.
+    /// Sums the loads of `tiles`; strips beyond [`MOST_STRIPS`] contribute to `force` and `middle` only.
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
         let mut sums = Self::about(&Whole::of(tiles.clone()), pitch);
         sums.add(tiles);
         sums
     }
 
-    /// No strips yet, of tiles that carry `whole` together. What is added in place need not be copied.
+    /// Starts without strips, for tiles that carry `whole` together. Adding in place avoids a copy.
     #[inline]
     pub(super) fn about(whole: &Whole, pitch: f64) -> Self {
         Self { strips: ArrayVec::new(), force: whole.force, middle: whole.middle, pitch }
@@ -195,7 +194,7 @@ impl Strips {
         }
     }
 
-    /// Adds the variances that the noise of `tiles`' sensors gives each strip.
+    /// Adds the variances of each strip due to the noise of the tiles' sensors.
     pub(super) fn add_noise<'a>(&mut self, tiles: impl Iterator<Item = &'a LoadedTile>) {
         for tile in tiles {
             let noise = tile.loaded_noise_n().powi(2);
@@ -211,7 +210,7 @@ impl Strips {
         }
     }
 
-    /// Variance that sensors' noise gives the force of all and its moments about their middle.
+    /// Variance of the total force and of its moments about the middle, due to sensor noise.
     pub(super) fn noise(&self) -> Noise {
         let mut noise = Noise::default();
         for strip in &self.strips {
@@ -229,7 +228,7 @@ impl Strips {
         noise
     }
 
-    /// The line `number`, made if there is room; `None` if there is none.
+    /// The strip `number`, created if there is room; `None` otherwise.
     pub(super) fn strip(&mut self, axis: Axis, number: i32) -> Option<&mut Strip> {
         let known = self.strips.iter().position(|strip| strip.axis == axis && strip.number == number);
         let position = match known {
@@ -243,9 +242,9 @@ impl Strips {
     }
 }
 
-/// How a foot's true division over a line differs from that of its model patch.
+/// Difference between a foot's true division over a strip and that of its model patch.
 ///
-/// Learnt while the foot stands alone, where the truth is measured; shares of the foot's force.
+/// Learnt while the foot stands alone, where the division is measured; in shares of the foot's force.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Residual {
     pub axis: Axis,

@@ -6,7 +6,7 @@ use crate::floor::Geometry;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::{Instant, Newtons};
 
-/// One foot: where the middle of its sole is, where its toes point, its force, and the share of it on the ball.
+/// One foot: the middle of its sole, its heading, its force, and the share of the force on the ball.
 #[derive(Clone, Copy)]
 struct Sole {
     at: Vec2,
@@ -23,7 +23,7 @@ impl Sole {
     fn press(&self, frame: &mut ForceFrame, geometry: &Geometry) {
         let ahead = Vec2::from_angle(self.heading);
         for (end, share) in [(-0.09, 1.0 - self.ball), (0.07, self.ball)] {
-            // Each end is a small disc: a point alone would never lie over a seam.
+            // Each end is a small disc: a single point would never lie over a seam.
             for point in 0..9_u8 {
                 let offset = Vec2::from_angle(f32::from(point) * 0.7) * 0.025;
                 let at = self.at + ahead * end + offset;
@@ -59,7 +59,7 @@ impl Floor {
         self.sensing.update(&frame)
     }
 
-    /// All ids of contacts of 30 N and more while `feet` do what they do for so many milliseconds.
+    /// All ids of contacts of 30 N and more while `feet` move for the given number of milliseconds.
     fn ids(&mut self, millis: u16, step_ms: u64, feet: impl Fn(f32) -> Vec<Sole>) -> Vec<u32> {
         let mut ids = Vec::new();
         for milli in (0..millis).step_by(step_ms as usize) {
@@ -77,7 +77,7 @@ fn smooth(from: f32, until: f32, at: f32) -> f32 {
     share * share * (3.0 - 2.0 * share)
 }
 
-/// Headings at which a foot lies over other seams.
+/// Headings at which a foot lies over different seams.
 const HEADINGS: [f32; 4] = [0.0, 0.6, 1.6, 2.5];
 
 #[test]
@@ -231,7 +231,7 @@ fn feet_on_tiles_of_their_own_are_new_tracks_and_none_takes_over_the_others_id()
         let ids: Vec<u32> = floor.sensing.contacts().iter().map(|contact| contact.id.0).collect();
         assert_eq!(ids, (1..=count as u32 + 1).collect::<Vec<_>>());
     }
-    // The first leaves: the others stay who they are.
+    // The first leaves: the others keep their ids.
     let feet: Vec<_> = at[1..].iter().map(|&at| Sole::new(at, 1.6, 300.0)).collect();
     floor.ids(100, 1, |_| feet.clone());
     assert_eq!(floor.sensing.contacts().iter().map(|contact| contact.id.0).collect::<Vec<_>>(), [2, 3]);
@@ -258,7 +258,7 @@ fn weight_that_goes_to_and_fro_moves_neither_foot() {
     let mut floor = Floor::new();
     let ids = stand_side_by_side(&mut floor, feet);
     for milli in 0..4000_u16 {
-        // Between 30 and 70 % on each, once a second, as people stand.
+        // Between 30 and 70 % on each foot, once a second, as in quiet standing.
         let share = 0.5 + 0.2 * (f32::from(milli) / 1000.0 * std::f32::consts::TAU).sin();
         let now =
             [Sole { force: 700.0 * share, ..feet[0] }, Sole { force: 700.0 * (1.0 - share), ..feet[1] }];
@@ -283,11 +283,11 @@ fn a_foot_without_weight_is_dormant_until_its_place_is_known_to_be_empty() {
             floor.feel(&[heavy, Sole { force: 700.0 * share, ..feet[1] }], 1);
         }
     };
-    // A twentieth of the weight, too little to be told from the other foot's sway: doubted, but still there.
+    // A twentieth of the weight looks like the other foot's sway: the contact is ambiguous, but still there.
     stand(&mut floor, 1500, &|milli| 0.5 - 0.45 * smooth(0.0, 600.0, milli));
     let light = floor.sensing.contacts().iter().find(|contact| contact.id == ids[1]).cloned();
     assert!(light.is_some_and(|light| light.ambiguous), "{:?}", floor.sensing.contacts());
-    // The other foot steps aside: whoever had stood beside it has left.
+    // The other foot steps aside: the dormant foot beside it has left.
     for milli in 0..600_u16 {
         let aside = 0.25 * smooth(0.0, 500.0, milli.into());
         floor.feel(&[Sole { at: feet[0].at + Vec2::X * aside, force: 700.0, ..feet[0] }], 1);
@@ -350,9 +350,9 @@ fn who_stops_walking_and_stands_on_one_contact_may_stand_on_two() {
 
 #[test]
 fn who_stood_on_the_heel_is_looked_for_as_far_away_as_the_loads_do_not_fit() {
-    // The standing foot rolls to flat, 8 cm, while another is put down beside it: on their tiles that looks nearly like a
-    // foot that stays, and one that comes down farther back. Only seams between the two can tell; without what they
-    // tell, 576 and 1,200 of 1,200 places were outside of their ellipses.
+    // The standing foot rolls to flat, 8 cm, while another is put down beside it: on their tiles that looks nearly
+    // like a foot that stays, and one that comes down farther back. Only seams between the two show the difference;
+    // without them, 576 and 1,200 of 1,200 places were outside of their ellipses.
     for heading in [HEADINGS[0], HEADINGS[1]] {
         let mut floor = Floor::new();
         let mut wrong = 0;
@@ -388,7 +388,7 @@ fn of_three_feet_on_shared_tiles_the_one_that_leaves_is_not_kept_by_a_wrong_divi
         for milli in 0..900_u16 {
             let milli = f32::from(milli);
             let weight = 150.0 * (smooth(0.0, 80.0, milli) - smooth(400.0, 500.0, milli));
-            // Who stands sways: 20 N go over and back meanwhile.
+            // A standing person sways: 20 N shift to the other foot and back meanwhile.
             let sway = 20.0 * (milli / 300.0 * std::f32::consts::TAU).sin();
             let stands = [
                 Sole { force: 350.0 + sway, ..feet[0] },

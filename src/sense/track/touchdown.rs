@@ -1,13 +1,11 @@
-//! A foot that is put down beside one that stands still.
+//! A foot that is put down beside a standing one.
 //!
-//! While weight is shifted to the new foot, the common centre of pressure c moves
-//! from the standing foot's place a straight towards the new one's. Force times
-//! way is known at once, `F_b d = F |c - a|`, but neither the new foot's force
-//! F_b nor its distance d alone. How the tiles divide the load tells them apart,
-//! for what the standing foot presses on each is known from when it stood alone.
-//! A Kalman filter cannot follow that: its slopes hold near one guess, and here
-//! the guess may be tens of centimetres off. So every distance that two feet may
-//! have is tried, and each weighs as much as it is likely.
+//! While weight shifts to the new foot, the common centre of pressure c moves from the standing foot's place a
+//! straight towards the new foot's. The product of force and distance is known at once, `F_b d = F |c - a|`, but
+//! neither the new foot's force F_b nor its distance d. The division of the load over the tiles separates the two,
+//! because the standing foot's share of each tile is known from its time alone. A Kalman filter cannot follow that:
+//! its linearisation holds near one estimate, and here the estimate may be tens of centimetres off. Every possible
+//! distance is therefore tried and weighted by its likelihood.
 
 use super::params::state::{HALF_REST, SHOE_M};
 use super::params::stillness::SWAY_LEAST_M;
@@ -25,21 +23,22 @@ use super::{Cells, number_of};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
 
-/// Beside whom a foot has landed, and where that one stood before.
+/// The standing foot beside which a foot has landed, and the place of the standing foot before.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touchdown {
     pub existing: ContactId,
     pub from: DVec2,
 }
 
-/// Two feet that are tried: how they share the force, and where the new one is.
+/// A hypothesis about two feet: their forces, and the place of the new one.
 struct Pair {
     existing_force: f64,
     place: DVec2,
     stepping_force: f64,
 }
 
-/// Whether tiles that `existing`, standing at `from`, does not press show nearly all that `strips` tell of `stepping`.
+/// Whether tiles that `existing`, standing at `from`, does not press explain nearly all of the moment of `stepping`
+/// in `strips`.
 pub(super) fn is_seen_alone(
     existing: &Track,
     stepping: &Track,
@@ -56,10 +55,10 @@ pub(super) fn is_seen_alone(
     (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAY_LEAST_M + sigma) * strips.force
 }
 
-/// Places `stepping` beside `existing`, which stands still at `from`; `strips` is what the tiles of both carry, and
-/// `sigma` what is not known of their centroid.
+/// Places `stepping` beside `existing`, which stands still at `from`; `strips` is the load of the tiles of both, and
+/// `sigma` the standard deviation of its centroid.
 ///
-/// False if nothing can be said yet: the common centre of pressure has hardly moved.
+/// Returns false if the common centre of pressure has hardly moved, so that no estimate is possible yet.
 pub(super) fn place(
     existing: &mut Track,
     stepping: &mut Track,
@@ -74,7 +73,7 @@ pub(super) fn place(
         return false;
     }
     let ahead = way / way.length();
-    // Strips that the feet would reach but that carry nothing speak too.
+    // Strips without load within reach of the feet are observations too.
     for axis in Axis::BOTH {
         for point in [from, from + ahead * 0.3] {
             let number = number_of(axis.along(point), cells.pitch);
@@ -87,7 +86,7 @@ pub(super) fn place(
     let tightness = TIGHT_M.hypot(sigma);
     let mut against = [f64::INFINITY; TRIED];
     let mut least = f64::INFINITY;
-    // What is likely comes first, since it spares most of the work for what is not.
+    // The likely distances come first: their misfit limits the work for the others.
     let now = stepping.centre().distance(from);
     let likely = (((now - NEAREST_M) / STEP_M).max(0.0) as usize).min(TRIED - 1);
     let (nearer, farther) = against.split_at_mut(likely);
@@ -117,10 +116,10 @@ pub(super) fn place(
     existing.put(force - part, from, misfit);
     stepping.put(part, place, misfit);
     if part > TAKEN_OVER * force {
-        // What was once guessed of its place is no home to go back to.
+        // The earlier guess of its place must not remain its rest point.
         stepping.rest_point = stepping.centre();
     }
-    // The farther away it lies, the less it presses.
+    // The moment is known: a larger distance means a smaller force.
     let force_variance = distance.variance * (part / distance.mean).powi(2) + 9.0;
     existing.covariance[FORCE][FORCE] = force_variance;
     stepping.covariance[FORCE][FORCE] = force_variance;
@@ -137,19 +136,19 @@ pub(super) fn place(
     true
 }
 
-/// The distance that is tried at this step.
+/// The distance tried at this step.
 fn distance(step: usize) -> f64 {
     NEAREST_M + STEP_M * step as f64
 }
 
-/// How far apart the two feet are, as far as it is known.
+/// The estimated distance between the two feet.
 struct Distance {
     mean: f64,
     variance: f64,
 }
 
 impl Distance {
-    /// Weighs each distance by its likelihood; `None` if none is possible.
+    /// Weights each distance by its likelihood; `None` if none is possible.
     fn among(against: &[f64; TRIED]) -> Option<Self> {
         let least = against.iter().copied().min_by(f64::total_cmp).filter(|least| least.is_finite())?;
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
@@ -166,7 +165,7 @@ impl Distance {
 }
 
 impl Track {
-    /// Is there with this force, standing still, which fits the loads as badly as `misfit` says.
+    /// Sets force and place of a still foot, and the misfit of its loads.
     fn put(&mut self, force: f64, centre: DVec2, misfit: f64) {
         self.state[FORCE] = force;
         self.state[EAST] = centre.x;
@@ -179,7 +178,7 @@ impl Track {
     }
 }
 
-/// What one line carries, and what of the standing foot's patch falls on it.
+/// The load of one strip, and the standing foot's share and moments on it.
 struct Line {
     strip: Strip,
     share: f64,
@@ -187,7 +186,7 @@ struct Line {
     cross: f64,
 }
 
-/// What of `existing`, standing at `from`, falls on each line: the same wherever the other foot is tried.
+/// The shares of `existing`, standing at `from`, on each strip: the same for every hypothesis about the other foot.
 fn standing(existing: &Track, from: DVec2, strips: &Strips, pitch: f64) -> ArrayVec<Line, MOST_STRIPS> {
     let lines = strips.strips.iter().map(|&strip| {
         let axis = strip.axis;
@@ -205,12 +204,12 @@ fn standing(existing: &Track, from: DVec2, strips: &Strips, pitch: f64) -> Array
 }
 
 impl Pair {
-    /// How badly all lines fit, with the half widths of the new foot that fit best; infinite from `limit` on.
+    /// Misfit of all strips, with the best half widths of the new foot; infinite from `limit` on.
     fn misfit(&self, lines: &[Line], middle: DVec2, pitch: f64, limit: f64) -> f64 {
         let mut all = 0.0;
         for axis in Axis::BOTH {
             let mut best = f64::INFINITY;
-            // Of lines that the patch covers or misses whatever its width; NaN until it is known.
+            // Misfit of strips that the patch covers or misses at any width; NaN until computed.
             let mut same = [f64::NAN; MOST_STRIPS];
             for half in HALVES {
                 let unusual = (half - HALF_REST) / HALF_SPREAD_M;
@@ -222,7 +221,7 @@ impl Pair {
                         continue;
                     }
                     let (square, variances) = self.misfit_on(line, half, middle, pitch);
-                    // No term is negative: what fits worse already need not be looked at to the end.
+                    // No term is negative: a sum above the best so far can stop here.
                     if unusual * unusual + (misfit + square) >= best.min(limit - all) {
                         misfit = f64::INFINITY;
                         break;
@@ -243,8 +242,8 @@ impl Pair {
         all
     }
 
-    /// Mean square of by how many deviations a line's force and moments differ from those of the pair, with the half
-    /// widths of the new foot that fit best.
+    /// Mean squared normalised deviation of the strips' forces and moments from those of the pair, with the best half
+    /// widths of the new foot.
     fn misfit_per_load(&self, lines: &[Line], middle: DVec2, pitch: f64) -> f64 {
         let along = |axis: Axis| {
             let fits = HALVES.map(|half| {
@@ -258,11 +257,11 @@ impl Pair {
         Axis::BOTH.into_iter().map(along).sum::<f64>() / (3 * lines.len()) as f64
     }
 
-    /// Twice the negative logarithm of the likelihood of one line's load, but for a constant: the squares, and the
-    /// variances of force and moments of which the logarithms are to be added, once and twice.
+    /// Twice the negative log likelihood of one strip's load, up to a constant: the squares, and the variances of
+    /// force and moments; the caller adds the logarithm of the first once and of the second twice.
     ///
-    /// The logarithms are the determinant term: an explanation with small expected errors must fit, one with large ones
-    /// gains nothing. They are most of the work, so they are left to whoever needs them.
+    /// The logarithms are the determinant term: a hypothesis with small expected errors must fit, and one with large
+    /// expected errors gains nothing. They are most of the work, so only callers that need them compute them.
     #[inline]
     fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: f64) -> (f64, [f64; 2]) {
         const { assert!(MISREAD_N >= 1.0, "logarithms of variances are never negative") };

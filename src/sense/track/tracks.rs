@@ -6,9 +6,9 @@ use super::state::Track;
 
 /// Tracks in the order in which they began.
 ///
-/// A track is two kilobytes, and in a crowd one ends in nearly every frame: so that those behind it need not be copied
-/// to close the gap, the list holds boxes. The box of a track that has ended is used again; when there are no more, as
-/// many are made as there are tracks, so that a floor that is nearly as full as ever takes no memory.
+/// A track takes two kilobytes, and in a crowd one ends in nearly every frame. The list holds boxes, so that closing
+/// the gap copies no tracks. The box of an ended track is reused; when none is left, as many boxes are allocated as
+/// there are tracks, so that a nearly full floor allocates no memory.
 #[derive(Clone, Debug)]
 #[expect(clippy::vec_box, reason = "what moves in the list is to be small")]
 pub(super) struct Tracks {
@@ -36,7 +36,7 @@ impl Tracks {
         self.spare.push(ended);
     }
 
-    /// Removes the tracks that `stays` is false of.
+    /// Removes the tracks for which `stays` is false.
     pub(super) fn retain(&mut self, stays: impl Fn(&Track) -> bool) {
         self.spare.extend(self.list.extract_if(.., |track| !stays(track)));
     }

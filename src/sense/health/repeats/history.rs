@@ -1,33 +1,33 @@
-//! What the sensors of one plate have read of late, and whether they go through the same readings again and again.
+//! The recent readings of one plate's sensors, and the detection of replayed buffers in them.
 
-/// Readings kept of each sensor: twice the longest repetition that is looked for.
+/// Number of readings kept per sensor: twice the longest repetition of interest.
 const KEPT: usize = 256;
 
-/// How many readings must be those that came a fixed time before them.
+/// Number of readings that must equal those a fixed time before.
 const REPEATED: usize = 100;
 
-/// The longest time, in readings, after which a sensor that replays a buffer begins anew.
+/// Maximum lag, in readings, after which a replayed buffer starts again.
 pub(super) const MOST_LAG: usize = KEPT - REPEATED;
 
 /// The last [`KEPT`] readings of each sensor of one plate.
 #[derive(Clone, Debug)]
 pub(super) struct History {
     readings: [[u16; KEPT]; 4],
-    /// How many have been read of each, counted on beyond [`KEPT`].
+    /// Number of readings of each sensor, counted on beyond [`KEPT`].
     read: [usize; 4],
 }
 
 impl History {
     pub(super) const EMPTY: Self = Self { readings: [[0; KEPT]; 4], read: [0; 4] };
 
-    /// Takes in a reading of the sensor at `corner`.
+    /// Stores a reading of the sensor at `corner`.
     pub(super) fn read(&mut self, corner: usize, raw: u16) {
         self.readings[corner][self.read[corner] % KEPT] = raw;
         self.read[corner] += 1;
     }
 
-    /// How many of the last readings of the sensor at `corner` are those that came a fixed time before them:
-    /// [`REPEATED`], or 0 if it is fewer for every time of 2 to [`MOST_LAG`] readings.
+    /// Number of last readings of the sensor at `corner` that equal those a fixed lag before: [`REPEATED`], or 0 if
+    /// there are fewer for every lag of 2 to [`MOST_LAG`] readings.
     pub(super) fn cycle(&self, corner: usize) -> u32 {
         let (readings, read) = (&self.readings[corner], self.read[corner]);
         let Some(most) = read.min(KEPT).checked_sub(REPEATED) else { return 0 };

@@ -1,16 +1,16 @@
-//! Plates whose readings repeat: their converters stand still, or give again what they have read before.
+//! Detects plates with repeated readings: their converters are frozen or replay earlier readings.
 //!
-//! A converter that works is noisy, and a foot never keeps still to a count. How probable it is that a sensor repeats
-//! itself by chance is learnt while its tile is idle ([`noise`]). Under a load each reading is compared with those before
-//! it ([`run`], [`history`]): the same value, the same two values, or the same readings in the same order count as a
-//! repetition. A plate repeats if two of its sensors, or all that can tell, have done so for 100 ms and
+//! A working converter is noisy, and a foot never keeps still to a count. The probability of a repetition by chance
+//! is learnt while the tile is idle ([`noise`]). Under a load each reading is compared with earlier ones ([`run`],
+//! [`history`]): the same value, the same two values, or the same readings in the same order count as a repetition. A
+//! plate repeats if two of its sensors, or all usable ones, have done so for 100 ms and
 //!
 //! ```text
 //! L = -sum over these sensors of (readings / 8) ln q > 30
 //! ```
 //!
-//! with q the probability that the sensor reads the same 8 ms later. Two sensors with noise of one count reach that in
-//! 100 ms. By chance it happens once in 10^13 times.
+//! with q the probability that the sensor reads the same value 8 ms later. Two sensors with noise of one count reach
+//! that in 100 ms. By chance it happens once in 10^13 times.
 //!
 //! ```text
 //! Unlearned --noise known--> trusted or Coarse
@@ -31,34 +31,34 @@ use super::trouble::Sensor;
 use crate::sense::{ForceFrame, HoldDoubt, Quality};
 use crate::units::Instant;
 
-/// Negative log likelihood from which on a repetition is not chance, in nats.
+/// Negative log likelihood above which a repetition is not chance, in nats.
 const IMPROBABLE: f32 = 30.0;
 
-/// Load of a tile from which on its readings are compared, and below which they no longer are, in newtons: below the
-/// least that counts as a loaded tile.
+/// Load of a tile above which its readings are compared, and below which the comparison ends (N): less than the
+/// minimum of a loaded tile.
 const LOADED_N: f32 = 4.0;
 const EMPTY_N: f32 = 2.0;
 
-/// Load of a tile up to which its sensors show their own noise, in newtons: a zero that has drifted may read so much,
-/// and what does is no foot that works (our choice).
+/// Load of a tile up to which its sensors show their own noise (N): a drifted zero may read this much, and such a
+/// load operates nothing (our choice).
 const IDLE_N: f32 = 12.0;
 
-/// Visits without load after which a tile's readings are no longer compared.
+/// Number of visits without load after which the comparison of a tile's readings ends.
 const EMPTY_VISITS: u8 = 8;
 
-/// Tiles that can be compared at once.
+/// Maximum number of tiles compared at once.
 const MOST_WATCHED: usize = 4096;
 
-/// Marks a tile that is not watched.
+/// Marks a tile without a watch.
 const NONE: u32 = u32::MAX;
 
-/// Watches the plates of one floor for readings that repeat. Allocates nothing after its making.
+/// Watches the plates of one floor for repeated readings. Allocates memory only at its creation.
 #[derive(Clone, Debug)]
 pub(super) struct Repeats {
-    /// Whether the readings have no noise of their own, so that repetitions say nothing.
+    /// Whether the readings have no noise of their own, so that repetitions are meaningless.
     noiseless: bool,
     noise: Noise,
-    /// Which tiles were all but empty at their last visit.
+    /// Whether each tile was nearly empty at its last visit.
     idle: Vec<[bool; 4]>,
     watched: Vec<Watch>,
     /// Position in `watched` of each tile, or [`NONE`].
@@ -72,22 +72,22 @@ struct Watch {
     tile: u32,
     runs: [Run; 4],
     history: History,
-    /// What its sensors read when it was visited last.
+    /// Readings of its sensors at the last visit.
     raws: [u16; 4],
     newtons: [f32; 4],
-    /// For how many visits it has been empty.
+    /// Number of visits for which it has been empty.
     empty: u8,
-    /// Until when its readings are doubted.
+    /// Time until which its readings are stale.
     until: Option<Instant>,
 }
 
-/// What the sensors of all tiles have read, in the frame in the making.
+/// The readings of all tiles' sensors, in the present frame.
 #[derive(Clone, Copy)]
 pub(super) struct Heard<'a> {
-    /// The readings as the boards sent them; 0 for a reading of nothing.
+    /// The readings as sent by the boards; 0 for a zero reading.
     pub raws: &'a [[u16; 4]],
     pub ends: &'a [[End; 4]],
-    /// Which of them came with this frame.
+    /// Whether each reading arrived with this frame.
     pub news: &'a [[bool; 4]],
     pub sensors: &'a [[Sensor; 4]],
 }
@@ -104,7 +104,7 @@ impl Repeats {
         }
     }
 
-    /// How often a plate was found to repeat its readings.
+    /// Number of repetitions found.
     pub(super) const fn count(&self) -> u64 {
         self.count
     }
@@ -114,12 +114,12 @@ impl Repeats {
         !self.noiseless && self.noise.is_fine(tile, corner)
     }
 
-    /// The plates whose readings repeat, by their index.
+    /// Indices of the plates with repeated readings.
     pub(super) fn repeating(&self) -> impl Iterator<Item = usize> + '_ {
         self.watched.iter().filter(|watch| watch.until.is_some()).map(|watch| watch.tile as usize)
     }
 
-    /// Compares the readings of the plates under load, and marks in `frame` those that repeat.
+    /// Compares the readings of the plates under load, and marks repeating plates in `frame`.
     pub(super) fn compare(&mut self, frame: &mut ForceFrame, heard: Heard<'_>, now: Instant) {
         let Self { noise, watched, count, .. } = self;
         for watch in watched {
@@ -141,8 +141,8 @@ impl Repeats {
         }
     }
 
-    /// Visits `tiles` for the time numbered `visit`, as each is every 8 ms: learns the noise of those that are all but
-    /// empty, finds readings that come in the same order again, and begins and ends to watch plates.
+    /// Visits `tiles` for the time numbered `visit`, every 8 ms: learns the noise of nearly empty tiles, finds
+    /// replayed readings, and starts and ends the watches of plates.
     pub(super) fn visit(
         &mut self,
         tiles: Range<usize>,
@@ -213,7 +213,7 @@ impl Watch {
         }
     }
 
-    /// Whether two of its sensors, or all that can tell, repeat themselves against all odds.
+    /// Whether two of its sensors, or all usable ones, repeat with an improbable run.
     fn repeats(&self, noise: &Noise, ends: [End; 4], sensors: &[Sensor; 4], now: Instant) -> bool {
         let (mut told, mut repeated, mut nats) = (0, 0, 0.0);
         let tile = self.tile as usize;
@@ -232,8 +232,8 @@ impl Watch {
     }
 }
 
-/// Why the sensors of this tile may not hold a control by what is known of their noise: three of them must be fine, as
-/// many as a tile goes on with.
+/// The reason for which the sensors of this tile may not hold a control, from their noise: a tile needs three fine
+/// sensors, the minimum with which it continues.
 fn doubt(noise: &mut Noise, tile: usize, sensors: &[Sensor; 4]) -> Option<HoldDoubt> {
     let (mut fine, mut unknown) = (0, 0);
     for (corner, sensor) in sensors.iter().enumerate() {

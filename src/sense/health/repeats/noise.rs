@@ -1,12 +1,12 @@
-//! How often each sensor reads the same again: what its noise leaves to chance.
+//! The probability that each sensor repeats its reading by chance, due to its noise.
 //!
-//! Each sensor is looked at every 8 ms while its tile is all but empty. The share of looks at which it reads, to the bit,
-//! what it read at the look before is the probability q that it repeats itself by chance. For white noise of standard
+//! Each sensor is sampled every 8 ms while its tile is nearly empty. The share of looks at which its reading equals,
+//! to the bit, that of the look before is the probability q of a repetition by chance. For white noise of standard
 //! deviation s counts q is 1 / (2 s sqrt pi), 0.28 for one count; for a converter that is read more often than it
 //! samples, q is the share of looks without a sample in between.
 //!
-//! Mains hum hides how coarse a converter is from looks 8 ms apart. What is a whole number of its periods apart, 200 ms
-//! at 50 and at 60 Hz, shows it: that share counts for readings that repeat in the same order.
+//! Mains hum hides the coarseness of a converter at looks 8 ms apart. Readings a whole number of its periods apart,
+//! 200 ms at 50 and at 60 Hz, show it: that share applies to readings that repeat in the same order.
 
 use std::ops::Range;
 
@@ -14,72 +14,70 @@ use multiversion::multiversion;
 
 use crate::sense::health::End;
 
-/// How many looks a share is averaged over at most: two seconds.
+/// Maximum number of looks in the average: two seconds.
 const MOST_LOOKS: f32 = 256.0;
 
-/// How many looks with the same reading a sensor is supposed to have had before the first one: it must show its noise
-/// before it is trusted.
+/// Number of repeated looks assumed before the first one: a sensor must show its noise before it counts as fine.
 const PRIOR_LOOKS: f32 = 3.0;
 
-/// Looks after which a sensor is trusted at the earliest: as many as it takes without a repetition to come below
-/// [`FINE`].
+/// Minimum number of looks before a sensor counts as fine: the number without a repetition at which the share falls
+/// below [`FINE`].
 const FEWEST_LOOKS: f32 = 8.0;
 
-/// Looks after which it is known to be coarse at the earliest: half a second.
+/// Minimum number of looks before a sensor counts as coarse: half a second.
 const ENOUGH_LOOKS: f32 = 64.0;
 
-/// The share of repeated readings above which a sensor is too coarse, and that below which it no longer is. Noise of one
+/// Share of repeated readings above which a sensor becomes coarse, and below which it becomes fine. Noise of one
 /// count has 0.28; the statistical error of 256 looks is 0.03.
 const COARSE: f32 = 0.33;
 const FINE: f32 = 0.28;
 
-/// Every how many looks readings 200 ms apart are compared.
+/// Number of looks between comparisons of readings 200 ms apart.
 const FAR: u32 = 25;
 
-/// The part of a load by which a reading may differ from the one 8 ms before for a foot to stand still: then the
-/// difference is noise, or a count.
+/// Maximum relative difference of readings 8 ms apart under a still foot: then the difference is noise, or a count.
 const STILL_SHARE: f32 = 0.02;
 
-/// What is known of one sensor's noise.
+/// Classification of one sensor's noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Grain {
     /// Too few looks.
     Unknown,
-    /// It repeats itself by chance too often.
+    /// It repeats too often by chance.
     Coarse,
     /// A repetition is improbable.
     Fine,
 }
 
-/// What is known of all sensors' noise, four to a tile.
+/// The noise of all sensors, four to a tile.
 #[derive(Clone, Debug)]
 pub(super) struct Noise {
     near: Likeness,
     far: Likeness,
-    /// Whether each reads nothing while its tile is empty, so that only a load shows its noise.
+    /// Whether each reads zero while its tile is empty, so that only a load shows its noise.
     is_bare: Vec<[bool; 4]>,
     is_coarse: Vec<[bool; 4]>,
 }
 
-/// How often readings some time apart are the same.
+/// The frequency of equal readings some time apart.
 #[derive(Clone, Debug)]
 struct Likeness {
-    /// Share of looks at which each read the same as at the look before.
+    /// Share of looks at which the reading of each equalled that of the look before.
     same: Vec<[f32; 4]>,
     /// Number of looks, up to [`MOST_LOOKS`].
     looks: Vec<[f32; 4]>,
-    /// What each read at the last look, and whether that look counts.
+    /// Reading of each at the last look, and whether that look counts.
     last: Vec<[u16; 4]>,
     has_last: Vec<[bool; 4]>,
 }
 
-/// What is looked at, of all sensors.
+/// The readings to look at, of all sensors.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a> {
     pub raws: &'a [[u16; 4]],
     pub ends: &'a [[End; 4]],
     pub news: &'a [[bool; 4]],
-    /// Which tiles are all but empty.
+    /// Whether each tile is nearly empty.
     pub idle: &'a [[bool; 4]],
 }
 
@@ -110,8 +108,8 @@ impl Noise {
         }
     }
 
-    /// Looks at the sensor of this tile and corner under a load, if its noise is not known without one: it has read
-    /// `raws` and `newtons`, now and 8 ms before.
+    /// Looks at the sensor of this tile and corner under a load, if its noise is unknown without one: its readings
+    /// are `raws` and `newtons`, now and 8 ms before.
     pub(super) fn look_under_load(
         &mut self,
         (tile, corner): (usize, usize),
@@ -127,7 +125,7 @@ impl Noise {
         }
     }
 
-    /// How well a repetition of this sensor's readings shows that it stands still.
+    /// Classifies the sensor's noise: how strongly a repetition of its readings indicates a frozen converter.
     pub(super) fn grain(&mut self, tile: usize, corner: usize) -> Grain {
         let (looks, is_coarse) = (self.near.looks[tile][corner], &mut self.is_coarse[tile][corner]);
         if looks < FEWEST_LOOKS {
@@ -146,7 +144,7 @@ impl Noise {
         self.near.looks[tile][corner] >= FEWEST_LOOKS && !self.is_coarse[tile][corner]
     }
 
-    /// Probabilities that this sensor reads the same 8 ms later, and that it does one period of hum later.
+    /// Probabilities that this sensor reads the same value 8 ms later, and one period of hum later.
     pub(super) fn same(&self, tile: usize, corner: usize) -> [f32; 2] {
         let near = self.near.same[tile][corner];
         [near, self.far.same[tile][corner].max(near)]
@@ -174,7 +172,7 @@ impl Likeness {
         );
     }
 
-    /// Notes whether a sensor has read the same as at the look before.
+    /// Notes whether a sensor's reading equals that of the look before.
     fn note(&mut self, (tile, corner): (usize, usize), is_same: bool) {
         let (same, looks) = (&mut self.same[tile][corner], &mut self.looks[tile][corner]);
         *same += (f32::from(u8::from(is_same)) - *same) / (*looks + PRIOR_LOOKS + 1.0);
@@ -182,13 +180,13 @@ impl Likeness {
     }
 }
 
-/// Whether a sensor reads something, and less than it can.
+/// Whether a reading is above zero and below the end of its range.
 #[inline(always)]
 pub(super) fn is_within(end: End, raw: u16) -> bool {
     (end as u8 == End::Within as u8) & (raw != 0)
 }
 
-/// Without branches, over plain numbers: compiled for what the processor offers.
+/// Without branches, over plain numbers, compiled for each vector instruction set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn look(
     [same, looks]: [&mut [f32]; 2],
@@ -217,7 +215,7 @@ fn look(
 mod tests {
     use super::*;
 
-    /// What is known of a sensor after so many looks at these readings.
+    /// The noise of a sensor after `looks` looks at these readings.
     fn known(looks: u32, reading: impl Fn(u32) -> u16) -> (Noise, Grain) {
         let mut noise = Noise::new(1);
         let mut grain = Grain::Unknown;
@@ -231,7 +229,7 @@ mod tests {
         (noise, grain)
     }
 
-    /// A number of chance, from 0 to 1.
+    /// A pseudorandom number from 0 to 1.
     fn chance(at: u32) -> f32 {
         let mixed = at.wrapping_add(1).wrapping_mul(2_654_435_761);
         ((mixed ^ mixed >> 13).wrapping_mul(2_246_822_519) >> 8) as f32 / 16_777_216.0
@@ -254,7 +252,7 @@ mod tests {
 
     #[test]
     fn hum_hides_coarse_steps_from_looks_that_are_near() {
-        // 50 Hz, five counts, looked at every 8 ms.
+        // 50 Hz, five counts, one look every 8 ms.
         let hum = |at: u32| (180.4 + 2.5 * (at as f32 * 0.008 * 50.0 * std::f32::consts::TAU).sin()) as u16;
         let (noise, _) = known(2000, hum);
         let [near, far] = noise.same(0, 2);

@@ -1,36 +1,36 @@
-//! For how long one sensor has repeated itself.
+//! The duration of one sensor's repetition.
 
 use std::time::Duration;
 
 use crate::units::Instant;
 
-/// For how long a sensor must repeat itself to be suspected.
+/// Minimum duration of a repetition.
 pub(super) const REPEATED_FOR: Duration = Duration::from_millis(100);
 
-/// Milliseconds between two looks of [`super::noise`], whose share of repetitions is that of so many readings.
+/// Milliseconds between two looks of [`super::noise`]: its share of repetitions applies to that many readings.
 const LOOK_MS: f32 = 8.0;
 
-/// How many times as probable as one value it is that a reading is one of two, at most: for noise of one count 0.68
-/// against 0.28 (normal distribution).
+/// Maximum ratio of the probability of two values to that of one: for noise of one count 0.68 against 0.28 (normal
+/// distribution).
 const TWO_VALUES: f32 = 2.5;
 
-/// The readings of one sensor since it was loaded, as far as they repeat themselves.
+/// The repetitions of one sensor since it was loaded.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Run {
-    /// The last reading, since when and how many times in a row it has been read.
+    /// The last reading, the start of its run, and the run's length.
     value: u16,
     alike_since: Instant,
     alike: u32,
-    /// The other value, if only two have been read, since when and how many times in a row these two have been.
+    /// The other value, if only two have been read, the start of the run of these two, and its length.
     other: u16,
     two_since: Instant,
     two: u32,
-    /// How many of the last readings are those that came a fixed time before them.
+    /// Number of last readings that equal those a fixed lag before.
     cycle: u32,
 }
 
 impl Run {
-    /// Takes in a reading.
+    /// Takes one reading.
     pub(super) fn read(&mut self, raw: u16, now: Instant) {
         if self.alike == 0 {
             *self = Self { value: raw, other: raw, alike_since: now, two_since: now, ..Self::default() };
@@ -54,15 +54,15 @@ impl Run {
         self.value
     }
 
-    /// Notes how many of the last readings are those that came some time before them.
+    /// Notes the number of last readings that equal those some lag before.
     pub(super) fn note_cycle(&mut self, readings: u32) {
         self.cycle = readings;
     }
 
-    /// How improbable it is that a sensor repeats itself so by chance, as a negative log likelihood in nats, if it reads
-    /// the same after 8 ms, and after a period of hum, with these probabilities; zero before [`REPEATED_FOR`] has passed.
+    /// Negative log likelihood (nats) of the repetition by chance, given the probabilities that the sensor reads the
+    /// same value after 8 ms, and after a period of hum; zero before [`REPEATED_FOR`] has passed.
     ///
-    /// What repeats itself in order does so after one of so many `lags`.
+    /// A repetition in order may have any of `lags` lags, which reduces the result by ln `lags`.
     pub(super) fn nats(&self, [same, in_order]: [f32; 2], lags: u32, now: Instant) -> f32 {
         let of = |readings: u32, same: f32| readings as f32 / LOOK_MS * -same.clamp(1e-6, 1.0).ln();
         let has_lasted = |since: Instant| now.since(since) >= REPEATED_FOR;
@@ -84,7 +84,7 @@ impl Run {
 mod tests {
     use super::*;
 
-    /// A run of these readings, a millisecond apart, and the moment of the last.
+    /// A run of these readings, a millisecond apart, and the time of the last.
     fn run(readings: impl Iterator<Item = u16>) -> (Run, Instant) {
         let (mut run, mut now) = (Run::default(), Instant::from_millis(5));
         for raw in readings {
