@@ -123,7 +123,6 @@ impl Guarded {
 /// guarded by `HoldToRun`, all with their own thresholds. The crossings are the same for all three; the uses differ
 /// for each guard. These events count as actions: a button's click, a switch's change, and the press of any control
 /// that follows the foot or acts while held.
-/// turns over, and the press of anything that follows the foot or acts while held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IntentTable {
     floor: FloorQuality,

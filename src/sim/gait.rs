@@ -28,10 +28,9 @@ impl Gait {
     /// The gait of an adult at this speed; the speed is limited to 0.4 to 2 metres per second.
     ///
     /// # Source
-    /// Steps of 0.7 m, stances of 0.65 s, peaks of 1.1 and a valley of 0.75 body
-    /// weights at the preferred speed; flatter and longer when slower. Steps
-    /// grow with the square root of the speed; two feet are down for 23 % of the
-    /// cycle, more when slower.
+    /// Steps of 0.7 m, stances of 0.65 s, peaks of 1.1 and a valley of 0.75 body weights at the preferred speed;
+    /// flatter and longer when slower. Steps grow with the square root of the speed; two feet are down for 23 % of
+    /// the cycle, more when slower.
     #[must_use]
     pub fn at_speed(speed_m_s: f32) -> Self {
         let pace = pace(speed_m_s);
