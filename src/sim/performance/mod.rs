@@ -105,7 +105,7 @@ impl Performance {
         Ok(())
     }
 
-    /// Disappears at once, for a person who has walked off the floor.
+    /// Disappears at once, for a person outside the floor.
     ///
     /// # Errors
     /// [`MoveError::NotThere`].

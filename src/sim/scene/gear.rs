@@ -76,8 +76,8 @@ pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 /// behind.
 ///
 /// # Source
-/// Our assumption of usual sizes. Wheelchairs: some 0.42 m from axle to axle, 0.55 m wide, two thirds of the weight on
-/// the large wheels behind; trolleys: 0.6 m long and 0.4 m wide.
+/// Our assumption of usual sizes. Wheelchairs: some 0.42 m from axle to axle, 0.55 m wide, two thirds of the weight
+/// on the large rear wheels; trolleys: 0.6 m long and 0.4 m wide.
 pub(super) fn wheels(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (from, heading, length) = way(body, bounds);
     let speed = body.within(0.4, 1.1);
