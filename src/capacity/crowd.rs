@@ -1,4 +1,4 @@
-//! People who walk on a square floor: what they load, millisecond by millisecond.
+//! Simulated walkers on a square floor, and their loads at each millisecond.
 
 use std::time::Duration;
 
@@ -8,16 +8,15 @@ use crate::floor::{Floor, Geometry};
 use crate::sim::{Performance, Person, Script, SimConfig, SimFloor};
 use crate::units::Instant;
 
-/// Tiles to a side of the stretch of floor that two people cross.
+/// Side (tiles) of the stretch of floor that two people cross.
 const STRETCH: u16 = 6;
 
-/// What changes from one frame to the next: what the loaded tiles read.
+/// Tile index and corner forces of each loaded tile at one millisecond.
 pub(super) type Loads = Vec<(usize, [f32; 4])>;
 
-/// A floor of `side` x `side` tiles and what so many walkers load on it, two on each stretch of 6 x 6 tiles.
+/// A floor of `side` x `side` tiles, and the loads of `walkers` people on it, two on each stretch of 6 x 6 tiles.
 ///
-/// A side of less than 6 is taken for 6, one that no floor can have for the largest there is; there are
-/// no more walkers than stretches have room for.
+/// `side` is clamped to 6 and the largest side of a floor; the number of walkers is limited to two for each stretch.
 pub(super) fn walkers_on(side: u16, walkers: u16) -> (Geometry, Vec<Loads>) {
     let side = side.clamp(STRETCH, Geometry::MAX_SIDE);
     let geometry = Geometry::of_paper_tiles(side, side).unwrap_or_default();
@@ -27,7 +26,7 @@ pub(super) fn walkers_on(side: u16, walkers: u16) -> (Geometry, Vec<Loads>) {
         let mut loads = Loads::new();
         for pair in 0..walkers.div_ceil(2).min(stretches * stretches) {
             let (east, north) = (STRETCH * (pair % stretches), STRETCH * (pair / stretches));
-            // No two stretches in step.
+            // A different phase for each stretch.
             let ms = (ms + 37 * usize::from(pair)) % small.len();
             loads.extend(small[ms].iter().map(|(index, forces)| {
                 let (column, row) = (*index as u16 % STRETCH, *index as u16 / STRETCH);
@@ -42,13 +41,13 @@ pub(super) fn walkers_on(side: u16, walkers: u16) -> (Geometry, Vec<Loads>) {
     (geometry, moments)
 }
 
-/// What two people load on 6 x 6 tiles while they walk to and fro, millisecond by millisecond.
+/// Loads of two people on 6 x 6 tiles as they walk to and fro, one entry per millisecond.
 fn crossing() -> Vec<Loads> {
     let floor = Floor::default();
     let size = floor.geometry.bounds().max;
     let walker = |mass_kg, seed, from: Vec2, to: Vec2| {
         let mut walker = Performance::new(Person { mass_kg, ..Person::default() }, seed);
-        // Nobody is asked to move who isn't there, so nothing can fail.
+        // The person is on the floor before the walk begins, so neither call fails.
         let _ = walker.appear(from, 0.0);
         let _ = walker.walk(&[to, from]);
         walker

@@ -1,7 +1,7 @@
-//! Standard work for measuring how large a floor a machine carries.
+//! Standard loads for measuring the largest floor that a machine can serve.
 //!
-//! Nothing here looks at a clock: each load does a known stretch of floor time, and whoever
-//! measures divides it by the time that took. `underfoot capacity` and the benches measure the same loads.
+//! Nothing here reads a clock: each load does the work of a known length of floor time, and the caller divides that
+//! length by the elapsed time. `underfoot capacity` and the benches measure the same loads.
 
 mod crowd;
 mod receiving;

@@ -1,4 +1,4 @@
-//! How fast packets are read and put together: floors on which nobody stands, with sensors that are never still.
+//! Speed of decoding and assembling packets: empty floors with noisy sensors.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -8,14 +8,14 @@ use crate::sense::Assembler;
 use crate::units::Instant;
 use crate::wire::{Batch, Decoder, Readings, SensorEncoder, SensorFormat, SensorPacket};
 
-/// Milliseconds that are read over and over, so many that no sensor repeats itself from one to the next.
+/// Number of recorded milliseconds, which repeat; with 8 no sensor sends the same reading twice in a row.
 pub(super) const MILLIS: usize = 8;
 
-/// What an empty floor's sensors read on average, in counts, and by how much they stray.
+/// Mean reading of an empty floor's sensors, and its maximum deviation (counts).
 pub(super) const RESTING: u16 = 20_000;
 const STRAYS: u16 = 30;
 
-/// What the boards of a square floor send, and what reads it.
+/// Packets of a square floor's boards, and their decoder.
 #[derive(Clone, Debug)]
 pub struct PacketLoad {
     decoder: Decoder,
@@ -24,18 +24,18 @@ pub struct PacketLoad {
 }
 
 impl PacketLoad {
-    /// A floor of `side` x `side` tiles; a side that no floor can have is taken for the nearest one that can.
+    /// Prepares a floor of `side` x `side` tiles, with `side` clamped to the range of a floor.
     #[must_use]
     pub fn new(side: u16) -> Self {
         let floor = square(side);
         let mut encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
-        // Boards of the floor's own numbers of channels can always be encoded.
+        // The encoder accepts every board of its own floor.
         let encoded = |packet: &SensorPacket| encoder.encode(packet).map(<[u8]>::to_vec).ok();
         let datagrams = millisecond(&floor, 0).iter().filter_map(encoded).collect();
         Self { decoder: Decoder::new(&floor), batch: Batch::default(), datagrams }
     }
 
-    /// Reads the datagrams of one second; the answer is the number of packets in the last of them.
+    /// Decodes the datagrams of one second; returns the number of packets in the last datagram.
     pub fn second(&mut self) -> usize {
         let mut packets = 0;
         for ms in 0..1000 {
@@ -49,7 +49,7 @@ impl PacketLoad {
     }
 }
 
-/// The assembling of a square floor's packets into frames.
+/// Assembles a square floor's packets into frames.
 #[derive(Clone, Debug)]
 pub struct AssemblyLoad {
     assembler: Assembler,
@@ -58,7 +58,7 @@ pub struct AssemblyLoad {
 }
 
 impl AssemblyLoad {
-    /// A floor of `side` x `side` tiles; a side that no floor can have is taken for the nearest one that can.
+    /// Prepares a floor of `side` x `side` tiles, with `side` clamped to the range of a floor.
     #[must_use]
     pub fn new(side: u16) -> Self {
         let floor = tared(square(side));
@@ -66,7 +66,7 @@ impl AssemblyLoad {
         Self { assembler: Assembler::new(&floor), millis, sequence: 0 }
     }
 
-    /// Assembles the frames of one second; the answer is their number.
+    /// Assembles the frames of one second and returns their number.
     pub fn second(&mut self) -> usize {
         let mut frames = 0;
         for _ in 0..1000 {
@@ -90,9 +90,10 @@ pub(crate) fn square(side: u16) -> Floor {
     Floor::of(Geometry::of_paper_tiles(side, side).unwrap_or_default())
 }
 
-/// The same floor as it comes out of the lab: calibrated, with what its boards read while nobody is there as its tare.
+/// Returns the floor with calibrated sensors, and with the readings of its empty state as tare.
 pub(super) fn tared(mut floor: Floor) -> Floor {
-    // Laws that are not the nominal part's to the digit: a floor that nobody has measured is served with warnings.
+    // Curves slightly off the nominal part's: a server warns about a floor with exactly the nominal curves, as
+    // uncalibrated.
     let law = Exponential { a_n: 1.001 * Exponential::NOMINAL.a_n, ..Exponential::NOMINAL };
     let sensors =
         floor.geometry.tiles().flat_map(|tile| Corner::ALL.map(move |corner| SensorId { tile, corner }));
@@ -105,7 +106,7 @@ pub(super) fn tared(mut floor: Floor) -> Floor {
     floor
 }
 
-/// What the boards send in one millisecond.
+/// Packets of all boards in one millisecond.
 pub(super) fn millisecond(floor: &Floor, seed: u64) -> Vec<SensorPacket> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let packet = |(board, channels): (u16, usize)| SensorPacket {

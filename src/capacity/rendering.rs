@@ -1,4 +1,4 @@
-//! How fast the renderer is: standard loads on the paper's 36 tiles.
+//! Speed of the renderer: standard loads on the paper's 36 tiles.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -10,45 +10,45 @@ use crate::feel::{
 use crate::floor::Floor;
 use crate::units::{Instant, Newtons};
 
-/// Frames per block, as on a device set for low latency.
+/// Frames per block, as on a device with low latency.
 const BLOCK: usize = 64;
 
-/// How often each tile is struck per second, where it is.
+/// Strikes per second on each tile.
 const STRIKES: u64 = 20;
 
-/// What is rendered on the paper's 36 tiles.
+/// A load for the renderer on the paper's 36 tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderWork {
-    /// Samples per second.
+    /// Sample rate (Hz).
     pub sample_rate: u32,
-    /// Modes that each tile is struck with 20 times a second; 0 for no strikes, at most 64.
+    /// Number of modes in each tile's strike, 20 strikes per second; 0 for no strikes, at most 64.
     pub modes: usize,
-    /// Whether nine feet slide, on all tiles between them.
+    /// True if nine feet slide; together they cover all tiles.
     pub friction: bool,
-    /// Force of each mode: 0.4 N leaves the limiters at rest, 20 N keeps all of them at work.
+    /// Force of each mode: with 0.4 N the limiters stay idle, with 20 N all of them work.
     pub level: Newtons,
 }
 
 impl RenderWork {
-    /// Modes that no limiter has to hold down, at 96 kHz.
+    /// A load of `modes` modes below the limiters' thresholds, at 96 kHz.
     #[must_use]
     pub const fn of_modes(modes: usize) -> Self {
         Self { sample_rate: 96_000, modes, friction: false, level: Newtons(0.4) }
     }
 
-    /// Eight modes with friction, so loud that every channel's limiters work, at 96 kHz.
+    /// Eight modes with friction, loud enough that every channel's limiters work, at 96 kHz.
     #[must_use]
     pub const fn with_friction_and_limiter() -> Self {
         Self { sample_rate: 96_000, modes: 8, friction: true, level: Newtons(20.0) }
     }
 }
 
-/// The whole way from cues to samples in memory, on the paper's 36 tiles.
+/// The whole path from cues to samples in memory, on the paper's 36 tiles.
 #[derive(Debug)]
 pub struct RenderLoad {
     sender: CueSender,
     renderer: Renderer,
-    /// The clicks that strike each tile together.
+    /// The clicks that together make one strike on a tile.
     clicks: Vec<Click>,
     strikes_per_second: u64,
     sustained: SustainedCues,
@@ -58,7 +58,7 @@ pub struct RenderLoad {
 }
 
 impl RenderLoad {
-    /// Everything ready for the first second.
+    /// Prepares the load for its first second.
     #[must_use]
     pub fn new(work: RenderWork) -> Self {
         let (sender, renderer) = renderer(RendererConfig::of(&Floor::default(), work.sample_rate));
@@ -80,7 +80,7 @@ impl RenderLoad {
         }
     }
 
-    /// Renders one second in blocks of 64 frames. The tiles are struck one after the other, evenly spread over time.
+    /// Renders one second in blocks of 64 frames. Strikes alternate between the tiles, evenly spread over time.
     pub fn second(&mut self) {
         let rate = u64::from(self.renderer.sample_rate());
         let tiles = self.renderer.channels() as u64;
@@ -105,20 +105,20 @@ impl RenderLoad {
         }
     }
 
-    /// What could not be rendered: if there is anything, the measurement does not count.
+    /// Returns the counters of cues that could not be rendered; if one is above 0, the measurement is not valid.
     #[must_use]
     pub fn counters(&self) -> FeelCounters {
         self.renderer.counters()
     }
 
-    /// The last block rendered, interleaved.
+    /// Returns the last rendered block, interleaved.
     #[must_use]
     pub fn samples(&self) -> &[f32] {
         &self.out
     }
 }
 
-/// The modal banks alone, to memory: 36 of them at 96 kHz, each struck 20 times a second.
+/// The modal banks alone, rendered to memory: 36 of them at 96 kHz, each struck 20 times a second.
 #[derive(Clone, Debug)]
 pub struct BankLoad {
     banks: Vec<ModalBank>,
@@ -127,7 +127,7 @@ pub struct BankLoad {
 }
 
 impl BankLoad {
-    /// Banks of so many modes, at most 64.
+    /// Prepares banks of `modes` modes, at most 64.
     #[must_use]
     pub fn new(modes: usize) -> Self {
         let modes = modes.min(64);
@@ -152,12 +152,12 @@ impl BankLoad {
     }
 }
 
-/// One of up to 64 modes between 55 and 685 Hz that ring for some 50 ms.
+/// One of up to 64 modes between 55 and 685 Hz with a decay time of some 50 ms.
 fn mode(number: usize) -> Mode {
     Mode { frequency_hz: 55.0 + 10.0 * number as f32, decay_s: 0.03 + 0.001 * number as f32, amplitude: 0.1 }
 }
 
-/// Nine feet that between them slide on all 36 tiles.
+/// Nine sliding feet that together cover all 36 tiles.
 fn nine_sustained() -> SustainedCues {
     (0..9_u32)
         .map(|foot| SustainedCue {
@@ -178,10 +178,11 @@ fn nine_sustained() -> SustainedCues {
         .collect()
 }
 
-/// The worst error of a bank of eight modes, drawn at random from `seed`, against double precision, in decibels of the
-/// signal.
+/// Returns the largest error of a bank of eight modes, drawn at random from `seed`, against double precision, in
+/// decibels relative to the signal.
 ///
-/// Twenty banks of modes of 20 to 1000 Hz that ring for 1 ms to 2 s, a second of each in blocks of 64 samples.
+/// Renders twenty banks of modes of 20 to 1000 Hz with decay times of 1 ms to 2 s, a second of each in blocks of 64
+/// samples.
 #[must_use]
 pub fn modal_error_db(sample_rate: u32, seed: u64) -> f64 {
     let mut random = Pcg64Mcg::seed_from_u64(seed);

@@ -1,25 +1,25 @@
-//! How fast sensing is: floors of several sizes with people walking on them.
+//! Speed of sensing: floors of several sizes with people walking on them.
 
 use super::crowd::{Loads, walkers_on};
 use crate::sense::{ForceFrame, Method, Sensing};
 use crate::units::Instant;
 
-/// The sensing of a square floor on which people walk, frame by frame.
+/// Sensing of a square floor with walkers, frame by frame.
 #[derive(Debug)]
 pub struct SensingLoad {
     sensing: Sensing,
     frame: ForceFrame,
-    /// What is loaded at each millisecond, over and over.
+    /// Loads at each millisecond; the sequence repeats.
     moments: Vec<Loads>,
     next: usize,
     millis: u64,
 }
 
 impl SensingLoad {
-    /// A floor of `side` x `side` tiles with so many walkers, two on each stretch of 6 x 6 tiles.
+    /// Prepares a floor of `side` x `side` tiles with `walkers` people, two on each stretch of 6 x 6 tiles.
     ///
-    /// A side of less than 6 is taken for 6, one that no floor can have for the largest there is; there are
-    /// no more walkers than stretches have room for.
+    /// `side` is clamped to 6 and the largest side of a floor; the number of walkers is limited to two for each
+    /// stretch.
     #[must_use]
     pub fn new(side: u16, walkers: u16) -> Self {
         let (geometry, moments) = walkers_on(side, walkers);
@@ -32,7 +32,7 @@ impl SensingLoad {
         }
     }
 
-    /// Senses one second of floor, 1000 frames; the answer is the number of contacts in the last.
+    /// Senses one second of floor time, 1000 frames; returns the number of contacts in the last frame.
     pub fn second(&mut self) -> usize {
         let mut contacts = 0;
         for _ in 0..1000 {
@@ -58,7 +58,7 @@ mod tests {
             let mut load = SensingLoad::new(side, walkers);
             (0..4).map(|_| load.second()).max()
         };
-        // Each has one or two feet down.
+        // Each walker has one or two feet on the floor.
         assert!((2..=4).contains(&most(6, 2).unwrap()), "{:?}", most(6, 2));
         assert!((20..=40).contains(&most(24, 20).unwrap()), "{:?}", most(24, 20));
     }

@@ -1,4 +1,4 @@
-//! How fast a whole floor is served, but for its network and its sound: packets in memory, contacts and events out.
+//! Speed of serving a whole floor without network and sound: packets from memory, contacts and events out.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
@@ -16,19 +16,19 @@ use crate::source::{SensorSource, SourceError, UdpSource};
 use crate::units::{Instant, Newtons};
 use crate::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
 
-/// A square floor at work, with the built-in layout `first_steps` in its south-west and people who walk on it.
+/// A square floor with people walking on it, and with the built-in layout `first_steps` in its south-west.
 pub struct ServeLoad {
     server: Server,
     queue: Arc<Mutex<Queue>>,
     boards: Boards,
 }
 
-/// What the boards of a floor read.
+/// Readings of a floor's boards.
 #[derive(Debug)]
 struct Boards {
-    /// What they send while it is empty, over and over.
+    /// Packets of the empty floor; the sequence repeats.
     empty: Vec<Vec<SensorPacket>>,
-    /// What is loaded at each millisecond, over and over, as counts of a board's channel.
+    /// Loads at each millisecond, as counts of a board's channel; the sequence repeats.
     moments: Vec<Vec<(usize, usize, u16)>>,
     millis: u32,
 }
@@ -40,15 +40,15 @@ pub struct BoardsLoad {
     boards: Boards,
     encoder: SensorEncoder,
     socket: UdpSocket,
-    /// Who takes the packets.
+    /// Address of the receiver.
     to: Option<SocketAddr>,
 }
 
 impl BoardsLoad {
-    /// The boards of such a floor as [`ServeLoad`] has, whose packets nobody takes yet.
+    /// Prepares the boards of a floor as in [`ServeLoad`], without a receiver.
     ///
     /// # Errors
-    /// [`SourceError::Socket`] if there is no port.
+    /// [`SourceError::Socket`] if no port is free.
     pub fn new(side: u16, walkers: u16) -> Result<Self, SourceError> {
         let (floor, boards) = Boards::of(side, walkers);
         let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).map_err(no_port)?;
@@ -56,17 +56,17 @@ impl BoardsLoad {
         Ok(Self { floor, boards, encoder, socket, to: None })
     }
 
-    /// What takes the packets from now on, and the floor that they are of.
+    /// Binds a source and sends the packets to it from now on; returns the floor of the packets and the source.
     ///
     /// # Errors
-    /// [`SourceError::Socket`] if there is no port.
+    /// [`SourceError::Socket`] if no port is free.
     pub fn source(&mut self) -> Result<(Floor, UdpSource), SourceError> {
         let source = UdpSource::bind((Ipv4Addr::LOCALHOST, 0).into(), &self.floor)?;
         self.to = Some(source.local_addr().map_err(no_port)?);
         Ok((self.floor.clone(), source))
     }
 
-    /// Sends the packets of the next millisecond; `pause` is called when about a half of them are sent.
+    /// Sends the packets of the next millisecond; calls `pause` after about half of them.
     pub fn send(&mut self, pause: impl Fn()) {
         let mut packets = VecDeque::new();
         self.boards.next(&mut packets);
@@ -76,7 +76,7 @@ impl BoardsLoad {
                 pause();
             }
             if let Ok(datagram) = self.encoder.encode(packet) {
-                // What is lost here is missing there.
+                // A lost packet counts as missing at the receiver.
                 let _ = self.to.map(|to| self.socket.send_to(datagram, to));
             }
         }
@@ -88,14 +88,14 @@ fn no_port(source: std::io::Error) -> SourceError {
     SourceError::Socket { message, source }
 }
 
-/// Packets that wait, and the time.
+/// Packets in the queue, and the current time.
 #[derive(Debug, Default)]
 struct Queue {
     packets: VecDeque<SensorPacket>,
     now: Instant,
 }
 
-/// What the server reads them from.
+/// Sensor source of the server: reads the queue.
 struct Memory(Arc<Mutex<Queue>>);
 
 impl SensorSource for Memory {
@@ -109,10 +109,10 @@ impl SensorSource for Memory {
 }
 
 impl ServeLoad {
-    /// A floor of `side` x `side` tiles with so many walkers, two on each stretch of 6 x 6 tiles.
+    /// Prepares a floor of `side` x `side` tiles with `walkers` people, two on each stretch of 6 x 6 tiles.
     ///
-    /// A side of less than 6 is taken for 6, one that no floor can have for the largest there is; there are
-    /// no more walkers than stretches have room for.
+    /// `side` is clamped to 6 and the largest side of a floor; the number of walkers is limited to two for each
+    /// stretch.
     #[must_use]
     pub fn new(side: u16, walkers: u16) -> Self {
         let (floor, boards) = Boards::of(side, walkers);
@@ -121,19 +121,19 @@ impl ServeLoad {
         Self { server: server(&floor, source), queue, boards }
     }
 
-    /// What serves such a floor from `source`.
+    /// Returns a server of such a floor with packets from `source`.
     #[must_use]
     pub fn server(floor: &Floor, source: Box<dyn SensorSource>) -> Server {
         server(floor, source)
     }
 
-    /// Serves one second of floor, 1000 frames; the answer is the number of contacts in the last.
+    /// Serves one second of floor time, 1000 frames; returns the number of contacts in the last frame.
     pub fn second(&mut self) -> usize {
         for _ in 0..1000 {
             self.send();
-            // One turn for each packet, and one that finds none.
+            // One turn for each packet, and one more that finds the queue empty.
             for _ in 0..=self.boards.empty.first().map_or(0, Vec::len) {
-                // Memory does not fail.
+                // Reading from memory does not fail.
                 let _ = self.server.turn();
             }
         }
@@ -151,18 +151,18 @@ impl ServeLoad {
     }
 }
 
-/// What serves a floor with a layout on it.
+/// A server of a floor with a layout.
 fn server(floor: &Floor, source: Box<dyn SensorSource>) -> Server {
     let text = schema::builtin_layout("first_steps").unwrap_or_default();
     let layout = schema::parse_layout(text, "first_steps", &Kinds::builtin(), &floor.geometry);
-    // It is shipped, and fits on 6 x 6 tiles.
+    // The built-in layout fits on 6 x 6 tiles.
     let layout = layout.map(|read| read.layout).unwrap_or_default();
     let (snapshots, _) = triple_buffer::triple_buffer(&Snapshot::default());
     Server::new(floor, layout, Method::Tracker, source).with_snapshots(snapshots)
 }
 
 impl Boards {
-    /// A floor and its boards.
+    /// Returns a floor and its boards.
     fn of(side: u16, walkers: u16) -> (Floor, Self) {
         let (geometry, loads) = walkers_on(side, walkers);
         let floor = tared(Floor::of(geometry));
@@ -175,7 +175,7 @@ impl Boards {
         (floor, boards)
     }
 
-    /// Adds the packets of the next millisecond to `packets`, and says which that is.
+    /// Adds the packets of the next millisecond to `packets`, and returns the time of that millisecond.
     fn next(&mut self, packets: &mut VecDeque<SensorPacket>) -> Instant {
         self.millis = self.millis.wrapping_add(1);
         let at = Instant::from_millis(self.millis.into());
@@ -212,7 +212,7 @@ fn places(floor: &Floor) -> Vec<[(usize, usize); 4]> {
     places
 }
 
-/// What sensors of the nominal part read under `loads` and their plates.
+/// Readings of nominal sensors under `loads` and the weight of the plates: board, channel and counts.
 fn as_counts(loads: &Loads, places: &[[(usize, usize); 4]]) -> Vec<(usize, usize, u16)> {
     let law = Calibration::NOMINAL;
     let counts = |force: f32| {
@@ -238,7 +238,7 @@ mod tests {
     fn walkers_are_found_through_their_sensors() {
         let mut load = ServeLoad::new(12, 8);
         let contacts = (0..3).map(|_| load.second()).max();
-        // Each has one or two feet down.
+        // Each walker has one or two feet on the floor.
         assert!((8..=16).contains(&contacts.unwrap()), "{contacts:?}");
         let counters = load.server.counters();
         assert_eq!((counters.frames, counters.lost, counters.late, counters.wrong_shape), (3000, 0, 0, 0));

@@ -1,4 +1,4 @@
-//! How fast packets are taken from a socket and read: over this machine's own network.
+//! Speed of receiving packets from a socket and decoding them, over this machine's own network.
 
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::time::Duration;
@@ -9,10 +9,10 @@ use crate::source::{SensorSource, SourceError, UdpSource};
 use crate::units::Instant;
 use crate::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
 
-/// How long a packet that was sent may take to arrive.
+/// Maximum time from sending a packet to receiving it.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// Boards that send, and the socket that takes their packets.
+/// Simulated boards, and the socket that receives their packets.
 #[derive(Debug)]
 pub struct SocketLoad {
     source: UdpSource,
@@ -24,16 +24,16 @@ pub struct SocketLoad {
 }
 
 impl SocketLoad {
-    /// Packets that are sent at once: the smallest usual receive buffer holds twice as many.
+    /// Number of packets per burst: the smallest usual receive buffer holds twice as many.
     pub const BATCH: usize = 96;
 
-    /// Packets that the boards of 96 x 96 tiles send in a second: 1152 boards, 1000 times.
+    /// Packets per second of the boards of 96 x 96 tiles: 1152 boards, 1000 times.
     pub const PACKETS_PER_S: f64 = 1_152_000.0;
 
-    /// The boards of 96 x 96 tiles, of 32 channels each, on a port of this machine that is free.
+    /// Prepares the boards of 96 x 96 tiles, with 32 channels each, and binds a free port of this machine.
     ///
     /// # Errors
-    /// [`SourceError::Socket`] if there is none.
+    /// [`SourceError::Socket`] if no port is free.
     pub fn new() -> Result<Self, SourceError> {
         let floor = square(96);
         let here = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
@@ -48,7 +48,7 @@ impl SocketLoad {
         Ok(Self { to, source, sender, encoder, floor, sent: 0 })
     }
 
-    /// Sends a packet of each of the next 96 boards.
+    /// Sends a packet from each of the next 96 boards.
     pub fn send(&mut self) {
         for _ in 0..Self::BATCH {
             let boards = self.floor.boards.len();
@@ -58,14 +58,14 @@ impl SocketLoad {
                 Readings::Counts((0..channels).map(|channel| Some(20_000 + channel as u16)).collect());
             let packet = SensorPacket { board: number as u16, sequence, received: Instant::START, readings };
             if let Ok(datagram) = self.encoder.encode(&packet) {
-                // What is lost here is missing there.
+                // A lost packet counts as missing at the receiver.
                 let _ = self.sender.send_to(datagram, self.to);
             }
             self.sent += 1;
         }
     }
 
-    /// Takes what was sent; the answer is the number of packets, 96 unless some were lost.
+    /// Receives the packets that were sent; returns their number, 96 unless some were lost.
     ///
     /// # Errors
     /// [`SourceError`] if the socket fails.

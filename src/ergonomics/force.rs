@@ -1,4 +1,4 @@
-//! Forces of presses against those of people.
+//! Press forces compared with people's forces.
 
 use glam::Vec2;
 
@@ -6,15 +6,15 @@ use super::{Part, Subject, cm};
 use crate::units::Newtons;
 use crate::widget::Behaviour;
 
-/// Weight of the lightest person that is thought of: 45 kg.
+/// Weight of the lightest person that the rules consider: 45 kg.
 const LIGHT_PERSON: Newtons = Newtons(45.0 * 9.81);
-/// Part of the weight that a foot presses with while the other one stands.
+/// Share of the weight on the pressing foot while the other foot stands.
 const SHIFTED: f32 = 0.5;
-/// What a foot at rest may bear.
+/// Maximum force of a foot that only rests.
 pub(super) const RESTING: Newtons = Newtons(35.0);
-/// What each foot of a standing person of 70 kg bears.
+/// Force on each foot of a standing person of 70 kg.
 const STANDING: Newtons = Newtons(350.0);
-/// How far feet stray from a stance zone.
+/// Maximum distance that feet stray from a stance zone (m).
 const STRAY_M: f32 = 0.10;
 
 pub(super) fn review(subject: &mut Subject<'_>) {
@@ -26,7 +26,7 @@ pub(super) fn review(subject: &mut Subject<'_>) {
 fn light_person(subject: &mut Subject<'_>) {
     let thresholds = subject.widget.behaviour.thresholds();
     let share = thresholds.share.map(|share| share.press);
-    // What it takes of a person whose weight is known, and while it is not.
+    // Press force if the person's weight is known, and if it is unknown.
     let heaviest = thresholds.press.max(LIGHT_PERSON * share.unwrap_or(0.0));
     let lightest =
         share.map_or(thresholds.press, |share| Newtons(thresholds.press.0.min(LIGHT_PERSON.0 * share)));
@@ -45,7 +45,7 @@ fn light_person(subject: &mut Subject<'_>) {
     }
 }
 
-/// A pedal's greatest value takes force too.
+/// Checks the force for a pedal's greatest value.
 fn full_pedal(subject: &mut Subject<'_>) {
     let Behaviour::Pedal(pedal) = &subject.widget.behaviour else { return };
     let full = pedal.full;

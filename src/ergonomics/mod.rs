@@ -1,4 +1,4 @@
-//! Whether feet and eyes can use a layout: rules with numbers and sources, tried on a checked layout.
+//! Ergonomic review of a layout: checks a valid layout against rules with numbers and sources, for feet and for eyes.
 //!
 //! ```
 //! use underfoot::ergonomics;
@@ -32,47 +32,47 @@ use crate::floor::Floor;
 use crate::format::diagnostic::Severity;
 use crate::layout::{Layout, Widget};
 
-/// What of a control a finding is about.
+/// The aspect of a control that a finding concerns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The control as a whole.
     Id,
-    /// Where it is.
+    /// The control's position.
     Place,
-    /// How large it is.
+    /// The control's size.
     Size,
     /// The force that presses it.
     Press,
     /// The step between its values.
     Step,
-    /// What is written on it.
+    /// The control's text.
     Label,
     /// Its colours.
     Look,
 }
 
-/// One thing about one control that feet or eyes will have trouble with.
+/// One ergonomic problem of one control.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// The rule.
     pub rule: &'static Rule,
-    /// How bad it is.
+    /// Severity of the problem.
     pub severity: Severity,
     /// Index in [`Layout::widgets`].
     pub widget: usize,
-    /// What of the control it is about.
+    /// The aspect of the control that the finding concerns.
     pub part: Part,
-    /// What is wrong, in one clause.
+    /// Description of the problem, in one clause.
     pub message: String,
-    /// The measure found, and the one wanted; beside the carets.
+    /// The measured value and the wanted one; printed beside the carets.
     pub expected: String,
-    /// What to do about it.
+    /// Suggested remedy.
     pub help: Option<String>,
 }
 
-/// Everything about `layout` on `floor` that feet or eyes will have trouble with, control by control.
+/// Reviews `layout` on `floor` and returns all findings, control by control.
 ///
-/// A checked layout has finite numbers only; NaN in one made by hand finds nothing.
+/// A checked layout has finite numbers only; a NaN in a layout built by hand gives no finding.
 #[must_use]
 pub fn review(layout: &Layout, floor: &Floor) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -86,7 +86,7 @@ pub fn review(layout: &Layout, floor: &Floor) -> Vec<Finding> {
     findings
 }
 
-/// The control that is examined, and what was found so far.
+/// The control under review, and the findings so far.
 struct Subject<'a> {
     layout: &'a Layout,
     floor: &'a Floor,
@@ -105,7 +105,7 @@ impl Subject<'_> {
     }
 
     fn find(&mut self, severity: Severity, code: &str, part: Part, message: String, expected: String) {
-        // Codes are written in this module only; that each has its rule is tested.
+        // Only this module writes codes; a test checks that each has its rule.
         let Some(rule) = rule(code) else { return };
         let help = Some(rule.remedy.to_owned());
         self.findings.push(Finding { rule, severity, widget: self.index, part, message, expected, help });
@@ -116,7 +116,7 @@ impl Subject<'_> {
         format!("\"{}\"", self.widget.id)
     }
 
-    /// Other controls that are ever there at the same time.
+    /// Other controls that can be visible at the same time.
     fn others(&self) -> impl Iterator<Item = &Widget> {
         let own = self.widget.page;
         let shares_page = move |other: &Widget| own.is_none() || other.page.is_none() || other.page == own;
@@ -130,7 +130,7 @@ impl Subject<'_> {
     }
 }
 
-/// A length in centimetres as people say it.
+/// Formats a length in centimetres.
 fn cm(metres: f32) -> String {
     let cm = metres * 100.0;
     if cm < 9.95 { format!("{cm:.1} cm") } else { format!("{cm:.0} cm") }

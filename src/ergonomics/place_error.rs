@@ -1,32 +1,32 @@
-//! How exactly a foot is found, by its force and its distance from a seam.
+//! Position error of a foot, by its force and its distance from a seam.
 
 use glam::Vec2;
 
 use crate::floor::{Floor, Geometry, Rect};
 use crate::units::Newtons;
 
-/// How near to a tile's edge something is.
+/// Distance class of a point from the nearest edge of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Zone {
     /// Less than 3 cm from a seam.
     Seam,
     /// From 3 to 8 cm.
     Beside,
-    /// Further than 8 cm.
+    /// More than 8 cm from a seam.
     Middle,
 }
 
 impl Zone {
-    /// All of them, from the seam inwards.
+    /// All zones, from the seam inwards.
     pub const ALL: [Self; 3] = [Self::Seam, Self::Beside, Self::Middle];
 
-    /// Forces for which errors were measured, in newtons.
+    /// Forces of the error measurements (N).
     pub const FORCES_N: [f32; 6] = [40.0, 60.0, 80.0, 120.0, 200.0, 400.0];
 
-    /// Where the first and the second of them end, in metres from the seam.
+    /// Outer limits of the first and the second zone, in metres from the seam.
     const ENDS_M: [f32; 2] = [0.03, 0.08];
 
-    /// The zone of `point`, which is counted to the nearest tile's edge.
+    /// Returns the zone of `point`, by its distance from the nearest edge of a tile.
     #[must_use]
     pub fn of(geometry: &Geometry, point: Vec2) -> Self {
         let pitch = geometry.pitch_m();
@@ -39,7 +39,7 @@ impl Zone {
         }
     }
 
-    /// What tables call it.
+    /// Returns the name for tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -50,29 +50,29 @@ impl Zone {
     }
 }
 
-/// Error that 95 in 100 standing feet keep to, in centimetres: by zone and force, without position maps.
+/// Position error of standing feet, 95th percentile in centimetres, by zone and force, without position maps.
 ///
 /// # Source
-/// Measured on 60 simulated floors of the paper's parts, calibrated, each sensor's zero off by half a
-/// newton and followed for a second: `underfoot experiment place --floors 60`.
+/// Measured on 60 simulated floors of the paper's parts, calibrated, with each sensor's zero off by half a newton,
+/// tracked for a second: `underfoot experiment place --floors 60`.
 const P95_CM: [[f32; 6]; 3] = [
     [1.42, 1.43, 1.46, 1.48, 1.58, 1.42],
     [1.61, 1.62, 1.60, 1.69, 1.77, 1.58],
     [1.77, 1.84, 1.90, 2.01, 2.03, 1.75],
 ];
 
-/// The same with position maps.
+/// The same, with position maps.
 const MAPPED_P95_CM: [[f32; 6]; 3] = [
     [0.30, 0.21, 0.14, 0.11, 0.10, 0.10],
     [0.46, 0.28, 0.20, 0.14, 0.10, 0.15],
     [0.27, 0.20, 0.16, 0.11, 0.09, 0.18],
 ];
 
-/// The error that 95 in 100 feet keep to which press somewhere in `area` with `force`, in metres:
-/// where it is greatest.
+/// Returns the 95th percentile of the position error of feet that press in `area` with `force`, in metres, for the
+/// zone under `area` with the largest error.
 ///
-/// Forces between those measured are interpolated, others are taken as the nearest. Position maps of `floor`
-/// count where all tiles under `area` have one.
+/// Forces between the measured ones are interpolated; forces outside use the nearest one. The errors with position
+/// maps apply if `floor` has a map for every tile under `area`.
 #[must_use]
 pub fn predicted_error_m(floor: &Floor, area: Rect, force: Newtons) -> f32 {
     let geometry = &floor.geometry;
@@ -86,9 +86,9 @@ pub fn predicted_error_m(floor: &Floor, area: Rect, force: Newtons) -> f32 {
     worst / 100.0
 }
 
-/// The zones that `area` has a part in.
+/// Zones that overlap `area`.
 fn zones_under(geometry: &Geometry, area: Rect) -> impl Iterator<Item = Zone> {
-    // As fine as the narrowest zone.
+    // Grid spacing (m), half the width of the narrowest zone.
     const GRID_M: f32 = 0.015;
     let size = area.size();
     let steps = (size / GRID_M).ceil().clamp(Vec2::ONE, Vec2::splat(64.0));
@@ -107,7 +107,7 @@ fn zones_under(geometry: &Geometry, area: Rect) -> impl Iterator<Item = Zone> {
     Zone::ALL.into_iter().filter(move |zone| seen[*zone as usize])
 }
 
-/// The row's value at `force`.
+/// Value of the row at `force`, by linear interpolation.
 fn at_force(row: &[f32; 6], force: Newtons) -> f32 {
     let forces = Zone::FORCES_N;
     let above = forces.iter().position(|measured| force.0 < *measured);

@@ -1,34 +1,34 @@
-//! Press thresholds from presses that people have just made.
+//! Press thresholds from recorded presses.
 
 use super::force::RESTING;
 use crate::units::Newtons;
 
-/// Share of the lightest press at which the threshold is put.
+/// Proposed threshold as a share of the lightest press.
 const SHARE: f32 = 0.5;
 
-/// Greatest threshold that a control may have.
+/// Maximum threshold of a control.
 const MOST: Newtons = Newtons(1000.0);
 
-/// How hard presses were.
+/// Distribution of the forces of presses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressSpread {
-    /// How many there were, at least 1.
+    /// Number of presses, at least 1.
     pub count: usize,
-    /// The lightest.
+    /// Lightest press.
     pub lowest: Newtons,
-    /// A quarter was lighter than this.
+    /// Lower quartile: a quarter of the presses was lighter.
     pub lower_quartile: Newtons,
-    /// Half were lighter than this.
+    /// Median: half of the presses were lighter.
     pub median: Newtons,
-    /// A quarter was harder than this.
+    /// Upper quartile: a quarter of the presses was harder.
     pub upper_quartile: Newtons,
-    /// The hardest.
+    /// Hardest press.
     pub highest: Newtons,
 }
 
 impl PressSpread {
-    /// Of the peak `forces` of presses, in any order; quartiles between two of them are interpolated. `None` for none;
-    /// forces that are not finite are left out.
+    /// Computes the distribution of the peak `forces` of presses, in any order, with interpolated quartiles. Ignores
+    /// forces that are not finite; returns `None` if no force is left.
     #[must_use]
     pub fn of(forces: &[Newtons]) -> Option<Self> {
         let mut sorted: Vec<f32> =
@@ -52,19 +52,20 @@ impl PressSpread {
     }
 }
 
-/// A threshold for presses such as some that were made.
+/// A proposed threshold for presses like the recorded ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressProposal {
     /// The threshold, in whole newtons.
     pub press: Newtons,
-    /// Whether half of the lightest press would be less than a foot at rest bears, so that this counts instead.
+    /// True if half of the lightest press is less than the force of a resting foot, so that the latter is the
+    /// threshold.
     pub is_resting_force: bool,
-    /// How many of the presses would be lighter than the threshold.
+    /// Number of recorded presses lighter than the threshold.
     pub missed: usize,
 }
 
-/// The threshold for the peak `forces` of presses that people meant: half of the lightest one, but no less than the
-/// 35 N that a foot bears which only rests there (rule U202). `None` without a press.
+/// Proposes a threshold from the peak `forces` of intended presses: half of the lightest one, but at least the 35 N
+/// of a foot that only rests on the control (rule U202). Returns `None` without a press.
 ///
 /// ```
 /// use underfoot::ergonomics::propose_press;
@@ -76,9 +77,9 @@ pub struct PressProposal {
 ///
 /// # Source
 /// Half is this project's choice, not a measured figure. The next press of the same people may be lighter than the
-/// lightest of a few: half leaves as much below it as it is above the threshold. The lightest counts and not the
-/// median, because a control that lets one person in ten press in vain is a broken one. The paper uses thresholds of
-/// normal force and names none.
+/// lightest of a few: half leaves as much margin below the lightest press as the threshold is above zero. The
+/// lightest press counts and not the median, because a control on which one person in ten presses without effect is
+/// broken. The paper uses thresholds of normal force but gives no numbers.
 #[must_use]
 pub fn propose_press(forces: &[Newtons]) -> Option<PressProposal> {
     let lowest = PressSpread::of(forces)?.lowest;
@@ -113,9 +114,9 @@ mod tests {
         let press =
             |forces: &[Newtons]| propose_press(forces).map(|it| (it.press.0, it.is_resting_force, it.missed));
         assert_eq!(press(&newtons([140.0, 92.0, 110.0])), Some((46.0, false, 0)));
-        // A child's 50 N: half is what a resting foot bears.
+        // A child's 50 N: half of it is less than the force of a resting foot.
         assert_eq!(press(&newtons([50.0, 90.0])), Some((35.0, true, 0)));
-        // Lighter than a resting foot: such a press can't be told from one.
+        // Lighter than a resting foot: the threshold can't detect such a press.
         assert_eq!(press(&newtons([20.0, 90.0])), Some((35.0, true, 1)));
         assert_eq!(press(&newtons([f32::NAN, 5000.0])), Some((1000.0, false, 0)));
         assert_eq!(press(&[]), None);

@@ -2,22 +2,22 @@
 
 use serde::Serialize;
 
-/// One ergonomic rule: a limit with its reason and where it comes from.
+/// One ergonomic rule: a limit with its reason and its source.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Rule {
-    /// Stable, for searching and for programs.
+    /// Stable code, for searching and for programs.
     pub code: &'static str,
-    /// What goes wrong, in a few words.
+    /// Short name of the problem.
     pub title: &'static str,
-    /// The limits: what is an error, what a warning.
+    /// The limits of an error and of a warning.
     pub limits: &'static str,
-    /// Why, and who says so.
+    /// Reason and source of the limits.
     pub source: &'static str,
-    /// What to do about it.
+    /// Suggested remedy.
     pub remedy: &'static str,
 }
 
-/// All rules, by code: 1xx are about room, 2xx about force, 3xx about eyes.
+/// All rules, by code: 1xx for space, 2xx for force, 3xx for sight.
 pub const RULES: &[Rule] = &[
     Rule {
         code: "U101",
@@ -129,7 +129,7 @@ pub const RULES: &[Rule] = &[
     },
 ];
 
-/// The rule of this code; `None` if there is none.
+/// Returns the rule of this code, ignoring case; `None` if no rule has it.
 #[must_use]
 pub fn rule(code: &str) -> Option<&'static Rule> {
     RULES.iter().find(|rule| rule.code.eq_ignore_ascii_case(code))

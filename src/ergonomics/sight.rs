@@ -1,4 +1,4 @@
-//! What eyes make of a control.
+//! Visual rules: contrast and labels.
 
 use std::collections::HashSet;
 
@@ -8,9 +8,9 @@ use crate::floor::Floor;
 use crate::layout::{Icon, Layout};
 use crate::scene::{self, Mark, Scene, Show, Theme, View};
 
-/// Least contrast of text.
+/// Minimum contrast of text.
 const TEXT: f32 = 4.5;
-/// Least contrast of large text.
+/// Minimum contrast of large text.
 const LARGE_TEXT: f32 = 3.0;
 
 pub(super) fn review(subject: &mut Subject<'_>, is_cut: bool) {
@@ -40,7 +40,7 @@ pub(super) fn review(subject: &mut Subject<'_>, is_cut: bool) {
     }
 }
 
-/// The controls whose label is cut off when they are drawn.
+/// Finds the controls with a label that is cut off when drawn.
 pub(super) fn cut_labels(layout: &Layout, floor: &Floor) -> HashSet<usize> {
     let mut cut = HashSet::new();
     let mut scene = Scene::new();

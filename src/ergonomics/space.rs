@@ -1,4 +1,4 @@
-//! Room for shoes: sizes, gaps, reach, and how exactly the floor finds a foot.
+//! Room for shoes: sizes, gaps, reach, and the position error of a foot.
 
 use std::ops::Range;
 
@@ -9,25 +9,25 @@ use crate::floor::{Geometry, Rect, TileId};
 use crate::layout::{Stance, Widget};
 use crate::widget::{Axis, Behaviour, Guard, Mapping};
 
-/// Below this side feet miss.
+/// Feet miss a control with a shorter side (m).
 const MISSED_M: f32 = 0.05;
-/// Below this side shoes cover it.
+/// A shoe covers a control with a shorter side (m).
 const SMALL_M: f32 = 0.10;
-/// Half of a foot's width.
+/// Half the width of a foot (m).
 const HALF_FOOT_M: f32 = 0.055;
-/// Between pedals for one foot, one after the other.
+/// Minimum gap between pedals for one foot, operated in sequence (m).
 const SEQUENTIAL_M: f32 = 0.05;
-/// Between pedals for one foot, in any order.
+/// Minimum gap between pedals for one foot, operated in any order (m).
 const RANDOM_M: f32 = 0.10;
-/// As far as a foot reaches without the body.
+/// Maximum reach of a foot without moving the body (m).
 pub(crate) const REACH_M: f32 = 0.8;
-/// Beyond a long step.
+/// Maximum reach with a long step (m).
 pub(crate) const STEP_AWAY_M: f32 = 1.2;
-/// Half of a shoe's width and length: the middle of a foot keeps as far from a stance zone's edges.
+/// Half the width and half the length of a shoe: distance of a foot's middle from a stance zone's edges.
 const HALF_SHOE: Vec2 = Vec2::new(0.06, 0.13);
-/// From one value of a slider to the next.
+/// Minimum distance between two adjacent values of a slider (m).
 const STEP_M: f32 = 0.01;
-/// What rounding may add or take.
+/// Tolerance for rounding errors (m).
 const SLACK_M: f32 = 1e-4;
 
 pub(super) fn review(subject: &mut Subject<'_>) {
@@ -52,7 +52,7 @@ fn size(subject: &mut Subject<'_>) {
     }
 }
 
-/// What a guard is called, and the gaps below which there is an error and a warning.
+/// Name of a guard, and the gaps below which the review reports an error and a warning.
 fn gaps(guard: Guard) -> (&'static str, f32, f32) {
     match guard {
         Guard::Free => ("", 0.0, SEQUENTIAL_M),
@@ -71,7 +71,7 @@ fn neighbours(subject: &mut Subject<'_>) {
         .filter(|(gap, _)| *gap < wanted - SLACK_M)
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let Some((gap, other)) = nearest else { return };
-    // Of two that are alike, the later one is told of.
+    // Of two controls with the same guard, the review reports the later one.
     let (_, other_least, other_wanted) = gaps(other.behaviour.thresholds().guard);
     let is_theirs = (other_least, other_wanted) > (least, wanted);
     let is_later =
@@ -88,7 +88,7 @@ fn neighbours(subject: &mut Subject<'_>) {
     }
 }
 
-/// Where the middle of a foot can be that stands within the zone.
+/// Area in which the middle of a foot can be that stands within the zone.
 pub(crate) fn footing(stance: &Stance) -> Rect {
     let margin = HALF_SHOE.min(0.5 * stance.area.size());
     Rect::new(stance.area.min + margin, stance.area.max - margin)
@@ -111,7 +111,7 @@ fn reach(subject: &mut Subject<'_>) {
     }
 }
 
-/// Columns and rows of the tiles under `area`: the first and the last.
+/// South-western and north-eastern tile under `area`.
 fn tiles(geometry: &Geometry, area: Rect) -> (TileId, TileId) {
     let inset = Vec2::splat(1e-3);
     let tile = |corner: Vec2| {
@@ -127,14 +127,14 @@ fn stance_tiles(subject: &mut Subject<'_>) {
     let geometry = subject.floor.geometry;
     let (first, last) = tiles(&geometry, subject.widget.area);
     let apart = |low: u16, high: u16, other_low: u16, other_high: u16| {
-        // Rows or columns between the two.
+        // Number of rows or columns between the two.
         i32::from(other_low.max(low)) - i32::from(other_high.min(high)) - 1
     };
     let too_near = |stance: &&Stance| {
         let (south_west, north_east) = tiles(&geometry, stance.area);
         let columns = apart(first.column, last.column, south_west.column, north_east.column);
         let rows = apart(first.row, last.row, south_west.row, north_east.row);
-        // Overlapping is told of by another rule.
+        // Another rule reports overlaps.
         columns.max(rows) < 1 && !stance.area.overlaps(subject.widget.area)
     };
     let Some(stance) = subject.layout.stances.iter().find(too_near) else { return };
@@ -169,7 +169,7 @@ fn steps(subject: &mut Subject<'_>) {
     let step = match &subject.widget.behaviour {
         Behaviour::Slider(slider) if slider.mapping == Mapping::Absolute => {
             let share = slider.scale.step / slider.scale.range();
-            // Measured in the middle, where a straight track and an arc are alike.
+            // Measured at the middle, where a straight track and an arc have the same step.
             let [from, to] = [0.5, 0.5 + share].map(|share| slider.track.place_at(share, size) * size);
             (slider.scale.step > 0.0).then(|| from.distance(to))
         }
@@ -185,7 +185,7 @@ fn steps(subject: &mut Subject<'_>) {
     subject.warning("U106", Part::Step, message, format!("{} from one value to the next", cm(step)));
 }
 
-/// The smallest part of a control that a foot must hit, and what it is.
+/// Size of the smallest part of a control that a foot must hit, and the name of that part.
 fn target(widget: &Widget) -> (Vec2, &'static str) {
     let size = widget.area.size();
     let split = |axis: Axis, parts: f32| match axis {

@@ -1,6 +1,6 @@
-//! Figures on a page: axes, points, arrows, outlines and legends as scene marks.
+//! Drawing of figures: axes, points, arrows, outlines and legends as scene marks.
 //!
-//! A page is a scene in page metres, so that printed at its own size a letter is as high as it says.
+//! A page is a scene in page metres, so that letters have their nominal height when printed at full size.
 
 use std::fmt;
 
@@ -10,22 +10,22 @@ use crate::floor::Rect;
 use crate::layout::Colour;
 use crate::scene::{Anchor, Ink, Lettering, Paint, Scene, Stroke, Theme};
 
-/// The colours of every figure: they are meant for paper.
+/// Theme of all figures, for paper.
 pub(super) const THEME: Theme = Theme::LIGHT;
 
-/// Height of ordinary letters, in page metres.
+/// Height of ordinary letters (page metres).
 const LETTER_M: f32 = 0.0032;
 
-/// Width of the lines that matter, in page metres.
+/// Width of the main lines (page metres).
 pub(super) const LINE_M: f32 = 0.0005;
 
-/// A figure's page.
+/// Page of a figure.
 #[derive(Debug)]
 pub(super) struct Page {
     pub(super) scene: Scene,
 }
 
-/// How a line of text is set on a page.
+/// Style of a line of text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Type {
     pub(super) anchor: Anchor,
@@ -40,7 +40,7 @@ impl Type {
     pub(super) const PLAIN: Self =
         Self { anchor: Anchor::Start, size_m: LETTER_M, strong: false, colour: THEME.ink, turn_rad: 0.0 };
 
-    /// Letters that need not be read at once.
+    /// Letters of secondary text.
     pub(super) const QUIET: Self = Self { colour: THEME.quiet, ..Self::PLAIN };
 
     pub(super) const fn middle(self) -> Self {
@@ -53,7 +53,7 @@ impl Type {
 }
 
 impl Page {
-    /// A page `size` metres wide and high with a title and a line below it that says what is seen.
+    /// Creates a page of `size` metres with a title, and a line below it that explains the figure.
     pub(super) fn new(size: Vec2, title: &str, about: &str) -> Self {
         let mut scene = Scene::new();
         scene.clear(Rect::from_min_size(Vec2::ZERO, size), THEME.canvas);
@@ -64,7 +64,7 @@ impl Page {
         page
     }
 
-    /// Sets one line of text and gives its width.
+    /// Sets one line of text and returns its width.
     pub(super) fn text(&mut self, at: Vec2, kind: Type, text: fmt::Arguments<'_>) -> f32 {
         let Type { anchor, size_m, strong, colour, turn_rad } = kind;
         let lettering =
@@ -72,7 +72,7 @@ impl Page {
         self.scene.add_text(lettering, text)
     }
 
-    /// A ring: where something truly is.
+    /// A ring, for true positions.
     pub(super) fn ring(&mut self, at: Vec2, colour: Colour) {
         let paint = Paint::fill(Ink::faint(THEME.plate, 0.7));
         self.scene.add_circle(at, 0.0014, paint.with_stroke(Stroke::new(0.00045, Ink::solid(colour))));
@@ -83,7 +83,7 @@ impl Page {
         self.scene.add_circle(at, 0.00085, Paint::fill(Ink::solid(colour)));
     }
 
-    /// An X: where something is found.
+    /// An X, for estimated positions.
     pub(super) fn cross(&mut self, at: Vec2, colour: Colour) {
         for arm in [Vec2::splat(0.0013), Vec2::new(0.0013, -0.0013)] {
             self.line(at - arm, at + arm, Stroke::new(0.0006, Ink::solid(colour)));
@@ -95,7 +95,7 @@ impl Page {
         self.scene.add_line(from, to, Paint::stroke(stroke));
     }
 
-    /// A line with a head at its end.
+    /// A line with an arrow head at its end.
     pub(super) fn arrow(&mut self, from: Vec2, to: Vec2, colour: Colour) {
         let stroke = Stroke::new(0.0007, Ink::solid(colour));
         self.line(from, to, stroke);
@@ -127,16 +127,16 @@ impl Page {
     }
 }
 
-/// A number without decimals, with a minus sign and no hyphen.
+/// Formats a number without decimals, with a minus sign instead of a hyphen.
 pub(super) fn whole(value: f32) -> String {
-    // Adding 0 makes 0 of what rounds to -0.
+    // Adding 0 turns -0 into 0.
     format!("{:.0}", value.round() + 0.0).replace('-', "\u{2212}")
 }
 
-/// Distance of everything from the page's edges, in metres.
+/// Margin of the page (m).
 pub(super) const MARGIN_M: f32 = 0.008;
 
-/// What a legend shows in front of a name.
+/// Symbol in front of a name in a legend.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Sample {
     Ring,
@@ -147,7 +147,7 @@ pub(super) enum Sample {
     Dashes,
 }
 
-/// What one axis shows: its range, the distance of its ticks, and what it says.
+/// One axis: its range, the distance of its ticks, and its label.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
     pub(super) from: f32,
@@ -156,7 +156,7 @@ pub(super) struct Axis {
     pub(super) label: &'static str,
 }
 
-/// A rectangle on a page with a scale on both sides.
+/// A rectangle on a page with a scale on two sides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plot {
     area: Rect,
@@ -203,24 +203,24 @@ impl Plot {
         plot
     }
 
-    /// Where a value of both axes is on the page; not confined to the plot.
+    /// Position of a value on the page; it may be outside the plot.
     pub(super) fn at(&self, value: Vec2) -> Vec2 {
         let low = Vec2::new(self.x.from, self.y.from);
         let high = Vec2::new(self.x.to, self.y.to);
         self.area.min + self.area.size() * (value - low) / (high - low)
     }
 
-    /// Straight lines through these values.
+    /// A polyline through these values.
     pub(super) fn curve(&self, page: &mut Page, values: impl IntoIterator<Item = Vec2>, stroke: Stroke) {
         let points: Vec<Vec2> = values.into_iter().map(|value| self.at(value)).collect();
         page.scene.add_path(points, false, Paint::stroke(stroke));
     }
 }
 
-/// A stretch of floor drawn to scale on a page.
+/// A part of the floor, drawn to scale on a page.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Map {
-    /// What is on the page at its south-west corner, in floor metres, and where that corner is.
+    /// The drawn part of the floor (floor metres), and the position of its south-west corner on the page.
     pub(super) floor: Rect,
     pub(super) corner: Vec2,
     /// Page metres per floor metre.
@@ -228,23 +228,23 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// `floor` as wide as `area`, at its north-west.
+    /// Fits `floor` into `area`, at its north-west corner.
     pub(super) fn new(floor: Rect, area: Rect) -> Self {
         let scale = (area.size() / floor.size()).min_element();
         Self { floor, corner: Vec2::new(area.min.x, area.max.y - floor.size().y * scale), scale }
     }
 
-    /// Where a floor point is on the page.
+    /// Position of a floor point on the page.
     pub(super) fn at(&self, point: Vec2) -> Vec2 {
         self.corner + (point - self.floor.min) * self.scale
     }
 
-    /// What it covers of the page.
+    /// The covered area of the page.
     pub(super) fn area(&self) -> Rect {
         Rect::new(self.at(self.floor.min), self.at(self.floor.max))
     }
 
-    /// A floor rectangle on the page.
+    /// A floor rectangle, on the page.
     pub(super) fn rect(&self, area: Rect) -> Rect {
         Rect::new(self.at(area.min), self.at(area.max))
     }

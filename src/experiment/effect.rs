@@ -1,4 +1,4 @@
-//! An effect drawn: waveform, spectrum, band and figures.
+//! Data sheet of an effect: waveform, spectrum, band and figures.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -12,32 +12,33 @@ use crate::floor::Rect;
 use crate::layout::Colour;
 use crate::scene::{Ink, Paint, Scene, Stroke};
 
-/// One effect as it is rendered: its waveform, its spectrum and its figures.
+/// One rendered effect: its waveform, its spectrum and its figures.
 #[derive(Clone, Debug)]
 pub struct EffectSheet {
-    /// What people call it.
+    /// Name of the effect.
     pub name: String,
-    /// What it is for.
+    /// Purpose of the effect.
     pub about: String,
-    /// What was rendered.
+    /// The rendered effect.
     pub effect: Arc<Effect>,
-    /// What the foot did.
+    /// The foot's gesture.
     pub gesture: Gesture,
-    /// Samples per second.
+    /// Sample rate (Hz).
     pub sample_rate: u32,
-    /// Newtons at the plate.
+    /// Force on the plate (N), sample by sample.
     pub samples: Vec<f32>,
-    /// What was measured; `None` of silence.
+    /// Result of the analysis; `None` for silence.
     pub analysis: Option<Analysis>,
-    /// How fast what was played once falls to a tenth, in seconds; of a click, that of the press.
+    /// Time in which an effect that plays once decays to a tenth (s); for a click, the decay of the press.
     pub decay_s: Option<f32>,
 }
 
-/// Most points of a waveform that is drawn sample by sample, and samples from one to the next that hide nothing.
+/// Maximum number of points in a waveform drawn from samples, and the largest distance of samples that loses no
+/// detail.
 const MOST_POINTS: usize = 6000;
 const SMOOTH: usize = 8;
 
-/// Columns of one that is longer.
+/// Number of columns in a longer waveform.
 const COLUMNS: usize = 1400;
 
 impl EffectSheet {
@@ -54,7 +55,7 @@ impl EffectSheet {
         Self { name, about, effect, gesture, sample_rate, samples, analysis, decay_s }
     }
 
-    /// What was measured, by name.
+    /// Returns the results of the analysis, by name.
     #[must_use]
     pub fn figures(&self) -> Vec<(&'static str, String)> {
         let band = self.effect.manner.band;
@@ -81,7 +82,7 @@ impl EffectSheet {
         figures
     }
 
-    /// Whether the gesture moves, so that it is worth drawing.
+    /// True if the foot moves in the gesture; only then its motion is drawn.
     fn moves(&self) -> bool {
         self.gesture.moments.iter().any(|moment| moment.speed_m_s > 0.0)
     }
@@ -96,11 +97,11 @@ impl EffectSheet {
         plot.curve(page, [Vec2::new(0.0, 0.0), Vec2::new(ms, 0.0)], zero);
         let at = |number: usize| 1000.0 * number as f32 / self.sample_rate as f32;
         let points: Vec<Vec2> = if self.samples.len() <= MOST_POINTS * SMOOTH {
-            // What actuators move is smooth from one of these to the next.
+            // The actuators' frequency range is so low that the waveform is smooth between these samples.
             let every = self.samples.len().div_ceil(MOST_POINTS).max(1);
             self.samples.iter().enumerate().step_by(every).map(|(n, x)| Vec2::new(at(n), *x)).collect()
         } else {
-            // Of many samples, the lowest and the highest of each column.
+            // For many samples, the minimum and the maximum of each column.
             let per_column = self.samples.len().div_ceil(COLUMNS).max(1);
             let column = |(number, part): (usize, &[f32])| {
                 let (low, high) =
@@ -127,7 +128,7 @@ impl EffectSheet {
             page.line(Vec2::new(edge, area.min.y), Vec2::new(edge, area.max.y), dashes);
         }
         let Some(analysis) = &self.analysis else { return };
-        // Power per five hertz, the greatest at 0 dB.
+        // Power per five hertz, with the maximum at 0 dB.
         let width = (5.0 / analysis.bin_hz).ceil().max(1.0) as usize;
         let power: Vec<f32> = analysis.spectrum.chunks(width).map(|bins| bins.iter().sum()).collect();
         let greatest = power.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
@@ -145,7 +146,7 @@ impl EffectSheet {
         plot.curve(page, points, Stroke::new(0.00035, Ink::solid(THEME.haptic)));
     }
 
-    /// What the foot does, each relative to its greatest.
+    /// Motion of the foot, each quantity relative to its maximum.
     fn foot(&self, page: &mut Page, area: Rect) {
         page.scene.add_box(area, 0.0, Paint::fill(Ink::solid(THEME.plate)));
         let length = self.samples.len() as f32 / self.sample_rate as f32;
@@ -226,7 +227,7 @@ impl Figure for EffectSheet {
     fn csv(&self) -> String {
         let mut text = String::from("t_s,force_n\n");
         for (number, sample) in self.samples.iter().enumerate() {
-            // Writing to a String cannot fail.
+            // Writing to a string does not fail.
             let _ = writeln!(text, "{:.6},{sample:.5}", number as f64 / f64::from(self.sample_rate));
         }
         text
@@ -242,7 +243,7 @@ impl Figure for EffectSheet {
     }
 }
 
-/// The next greater even number of one digit that counts, at least 2.
+/// Rounds up to the next of 2, 4, 6, 8 or 10 times a power of ten, at least 2.
 fn even(value: f32) -> f32 {
     let decade = 10.0_f32.powf(value.max(1.0).log10().floor());
     let share = value / decade;
@@ -250,7 +251,7 @@ fn even(value: f32) -> f32 {
     decade * steps.into_iter().find(|step| share <= *step).unwrap_or(10.0)
 }
 
-/// A distance of ticks so that there are at most `most` of them.
+/// Distance of ticks that gives at most `most` of them.
 fn tick(range: f32, most: f32) -> f32 {
     let least = range / most;
     let decade = 10.0_f32.powf(least.log10().floor());

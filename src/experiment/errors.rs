@@ -4,20 +4,20 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// Distances between where something was found and where it truly was, in metres.
+/// Distances between estimated and true positions, in metres.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Errors(Vec<f32>);
 
-/// Errors in three numbers, in centimetres.
+/// Errors summarised in three numbers, in centimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// How many there are.
+    /// Number of errors.
     pub count: usize,
-    /// Half of them are smaller.
+    /// Median.
     pub median_cm: f32,
-    /// 95 in 100 are smaller.
+    /// 95th percentile.
     pub p95_cm: f32,
-    /// The greatest.
+    /// Maximum.
     pub worst_cm: f32,
 }
 
@@ -27,18 +27,18 @@ impl Errors {
         self.0.push(error_m);
     }
 
-    /// Adds all of another collection.
+    /// Adds all errors of another collection.
     pub fn append(&mut self, mut others: Self) {
         self.0.append(&mut others.0);
     }
 
-    /// How many there are.
+    /// Returns the number of errors.
     #[must_use]
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// The error that a share (0 to 1) of all keep to, in metres; `None` without any.
+    /// Returns the error that a share (0 to 1) of all errors do not exceed, in metres; `None` without errors.
     #[must_use]
     pub fn quantile(&self, share: f32) -> Option<f32> {
         let last = self.0.len().checked_sub(1)?;
@@ -48,14 +48,14 @@ impl Errors {
         Some(*error)
     }
 
-    /// Share (0 to 1) of them that are at most `error_m` metres; 0 without any.
+    /// Returns the share (0 to 1) of errors of at most `error_m` metres; 0 without errors.
     #[must_use]
     pub fn share_within(&self, error_m: f32) -> f32 {
         let within = self.0.iter().filter(|&&error| error <= error_m).count();
         within as f32 / self.0.len().max(1) as f32
     }
 
-    /// Median, 95th percentile and worst; `None` without any error.
+    /// Returns median, 95th percentile and maximum; `None` without errors.
     #[must_use]
     pub fn summary(&self) -> Option<Summary> {
         let cm = |share| self.quantile(share).map(|error| error * 100.0);
@@ -63,7 +63,7 @@ impl Errors {
     }
 }
 
-/// Median, 95th percentile and worst in centimetres with two decimals, in three columns of eight characters.
+/// Writes median, 95th percentile and maximum in centimetres with two decimals, in three columns of eight characters.
 impl fmt::Display for Errors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.summary() {

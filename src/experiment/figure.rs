@@ -1,15 +1,15 @@
-//! What every figure gives: a drawing, a table, a summary.
+//! The output of every figure: a drawing, a table, a summary.
 
 use crate::scene::Scene;
 
 /// An experiment that can be drawn and written as a table.
 pub trait Figure {
-    /// The drawing; its bounds are those of a page in metres.
+    /// Returns the drawing; its bounds are the page in metres.
     fn draw(&self) -> Scene;
 
-    /// All that was measured, as CSV with a header line; lengths in metres, forces in newtons, angles in degrees.
+    /// Returns all measurements, as CSV with a header line; lengths in metres, forces in newtons, angles in degrees.
     fn csv(&self) -> String;
 
-    /// What came out, in a few lines for people.
+    /// Returns the result in a few readable lines.
     fn summary(&self) -> String;
 }

@@ -1,4 +1,4 @@
-//! Contacts compared with the feet that made them.
+//! Compares contacts with the feet that caused them.
 
 use glam::Vec2;
 use smallvec::SmallVec;
@@ -8,25 +8,25 @@ use super::rig::Rig;
 use crate::sense::{Contact, ContactId};
 use crate::sim::Load;
 
-/// From which force on a foot counts as down, in newtons.
+/// Force above which a foot counts as down, in newtons.
 pub const DOWN_N: f32 = 10.0;
 
-/// What one foot truly does to the floor.
+/// True state of one foot on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Truth {
-    /// Where the shoe is: a foot that stands stays there.
+    /// Position of the shoe, which is constant while the foot stands.
     position: Vec2,
-    /// Where the force that the floor carries acts.
+    /// Centre of the force that the floor carries.
     pub(super) centre: Vec2,
-    /// How much of it the floor carries, in newtons.
+    /// Force that the floor carries, in newtons.
     pub(super) force: f32,
 }
 
 impl Truth {
-    /// What the floor carries of `load`; `None` if nothing.
+    /// Computes the part of `load` on the floor; `None` if there is none.
     ///
-    /// For a foot that is wholly on a level floor this is its centre of pressure; of one that
-    /// hangs over the floor's edge, only what is on the floor can be known.
+    /// For a foot entirely on a level floor this is its centre of pressure. For a foot over the floor's edge, sensors
+    /// can only measure the part on the floor.
     pub(super) fn of(load: &Load, rig: &Rig) -> Option<Self> {
         let parts = rig.carried(load);
         let force: f32 = parts.iter().map(|part| part.force.0).sum();
@@ -39,39 +39,39 @@ impl Truth {
     }
 }
 
-/// How well contacts have followed feet.
+/// Accuracy of contacts compared with feet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Followed {
-    /// Error of each foot that is down at the same time as another one, where it was found.
+    /// Error of each found foot while two or more are down.
     pub two_feet: Errors,
-    /// Error of each foot that is down alone.
+    /// Error of each found foot while it is down alone.
     pub one_foot: Errors,
-    /// Feet of `one_foot` and of `two_feet` that were within the 95 % ellipse of their contacts.
+    /// Number of feet of `one_foot` and of `two_feet` inside the 95 % ellipse of their contacts.
     pub inside: [usize; 2],
-    /// Feet searched for, one per foot that was down and sample.
+    /// Number of feet to find: one for each foot that is down in a sample.
     pub feet: usize,
-    /// Those of them for which there was no contact within a shoe's length.
+    /// Number of feet without a contact within a shoe's length.
     pub missed: usize,
-    /// Feet searched for while two were down, and those of them found within 5 cm.
+    /// Number of feet to find while two or more were down.
     pub of_two: usize,
-    /// Feet found within 5 cm while two were down.
+    /// Number of feet found within 5 cm while two or more were down.
     pub of_two_within_5cm: usize,
-    /// Samples with two feet down or more.
+    /// Number of samples with two or more feet down.
     pub several: usize,
-    /// Samples with two feet down or more in which every one was found within 5 cm.
+    /// Number of samples with two or more feet down in which every foot was found within 5 cm.
     pub several_within_5cm: usize,
-    /// Feet of `one_foot` whose contact was marked ambiguous.
+    /// Number of feet of `one_foot` with an ambiguous contact.
     pub one_foot_ambiguous: usize,
-    /// Contacts that no foot had made.
+    /// Number of contacts without a foot.
     pub extra: usize,
-    /// Times that a foot was put down.
+    /// Number of touchdowns.
     pub steps: usize,
-    /// Times that a foot went on under another name while it was down.
+    /// Number of identity changes of a foot while it was down.
     pub swaps: usize,
 }
 
 impl Followed {
-    /// Adds all of another comparison.
+    /// Adds the counts of another comparison.
     pub fn append(&mut self, other: Self) {
         let Self {
             two_feet,
@@ -103,43 +103,45 @@ impl Followed {
         self.swaps += swaps;
     }
 
-    /// Share (0 to 1) of the feet that were found within 5 cm while two were down; a missed foot counts as not found.
+    /// Returns the share (0 to 1) of feet found within 5 cm while two or more were down; a missed foot counts as not
+    /// found.
     #[must_use]
     pub fn share_within_5cm(&self) -> f32 {
         share(self.of_two_within_5cm, self.of_two)
     }
 
-    /// Share (0 to 1) of the samples with several feet down in which all were found within 5 cm.
+    /// Returns the share (0 to 1) of samples with several feet down in which all were found within 5 cm.
     #[must_use]
     pub fn share_all_within_5cm(&self) -> f32 {
         share(self.several_within_5cm, self.several)
     }
 
-    /// Share (0 to 1) of the time of a foot alone in which its contact was marked ambiguous.
+    /// Returns the share (0 to 1) of the time of a foot alone in which its contact was ambiguous.
     #[must_use]
     pub fn share_ambiguous(&self) -> f32 {
         share(self.one_foot_ambiguous, self.one_foot.count())
     }
 
-    /// Share (0 to 1) of the feet for which there was no contact.
+    /// Returns the share (0 to 1) of feet without a contact.
     #[must_use]
     pub fn share_missed(&self) -> f32 {
         share(self.missed, self.feet)
     }
 
-    /// Contacts that no foot had made, as a share of the feet.
+    /// Returns the number of contacts without a foot, as a share of the feet.
     #[must_use]
     pub fn share_extra(&self) -> f32 {
         share(self.extra, self.feet)
     }
 
-    /// Share (0 to 1) of the feet that were within the 95 % ellipse of their contacts, alone and while two were down.
+    /// Returns the shares (0 to 1) of feet inside the 95 % ellipse of their contacts: of a foot alone, and while two
+    /// or more were down.
     #[must_use]
     pub fn share_inside(&self) -> [f32; 2] {
         [share(self.inside[0], self.one_foot.count()), share(self.inside[1], self.two_feet.count())]
     }
 
-    /// Changes of name per 1000 steps; `None` without a step.
+    /// Returns the number of identity changes per 1000 steps; `None` without a step.
     #[must_use]
     pub fn swaps_per_1000_steps(&self) -> Option<f32> {
         (self.steps > 0).then(|| 1000.0 * share(self.swaps, self.steps))
@@ -150,19 +152,19 @@ fn share(part: usize, whole: usize) -> f32 {
     part as f32 / whole.max(1) as f32
 }
 
-/// Follows feet and their contacts from frame to frame.
+/// Matches feet and their contacts from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Follower {
-    /// The feet that were down in the last frame, with the name each had.
+    /// The feet that were down in the last frame, each with the identity of its contact.
     down: SmallVec<[(Truth, Option<ContactId>); 4]>,
 }
 
-/// No foot that is down moves further in a millisecond, in metres.
+/// Maximum distance that a foot moves in a millisecond while it is down (m).
 const SAME_FOOT_M: f32 = 0.02;
 
 impl Follower {
-    /// Compares one frame's contacts with its feet. Names are compared in every frame; errors
-    /// and missing feet are counted where `sampled`.
+    /// Compares one frame's contacts with its feet. Identities are compared in every frame; errors and missed feet
+    /// count only if `sampled`.
     pub(super) fn compare(
         &mut self,
         feet: &[Truth],
@@ -181,7 +183,7 @@ impl Follower {
             let named = before.and_then(|(_, name)| *name);
             score.steps += usize::from(before.is_none());
             score.swaps += usize::from(named.is_some() && name.is_some() && named != name);
-            // A foot lost for a moment is remembered by its last name.
+            // A briefly lost foot keeps its last identity.
             (*foot, name.or(named))
         });
         self.down = now.collect();
@@ -196,7 +198,7 @@ fn count(
     score: &mut Followed,
 ) {
     let heavy = contacts.iter().filter(|contact| contact.force.0 > DOWN_N).count();
-    // A foot that is just landing or leaving is searched for no more, but its contact is not an extra one.
+    // A foot that is landing or lifting need not be found, but its contact does not count as extra.
     score.extra += heavy.saturating_sub(feet.len());
     score.feet += down.len();
     let mut all_near = true;
@@ -225,19 +227,19 @@ fn count(
     }
 }
 
-/// A place further off than this is wrong, in metres.
+/// Maximum error of a correct position (m).
 const NEAR_M: f32 = 0.05;
 
 /// The 95 % quantile of chi-squared with two degrees of freedom.
 pub(super) const ELLIPSE_95: f32 = 5.991;
 
-/// Most contacts that feet are searched for among, heaviest first: beyond it the search grows out of hand.
+/// Maximum number of contacts in the search, heaviest first: the time of the search grows exponentially.
 const MOST_CONTACTS: usize = 6;
 
-/// A contact farther than this from where a foot's force acts is not that foot's, in metres: a shoe's length.
+/// Maximum distance between a foot's centre of pressure and its contact (m): a shoe's length.
 const FOUND_M: f32 = 0.33;
 
-/// For each foot the place of its contact: as many pairs within [`FOUND_M`] as there can be, with the least total
+/// For each foot the index of its contact: as many pairs within [`FOUND_M`] as possible, with the least total
 /// distance.
 fn pair(feet: &[Truth], contacts: &[Contact]) -> SmallVec<[Option<usize>; 4]> {
     let mut places: SmallVec<[usize; 8]> = (0..contacts.len()).collect();
@@ -282,7 +284,7 @@ impl Search<'_> {
                 free.swap(place, last);
             }
         }
-        // A foot that goes without costs more than all that could be found.
+        // An unmatched foot costs more than the sum of all possible distances.
         let further = distance + FOUND_M * self.feet.len() as f32;
         if further < self.least {
             self.chosen.push(None);
@@ -320,7 +322,7 @@ mod tests {
 
     #[test]
     fn feet_get_the_contacts_that_make_the_least_total_distance() {
-        // The contact at 0.3 is nearest to both feet; the total decides.
+        // The contact at 0.3 is the nearest one of both feet; the total distance decides.
         let feet = [foot(0.2, 300.0), foot(0.35, 300.0)];
         let contacts = [contact(7, 0.3, 300.0), contact(8, 0.5, 300.0), contact(9, 0.1, 300.0)];
         let found = pair(&feet, &contacts);

@@ -2,18 +2,18 @@
 
 use serde::Serialize;
 
-/// How well a sample fits what it should come from.
+/// Goodness of fit of a sample to its expected distribution.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Goodness {
     /// The test's statistic.
     pub statistic: f64,
-    /// Chance of a statistic as large as this if the sample does come from there.
+    /// Probability of a statistic at least as large if the sample does come from the distribution.
     pub p: f64,
 }
 
 impl Goodness {
-    /// The test of Kolmogorov and Smirnov for `shares`, the distribution function at each value of the
-    /// sample; uniform between 0 and 1 if the sample fits. Sorts them.
+    /// The test of Kolmogorov and Smirnov for `shares`, the distribution function at each value of the sample, which
+    /// is uniform between 0 and 1 if the sample fits. Sorts `shares`.
     ///
     /// # Source
     /// The asymptotic distribution of sqrt(n) D with Stephens' correction for finite n.
@@ -25,18 +25,18 @@ impl Goodness {
             |(index, share): (usize, &f64)| (share - index as f64 / n).max((index + 1) as f64 / n - share);
         let statistic = shares.iter().enumerate().map(apart).fold(0.0, f64::max);
         let scaled = (n.sqrt() + 0.12 + 0.11 / n.sqrt()) * statistic;
-        // The alternating series converges at once but for tiny arguments, where p is 1.
+        // The alternating series converges at once except for tiny arguments, where p is 1.
         let term =
             |k: i32| f64::from(1 - 2 * ((k + 1) % 2)) * (-2.0 * f64::from(k * k) * scaled * scaled).exp();
         let p = if scaled < 0.3 { 1.0 } else { (2.0 * (1..=40).map(term).sum::<f64>()).clamp(0.0, 1.0) };
         Self { statistic, p }
     }
 
-    /// The chi-squared test of counts against what they should be on average, `fixed` numbers of which
-    /// were taken from the sample itself (one: the total).
+    /// The chi-squared test of counts against their expected means; `fixed` is the number of parameters taken from
+    /// the sample itself (one: the total).
     ///
     /// # Source
-    /// Wilson and Hilferty 1931: the cube root of chi-squared over its degrees of freedom is all but normal.
+    /// Wilson and Hilferty 1931: the cube root of chi-squared over its degrees of freedom is nearly normal.
     #[must_use]
     pub fn chi_squared(counts: &[u64], expected: &[f64], fixed: usize) -> Self {
         let pairs = counts.iter().zip(expected);
@@ -100,7 +100,7 @@ mod tests {
             let mut skewed: Vec<f64> = even.iter().map(|share| share.powf(1.3)).collect();
             assert!(Goodness::kolmogorov_smirnov(&mut skewed).p < 0.05);
         }
-        // Themselves even: that is what a p value is.
+        // The p values of fitting samples are themselves uniform.
         assert!(Goodness::kolmogorov_smirnov(&mut ps).p > 0.01);
         // The table's 5 % points: 16.92 for nine degrees of freedom.
         let counts = [200 + 58, 200, 200, 200, 200, 200, 200, 200, 200, 200 - 1];

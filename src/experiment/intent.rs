@@ -1,5 +1,5 @@
-//! Whether controls do what feet meant: false activations of people who walk over them, and missed
-//! and wrong presses of people who use them.
+//! Intended and unintended actions of controls: false activations by people who walk over them, and missed and wrong
+//! presses by people who use them.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -21,28 +21,28 @@ use crate::sim::{FloorQuality, Load};
 use crate::units::Instant;
 use crate::widget::{Behaviour, Confirm, EventKind, Guard, HoldToRun, WidgetEvent};
 
-/// From which force on a foot counts as put down, in newtons.
+/// Force above which a foot counts as down (N).
 const DOWN_N: f32 = 20.0;
 
-/// How long the floor is empty between two acts.
+/// Time that the floor is empty between two acts (ms).
 const PAUSE_MS: u32 = 300;
 
-/// How often people cross in a row, and how often they press before they leave.
+/// Number of crossings in a row, and number of presses before a person leaves.
 const CROSSINGS: usize = 6;
 const PRESSES: usize = 12;
 
-/// What of each kind and guard was done, wanted and not.
+/// Counts of intended and unintended actions, for one kind of control and guard.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct IntentScore {
-    /// Times that people wanted something of a control.
+    /// Number of intended presses.
     pub intended: u64,
-    /// Those of them of which nothing came.
+    /// Number of intended presses without an effect.
     pub missed: u64,
-    /// Those of them that made another control act, or made it act twice.
+    /// Number of intended presses that made another control act, or the same one act twice.
     pub wrong: u64,
-    /// Times that a control acted although nobody had wanted anything of any.
+    /// Number of actions of a control without an intended press.
     pub false_activations: u64,
-    /// Presses that nobody had wanted and that were taken back before they did anything.
+    /// Number of unintended presses that were cancelled before they had an effect.
     pub taken_back: u64,
 }
 
@@ -57,7 +57,7 @@ impl IntentScore {
     }
 }
 
-/// What a layout's controls are guarded with.
+/// Guard of a layout's controls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Guarded {
@@ -70,7 +70,7 @@ pub enum Guarded {
 }
 
 impl Guarded {
-    /// All of them, in the order of the table.
+    /// All guards, in the order of the table.
     pub const ALL: [Self; 3] = [Self::Free, Self::Confirm, Self::HoldToRun];
 
     const fn name(self) -> &'static str {
@@ -89,7 +89,7 @@ impl Guarded {
         }
     }
 
-    /// `layout` with its buttons (and, for Confirm, its switches) guarded so; thresholds stay.
+    /// Returns `layout` with this guard on its buttons (for Confirm, also on its switches); thresholds stay the same.
     fn put_on(self, layout: &Layout) -> Layout {
         let mut layout = layout.clone();
         let guard = match self {
@@ -105,7 +105,7 @@ impl Guarded {
                 Behaviour::Button(button) => {
                     button.thresholds.guard = guard;
                     if self == Self::Confirm {
-                        // As in a layout: two presses are what the guard takes.
+                        // As in a real layout: a confirmation already takes two presses.
                         button.gestures.double_tap = None;
                     }
                 }
@@ -117,52 +117,51 @@ impl Guarded {
     }
 }
 
-/// How controls of shipped layouts did, by kind and guard.
+/// Results of the controls of shipped layouts, by kind and guard.
 ///
-/// Each layout is tried as it is shipped, with its buttons and switches guarded
-/// by `Confirm`, and with its buttons guarded by `HoldToRun`, all with the
-/// thresholds they are shipped with. Crossings are the same for all three; uses
-/// are each guard's own. What counts as acting: a button's click, a switch that
-/// turns over, and the press of anything that follows the foot or acts while held.
+/// Each layout is tried with its own guards, with its buttons and switches guarded by `Confirm`, and with its buttons
+/// guarded by `HoldToRun`, all with their own thresholds. The crossings are the same for all three; the uses differ
+/// for each guard. These events count as actions: a button's click, a switch's change, and the press of any control
+/// that follows the foot or acts while held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IntentTable {
     floor: FloorQuality,
     scores: BTreeMap<(String, Guarded), IntentScore>,
-    /// Steps on floors on which each guard was tried.
+    /// Number of steps on floors with each guard.
     steps: [u64; 3],
     people: u64,
 }
 
-/// People on the paper's floor.
+/// A table for the paper's floor.
 impl Default for IntentTable {
     fn default() -> Self {
         Self::on(FloorQuality::Paper)
     }
 }
 
-/// How much one person does.
+/// Amount of activity of one person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IntentEffort {
-    /// Steps over the layout.
+    /// Number of steps over the layout.
     pub steps: u64,
-    /// Presses that are meant.
+    /// Number of intended presses.
     pub presses: u64,
 }
 
 impl IntentTable {
-    /// An empty table of people on floors of this quality; on those that err as real floors do
-    /// ([`FloorQuality::REAL`]), feet roll as those of recorded people do.
+    /// Creates an empty table for floors of this quality. On floors with real errors ([`FloorQuality::REAL`]), feet
+    /// roll like those of recorded people.
     #[must_use]
     pub fn on(floor: FloorQuality) -> Self {
         Self { floor, scores: BTreeMap::new(), steps: [0; 3], people: 0 }
     }
 
-    /// Lets the person that follows from `seed` cross and use one of the shipped layouts on a floor
-    /// whose parts follow from it too; `number` says which layout, and at which speed the person walks.
+    /// Simulates the person drawn from `seed` crossing and using one of the shipped layouts, on a floor with parts
+    /// drawn from `seed` too; `number` selects the layout and the person's walking speed.
     ///
     /// # Errors
-    /// Those of [`Rig::of_quality`]; [`ExperimentError::Layout`] and [`ExperimentError::Move`],
-    /// which no seed should bring about.
+    /// Errors of [`Rig::of_quality`]; [`ExperimentError::Layout`] and [`ExperimentError::Move`], which no seed should
+    /// cause.
     pub fn add_person(
         &mut self,
         seed: u64,
@@ -190,7 +189,7 @@ impl IntentTable {
         }
         for (guard, mut trial) in Guarded::ALL.into_iter().zip(trials) {
             let mut pressed = 0;
-            // A third of the presses to each guard.
+            // A third of the presses for each guard.
             while pressed < effort.presses.div_ceil(3) {
                 let page = trial.engine.layout().clone();
                 let wanted = |widget: &Widget| {
@@ -226,13 +225,13 @@ impl IntentTable {
         self.people += other.people;
     }
 
-    /// Steps that were taken in the presence of controls with this guard.
+    /// Returns the number of steps on floors with this guard.
     #[must_use]
     pub fn steps(&self, guard: Guarded) -> u64 {
         self.steps[guard as usize]
     }
 
-    /// All kinds with one guard together.
+    /// Returns the sum over all kinds with one guard.
     #[must_use]
     pub fn whole(&self, guard: Guarded) -> IntentScore {
         let mut whole = IntentScore::default();
@@ -240,7 +239,7 @@ impl IntentTable {
         whole
     }
 
-    /// All lines, for programs: each kind and guard, then all kinds of each guard.
+    /// Returns all lines, for programs: each kind and guard, then all kinds of each guard.
     pub fn lines(&self) -> impl Iterator<Item = IntentLine> + '_ {
         let kinds = self.scores.iter().map(|((kind, guard), score)| (kind.clone(), *guard, *score));
         let wholes = Guarded::ALL.into_iter().map(|guard| ("all".to_owned(), guard, self.whole(guard)));
@@ -252,7 +251,7 @@ impl IntentTable {
         })
     }
 
-    /// All lines as CSV with a header line.
+    /// Returns all lines as CSV with a header line.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut text = String::from(
@@ -265,7 +264,7 @@ impl IntentTable {
                 let (low, high) = counted.wilson_95();
                 format!("{:.3},{:.3},{:.3}", 1e3 * counted.share(), 1e3 * low, 1e3 * high)
             });
-            // Writing to a string cannot fail.
+            // Writing to a string does not fail.
             let _ = writeln!(
                 text,
                 "{kind},{},{steps},{},{},{falsely},{},{},{missed},{},{wrong}",
@@ -286,29 +285,29 @@ impl IntentTable {
 pub struct IntentLine {
     /// Name of the kind of control, or `all`.
     pub kind: String,
-    /// What it was guarded with.
+    /// Guard of the control.
     pub guard: Guarded,
-    /// Steps in its presence.
+    /// Number of steps on floors with this guard.
     pub steps: u64,
-    /// What came of them and of the presses that were meant.
+    /// Results of these steps and of the intended presses.
     #[serde(flatten)]
     pub score: IntentScore,
 }
 
 impl IntentLine {
-    /// False activations of all steps.
+    /// Returns the number of false activations out of all steps.
     #[must_use]
     pub fn falsely(&self) -> Counted {
         Counted { hits: self.score.false_activations, of: self.steps }
     }
 
-    /// Missed presses of all that were meant.
+    /// Returns the number of missed presses out of all intended ones.
     #[must_use]
     pub fn missed(&self) -> Counted {
         Counted { hits: self.score.missed, of: self.score.intended }
     }
 
-    /// Wrong controls of all presses that were meant.
+    /// Returns the number of wrong presses out of all intended ones.
     #[must_use]
     pub fn wrong(&self) -> Counted {
         Counted { hits: self.score.wrong, of: self.score.intended }
@@ -349,17 +348,17 @@ impl fmt::Display for IntentTable {
     }
 }
 
-/// An engine, and what came of what people did to it.
+/// An engine, and the scores of the people's actions on it.
 #[derive(Debug)]
 pub(super) struct Trial {
     pub(super) engine: Engine,
     pub(super) scores: BTreeMap<(String, Guarded), IntentScore>,
     pub(super) steps: u64,
-    /// Which controls are watched.
+    /// Guard of the controls that count.
     guard: Guarded,
-    /// How often each intention of the present act came true.
+    /// Number of actions of each intended press in the current act.
     done: Vec<u32>,
-    /// Presses nobody wanted that have not ended, by control.
+    /// Unintended presses that have not ended, by control.
     unwanted: Vec<usize>,
 }
 
@@ -368,7 +367,7 @@ impl Trial {
         Self { engine, scores: BTreeMap::new(), steps: 0, guard, done: Vec::new(), unwanted: Vec::new() }
     }
 
-    /// All kinds together.
+    /// Sum over all kinds.
     pub(super) fn whole(&self) -> IntentScore {
         let mut whole = IntentScore::default();
         self.scores.values().for_each(|score| whole.add(score));
@@ -418,12 +417,12 @@ impl Trial {
     }
 }
 
-/// Whether people stand on it, rather than press it.
+/// True if people stand on the control instead of pressing it.
 fn is_stood_upon(widget: &Widget) -> bool {
     matches!(widget.behaviour, Behaviour::Lean(_))
 }
 
-/// Whether a control of this kind has acted.
+/// True if an event of this kind counts as an action of the control.
 fn acts(kind: EventKind, widget: &Widget) -> bool {
     let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
     match widget.behaviour {
@@ -434,7 +433,7 @@ fn acts(kind: EventKind, widget: &Widget) -> bool {
     }
 }
 
-/// A floor and what is sensed of it, once for all that is tried on it.
+/// A floor and its sensing, shared by all trials on it.
 #[derive(Debug)]
 pub(super) struct Stage {
     rig: Rig,
@@ -455,7 +454,7 @@ impl Stage {
         *self.rig.geometry()
     }
 
-    /// Plays an act to every trial at once, and counts its steps: all feet put down that pressed nothing on purpose.
+    /// Plays an act to every trial at once, and returns the number of steps: touchdowns outside intended presses.
     pub(super) fn play(&mut self, act: &Act, trials: &mut [Trial]) -> u64 {
         let bounds = self.geometry().bounds();
         for trial in trials.iter_mut() {
@@ -470,7 +469,7 @@ impl Stage {
             if milli <= length {
                 act.script.loads_at(Instant::START + since, &mut loads);
             }
-            // Nothing becomes of a floor that stays empty.
+            // A floor that stays empty produces no more events.
             empty_ms = if loads.is_empty() { empty_ms + 1 } else { 0 };
             if empty_ms > PAUSE_MS {
                 continue;
@@ -496,13 +495,13 @@ impl Stage {
     }
 }
 
-/// The shipped layouts that somebody can mean to press.
+/// The shipped layouts with controls to press.
 fn layouts_with_controls() -> impl Iterator<Item = &'static str> {
     let has_controls = |name: &&str| builtin_layout(name).is_some_and(|text| text.contains("widgets:"));
     builtin_layouts().filter(has_controls)
 }
 
-/// One of them, round and round.
+/// Returns one of them, in a cycle.
 fn shipped(number: usize, geometry: &Geometry) -> Result<Layout, ExperimentError> {
     let count = layouts_with_controls().count().max(1);
     let name = layouts_with_controls().nth(number % count).unwrap_or_default();

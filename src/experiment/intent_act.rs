@@ -1,4 +1,4 @@
-//! What people do in front of a layout: cross it, and use it.
+//! Acts of people in front of a layout: crossing it, and using it.
 
 use std::f32::consts::{PI, TAU};
 use std::time::Duration;
@@ -21,64 +21,65 @@ use crate::widget::{Behaviour, Guard};
 /// Adults' slow, comfortable and fast walking (Bohannon 1997: 0.8 at the slow end of the old, 1.3, 1.7 and more).
 pub(super) const SPEEDS_M_S: [f32; 3] = [0.8, 1.2, 1.6];
 
-/// Scatter of the point that is pressed about the one aimed at, in metres each way (our assumption:
-/// feet hit targets of 10 to 12 cm nearly always and those of 5 cm often not, Saunders and Vogel 2015).
+/// Standard deviation of the pressed point about the aimed one, in metres along each axis (our assumption: feet hit
+/// targets of 10 to 12 cm nearly always and often miss targets of 5 cm, Saunders and Vogel 2015).
 const AIM_M: f32 = 0.02;
 
-/// People press with about twice what a control takes, give or take a quarter (our assumption), but
-/// with no more than half of their weight: beyond that the other foot no longer carries them.
+/// Mean press force as a multiple of the control's threshold, and standard deviation of its logarithm (our
+/// assumption). The force is limited to half of the weight: beyond that the other foot no longer carries the person.
 const FORCE_OVER_PRESS: f32 = 2.0;
 const FORCE_SCATTER: f32 = 0.3;
 
-/// Who feels no click presses on: nobody stays below this much of what the control takes.
+/// Minimum press force as a multiple of the threshold: a person who feels no click presses harder.
 const FORCE_AT_LEAST: f32 = 1.2;
 
 const MOST_OF_WEIGHT: f32 = 0.5;
 
-/// From the middle of a shoe to its side, and a little more, in metres.
+/// Distance from the centre of a shoe to its side, plus a margin (m).
 const HALF_SHOE_M: f32 = 0.07;
 
-/// How near to a control people stand who did not reach it from where they stood, in metres.
+/// Distance at which people stand from a control after they could not reach it (m).
 const NEAR_M: f32 = 0.60;
 
-/// How far beyond the floor people come from, in metres: no part of a foot is on it there.
+/// Distance beyond the floor at which people start (m): no part of a foot is on the floor there.
 const BEYOND_M: f32 = 0.45;
 
-/// Somebody who wants something of a control, and when.
+/// An intended press of a control, with its time span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Intended {
-    /// Which control.
+    /// Index of the control.
     pub(super) widget: usize,
-    /// From the first move towards it.
+    /// Start of the first move towards the control.
     pub(super) from: Duration,
-    /// To a moment after the last foot has left it.
+    /// A moment after the last foot has left the control.
     pub(super) to: Duration,
 }
 
-/// A stretch of a person's life.
+/// One act of a person: a script, and the intended presses in it.
 #[derive(Clone, Debug)]
 pub(super) struct Act {
     pub(super) script: Script,
     pub(super) intended: Vec<Intended>,
 }
 
-/// How long after a press what comes of it may still be told; besides the time in which a tap may become a double tap.
+/// Time after a press in which its events still count, in addition to the time in which a tap may become a double
+/// tap.
 const AFTER: Duration = Duration::from_millis(120);
 
-/// Somebody made up from a seed.
+/// A person drawn from a seed.
 #[derive(Debug)]
 pub(super) struct Somebody {
     person: Person,
     rng: Pcg64Mcg,
     bounds: Rect,
-    /// Whether their feet roll as those of recorded people do, and from which seed.
+    /// Seed of the rolling pattern of recorded people; `None` for the even roll.
     rolling: Option<u64>,
     seed: u64,
 }
 
 impl Somebody {
-    /// A person of 45 to 120 kg in shoes over feet of 22 to 30 cm, on a floor with these bounds;
-    /// `number` says who of three walks at which speed.
+    /// Draws a person of 45 to 120 kg in shoes on feet of 22 to 30 cm, on a floor with these bounds; `number` selects
+    /// one of three walking speeds.
     pub(super) fn of(seed: u64, number: usize, bounds: Rect) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x1274_e475);
         let person = Person {
@@ -93,13 +94,13 @@ impl Somebody {
         Self { person, rng, bounds, rolling: None, seed }
     }
 
-    /// The same person, with feet that roll as those of recorded people do, or evenly.
+    /// The same person, with feet that roll like those of recorded people, or evenly.
     pub(super) fn rolling(mut self, as_people_do: bool) -> Self {
         self.rolling = as_people_do.then_some(self.seed);
         self
     }
 
-    /// Themselves, not there yet.
+    /// A performance of the person, before the person appears.
     fn performance(&mut self) -> Performance {
         let performance = Performance::new(self.person, self.rng.random());
         match self.rolling {
@@ -108,7 +109,8 @@ impl Somebody {
         }
     }
 
-    /// Crosses the floor over a point of `area`: straight on, with a stop, turning there or stepping aside.
+    /// Crosses the floor over a point of `area`: straight on, or with a stop, perhaps with a turn or a sidestep
+    /// there.
     pub(super) fn cross(&mut self, area: Rect) -> Result<Act, ExperimentError> {
         let through = area.min + area.size() * self.pair(0.0, 1.0);
         let way = self.rng.random_range(0.0..TAU);
@@ -137,7 +139,7 @@ impl Somebody {
 
     /// Comes to the layout's stance zone, uses controls `times` times, and leaves.
     ///
-    /// Only controls that `wanted` says so are used.
+    /// Uses only controls for which `wanted` is true.
     pub(super) fn make_use(
         &mut self,
         layout: &Layout,
@@ -170,7 +172,7 @@ impl Somebody {
         Ok(Act { script: Script::new(vec![user], self.bounds), intended })
     }
 
-    /// Does what the control's guard takes for it to act once.
+    /// Does the presses that the control's guard needs to act once.
     fn operate(&mut self, user: &mut Performance, widget: &Widget) -> Result<(), ExperimentError> {
         match widget.behaviour.thresholds().guard {
             Guard::Free => self.press(user, widget, (80, 350), None)?,
@@ -183,8 +185,8 @@ impl Somebody {
         Ok(())
     }
 
-    /// Presses once for some milliseconds and gives back where. Who does not reach it moves, unless
-    /// it has been reached `before`.
+    /// Presses once for some milliseconds and returns the pressed point. If the point is out of reach or under the
+    /// other foot, presses the point `before`, or, without one, moves first.
     fn press(
         &mut self,
         user: &mut Performance,
@@ -209,10 +211,10 @@ impl Somebody {
         let again = match before {
             Some(before) => before,
             None => {
-                // Stands before the control then, and near enough to it.
+                // Stand in front of the control then, and near enough to it.
                 let place = user.place().unwrap_or_default();
                 let nearer = place.y.max(aim.y - NEAR_M);
-                // With both feet on it: nobody stands over the edge of a floor.
+                // Keep both feet on the floor: people do not stand over its edge.
                 let edge = 0.5 * self.person.stand_width_m + HALF_SHOE_M;
                 let beside =
                     (aim.x + 0.05 * self.sign()).clamp(self.bounds.min.x + edge, self.bounds.max.x - edge);
@@ -225,7 +227,7 @@ impl Somebody {
         Ok(again)
     }
 
-    /// Where somebody who goes from `point` in the direction `way` has left the floor.
+    /// Place outside the floor on the line from `point` in the direction `way`.
     fn beyond(&self, point: Vec2, way: f32) -> Vec2 {
         let outer = self.bounds.grown(BEYOND_M);
         let direction = Vec2::from_angle(way);
@@ -262,7 +264,7 @@ impl Somebody {
     }
 }
 
-/// Where people stand to use `layout`; in the middle of the south where it does not say.
+/// Place where people stand to use `layout`; at the middle of the south side if it has no stance zone.
 fn stance(layout: &Layout, bounds: Rect) -> Vec2 {
     layout
         .stances
@@ -270,7 +272,7 @@ fn stance(layout: &Layout, bounds: Rect) -> Vec2 {
         .map_or(Vec2::new(bounds.centre().x, bounds.min.y + 0.15), |stance| stance.area.centre())
 }
 
-/// How long a click waits for a second tap.
+/// Time in which a click waits for a second tap.
 fn double_tap(widget: &Widget) -> Duration {
     match &widget.behaviour {
         Behaviour::Button(button) => button.gestures.double_tap.unwrap_or_default(),

@@ -17,38 +17,38 @@ use crate::scene::{Ink, Scene, Stroke};
 use crate::schema::{Kinds, parse_layout};
 use crate::sim::FloorQuality;
 
-/// Sides of the buttons, in centimetres, and their press thresholds, in newtons.
+/// Sides of the buttons in centimetres, and their press thresholds in newtons.
 const SIZES_CM: [f32; 5] = [8.0, 12.0, 16.0, 20.0, 24.0];
 const PRESS_N: [f32; 5] = [25.0, 40.0, 60.0, 90.0, 120.0];
 
 /// Release thresholds as a share of the press thresholds.
 const RELEASE: f32 = 0.67;
 
-/// Presses in a row, and crossings.
+/// Number of presses in a row, and of crossings.
 const PRESSES: usize = 10;
 const CROSSINGS: usize = 6;
 
-/// What buttons of one size and threshold did.
+/// Results of the buttons of one size and threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SweepCell {
     /// Side of the buttons, in centimetres.
     pub size_cm: f32,
     /// Their press threshold, in newtons.
     pub press_n: f32,
-    /// False activations of all steps over the row.
+    /// Number of false activations out of all steps over the row.
     pub falsely: Counted,
-    /// Missed presses of all that were meant.
+    /// Number of missed presses out of all intended ones.
     pub missed: Counted,
 }
 
-/// Rows of four unguarded buttons in 25 sizes and thresholds, crossed by the same people and used by them.
+/// Rows of four unguarded buttons in 25 combinations of size and threshold, crossed and used by the same people.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IntentSweep {
     floor: FloorQuality,
     cells: Vec<SweepCell>,
 }
 
-/// People on the paper's floor.
+/// A sweep on the paper's floor.
 impl Default for IntentSweep {
     fn default() -> Self {
         Self::on(FloorQuality::Paper)
@@ -56,8 +56,8 @@ impl Default for IntentSweep {
 }
 
 impl IntentSweep {
-    /// An empty sweep of people on floors of this quality; on those that err as real floors do
-    /// ([`FloorQuality::REAL`]), feet roll as those of recorded people do.
+    /// Creates an empty sweep for floors of this quality. On floors with real errors ([`FloorQuality::REAL`]), feet
+    /// roll like those of recorded people.
     #[must_use]
     pub fn on(floor: FloorQuality) -> Self {
         let each = |size_cm| {
@@ -73,11 +73,11 @@ impl IntentSweep {
 }
 
 impl IntentSweep {
-    /// Lets the person that follows from `seed` cross every row, and use one size and threshold in
-    /// five, which `number` says, so often altogether.
+    /// Simulates the person drawn from `seed` crossing every row with the steps of `effort`, and sharing its presses
+    /// among every fifth combination of size and threshold; `number` selects them.
     ///
     /// # Errors
-    /// As [`super::IntentTable::add_person`].
+    /// The same as [`super::IntentTable::add_person`].
     pub fn add_person(
         &mut self,
         seed: u64,
@@ -125,7 +125,7 @@ impl IntentSweep {
         }
     }
 
-    /// All sizes and thresholds, the smallest size and lightest threshold first.
+    /// Returns all combinations, the smallest size and lightest threshold first.
     #[must_use]
     pub fn cells(&self) -> &[SweepCell] {
         &self.cells
@@ -140,7 +140,7 @@ fn layout(cell: &SweepCell, geometry: &Geometry) -> Result<Layout, ExperimentErr
     );
     for (number, x) in (1..).zip([1.5, 2.5, 3.5, 4.5]) {
         let (x, y) = (x - 0.5 * side, 2.6 - 0.5 * side);
-        // Writing to a string cannot fail.
+        // Writing to a string does not fail.
         let _ = write!(
             text,
             "(id: \"b{number}\", kind: \"button\", at: ({x:.4}, {y:.4}), size: ({side:.4}, {side:.4}),
@@ -152,7 +152,7 @@ fn layout(cell: &SweepCell, geometry: &Geometry) -> Result<Layout, ExperimentErr
     loaded.map(|loaded| loaded.layout).map_err(|problems| ExperimentError::Layout(problems.to_string()))
 }
 
-/// What one of the two plots shows.
+/// The quantity in one of the two plots.
 type Measure = fn(&SweepCell) -> Counted;
 
 const SIDE_M: Vec2 = Vec2::new(0.082, 0.075);
@@ -195,7 +195,7 @@ impl Figure for IntentSweep {
                 let Counted { hits, of } = counted;
                 format!("{of},{hits},{:.3},{:.3},{:.3}", 1e3 * counted.share(), 1e3 * low, 1e3 * high)
             });
-            // Writing to a string cannot fail.
+            // Writing to a string does not fail.
             let _ = writeln!(csv, "{size_cm},{press_n},{falsely},{missed}");
         }
         csv
@@ -222,7 +222,7 @@ impl IntentSweep {
     fn plot(&self, page: &mut Page, area: Rect, title: &str, label: &'static str, measure: Measure) {
         let per_1000 = |cell: &SweepCell| 1e3 * measure(cell).share() as f32;
         let most = self.cells.iter().map(per_1000).fold(0.0, f32::max);
-        // Five steps of 1, 2, 5, 10, 20 ... with room above the highest line.
+        // Five steps of 1, 2, 5, 10, 20 ..., so that the axis reaches the highest line.
         let tick =
             [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0].into_iter().find(|tick| 5.0 * tick >= most);
         let tick = tick.unwrap_or(200.0);
@@ -238,7 +238,7 @@ impl IntentSweep {
     }
 }
 
-/// Darker for larger buttons.
+/// Larger buttons are darker.
 fn shade(which: usize) -> Colour {
     THEME.haptic.mix(THEME.ink, which as f32 / (SIZES_CM.len() - 1) as f32)
 }

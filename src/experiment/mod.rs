@@ -1,24 +1,23 @@
-//! The paper's figures and the accuracy of the sensing, measured on simulated floors.
+//! The paper's figures and the accuracy of sensing, measured on simulated floors.
 //!
-//! Each experiment puts known loads on a floor that was calibrated the way a
-//! laboratory does it, and compares what comes out with what went in. All of it
-//! is deterministic: the same seed gives the same figures.
+//! Each experiment puts known loads on a floor calibrated as in a laboratory, and compares the result with the true
+//! loads. All experiments are deterministic: the same seed gives the same figures.
 //!
-//! | experiment | asks | source |
+//! | experiment | subject | source |
 //! |---|---|---|
-//! | [`Orientation`] | what two tiles' centroids say about a contact's direction | paper, figure 7 |
-//! | [`TileScan`] | where a point load is found on one tile | paper, figure 8 |
-//! | [`SeamObject`] | what one tile makes of an object over its edge | paper, figure 9 |
-//! | [`TwoFeet`] | what two feet on four tiles look like, before and after they are told apart | paper, figure 11 |
-//! | [`SpotTable`], [`SeamTable`] | how well one contact is found, over a tile and at its seams | |
-//! | [`PlaceTable`] | how well one foot is found, by its force and its distance from a seam | |
-//! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
-//! | [`SceneTable`] | the same of everything that presses in fourteen scenes, on floors of several qualities | |
-//! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
-//! | [`EffectSheet`] | what an effect feels like: waveform, spectrum, figures | |
-//! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
-//! | [`PondLaws`] | whether the frozen pond's onsets, energies, fronts and turns follow its model | paper, section 4.1 |
-//! | [`PondWalk`] | how many cracks each manner of walking opens | |
+//! | [`Orientation`] | direction of a contact from the centroids of two tiles | paper, figure 7 |
+//! | [`TileScan`] | position of a point load on one tile | paper, figure 8 |
+//! | [`SeamObject`] | an object over a tile's edge, as measured by one tile | paper, figure 9 |
+//! | [`TwoFeet`] | two feet on four tiles, before and after their separation | paper, figure 11 |
+//! | [`SpotTable`], [`SeamTable`] | accuracy of one contact, over a tile and at its seams | |
+//! | [`PlaceTable`] | accuracy of one foot, by its force and its distance from a seam | |
+//! | [`PeopleTable`] | accuracy of both feet of walking, turning and standing people | |
+//! | [`SceneTable`] | accuracy of all contacts in fourteen scenes, on floors of several qualities | |
+//! | [`TapTable`] | influence of a heavy foot beside a region on the foot that works in it | |
+//! | [`EffectSheet`] | waveform, spectrum and figures of an effect | |
+//! | [`IntentTable`], [`IntentSweep`] | rates of false activations and of missed presses | |
+//! | [`PondLaws`] | onsets, energies, fronts and turns of the frozen pond, against its model | paper, section 4.1 |
+//! | [`PondWalk`] | number of cracks that each manner of walking opens | |
 //!
 //! ```
 //! use underfoot::experiment::PeopleTable;
@@ -75,5 +74,5 @@ pub use wilson::Counted;
 
 use crate::sense::Method;
 
-/// Both ways of making contacts, in the order of the tables, with the names they have there.
+/// Both contact methods, in the order of the tables, with their names in the tables.
 pub const METHODS: [(Method, &str); 2] = [(Method::Eq4, "Eq. 4"), (Method::Tracker, "tracker")];

@@ -1,4 +1,4 @@
-//! What the difference vector of two tiles' centroids says about a contact's direction (paper, figure 7).
+//! Direction of a contact from the difference vector of two tiles' centroids (paper, figure 7).
 
 use std::fmt::Write;
 
@@ -14,12 +14,12 @@ use crate::sense::{Contact, Method};
 use crate::sim::{Load, Print};
 use crate::units::Newtons;
 
-/// A contact lying across a seam.
+/// A contact across a seam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SeamContact {
     name: &'static str,
     print: Print,
-    /// Half its width and half its length, in metres.
+    /// Half of the width and half of the length, in metres.
     half: Vec2,
     round: bool,
 }
@@ -44,18 +44,18 @@ impl SeamContact {
         Self { name, print: Print::Ellipse { half_m: half }, half, round: true }
     }
 
-    /// The angle between the seam's normal and the difference vector of an even load, in degrees.
+    /// Angle between the seam's normal and the difference vector of a uniform load, in degrees.
     ///
     /// # Source
-    /// The halves of an ellipse cut through its middle balance on the diameter conjugate to the cut:
-    /// tan = (a² - b²) sin θ cos θ / (a² cos² θ + b² sin² θ). For the line, b is zero.
+    /// A cut through the centre of an ellipse gives halves with centroids on the diameter conjugate to the cut: tan =
+    /// (a² - b²) sin θ cos θ / (a² cos² θ + b² sin² θ). For the line, b is zero.
     fn expected(self, angle_deg: f32) -> f32 {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
         let (long, wide) = (self.half.y.powi(2), if self.round { self.half.x.powi(2) } else { 0.0 });
         ((long - wide) * sin * cos).atan2(long * cos * cos + wide * sin * sin).to_degrees()
     }
 
-    /// Its outline around `middle`.
+    /// Outline around `middle`.
     fn outline(self, middle: Vec2, angle_deg: f32) -> Vec<Vec2> {
         let turn = Vec2::from_angle((angle_deg - 90.0).to_radians());
         let around = |point: Vec2| middle + turn.rotate(point * self.half);
@@ -67,51 +67,51 @@ impl SeamContact {
     }
 }
 
-/// One contact measured.
+/// Measurement of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientationRow {
-    /// Which of the shapes.
+    /// Shape of the contact.
     shape: SeamContact,
-    /// Whether the sensors are without error.
+    /// True for sensors without error.
     pub exact: bool,
-    /// Between the seam's normal and the shape's long axis, in degrees.
+    /// Angle between the seam's normal and the shape's long axis, in degrees.
     pub true_deg: f32,
-    /// What the difference vector's angle should be, in degrees.
+    /// Expected angle of the difference vector, in degrees.
     pub expected_deg: f32,
-    /// What it is.
+    /// Measured angle of the difference vector, in degrees.
     pub measured_deg: f32,
     /// Centroids of the west and the east tile, in floor metres.
     pub centroids: [Vec2; 2],
 }
 
 impl OrientationRow {
-    /// What the shape is called.
+    /// Returns the name of the shape.
     #[must_use]
     pub const fn shape(&self) -> &'static str {
         self.shape.name
     }
 }
 
-/// Lines, ellipses and a disc across a seam at angles of 0 to 85 degrees, on an exact floor and on one of calibrated
-/// parts.
+/// Lines, ellipses and a disc across a seam at angles of 0 to 85 degrees, on an exact floor and on a floor of
+/// calibrated parts.
 ///
 /// # Source
-/// Paper, figure 7: for a line the difference vector points along it, for a disc along the seam's
-/// normal, and for everything between it is turned towards the normal the rounder the contact is.
+/// Paper, figure 7: for a line the difference vector points along it, for a disc along the seam's normal. For other
+/// contacts it turns towards the normal, more so for rounder ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orientation {
-    /// By shape, then floor, then angle.
+    /// Sorted by shape, then floor, then angle.
     pub rows: Vec<OrientationRow>,
 }
 
-/// What each shape presses with.
+/// Force of each shape.
 const FORCE: Newtons = Newtons(200.0);
 
 impl Orientation {
-    /// Measures all shapes; the parts of the floor that is not exact follow from `seed`.
+    /// Measures all shapes; `seed` determines the parts of the inexact floor.
     ///
     /// # Errors
-    /// Those of [`Rig::of_calibrated_parts`].
+    /// Errors of [`Rig::of_calibrated_parts`].
     pub fn measure(seed: u64) -> Result<Self, ExperimentError> {
         let geometry = Geometry::of_paper_tiles(2, 1).unwrap_or_default();
         let mut rows = Vec::new();
@@ -153,13 +153,13 @@ impl Orientation {
         self.rows.iter().filter(move |row| row.shape.name == shape.name && row.exact == exact)
     }
 
-    /// Greatest distance of the measured angles from the expected ones, in degrees.
+    /// Maximum deviation of the measured angles from the expected ones, in degrees.
     fn worst(&self, shape: SeamContact, exact: bool) -> f32 {
         self.of(shape, exact).map(|row| (row.measured_deg - row.expected_deg).abs()).fold(0.0, f32::max)
     }
 }
 
-/// The middle of the seam between two tiles.
+/// Midpoint of the seam between two tiles.
 fn seam_middle(geometry: &Geometry) -> Vec2 {
     Vec2::new(1.0, 0.5) * geometry.pitch_m()
 }
@@ -203,7 +203,7 @@ impl Figure for Orientation {
         for (shape, colour) in SEAM_CONTACTS.into_iter().zip(COLOURS) {
             let expected = (0..=85).map(|deg| Vec2::new(deg as f32, shape.expected(deg as f32)));
             plot.curve(&mut page, expected, Stroke::new(LINE_M, Ink::faint(colour, 0.55)));
-            // At 0 degrees all of them point along the normal, and their marks would cover the axes.
+            // At 0 degrees all vectors point along the normal, and their marks would cover the axes.
             for row in self.of(shape, true).filter(|row| row.true_deg > 0.0) {
                 page.dot(plot.at(Vec2::new(row.true_deg, row.measured_deg)), colour);
             }
@@ -231,7 +231,7 @@ impl Figure for Orientation {
         for row in &self.rows {
             let [west, east] = row.centroids;
             let floor = if row.exact { "exact" } else { "calibrated" };
-            // Writing to a `String` cannot fail.
+            // Writing to a `String` does not fail.
             let _ = writeln!(
                 csv,
                 "{},{floor},{:.1},{:.2},{:.2},{:.4},{:.4},{:.4},{:.4}",
@@ -269,7 +269,7 @@ impl Figure for Orientation {
     }
 }
 
-/// One contact over a seam with its two centroids and the vector between them.
+/// Draws one contact over a seam with its two centroids and the vector between them.
 fn draw_cell(page: &mut Page, area: Rect, row: &OrientationRow, colour: Colour) {
     let geometry = Geometry::of_paper_tiles(2, 1).unwrap_or_default();
     let middle = seam_middle(&geometry);
@@ -297,10 +297,10 @@ mod tests {
         let figure = Orientation::measure(1).unwrap();
         assert_eq!(figure.rows.len(), 4 * 2 * 18);
         for shape in SEAM_CONTACTS {
-            // Prints are made of half-centimetre cells, and a tile's lever is half a degree at most.
+            // Prints consist of half-centimetre cells, and a tile's lever is half a degree at most.
             assert!(figure.worst(shape, true) < 2.5, "{}: {}", shape.name, figure.worst(shape, true));
         }
-        // A line is followed, a disc gives the normal, an ellipse lies between.
+        // A line gives its own direction, a disc the normal, and an ellipse an angle in between.
         let at_45 = SEAM_CONTACTS.map(|shape| shape.expected(45.0));
         assert!((at_45[0] - 45.0).abs() < 1e-3 && at_45[3].abs() < 1e-3, "{at_45:?}");
         assert!(at_45[0] > at_45[1] && at_45[1] > at_45[2] && at_45[2] > at_45[3]);

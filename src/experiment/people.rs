@@ -1,4 +1,4 @@
-//! How well both feet of people are found while they walk, turn and stand.
+//! Accuracy of both feet of walking, turning and standing people.
 
 use std::f32::consts::{PI, TAU};
 use std::fmt;
@@ -17,7 +17,7 @@ use crate::floor::Geometry;
 use crate::sim::{FloorQuality, Load, MoveError, Performance, Person, Script};
 use crate::units::Instant;
 
-/// What somebody does at a time.
+/// Activity of a person at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Activity {
@@ -30,7 +30,7 @@ pub enum Activity {
 }
 
 impl Activity {
-    /// All of them, in the order of the table.
+    /// All activities, in the order of the table.
     pub const ALL: [Self; 3] = [Self::Walking, Self::Turning, Self::Standing];
 
     const fn name(self) -> &'static str {
@@ -42,29 +42,29 @@ impl Activity {
     }
 }
 
-/// Somebody made up from a seed, and what they do on a 6 x 6 floor.
+/// A person drawn from a seed, and the person's visit to a 6 x 6 floor.
 #[derive(Clone, Debug)]
 pub struct Visit {
     person: Person,
     script: Script,
-    /// When each activity ends, in order.
+    /// End of each activity, in order.
     parts: Vec<(Duration, Activity)>,
 }
 
 impl Visit {
-    /// A person of 45 to 120 kg with feet of 22 to 30 cm who walks at 0.8 to 1.8 m/s and stands
-    /// with the feet 15 to 60 cm apart: onto the floor, turning there, to another place and off again.
+    /// Draws a person of 45 to 120 kg with feet of 22 to 30 cm, who walks at 0.8 to 1.8 m/s and stands with the feet
+    /// 15 to 60 cm apart: onto the floor, turning there, to another place and off again.
     ///
     /// # Errors
-    /// [`ExperimentError::Move`], which no seed should bring about.
+    /// [`ExperimentError::Move`], which no seed should cause.
     pub fn of(seed: u64, geometry: &Geometry) -> Result<Self, ExperimentError> {
         Self::made_up(seed, geometry, false)
     }
 
-    /// The same visit by somebody whose feet roll as those of recorded people do.
+    /// The same visit by a person with feet that roll like those of recorded people.
     ///
     /// # Errors
-    /// As [`Visit::of`].
+    /// The same as [`Visit::of`].
     pub fn rolling_as_people_do(seed: u64, geometry: &Geometry) -> Result<Self, ExperimentError> {
         Self::made_up(seed, geometry, true)
     }
@@ -85,7 +85,7 @@ impl Visit {
             performance = performance.rolling_as_people_do(seed);
         }
         let mut parts = Parts { performance, ends: Vec::new() };
-        // Far enough inside for both feet of a wide stance to be on the floor.
+        // Far enough inside that both feet of a wide stance are on the floor.
         let bounds = geometry.bounds();
         let inner = bounds.grown(-0.45);
         let mut place =
@@ -121,13 +121,13 @@ impl Visit {
         Ok(Self { person, script: Script::new(vec![parts.performance], bounds), parts: parts.ends })
     }
 
-    /// Who it is.
+    /// Returns the person.
     #[must_use]
     pub const fn person(&self) -> &Person {
         &self.person
     }
 
-    /// What the feet do.
+    /// Returns the script of the feet.
     #[must_use]
     pub const fn script(&self) -> &Script {
         &self.script
@@ -156,9 +156,9 @@ impl Parts {
     }
 }
 
-/// How well the feet of people are found on the paper's 6 x 6 floor, by each method and activity.
+/// Accuracy of people's feet on the paper's 6 x 6 floor, by method and activity.
 ///
-/// Every person has the floor to themselves, and every floor has its own parts.
+/// Every person is alone on the floor, and every floor has its own parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PeopleTable {
     /// One entry per method ([`METHODS`]) and activity ([`Activity::ALL`]).
@@ -167,28 +167,28 @@ pub struct PeopleTable {
     people: usize,
 }
 
-/// People on the paper's floor.
+/// A table for the paper's floor.
 impl Default for PeopleTable {
     fn default() -> Self {
         Self::on(FloorQuality::Paper)
     }
 }
 
-/// Errors are taken once in so many milliseconds.
+/// Interval between two samples of the errors (ms).
 const SAMPLE_MS: u64 = 10;
 
 impl PeopleTable {
-    /// An empty table of people on floors of this quality; on those that err as real floors do
-    /// ([`FloorQuality::REAL`]), feet roll as those of recorded people do.
+    /// Creates an empty table for floors of this quality. On floors with real errors ([`FloorQuality::REAL`]), feet
+    /// roll like those of recorded people.
     #[must_use]
     pub fn on(floor: FloorQuality) -> Self {
         Self { scores: Default::default(), floor, people: 0 }
     }
 
-    /// Lets the person that follows from `seed` visit a floor whose parts follow from it too.
+    /// Simulates the person drawn from `seed` on a floor with parts drawn from `seed` too.
     ///
     /// # Errors
-    /// Those of [`Rig::of_quality`] and [`Visit::of`].
+    /// Errors of [`Rig::of_quality`] and [`Visit::of`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let mut rig = Rig::of_quality(Geometry::default(), self.floor, seed)?;
         let visit = Visit::made_up(seed, rig.geometry(), self.floor.is_real())?;
@@ -196,7 +196,7 @@ impl PeopleTable {
         Ok(())
     }
 
-    /// Lets `visit` happen on the floor of `rig` while `fault` does.
+    /// Simulates `visit` on the floor of `rig`, with the faults of `fault`.
     pub fn add_visit(&mut self, rig: &mut Rig, visit: &Visit, fault: &mut impl FaultHook) {
         let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));
         let mut loads: Vec<Load> = Vec::new();
@@ -232,7 +232,7 @@ impl PeopleTable {
         self.people += other.people;
     }
 
-    /// All activities of one method together: 0 for Eq. 4, 1 for the tracker.
+    /// Returns the sum over all activities of one method: 0 for Eq. 4, 1 for the tracker.
     #[must_use]
     pub fn whole(&self, method: usize) -> Followed {
         let mut whole = Followed::default();
@@ -240,7 +240,7 @@ impl PeopleTable {
         whole
     }
 
-    /// Name of method and activity and the score, line by line.
+    /// Names of method and activity, and the score, line by line.
     fn named(&self) -> impl Iterator<Item = (&'static str, &'static str, Followed)> + '_ {
         let names = Activity::ALL.map(Activity::name);
         METHODS.into_iter().enumerate().flat_map(move |(method, (_, name))| {
@@ -251,7 +251,7 @@ impl PeopleTable {
         })
     }
 
-    /// All lines, for programs.
+    /// Returns all lines, for programs.
     pub fn lines(&self) -> impl Iterator<Item = PeopleLine> + '_ {
         self.named().map(|(method, activity, score)| PeopleLine {
             method,
@@ -267,7 +267,7 @@ impl PeopleTable {
     }
 }
 
-/// One line of a [`PeopleTable`] as a program reads it; shares are 0 to 1.
+/// One line of a [`PeopleTable`], for programs; shares are 0 to 1.
 #[derive(Debug, Serialize)]
 pub struct PeopleLine {
     method: &'static str,
@@ -312,7 +312,7 @@ impl fmt::Display for PeopleTable {
     }
 }
 
-/// What a table says of its floor; nothing of the paper's.
+/// Note on the floor in a table's heading; empty for the paper's floor.
 pub(super) fn quality_note(floor: FloorQuality) -> String {
     if floor == FloorQuality::Paper { String::new() } else { format!(" (faults: {})", floor.name()) }
 }

@@ -1,4 +1,4 @@
-//! How well one foot is found, by how hard it presses and how near a seam it is.
+//! Accuracy of one foot, by its force and its distance from a seam.
 
 use std::fmt;
 
@@ -12,10 +12,10 @@ use crate::ergonomics::Zone;
 use crate::floor::{Rect, TileId};
 use crate::units::Newtons;
 
-/// The ways that are compared: without and with position maps. Indices into [`Way::ALL`].
+/// The compared ways, without and with position maps: indices into [`Way::ALL`].
 const WAYS: [usize; 2] = [1, 2];
 
-/// Distances between where a standing foot was found and its true centre of pressure.
+/// Distances between the estimated position of a standing foot and its true centre of pressure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceTable {
     rows: Vec<Row>,
@@ -31,7 +31,7 @@ struct Row {
 }
 
 impl PlaceTable {
-    /// An empty table of so many places per tile and force.
+    /// Creates an empty table with `places` places per tile and force.
     #[must_use]
     pub fn new(places: u16) -> Self {
         let rows = Zone::ALL.into_iter().flat_map(|zone| {
@@ -40,10 +40,10 @@ impl PlaceTable {
         Self { rows: rows.collect(), places, floors: 0 }
     }
 
-    /// Tries the middle tile of another floor, whose parts follow from `seed`.
+    /// Tests the middle tile of another floor with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Those of [`super::Rig::of_mapped_parts`].
+    /// Errors of [`super::Rig::of_mapped_parts`].
     pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let mut bench = Bench::new(seed)?;
         self.floors += 1;
@@ -56,7 +56,7 @@ impl PlaceTable {
             for row in self.rows.iter_mut().filter(|row| row.zone == zone) {
                 let found = bench.find(Thing::Foot, at, row.force);
                 for (errors, way) in row.errors.iter_mut().zip(WAYS) {
-                    // A foot that isn't found presses nothing: missed, not beside.
+                    // An undetected foot presses nothing: it counts as missed, not as displaced.
                     if let Some(found) = found[way] {
                         errors.push(found.error());
                     }
@@ -66,14 +66,14 @@ impl PlaceTable {
         Ok(())
     }
 
-    /// The error that 95 in 100 keep to, in metres, at this place and force; `None` before any floor was tried.
+    /// Returns the 95th percentile of the error in metres, at this zone and force; `None` before the first floor.
     #[must_use]
     pub fn p95_m(&self, zone: Zone, force: Newtons, mapped: bool) -> Option<f32> {
         let row = self.rows.iter().find(|row| row.zone == zone && row.force == force)?;
         row.errors[usize::from(mapped)].quantile(0.95)
     }
 
-    /// All lines, for programs.
+    /// Returns all lines, for programs.
     pub fn lines(&self) -> impl Iterator<Item = PlaceLine> + '_ {
         self.rows.iter().flat_map(|row| {
             WAYS.into_iter().zip(&row.errors).map(|(way, errors)| PlaceLine {
@@ -86,7 +86,7 @@ impl PlaceTable {
     }
 }
 
-/// One line of a [`PlaceTable`] as a program reads it.
+/// One line of a [`PlaceTable`], for programs.
 #[derive(Debug, Serialize)]
 pub struct PlaceLine {
     zone: &'static str,

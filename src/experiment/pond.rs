@@ -1,4 +1,4 @@
-//! Whether the frozen pond follows its model: onsets, energies, fronts, turns.
+//! Checks the frozen pond against its model: onsets, energies, fronts, turns.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -16,37 +16,38 @@ use crate::layout::{Colour, Ground};
 use crate::sense::{Contact, ContactId, ForceFrame, TileLoad};
 use crate::units::{Instant, Newtons};
 
-/// One thing that the pond should do.
+/// One property of the pond, checked against the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PondLaw {
-    /// What was examined.
+    /// Name of the property.
     pub what: String,
-    /// How many events, pieces or seeds it was examined on.
+    /// Number of events, pieces or seeds in the sample.
     pub count: u64,
-    /// What the model says, if that is one number.
+    /// Value of the model, if it is a single number.
     pub expected: Option<f64>,
-    /// What was found.
+    /// Measured value.
     pub found: Option<f64>,
-    /// Whether the sample fits as a whole.
+    /// Goodness of fit of the whole sample, for a distribution.
     pub fit: Option<Goodness>,
 }
 
-/// All of them.
+/// All checked properties.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PondLaws {
-    /// One after the other.
+    /// The properties, in the order of the table.
     pub lines: Vec<PondLaw>,
 }
 
-/// Period of the force that drives the tile, in milliseconds: somebody who bounces on one leg.
+/// Period of the force on the tile (ms): a person who bounces on one leg.
 const PERIOD_MS: u64 = 256;
 
 impl PondLaws {
-    /// Some `events` events of ice with the numbers of `spec`, from `seed`, against what the model says of them.
+    /// Simulates about `events` events of ice with the parameters `spec`, from `seed`, and compares them with the
+    /// model.
     ///
-    /// One tile is driven by a force that rises and falls, through the same [`Grounds`] that an engine
-    /// drives; the model's rate comes from another solution of the differential equation (Runge-Kutta of
-    /// fourth order in steps of 50 us). Broken ice is as strong as whole ice here, so that the rate is known.
+    /// A periodic force drives one tile through the same [`Grounds`] as in an engine. The model's rate comes from an
+    /// independent solution of the differential equation (Runge-Kutta of fourth order in steps of 50 us). Broken ice
+    /// is as strong as whole ice here, so that the rate is known.
     #[must_use]
     pub fn measure(spec: IceSpec, seed: u32, events: u64) -> Self {
         let spec = IceSpec { sheet: Sheet { weakening: 0.0, ..spec.sheet }, ..spec };
@@ -57,7 +58,7 @@ impl PondLaws {
         laws
     }
 
-    /// The line about `what`.
+    /// Returns the line with the name `what`.
     #[must_use]
     pub fn line(&self, what: &str) -> Option<&PondLaw> {
         self.lines.iter().find(|line| line.what == what)
@@ -68,7 +69,7 @@ impl PondLaws {
         self.lines.push(PondLaw { what: what.into(), count, expected, found, fit });
     }
 
-    /// Onsets and energies.
+    /// Checks onsets and energies.
     fn driven(&mut self, spec: &IceSpec, seed: u32, events: u64) {
         let geometry = Geometry::default();
         let model = Model::of(spec);
@@ -78,7 +79,7 @@ impl PondLaws {
         let place = geometry.centre(geometry.tile_at_index(7));
         let (mut frame, mut previous) = (ForceFrame::empty(&geometry), ForceFrame::empty(&geometry));
         let (mut whole, mut energies) = (Vec::new(), Vec::new());
-        // The empty sheet first; then periods without a break.
+        // The empty sheet first, then periods without a pause.
         for millis in 0..=periods * PERIOD_MS {
             previous.at = frame.at;
             frame.at = Instant::from_millis(millis + 1);
@@ -98,20 +99,20 @@ impl PondLaws {
                 ..Contact::default()
             };
             for event in grounds.step(&frame, &previous, &[contact], 0) {
-                // Felt in the millisecond after the one it happened in.
+                // The step reports an event one millisecond after it happened.
                 let at_s = event.at.secs() - 2e-3;
                 whole.push(model.passed(at_s));
                 energies.push(f64::from(event.energy_j));
             }
         }
-        // The first period begins from rest, the others from where the last one ended.
+        // The first period starts from rest, the others from the state at the end of the previous one.
         let count = whole.len() as u64;
         let expected = per_period * periods as f64;
         self.push("onsets: how many", count, Some((expected, count as f64)), None);
         let mut shares: Vec<f64> = whole.windows(2).map(|pair| 1.0 - (pair[0] - pair[1]).exp()).collect();
         let fit = Goodness::kolmogorov_smirnov(&mut shares);
         self.push("onsets: waiting times, Kolmogorov-Smirnov", count, None, Some(fit));
-        // Twenty parts of the period with equal expectations.
+        // Twenty parts of the period with equal expected counts.
         let mut counts = [0_u64; 20];
         for passed in &whole {
             let part = (passed / per_period).fract() * 20.0;
@@ -132,7 +133,7 @@ impl PondLaws {
         self.push("energies: exponent gamma", count, Some((law.gamma.into(), found)), None);
     }
 
-    /// How many fronts seeds have, and which of them events take.
+    /// Checks the number of fronts of a seed, and the choice of a front by each event.
     fn fronts(&mut self, rules: &CrackRules, seed: u32, seeds: u64) {
         let mut rng = Pcg64Mcg::seed_from_u64(u64::from(seed) ^ 0xf0);
         let side = 2.0 * rules.apart_m.max(0.1);
@@ -165,7 +166,7 @@ impl PondLaws {
         self.push("fronts: each of six alike, chi-squared", picks, None, Some(fit));
     }
 
-    /// How cracks turn from piece to piece.
+    /// Checks the turns of cracks from piece to piece.
     fn turns(&mut self, rules: &CrackRules, seed: u32, pieces: u64) {
         let mut rng = Pcg64Mcg::seed_from_u64(u64::from(seed) ^ 0x70);
         let across = 40;
@@ -180,7 +181,7 @@ impl PondLaws {
             let at = Vec2::new((place % across + 1) as f32, (place / across % across + 1) as f32) * 4.0;
             headings.clear();
             for step in 0..24 {
-                // Ever the same length, long against the rounding of places.
+                // Always the same length, long compared with the rounding of positions.
                 let length = 0.04 / rules.per_j_m;
                 let growth = fracture.grow(at, length, Instant::from_millis(place * 24 + step), &mut rng);
                 let Some(newest) = fracture.cracks().next_back().copied() else { continue };
@@ -227,22 +228,22 @@ impl fmt::Display for PondLaws {
     }
 }
 
-/// Ice of these numbers over `area`.
+/// Ice with these parameters over `area`.
 pub(super) fn pond(spec: IceSpec, seed: u32, area: Rect) -> Ground {
     let (surface, deep) = (Colour::rgb(0x9f, 0xd3, 0xd6), Colour::rgb(0x0b, 0x3a, 0x47));
     let spec = GroundSpec { area, page: None, seed, material: Material::Ice(spec) };
     Ground { spec, surface, deep }
 }
 
-/// The force at a time since the tile was empty, in newtons: up to 760 N and back, smooth.
+/// Force at a time since the start, in newtons: `380 (1 - cos(2 pi t / T))`, smooth from 0 to 760 N and back.
 fn drive(at_s: f64) -> f64 {
     let turn = std::f64::consts::TAU * 1000.0 / PERIOD_MS as f64;
     380.0 * (1.0 - (turn * at_s).cos())
 }
 
-/// What the model says of one period, solved another way.
+/// The model over one period, from an independent solution.
 struct Model {
-    /// Events that are expected from the start of the period to each step of it.
+    /// Expected number of events from the start of the period to the end of each step.
     expected: Vec<f64>,
     step_s: f64,
 }
@@ -251,7 +252,7 @@ impl Model {
     fn of(spec: &IceSpec) -> Self {
         let body = spec.body;
         let [m, b, k] = [body.mass_kg, body.damping_n_s_m, body.stiffness_n_m].map(f64::from);
-        // The floor samples the force each millisecond; between samples it is taken to go straight.
+        // The floor samples the force each millisecond; between samples the model interpolates linearly.
         let force = |t: f64| {
             let whole = (t * 1000.0 + 1e-9).floor();
             let share = t * 1000.0 - whole;
@@ -261,7 +262,7 @@ impl Model {
         let slope = |t: f64, x: f64, v: f64| (v, (force(t) - b * v - k * x) / m);
         let (mut x, mut v) = (0.0, 0.0);
         let mut expected = Vec::new();
-        // The second period, in which it goes as in all that follow.
+        // Uses the second period, in which the motion is periodic as in all later ones.
         for n in 0..2 * steps {
             let t = n as f64 * step_s;
             let before = v;
@@ -280,7 +281,7 @@ impl Model {
         Self { expected, step_s }
     }
 
-    /// Events that are expected up to a time since the tile was empty.
+    /// Expected number of events up to a time since the start.
     fn passed(&self, at_s: f64) -> f64 {
         let period_s = PERIOD_MS as f64 * 1e-3;
         let (periods, within) = ((at_s / period_s).floor(), at_s.rem_euclid(period_s) / self.step_s);
@@ -293,11 +294,11 @@ impl Model {
     }
 }
 
-/// The exponent under which `energies` are likeliest.
+/// Maximum-likelihood estimate of the exponent for `energies`.
 ///
 /// # Source
-/// Maximum likelihood for a power law between two ends: the mean logarithm of the energies is the
-/// law's own; found by halving.
+/// Maximum likelihood for a power law between two limits: the mean logarithm of the energies equals the law's own;
+/// solved by bisection.
 fn likeliest_gamma(law: &EnergyLaw, energies: &[f64]) -> f64 {
     let least = f64::from(law.least_j);
     let wide = (f64::from(law.most_j) / least).ln();

@@ -1,4 +1,4 @@
-//! People on a frozen pond: how many cracks each manner of walking opens, and what the pond looks like then.
+//! People on a frozen pond: the number of cracks for each manner of walking, and pictures of the pond.
 
 use std::fmt;
 
@@ -18,27 +18,27 @@ use crate::sense::Method;
 use crate::sim::{Foot, FootDriver, Gait, PREFERRED_M_S, Scenario};
 use crate::units::{Instant, Newtons};
 
-/// How somebody puts a foot down.
+/// Manner of putting a foot down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Manner {
-    /// With its full force within 50 ms.
+    /// Full force within 50 ms.
     Stamping,
-    /// As in ordinary walking.
+    /// Ordinary walking.
     Walking,
-    /// As in walking, but with 0.6 of its loading rate: the same forces, more slowly.
+    /// Walking at 0.6 of the loading rate: the same forces, more slowly.
     Careful,
-    /// As stamping, with 0.6 of its force and so of its loading rate.
+    /// Stamping with 0.6 of the force, and so of the loading rate.
     Lighter,
-    /// As stamping with its full force, but 0.6 of its loading rate.
+    /// Stamping with the full force, at 0.6 of the loading rate.
     Slower,
 }
 
 impl Manner {
-    /// All of them.
+    /// All manners, in the order of the table.
     pub const ALL: [Self; 5] = [Self::Stamping, Self::Slower, Self::Lighter, Self::Walking, Self::Careful];
 
-    /// What the tables call it.
+    /// Returns the name in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -50,7 +50,7 @@ impl Manner {
         }
     }
 
-    /// Force in body weights so many seconds after the foot lands.
+    /// Force in body weights at a time after the touchdown (s).
     fn load(self, at_s: f32) -> f32 {
         let smooth = |share: f32| {
             let share = share.clamp(0.0, 1.0);
@@ -72,43 +72,43 @@ impl Manner {
     }
 }
 
-/// What one manner of walking did to the pond.
+/// Effect of one manner of walking on the pond.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MannerLine {
-    /// Which.
+    /// The manner.
     pub manner: Manner,
-    /// Steps taken.
+    /// Number of steps.
     pub steps: u64,
-    /// Greatest loading rate, in body weights per second.
+    /// Maximum loading rate, in body weights per second.
     pub rate_per_s: f32,
-    /// Events in a step, on average.
+    /// Mean number of events per step.
     pub events_per_step: f32,
-    /// Energy that they took in a step, in joules.
+    /// Mean energy of the events per step, in joules.
     pub energy_per_step_j: f32,
-    /// Events as a share of those that stamping makes.
+    /// Number of events as a share of the number for stamping.
     pub share: f32,
 }
 
-/// All manners on ponds of the same seed.
+/// All manners, on ponds of the same seed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PondWalk {
     /// One line for each manner.
     pub lines: Vec<MannerLine>,
 }
 
-/// Longest that any foot stays, in milliseconds.
+/// Maximum time that a foot stays on the floor (ms).
 const STEP_MS: u32 = 1300;
 
-/// Weight of who walks: 70 kg.
+/// Weight of the walking person: 70 kg.
 const WEIGHT_N: f32 = 687.0;
 
 impl PondWalk {
-    /// So many steps of each manner on the shipped pond, each on a floor of parts made from `seed`.
+    /// Simulates `steps` steps of each manner on the shipped pond, each on a floor with parts drawn from `seed`.
     ///
-    /// Each step goes somewhere else, once the ice has frozen over again.
+    /// Each step is at another place, after the ice has frozen again.
     ///
     /// # Errors
-    /// [`ExperimentError`] if the floor cannot be calibrated or the layout is refused.
+    /// [`ExperimentError`] if the floor can't be calibrated or the layout is rejected.
     pub fn measure(seed: u64, steps: u64) -> Result<Self, ExperimentError> {
         let mut lines: Vec<MannerLine> = Vec::new();
         for manner in Manner::ALL {
@@ -137,17 +137,17 @@ impl PondWalk {
         Ok(Self { lines })
     }
 
-    /// The line of one manner.
+    /// Returns the line of one manner.
     #[must_use]
     pub fn line(&self, manner: Manner) -> Option<&MannerLine> {
         self.lines.iter().find(|line| line.manner == manner)
     }
 
-    /// The shipped pond before anybody has come, after one step, after a stroll, and after somebody has stamped all
-    /// over it, each with a name for its file.
+    /// Returns pictures of the shipped pond: untouched, after one step, after a stroll, and after stamping all over
+    /// it. Each has a name for its file.
     ///
     /// # Errors
-    /// As [`PondWalk::measure`].
+    /// The same as [`PondWalk::measure`].
     pub fn pictures(seed: u64) -> Result<Vec<(&'static str, Scene)>, ExperimentError> {
         let mut pictures = Vec::new();
         let mut pond = Pond::new(seed)?;
@@ -178,7 +178,7 @@ impl PondWalk {
         Ok(pictures)
     }
 
-    /// All lines as CSV.
+    /// Returns all lines as CSV.
     #[must_use]
     pub fn csv(&self) -> String {
         let head = "manner,steps,rate_per_s,events_per_step,energy_per_step_j,share\n".to_owned();
@@ -244,7 +244,7 @@ impl Pond {
         }
     }
 
-    /// One step somewhere, and what it did.
+    /// Takes one step at a random place and returns its events.
     fn step(&mut self, manner: Manner) -> Vec<GroundEvent> {
         self.events.clear();
         let room = self.geometry.bounds().grown(-0.2);

@@ -19,27 +19,27 @@ use crate::sim::{
 use crate::units::{Instant, Newtons};
 use crate::wire::{Readings, SensorPacket};
 
-/// Standard deviation of a sensor's zero since it was tared, in newtons.
+/// Standard deviation of a sensor's zero drift since the tare (N).
 pub const OFFSET_N: f32 = 0.5;
 
-/// Why an experiment could not be made.
+/// Reason why an experiment can't run.
 #[derive(Debug, Error)]
 pub enum ExperimentError {
-    /// A sensor of the simulated floor cannot be calibrated.
+    /// A sensor of the simulated floor can't be calibrated.
     #[error(transparent)]
     Calibration(#[from] CalibrationError),
-    /// A tile of the simulated floor cannot be mapped.
+    /// A tile of the simulated floor can't be mapped.
     #[error(transparent)]
     Mapping(#[from] MappingError),
-    /// A simulated person cannot do what the experiment asks.
+    /// A simulated person can't make a move of the experiment.
     #[error("a simulated person cannot move so: {0}")]
     Move(#[from] MoveError),
-    /// The experiment's own layout is refused.
+    /// The experiment's own layout is rejected.
     #[error("the experiment's layout is refused: {0}")]
     Layout(String),
 }
 
-/// A simulated floor with everything behind it up to the force frames: packets, calibration, tare.
+/// A simulated floor with all processing up to the force frames: packets, calibration, tare.
 #[derive(Clone, Debug)]
 pub struct Rig {
     sim: SimFloor,
@@ -51,22 +51,22 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// A floor of the paper's parts, calibrated in the laboratory from `seed`, each tile with its
-    /// position map; since then each sensor's zero has drifted by [`OFFSET_N`].
+    /// Creates a floor of the paper's parts, drawn and calibrated in the laboratory from `seed`, with a position map
+    /// for each tile; then each sensor's zero drifts by [`OFFSET_N`].
     ///
     /// # Errors
-    /// [`ExperimentError::Calibration`] if a part follows no law, [`ExperimentError::Mapping`] if a
-    /// tile's presses make no sense.
+    /// [`ExperimentError::Calibration`] if no law fits a part, [`ExperimentError::Mapping`] if no map fits a tile's
+    /// presses.
     pub fn of_mapped_parts(geometry: Geometry, seed: u64) -> Result<Self, ExperimentError> {
         Self::of_quality(geometry, FloorQuality::Paper, seed)
     }
 
-    /// A floor of some quality with its calibration, position maps, drifted zeros and broken sensors.
+    /// Creates a floor of a given quality with calibration, position maps, drifted zeros and broken sensors.
     ///
-    /// Of the paper's quality it is that of [`Rig::of_mapped_parts`], ideal that of [`Rig::ideal`].
+    /// The paper's quality gives [`Rig::of_mapped_parts`], the ideal one [`Rig::ideal`].
     ///
     /// # Errors
-    /// As [`Rig::of_mapped_parts`].
+    /// The same as [`Rig::of_mapped_parts`].
     pub fn of_quality(geometry: Geometry, quality: FloorQuality, seed: u64) -> Result<Self, ExperimentError> {
         if quality == FloorQuality::Ideal {
             return Ok(Self::ideal(geometry));
@@ -83,10 +83,10 @@ impl Rig {
         Ok(rig)
     }
 
-    /// As [`Rig::of_mapped_parts`], of other plates or parts; without position maps.
+    /// Like [`Rig::of_mapped_parts`], with other plates or parts, and without position maps.
     ///
     /// # Errors
-    /// [`ExperimentError::Calibration`] if a part follows no law.
+    /// [`ExperimentError::Calibration`] if no law fits a part.
     pub fn of_parts(geometry: Geometry, config: SimConfig, seed: u64) -> Result<Self, ExperimentError> {
         let wired = Floor::of(geometry);
         let sim = SimFloor::new(&wired, config, seed);
@@ -95,22 +95,22 @@ impl Rig {
         Ok(Self::over(sim, &floor))
     }
 
-    /// As [`Rig::of_mapped_parts`], without position maps: the paper's floor.
+    /// Like [`Rig::of_mapped_parts`], without position maps: the paper's floor.
     ///
     /// # Errors
-    /// [`ExperimentError::Calibration`] if a part follows no law.
+    /// [`ExperimentError::Calibration`] if no law fits a part.
     pub fn of_calibrated_parts(geometry: Geometry, seed: u64) -> Result<Self, ExperimentError> {
         Self::of_parts(geometry, SimConfig::default(), seed)
     }
 
-    /// A floor without error.
+    /// Creates a floor without error.
     #[must_use]
     pub fn ideal(geometry: Geometry) -> Self {
         let floor = Floor::of(geometry);
         Self::over(SimFloor::new(&floor, SimConfig::ideal(), 0), &floor)
     }
 
-    /// The simulated floor `sim`, heard with the calibration, tare and position maps of `floor`.
+    /// Combines the simulated floor `sim` with the calibration, tare and position maps of `floor`.
     #[must_use]
     pub fn over(sim: SimFloor, floor: &Floor) -> Self {
         let geometry = floor.geometry;
@@ -126,31 +126,31 @@ impl Rig {
         }
     }
 
-    /// Where the tiles are.
+    /// Returns the positions of the tiles.
     #[must_use]
     pub const fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
-    /// Sensing as this floor's calibration allows, with nobody on it yet.
+    /// Creates the sensing for this floor's calibration, with an empty floor as its initial state.
     #[must_use]
     pub fn sensing(&self, method: Method) -> Sensing {
         self.sensing_without_maps(method).with_maps(&self.maps)
     }
 
-    /// The controls of `layout` on this floor.
+    /// Creates an engine with the controls of `layout` on this floor.
     #[must_use]
     pub fn engine(&self, layout: Layout, method: Method) -> Engine {
         Engine::new(self.geometry, layout, method).with_maps(&self.maps)
     }
 
-    /// The millisecond that was stepped last.
+    /// Returns the time of the last step.
     #[must_use]
     pub const fn now(&self) -> Instant {
         self.now
     }
 
-    /// Sensing that knows the floor's calibration but none of its position maps.
+    /// Creates sensing with the floor's calibration, but without position maps.
     #[must_use]
     pub fn sensing_without_maps(&self, method: Method) -> Sensing {
         let uncertainty = if self.sim.has_memory() {
@@ -161,12 +161,12 @@ impl Rig {
         Sensing::with_config(self.geometry, method, SensingConfig { uncertainty, ..SensingConfig::default() })
     }
 
-    /// Lets a millisecond pass under `loads` and hands over what was sensed in it, as every frame once.
+    /// Advances by a millisecond under `loads`, and calls `sensed` once with each frame.
     pub fn step(&mut self, loads: impl IntoIterator<Item = Load>, sensed: impl FnMut(&ForceFrame)) {
         self.step_with(&mut (), 0, loads, sensed);
     }
 
-    /// As [`Rig::step`], with what `fault` does in this millisecond of its scene.
+    /// Like [`Rig::step`], with the faults of `fault` at this millisecond of its scene.
     pub fn step_with(
         &mut self,
         fault: &mut impl FaultHook,
@@ -189,7 +189,7 @@ impl Rig {
         }
     }
 
-    /// What each tile truly carries of a load; see [`SimFloor::carried`].
+    /// Returns the true load of each tile; see [`SimFloor::carried`].
     #[must_use]
     pub fn carried(&self, load: &Load) -> SmallVec<[TileLoad; 4]> {
         self.sim.carried(load)
@@ -200,13 +200,13 @@ impl Rig {
         self.sim.set_fault(sensor, fault);
     }
 
-    /// What turns packets into frames, and knows the sensors' health.
+    /// Returns the assembler, which turns packets into frames and monitors the sensors' health.
     #[must_use]
     pub const fn assembler(&self) -> &Assembler {
         &self.assembler
     }
 
-    /// Lets milliseconds pass under the same loads.
+    /// Advances by `millis` milliseconds under constant loads.
     pub fn hold(&mut self, millis: u32, loads: &[Load], mut sensed: impl FnMut(&ForceFrame)) {
         for _ in 0..millis {
             self.step(loads.iter().copied(), &mut sensed);
@@ -214,35 +214,35 @@ impl Rig {
     }
 }
 
-/// What goes wrong while people are on an experiment's floor; every method does nothing unless it is written.
+/// Faults during an experiment; by default every method does nothing.
 ///
-/// Milliseconds are those of the experiment's scene, from 1.
+/// Milliseconds count from 1 at the start of the experiment's scene.
 pub trait FaultHook {
     /// Called before each millisecond; may break sensors.
     fn before(&mut self, milli: u64, rig: &mut Rig) {
         let _ = (milli, rig);
     }
 
-    /// Called with what each board is about to send in each millisecond.
+    /// Called with the readings of each board before it sends them, in each millisecond.
     fn disturb(&mut self, milli: u64, board: usize, readings: &mut Readings) {
         let _ = (milli, board, readings);
     }
 
-    /// Called with each frame before contacts are made of it.
+    /// Called with each frame before the contacts are computed.
     fn sensed(&mut self, milli: u64, frame: &ForceFrame) {
         let _ = (milli, frame);
     }
 
-    /// Called with what the tracker's engine makes the floor do, where there is one.
+    /// Called with the cues of the tracker's engine, if there is one.
     fn felt(&mut self, milli: u64, cues: &[Cue]) {
         let _ = (milli, cues);
     }
 }
 
-/// Nothing goes wrong.
+/// No faults.
 impl FaultHook for () {}
 
-/// Moves each sensor's zero by some `offset_n` newtons.
+/// Shifts each sensor's zero by a normal random force with the standard deviation `offset_n`.
 fn drift(floor: &mut Floor, offset_n: f32, seed: u64) {
     let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x00ff_5e75);
     for tare in floor.tare.iter_mut().flatten() {

@@ -1,4 +1,4 @@
-//! Where a point load is found on one tile (paper, figure 8).
+//! Position of a point load on one tile (paper, figure 8).
 
 use std::fmt::Write;
 
@@ -17,23 +17,23 @@ use crate::units::Newtons;
 /// One point load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScanPoint {
-    /// Where it was put, in metres from the tile's south-west corner.
+    /// True position, in metres from the tile's south-west corner.
     pub truth: Vec2,
-    /// Where it was found.
+    /// Estimated position.
     pub found: Vec2,
 }
 
-/// A whole tile tried with one way of calibrating it.
+/// A scan of a whole tile with one kind of calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scan {
-    /// How the tile was calibrated: "without position map", "with position map".
+    /// Name of the calibration: "without position map", "with position map".
     pub name: &'static str,
-    /// Line by line from the south-west.
+    /// Row by row from the south-west.
     pub points: Vec<ScanPoint>,
 }
 
 impl Scan {
-    /// Distances between where the loads were and where they were found.
+    /// Returns the distances between true and estimated positions.
     #[must_use]
     pub fn errors(&self) -> Errors {
         let mut errors = Errors::default();
@@ -48,30 +48,30 @@ impl Scan {
 /// Paper, figure 8: a constant force at measured positions, formula (3) applied to the recorded forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileScan {
-    /// One entry per way of calibrating the tile.
+    /// One entry for each kind of calibration.
     pub scans: Vec<Scan>,
 }
 
-/// Points along each line, and lines, per tile.
+/// Number of points along each line, and of lines, per tile.
 const SIDE: u16 = 8;
 
 /// Distance of the outermost lines from the tile's edges, in metres.
 const MARGIN_TO_EDGE_M: f32 = 0.012;
 
-/// The point load.
+/// Force of the point load.
 const FORCE: Newtons = Newtons(100.0);
 
-/// Room for the axis between two tiles, in page metres.
+/// Space for the axis between two tiles (page metres).
 const GAP_M: f32 = 0.022;
 
-/// Readings averaged at each point.
+/// Number of readings averaged at each point.
 const READINGS: u32 = 50;
 
 impl TileScan {
-    /// Tries a tile whose parts follow from `seed`.
+    /// Scans a tile with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Those of [`Rig::of_mapped_parts`].
+    /// Errors of [`Rig::of_mapped_parts`].
     pub fn measure(seed: u64) -> Result<Self, ExperimentError> {
         let geometry = Geometry::of_paper_tiles(1, 1).unwrap_or_default();
         let rigs = [
@@ -138,7 +138,7 @@ impl Figure for TileScan {
         let mut csv = String::from("calibration,true_x_m,true_y_m,found_x_m,found_y_m,error_m\n");
         for scan in &self.scans {
             for ScanPoint { truth, found } in &scan.points {
-                // Writing to a `String` cannot fail.
+                // Writing to a `String` does not fail.
                 let _ = writeln!(
                     csv,
                     "{},{:.4},{:.4},{:.4},{:.4},{:.4}",

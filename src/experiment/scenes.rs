@@ -1,4 +1,4 @@
-//! How well everything that presses is found in scenes that are hard to sense, on floors that err.
+//! Accuracy of all contacts in scenes that are hard to sense, on floors with errors.
 
 use std::fmt;
 
@@ -11,11 +11,11 @@ use crate::floor::Geometry;
 use crate::sim::{FloorQuality, Load, MoveError, Scene, SceneKind};
 use crate::units::Instant;
 
-/// Scenes of people and things ([`SceneKind`]) on floors of several qualities, by each method.
+/// Scenes of people and objects ([`SceneKind`]) on floors of several qualities, by method.
 ///
-/// One person acts in every scene on a floor of each quality whose parts follow from the person's seed;
-/// a second of empty floor lies between scenes. Feet, knees, wheels and sticks all count as feet: they
-/// are down from 10 N on, as in [`super::PeopleTable`].
+/// One person acts in every scene on a floor of each quality with parts drawn from the person's seed; the floor is
+/// empty for a second between scenes. Feet, knees, wheels and sticks all count as feet: they are down from 10 N on,
+/// as in [`super::PeopleTable`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneTable {
     floors: Vec<FloorQuality>,
@@ -24,24 +24,24 @@ pub struct SceneTable {
     people: usize,
 }
 
-/// Errors are taken once in so many milliseconds.
+/// Interval between two samples of the errors (ms).
 const SAMPLE_MS: u64 = 10;
 
-/// Milliseconds of empty floor before each scene.
+/// Time that the floor is empty before each scene (ms).
 const EMPTY_MS: u32 = 1000;
 
 impl SceneTable {
-    /// An empty table of scenes on floors of these qualities.
+    /// Creates an empty table of scenes on floors of these qualities.
     #[must_use]
     pub fn on(floors: &[FloorQuality]) -> Self {
         let none = vec![Default::default(); floors.len()];
         Self { floors: floors.to_vec(), scores: vec![none; SceneKind::ALL.len()], people: 0 }
     }
 
-    /// Lets the person that follows from `seed` act in all scenes on a floor of each quality.
+    /// Simulates the person drawn from `seed` in all scenes on a floor of each quality.
     ///
     /// # Errors
-    /// Those of [`Rig::of_quality`]; [`ExperimentError::Move`], which no seed should bring about.
+    /// Errors of [`Rig::of_quality`]; [`ExperimentError::Move`], which no seed should cause.
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let geometry = Geometry::default();
         for (slot, floor) in self.floors.iter().enumerate() {
@@ -58,7 +58,7 @@ impl SceneTable {
         Ok(())
     }
 
-    /// Adds all people of another table of the same floors.
+    /// Adds all people of another table with the same floors.
     pub fn append(&mut self, other: Self) {
         let scores = self.scores.iter_mut().flatten().flatten();
         for (score, others) in scores.zip(other.scores.into_iter().flatten().flatten()) {
@@ -67,7 +67,8 @@ impl SceneTable {
         self.people += other.people;
     }
 
-    /// How one scene went on one floor, by method ([`METHODS`]); `None` for a floor the table lacks.
+    /// Returns the result of one scene on one floor, by method ([`METHODS`]); `None` for a floor that is not in the
+    /// table.
     #[must_use]
     pub fn score(&self, kind: SceneKind, floor: FloorQuality) -> Option<&[Followed; 2]> {
         let scene = SceneKind::ALL.iter().position(|&other| other == kind)?;
@@ -75,7 +76,8 @@ impl SceneTable {
         self.scores.get(scene)?.get(slot)
     }
 
-    /// All lines, for programs: scene by scene, the floors in their order, each method; all scenes together last.
+    /// Returns all lines, for programs: scene by scene, the floors in their order, each method; all scenes together
+    /// last.
     pub fn lines(&self) -> impl Iterator<Item = SceneLine> + '_ {
         let each = SceneKind::ALL
             .into_iter()
@@ -106,7 +108,7 @@ impl SceneTable {
     }
 }
 
-/// The scene of one person: each kind draws anew from their seed.
+/// The scene of one person: each kind draws independently from the person's seed.
 fn scene(kind: SceneKind, seed: u64, geometry: &Geometry) -> Result<Scene, MoveError> {
     Scene::of(kind, seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ kind as u64, geometry)
 }
@@ -128,36 +130,36 @@ fn play(rig: &mut Rig, scene: &Scene, scores: &mut [Followed; 2]) {
     }
 }
 
-/// One line of a [`SceneTable`]; shares are 0 to 1, and `None` where nothing of the kind happened.
+/// One line of a [`SceneTable`]; shares are 0 to 1, and `None` without a sample.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneLine {
-    /// What happened, or `all scenes`.
+    /// Name of the scene, or `all scenes`.
     pub scene: &'static str,
     /// Quality of the floors.
     pub floor: &'static str,
-    /// How contacts were made.
+    /// Method of computing contacts.
     pub method: &'static str,
-    /// Feet searched for: one per foot down and sample of 10 ms.
+    /// Number of feet to find: one per foot that is down in a sample of 10 ms.
     pub feet: usize,
-    /// Share of the feet that were found within 5 cm.
+    /// Share of feet found within 5 cm.
     pub within_5cm: f32,
-    /// Share of the samples with several feet down in which all of them were.
+    /// Share of samples with several feet down in which all were found within 5 cm.
     pub all_within_5cm: Option<f32>,
-    /// Error that half of the feet that were found keep to, in centimetres.
+    /// Median error of the found feet, in centimetres.
     pub median_cm: Option<f32>,
-    /// Error that 95 in 100 of them keep to.
+    /// 95th percentile of the error of the found feet, in centimetres.
     pub p95_cm: Option<f32>,
-    /// Share of the feet for which there was no contact within a shoe's length.
+    /// Share of feet without a contact within a shoe's length.
     pub missed: f32,
-    /// Contacts that no foot had made, as a share of the feet.
+    /// Number of contacts without a foot, as a share of the feet.
     pub extra: f32,
-    /// Times that something came down.
+    /// Number of touchdowns.
     pub steps: usize,
-    /// Changes of a foot's identity per 1000 of them.
+    /// Changes of a foot's identity per 1000 touchdowns.
     pub changes_per_1000_steps: Option<f32>,
-    /// Share of the feet that were found whose true place lay in the 95 % ellipse.
+    /// Share of found feet with the true position inside the 95 % ellipse.
     pub inside_95: Option<f32>,
-    /// Share of the time of one foot alone in which its contact was marked ambiguous.
+    /// Share of the time of one foot alone in which its contact was ambiguous.
     pub ambiguous: Option<f32>,
 }
 

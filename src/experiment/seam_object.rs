@@ -1,4 +1,4 @@
-//! What one tile makes of an object that lies over its edge (paper, figure 9).
+//! An object across a tile's edge, as measured by one tile (paper, figure 9).
 
 use std::fmt::Write;
 
@@ -14,22 +14,22 @@ use crate::sense::Method;
 use crate::sim::{Load, Print};
 use crate::units::Newtons;
 
-/// The object at one angle.
+/// Measurement of the object at one angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeamObjectRow {
-    /// Between the seam's normal and the object's long side, in degrees.
+    /// Angle between the seam's normal and the object's long side, in degrees.
     pub angle_deg: f32,
-    /// Where the load on the west tile truly acts, in metres from the middle of the seam.
+    /// True centre of the load on the west tile, in metres from the midpoint of the seam.
     pub truth: Vec2,
-    /// Where the west tile's sensors say it acts.
+    /// Centre of the load according to the west tile's sensors.
     pub found: Vec2,
-    /// What the west tile truly carries.
+    /// True force on the west tile.
     pub force: Newtons,
     /// Angle of the difference vector of both tiles' centroids from the seam's normal, in degrees.
     pub difference_deg: f32,
 }
 
-/// A rectangle of 10 x 24 cm, pressing evenly with 51 N, over the seam of two tiles at several angles.
+/// A rectangle of 10 x 24 cm with a uniform pressure of 51 N, across the seam of two tiles at several angles.
 ///
 /// # Source
 /// Paper, figure 9.
@@ -44,10 +44,10 @@ const FORCE: Newtons = Newtons(51.0);
 const ANGLES_DEG: [f32; 6] = [-60.0, -30.0, 0.0, 30.0, 60.0, 90.0];
 
 impl SeamObject {
-    /// Lays the object on two tiles whose parts follow from `seed`.
+    /// Measures the object on two tiles with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Those of [`Rig::of_calibrated_parts`].
+    /// Errors of [`Rig::of_calibrated_parts`].
     pub fn measure(seed: u64) -> Result<Self, ExperimentError> {
         let geometry = geometry();
         let mut rig = Rig::of_calibrated_parts(geometry, seed)?;
@@ -93,7 +93,7 @@ fn seam_middle() -> Vec2 {
     Vec2::new(1.0, 0.5) * geometry().pitch_m()
 }
 
-/// The object's corners, in metres from the middle of the seam.
+/// Corners of the object, in metres from the midpoint of the seam.
 fn corners(angle_deg: f32) -> [Vec2; 4] {
     let turn = Vec2::from_angle((angle_deg - 90.0).to_radians());
     [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
@@ -146,7 +146,7 @@ impl Figure for SeamObject {
         );
         for row in &self.rows {
             let SeamObjectRow { angle_deg, truth, found, force, difference_deg } = row;
-            // Writing to a `String` cannot fail.
+            // Writing to a `String` does not fail.
             let _ = writeln!(
                 csv,
                 "{angle_deg:.0},{:.2},{:.4},{:.4},{:.4},{:.4},{:.4},{difference_deg:.2}",
@@ -187,7 +187,7 @@ impl Figure for SeamObject {
     }
 }
 
-/// The two tiles around the seam with the object on them.
+/// Draws the two tiles around the seam with the object on them.
 fn draw_object(page: &mut Page, area: Rect, row: &SeamObjectRow) {
     let map = Map::new(Rect::from_centre_size(Vec2::ZERO, Vec2::splat(0.30)), area);
     page.scene.add_box(area, 0.0, Paint::fill(Ink::solid(THEME.plate)));
@@ -216,7 +216,7 @@ mod tests {
             assert!((row.force.0 - 25.5).abs() < 0.5, "half of it lies on the west tile: {:?}", row.force);
             assert!(row.truth.x < 0.0 && row.truth.distance(row.found) < 0.05, "{row:?}");
         }
-        // Leaning one way and the other way are told apart, as in the paper.
+        // The sign shows the direction in which the object leans, as in the paper.
         let [south, north] = [1, 3].map(|which| figure.rows[which].difference_deg);
         assert!(south < -5.0 && north > 5.0, "{south}, {north}");
         assert_eq!(figure.csv().lines().count(), 1 + ANGLES_DEG.len());

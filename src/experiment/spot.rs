@@ -1,4 +1,4 @@
-//! How well one contact is found: over a whole tile, and at its seams.
+//! Accuracy of one contact: over a whole tile, and at its seams.
 
 use std::fmt;
 
@@ -13,40 +13,40 @@ use crate::sense::{Covariance, Method, Sensing};
 use crate::sim::{Load, Print};
 use crate::units::Newtons;
 
-/// Forces at which single contacts are tried, in newtons.
+/// Forces of the single contacts (N).
 pub const FORCES_N: [f32; 4] = [50.0, 100.0, 200.0, 400.0];
 
-/// How long a contact lies still before it is measured, in milliseconds.
+/// Time that a contact rests before its measurement (ms).
 const SETTLE_MS: u32 = 60;
 
-/// How long the floor is empty between two contacts, in milliseconds.
+/// Time that the floor is empty between two contacts (ms).
 const PAUSE_MS: u32 = 60;
 
-/// How long a contact takes to land, in milliseconds: no load comes from one moment to the next.
+/// Duration of a touchdown (ms): real loads do not start instantly.
 const LANDS_MS: u32 = 5;
 
-/// How far inside the plate's edges contacts are tried, in metres.
+/// Distance of the outermost contacts from the plate's edges (m).
 const MARGIN_M: f32 = 0.005;
 
-/// What is put on the floor.
+/// Object on the floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Thing {
     /// A single point, as in the paper's figure 8.
     Point,
-    /// A shoe on a 26 cm foot, standing flat, turned another way at each place.
+    /// A shoe on a 26 cm foot, standing flat, with a different heading at each place.
     Foot,
 }
 
 impl Thing {
-    /// Both, in the order of the tables.
+    /// Both objects, in the order of the tables.
     pub const ALL: [Self; 2] = [Self::Point, Self::Foot];
 
-    /// The thing with its centre of pressure at `at`; `turn` makes the places differ in direction.
+    /// The load with its centre of pressure at `at`; `turn` varies the heading.
     fn load(self, at: Vec2, force: Newtons, turn: usize) -> Load {
         let (print, heading) = match self {
             Self::Point => (Print::Point, 0.0),
-            // Steps by the golden angle never line up with the raster.
+            // Multiples of the golden angle never align with the grid.
             Self::Foot => (Print::Shoe { length_m: 0.26, roll: 0.4 }, turn as f32 * 2.399_963),
         };
         let load = Load { print, position: Vec2::ZERO, heading, force };
@@ -61,19 +61,19 @@ impl Thing {
     }
 }
 
-/// A way of finding contacts.
+/// A way of locating contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Way {
-    /// How contacts are made.
+    /// Method of computing contacts.
     pub method: Method,
-    /// Whether the tiles' position maps are used.
+    /// True if the position maps of the tiles are used.
     pub mapped: bool,
-    /// What it is called in tables.
+    /// Name in tables.
     pub name: &'static str,
 }
 
 impl Way {
-    /// All that are compared, in the order of the tables: the paper's own first.
+    /// All compared ways, in the order of the tables: the paper's own first.
     pub const ALL: [Self; 3] = [
         Self { method: Method::Eq4, mapped: false, name: "Eq. 4" },
         Self { method: Method::Tracker, mapped: false, name: "tracker" },
@@ -81,10 +81,10 @@ impl Way {
     ];
 }
 
-/// How long a floor has been empty at least before somebody comes.
+/// Minimum time that the floor is empty at the start (ms).
 const EMPTY_MS: u32 = 1_000;
 
-/// A floor of three by three tiles, of which the middle one is tried.
+/// A floor of three by three tiles; the test uses the middle one.
 pub(super) struct Bench {
     rig: Rig,
     sensing: [Sensing; Way::ALL.len()],
@@ -106,7 +106,7 @@ impl Bench {
         Self { rig, sensing, tried: 0 }
     }
 
-    /// Where each way finds the thing, and how sure it is: its heaviest contact; `None` if it finds none.
+    /// Returns the heaviest contact that each way finds for the object, with its covariance; `None` if it finds none.
     pub(super) fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Found>; Way::ALL.len()] {
         self.tried += 1;
         let load = thing.load(at, force, self.tried);
@@ -129,7 +129,7 @@ impl Bench {
     }
 }
 
-/// A contact's distance from where the thing was, and how sure it claims to be.
+/// Offset of a contact from the object's true position, and the contact's covariance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     off: Vec2,
@@ -150,7 +150,7 @@ pub(super) fn geometry() -> Geometry {
     Geometry::of_paper_tiles(3, 3).unwrap_or_default()
 }
 
-/// `side` by `side` places over the middle tile, row by row from the south-west.
+/// A grid of `side` by `side` places over the middle tile, row by row from the south-west.
 fn raster(geometry: &Geometry, side: u16) -> impl Iterator<Item = Vec2> + use<> {
     let plate = geometry.plate(TileId::new(1, 1)).grown(-MARGIN_M);
     let share = move |step: u16| f32::from(step) / f32::from(side.max(2) - 1);
@@ -162,39 +162,39 @@ fn raster(geometry: &Geometry, side: u16) -> impl Iterator<Item = Vec2> + use<> 
 /// One line of a [`SpotTable`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpotRow {
-    /// What was put on the tile.
+    /// Object on the tile.
     pub thing: Thing,
-    /// Its force.
+    /// Force of the object.
     pub force: Newtons,
-    /// How it was searched for.
+    /// Way of locating the object.
     pub way: Way,
-    /// Distance from the true centre of pressure.
+    /// Distances from the true centre of pressure.
     pub errors: Errors,
-    /// Places at which nothing was found.
+    /// Number of places without a contact.
     pub missed: usize,
-    /// Places at which the true centre of pressure was within the contact's 95 % ellipse.
+    /// Number of places with the true centre of pressure inside the contact's 95 % ellipse.
     pub inside: usize,
 }
 
 impl SpotRow {
-    /// Share (0 to 1) of the things found that were within their contacts' 95 % ellipses.
+    /// Returns the share (0 to 1) of found objects inside their contacts' 95 % ellipses.
     #[must_use]
     pub fn share_inside(&self) -> f32 {
         self.inside as f32 / self.errors.count().max(1) as f32
     }
 }
 
-/// How well a single contact is found over one whole tile, up to half a centimetre from its edges.
+/// Accuracy of a single contact over one whole tile, up to half a centimetre from its edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpotTable {
-    /// One line per thing, force and way.
+    /// One line per object, force and way.
     pub rows: Vec<SpotRow>,
     side: u16,
     floors: usize,
 }
 
 impl SpotTable {
-    /// An empty table of `side` x `side` places per tile.
+    /// Creates an empty table of `side` x `side` places per tile.
     #[must_use]
     pub fn new(side: u16) -> Self {
         let row = |thing, force, way| SpotRow {
@@ -213,10 +213,10 @@ impl SpotTable {
         Self { rows, side, floors: 0 }
     }
 
-    /// Tries the middle tile of another floor, whose parts follow from `seed`.
+    /// Tests the middle tile of another floor with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Those of [`Rig::of_mapped_parts`].
+    /// Errors of [`Rig::of_mapped_parts`].
     pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let mut bench = Bench::new(seed)?;
         self.floors += 1;
@@ -263,14 +263,14 @@ pub struct SeamRow {
 }
 
 impl SeamRow {
-    /// Median error at a seam over that in the middle; `None` without both.
+    /// Returns the median error at a seam divided by that in the middle; `None` if either has no errors.
     #[must_use]
     pub fn ratio(&self) -> Option<f32> {
         Some(self.seam.quantile(0.5)? / self.middle.quantile(0.5)?)
     }
 }
 
-/// How much worse a contact is found while it crosses a seam than in the middle of a tile, at 120 N.
+/// Accuracy of a contact at a seam compared with the middle of a tile, at 120 N.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeamTable {
     rows: [[SeamRow; Way::ALL.len()]; 2],
@@ -278,10 +278,10 @@ pub struct SeamTable {
 }
 
 impl SeamTable {
-    /// Tries another floor, whose parts follow from `seed`.
+    /// Tests another floor with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Those of [`Rig::of_mapped_parts`].
+    /// Errors of [`Rig::of_mapped_parts`].
     pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let mut bench = Bench::new(seed)?;
         self.floors += 1;
@@ -300,19 +300,19 @@ impl SeamTable {
         Ok(())
     }
 
-    /// The lines of one thing, one per way ([`Way::ALL`]).
+    /// Returns the lines of one object, one per way ([`Way::ALL`]).
     #[must_use]
     pub const fn rows(&self, thing: Thing) -> &[SeamRow; Way::ALL.len()] {
         &self.rows[thing as usize]
     }
 }
 
-/// Places tried per floor, in the middle and at a seam each.
+/// Number of places per floor, in the middle and at a seam each.
 const PLACES: u16 = 48;
 
 /// A low-discrepancy sequence over the unit square.
 pub(super) fn spread(step: u16) -> Vec2 {
-    // Powers of the plastic number's inverse.
+    // Powers of the plastic number's inverse (R2 sequence).
     let index = f32::from(step) + 0.5;
     Vec2::new((index * 0.754_877_7).fract(), (index * 0.569_840_3).fract())
 }
@@ -347,7 +347,7 @@ impl fmt::Display for SeamTable {
     }
 }
 
-/// One line of a [`SpotTable`] or [`SeamTable`] as a program reads it.
+/// One line of a [`SpotTable`] or [`SeamTable`], for programs.
 #[derive(Debug, Serialize)]
 pub struct SpotLine {
     thing: Thing,
@@ -361,7 +361,7 @@ pub struct SpotLine {
 }
 
 impl SpotTable {
-    /// All lines, for programs.
+    /// Returns all lines, for programs.
     pub fn lines(&self) -> impl Iterator<Item = SpotLine> + '_ {
         self.rows.iter().map(|row| SpotLine {
             thing: row.thing,
@@ -375,7 +375,7 @@ impl SpotTable {
 }
 
 impl SeamTable {
-    /// All lines, for programs.
+    /// Returns all lines, for programs.
     pub fn lines(&self) -> impl Iterator<Item = SpotLine> + '_ {
         Thing::ALL.into_iter().zip(&self.rows).flat_map(|(thing, rows)| {
             Way::ALL.into_iter().zip(rows).flat_map(move |(way, row)| {
@@ -403,7 +403,7 @@ mod tests {
             for at in raster(&geometry(), 4).chain((0..8).map(place_at_a_seam)) {
                 for found in bench.find(thing, at, Newtons(100.0)) {
                     let error = found.unwrap().error();
-                    // A tile that carries less than 6 of the 100 N does not count, up to 10 cm away.
+                    // A tile with less than 6 of the 100 N does not count, up to 10 cm away.
                     assert!(error < 0.01, "{thing:?} at {at}: {error} m");
                 }
             }

@@ -1,4 +1,4 @@
-//! Whether a heavy foot beside a region disturbs the light one that works in it.
+//! Influence of a heavy foot beside a region on the light foot that works in it.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 use std::fmt;
@@ -25,18 +25,18 @@ use crate::sim::{FloorQuality, Foot, shoe_size};
 use crate::units::Newtons;
 use crate::widget::EventKind;
 
-/// How the heavy foot stands.
+/// Stance of the heavy foot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stance {
-    /// Its toes point at the region, as somebody stands who looks at it.
+    /// The toes point at the region, as those of a person who looks at it.
     Facing,
-    /// It stands alongside the region's edge.
+    /// The foot stands alongside the region's edge.
     Beside,
 }
 
 impl Stance {
-    /// Both, in the order of the table.
+    /// Both stances, in the order of the table.
     pub const ALL: [Self; 2] = [Self::Facing, Self::Beside];
 
     const fn name(self) -> &'static str {
@@ -47,7 +47,7 @@ impl Stance {
     }
 }
 
-/// One thing the working foot does in the region.
+/// One touch of the working foot in the region.
 #[derive(Clone, Copy, Debug)]
 struct Touch {
     from: Vec2,
@@ -56,7 +56,7 @@ struct Touch {
     end_ms: u32,
 }
 
-/// Somebody on one leg beside a region of 1.2 x 0.6 m, tapping and sliding in it with the other foot.
+/// A person on one leg beside a region of 1.2 x 0.6 m, who taps and slides in it with the other foot.
 #[derive(Clone, Debug)]
 pub struct TapScene {
     layout: Layout,
@@ -68,29 +68,30 @@ pub struct TapScene {
     sway: [f32; 2],
 }
 
-/// The region in tiles: its south edge lies in the middle of a row of tiles or on a seam.
+/// Position of the region in tiles: its south edge is in the middle of a row of tiles or on a seam.
 const REGION_TILES: [(f32, f32); 2] = [(1.0, 3.0), (1.0, 2.5)];
 const REGION_SIZE_TILES: (f32, f32) = (4.0, 2.0);
 
-/// Force from which on the region's control is pressed, in newtons: below every tap.
+/// Press threshold of the region's control (N): below the force of every tap.
 const PRESS_N: f32 = 24.0;
 
-/// When the first touch begins: the foot has stood for a while.
+/// Time of the first touch (ms), long after the standing foot has landed; duration of a tap, a slide and a pause
+/// (ms); number of touches.
 const FIRST_MS: u32 = 1200;
 const TAP_MS: u32 = 250;
 const SLIDE_MS: u32 = 1000;
 const PAUSE_MS: u32 = 700;
 const TOUCHES: u32 = 6;
 
-/// How long a foot takes to put its force on or off, in milliseconds.
+/// Time in which a foot puts its force on or off (ms).
 const RAMP_MS: f32 = 50.0;
 
 impl TapScene {
-    /// The scene that follows from `seed`, on the paper's floor: 350 to 700 N on one foot 0 to 15 cm from the
-    /// region, six touches of 30 to 150 N with the other.
+    /// Draws the scene from `seed`, on the paper's floor: 350 to 700 N on one foot at 0 to 15 cm from the region, and
+    /// six touches of 30 to 150 N with the other foot.
     ///
     /// # Errors
-    /// [`ExperimentError::Layout`], which no seed should bring about.
+    /// [`ExperimentError::Layout`], which no seed should cause.
     pub fn of(seed: u64, stance: Stance, geometry: &Geometry) -> Result<Self, ExperimentError> {
         let layout = layout(REGION_TILES[usize::from(seed % 2 == 1)], geometry)?;
         let region = layout.regions.first().map_or_else(Rect::default, |region| region.area);
@@ -107,7 +108,7 @@ impl TapScene {
         };
         let position = Vec2::new(along, region.min.y - gap - reach);
         let standing = Foot { position, heading, length_m, force: heavy, roll: 0.4, left: false };
-        // The other foot works to its right or left, not on top of where the first one stands.
+        // The other foot works to the right or left of the first one, not on top of it.
         let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
         let touching = Foot { roll: 0.6, force: Newtons::ZERO, heading: 0.15 * side, ..standing };
         let room = region.grown(-0.06);
@@ -121,7 +122,7 @@ impl TapScene {
             let from = clear_of(&standing, place());
             let slides = touch % 2 == 1;
             let to = if slides { clear_of(&standing, place()) } else { from };
-            // Nobody slides faster than 0.3 m/s with a foot that means something.
+            // A foot that operates a control slides at 0.3 m/s at most.
             let to = from + (to - from).clamp_length_max(0.25);
             let end_ms = start_ms + if slides { SLIDE_MS } else { TAP_MS };
             touches.push(Touch { from, to, start_ms, end_ms });
@@ -131,24 +132,24 @@ impl TapScene {
         Ok(Self { layout, way: stance, stance: standing, touching, press, touches, sway })
     }
 
-    /// The region, all of it one button.
+    /// Returns the layout: one region with a single button over all of it.
     #[must_use]
     pub const fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// Where and when the foot touches the region, in milliseconds.
+    /// Returns the places and times (ms) at which the foot touches the region.
     pub fn touches(&self) -> impl ExactSizeIterator<Item = (Vec2, Range<u32>)> + '_ {
         self.touches.iter().map(|touch| (touch.from, touch.start_ms..touch.end_ms))
     }
 
-    /// How long it lasts.
+    /// Returns the duration.
     #[must_use]
     pub fn length_ms(&self) -> u32 {
         self.touches.last().map_or(0, |last| last.end_ms) + 300
     }
 
-    /// The two feet at a moment, the standing one first; the working one without force while it is in the air.
+    /// Returns the two feet at a moment, the standing one first; the working one has no force while it is in the air.
     #[must_use]
     pub fn feet(&self, milli: u32) -> [Foot; 2] {
         let time = milli as f32;
@@ -158,12 +159,12 @@ impl TapScene {
             let (start, end) = (touch.start_ms as f32, touch.end_ms as f32);
             let there = ease((time - start) / RAMP_MS) * ease((end - time) / RAMP_MS);
             working.force = self.press * there;
-            // It slides while it presses fully, and rests a little at both ends.
+            // The foot slides at full force, and rests a little at both ends.
             let at = touch.from.lerp(touch.to, ease((time - start - 150.0) / (end - start - 300.0).max(1.0)));
             working.position = Vec2::ZERO;
             working.position = at - working.centre_of_pressure();
         }
-        // The standing foot comes down first, carries what the other does not, and sways a little.
+        // The standing foot lands first, carries the rest of the weight, and sways a little.
         let sway = |hertz: f32, phase: usize| (TAU * hertz * time * 1e-3 + self.sway[phase]).sin();
         let mut stance = self.stance;
         stance.force = (self.stance.force + self.press) * ease(time / 200.0) - working.force;
@@ -173,46 +174,46 @@ impl TapScene {
     }
 }
 
-/// `point`, moved north until a foot that presses there does not stand on the other one's shoe.
+/// Moves `point` north until a foot that presses there does not overlap the other shoe.
 fn clear_of(standing: &Foot, point: Vec2) -> Vec2 {
     let reach = shoe_size(standing.length_m).y * 0.5;
     let front = standing.position.y
         + if standing.heading.abs() > 1.0 { 0.5 * shoe_size(standing.length_m).x } else { reach };
     let beside = (point.x - standing.position.x).abs() > 0.15 && standing.heading.abs() < 1.0;
-    // The ball lies some 6 cm before the middle of the shoe, whose heel reaches back.
+    // The ball is some 6 cm in front of the shoe's centre; the heel extends backwards.
     let lowest = if beside { point.y } else { front + reach + 0.07 };
     Vec2::new(point.x, point.y.max(lowest))
 }
 
-/// From 0 to 1, smoothly.
+/// Smooth step from 0 to 1: `s² (3 - 2 s)`.
 fn ease(share: f32) -> f32 {
     let share = share.clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
 }
 
-/// How one stance and method did.
+/// Result of one stance and method.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TapScore {
     /// Distance of the cursor from the centre of pressure of the foot that works in the region.
     pub cursor: Errors,
-    /// Samples in which the foot pressed with more than 10 N, and those in which there was no cursor.
+    /// Number of samples in which the foot pressed with more than 10 N.
     pub samples: usize,
-    /// Samples in which the foot pressed and there was no cursor.
+    /// Number of these samples without a cursor.
     pub without_cursor: usize,
-    /// Times that the foot touched the region.
+    /// Number of touches of the region.
     pub touches: usize,
-    /// Touches that the control took for a press.
+    /// Number of touches that pressed the control.
     pub pressed: usize,
-    /// Further presses during a touch.
+    /// Number of further presses during a touch.
     pub repeated: usize,
-    /// Presses while nothing touched the region.
+    /// Number of presses without a touch of the region.
     pub out_of_nothing: usize,
-    /// Times that another contact became the cursor during a touch.
+    /// Number of changes of the cursor to another contact during a touch.
     pub flips: usize,
 }
 
 impl TapScore {
-    /// Adds all of another score.
+    /// Adds the counts of another score.
     pub fn append(&mut self, other: Self) {
         let Self { cursor, samples, without_cursor, touches, pressed, repeated, out_of_nothing, flips } =
             other;
@@ -227,10 +228,10 @@ impl TapScore {
     }
 }
 
-/// The cursor and the events of a region, while a foot of 350 to 700 N stands 0 to 15 cm from it
-/// and the other one taps and slides in it with 30 to 150 N.
+/// Cursor and events of a region, while a foot of 350 to 700 N stands at 0 to 15 cm from it and the other one taps
+/// and slides in it with 30 to 150 N.
 ///
-/// The whole region is one button, so that whatever presses anywhere in it counts.
+/// The whole region is one button, so that a press anywhere in it counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TapTable {
     /// One entry per method ([`METHODS`]) and stance ([`Stance::ALL`]).
@@ -239,28 +240,28 @@ pub struct TapTable {
     people: usize,
 }
 
-/// People on the paper's floor.
+/// A table for the paper's floor.
 impl Default for TapTable {
     fn default() -> Self {
         Self::on(FloorQuality::Paper)
     }
 }
 
-/// How long after a touch its press may still be told: the foot has only just left.
+/// Time after a touch in which a press still belongs to it (ms).
 const AFTER_MS: u32 = 60;
 
 impl TapTable {
-    /// An empty table of people on floors of this quality.
+    /// Creates an empty table for floors of this quality.
     #[must_use]
     pub fn on(floor: FloorQuality) -> Self {
         Self { scores: Default::default(), floor, people: 0 }
     }
 
-    /// Lets the person that follows from `seed` use a region on a floor whose parts follow from it
-    /// too, in both stances.
+    /// Simulates the person drawn from `seed` using a region in both stances, on a floor with parts drawn from `seed`
+    /// too.
     ///
     /// # Errors
-    /// Those of [`Rig::of_quality`].
+    /// Errors of [`Rig::of_quality`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
         for stance in Stance::ALL {
             let geometry = Geometry::default();
@@ -271,7 +272,7 @@ impl TapTable {
         Ok(())
     }
 
-    /// Lets `scene` happen on the floor of `rig` while `fault` does.
+    /// Simulates `scene` on the floor of `rig`, with the faults of `fault`.
     pub fn add_scene(&mut self, rig: &mut Rig, scene: &TapScene, fault: &mut impl FaultHook) {
         let which = scene.way as usize;
         let scores = &mut self.scores;
@@ -314,7 +315,7 @@ impl TapTable {
         })
     }
 
-    /// All lines, for programs.
+    /// Returns all lines, for programs.
     pub fn lines(&self) -> impl Iterator<Item = TapLine> + '_ {
         self.named().map(|(method, stance, score)| TapLine {
             method,
@@ -329,12 +330,12 @@ impl TapTable {
     }
 }
 
-/// An engine and what it made of each touch.
+/// An engine, and its presses during each touch.
 struct Watched {
     engine: Engine,
     snapshot: Snapshot,
     presses: Vec<usize>,
-    /// Who was the cursor while the foot was last seen to press.
+    /// The contact that was the cursor at the last sample with a pressing foot.
     cursor: Option<ContactId>,
 }
 
@@ -372,7 +373,7 @@ impl Watched {
     }
 }
 
-/// One region, all of it a button.
+/// One region with a single button over all of it.
 fn layout(at: (f32, f32), geometry: &Geometry) -> Result<Layout, ExperimentError> {
     let (size, release) = (REGION_SIZE_TILES, 0.6 * PRESS_N);
     let text = format!(
@@ -384,7 +385,7 @@ fn layout(at: (f32, f32), geometry: &Geometry) -> Result<Layout, ExperimentError
     loaded.map(|loaded| loaded.layout).map_err(|problems| ExperimentError::Layout(problems.to_string()))
 }
 
-/// One line of a [`TapTable`] as a program reads it.
+/// One line of a [`TapTable`], for programs.
 #[derive(Debug, Serialize)]
 pub struct TapLine {
     method: &'static str,

@@ -1,4 +1,4 @@
-//! What two feet on four tiles look like, before and after they are told apart (paper, figure 11).
+//! Two feet on four tiles, before and after their separation (paper, figure 11).
 
 use std::f32::consts::TAU;
 use std::fmt::Write;
@@ -15,29 +15,29 @@ use crate::sense::{Contact, Covariance, ForceFrame, Method};
 use crate::sim::{Foot, shoe_size};
 use crate::units::Newtons;
 
-/// Two feet on 2 x 2 tiles, some 20 cm apart: the left one came first, the right one half a second later.
+/// Two feet on 2 x 2 tiles, some 20 cm apart: the left one lands first, the right one half a second later.
 ///
 /// # Source
-/// Paper, figure 11: tile centroids summarise feet badly where two of them share tiles.
+/// Paper, figure 11: tile centroids describe feet badly if two feet share tiles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoFeet {
-    /// The feet as they stand, left first.
+    /// The standing feet, left first.
     pub feet: [Foot; 2],
     /// Newtons per tile in tile-index order, each in [`Corner::ALL`] order.
     pub forces: Vec<[f32; 4]>,
-    /// Force and centroid of each tile that is loaded.
+    /// Force and centroid of each loaded tile.
     pub tiles: Vec<(TileId, Newtons, Vec2)>,
-    /// What Eq. 4 makes of them.
+    /// Contacts according to Eq. 4.
     pub eq4: Vec<Contact>,
-    /// What the tracker makes of them.
+    /// Contacts according to the tracker.
     pub tracker: Vec<Contact>,
 }
 
 impl TwoFeet {
-    /// Puts both feet on four tiles whose parts follow from `seed`.
+    /// Measures both feet on four tiles with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Those of [`Rig::of_calibrated_parts`].
+    /// Errors of [`Rig::of_calibrated_parts`].
     pub fn measure(seed: u64) -> Result<Self, ExperimentError> {
         let geometry = geometry();
         let mut rig = Rig::of_calibrated_parts(geometry, seed)?;
@@ -66,10 +66,10 @@ fn geometry() -> Geometry {
     Geometry::of_paper_tiles(2, 2).unwrap_or_default()
 }
 
-/// Long enough for both feet to have come to rest.
+/// Duration of the simulation (ms): both feet are at rest at its end.
 const LENGTH_MS: u32 = 1600;
 
-/// The feet after so many milliseconds, left first.
+/// The feet after `milli` milliseconds, left first.
 fn feet(milli: f32) -> [Foot; 2] {
     let down = |from: f32| ((milli - from) / 200.0).clamp(0.0, 1.0);
     let (first, second) = (down(50.0), down(550.0));
@@ -121,7 +121,7 @@ impl Figure for TwoFeet {
 
     fn csv(&self) -> String {
         let mut csv = String::from("what,column,row,force_n,x_m,y_m,f_sw,f_se,f_nw,f_ne\n");
-        // Writing to a `String` cannot fail.
+        // Writing to a `String` does not fail.
         for (tile, force, at) in &self.tiles {
             let sensors = geometry().index(*tile).and_then(|index| self.forces.get(index));
             let [sw, se, nw, ne] = sensors.copied().unwrap_or_default();
@@ -155,7 +155,7 @@ impl Figure for TwoFeet {
     }
 }
 
-/// Distance of the nearest contact from a foot, in metres; infinite without any.
+/// Distance from a foot to the nearest contact, in metres; infinite without contacts.
 fn nearest(foot: &Foot, contacts: &[Contact]) -> f32 {
     let centre = foot.centre_of_pressure();
     contacts.iter().map(|contact| contact.centroid.distance(centre)).fold(f32::INFINITY, f32::min)
@@ -184,9 +184,9 @@ impl TwoFeet {
                 let at = map.at(geometry.sensor(tile, corner));
                 let dot = Paint::fill(Ink::faint(THEME.contact, 0.55));
                 page.scene.add_circle(at, 0.0006 + 0.00014 * force.max(0.0).sqrt(), dot);
-                // The number stands on the tile's inner side of its sensor.
+                // The number is on the side of its sensor towards the tile's centre.
                 let offset = Vec2::new(0.0, -corner.direction().y * 0.0044 - 0.0010);
-                // Readable also where a shoe's outline runs through it.
+                // The badge keeps it readable over a shoe's outline.
                 let middle = at + offset + Vec2::new(0.0, 0.0010);
                 page.scene.add_badge(middle, 0.0024, Ink::solid(THEME.ink), HALO, format_args!("{force:.0}"));
             }
@@ -223,14 +223,14 @@ impl TwoFeet {
     }
 }
 
-/// What numbers stand on.
+/// Background of numbers.
 const HALO: Paint = Paint { fill: Some(Ink::faint(THEME.plate, 0.75)), stroke: None };
 
-/// Its 95 % ellipse, a cross, and its force on a plate `badge` page metres north of it.
+/// Draws the 95 % ellipse of a contact, a cross, and its force on a badge `badge` page metres north of it.
 fn draw_contact(page: &mut Page, map: &Map, contact: &Contact, colour: Colour, badge: f32) {
     let edge = Stroke::new(0.0003, Ink::solid(colour));
     let paint = Paint::fill(Ink::faint(colour, 0.12)).with_stroke(edge);
-    // An ambiguous contact's ellipse may reach beyond the floor.
+    // The ellipse of an ambiguous contact may extend beyond the floor.
     let ellipse = within(map.floor, ellipse_95(contact.centroid, contact.covariance).collect());
     map.outline(page, ellipse, paint);
     let at = map.at(contact.centroid);
@@ -248,12 +248,12 @@ fn draw_contact(page: &mut Page, map: &Map, contact: &Contact, colour: Colour, b
     );
 }
 
-/// How far from a contact its force is written, in page metres: clear of the sensors along the seam.
+/// Distance between a contact and its badge (page metres): clear of the sensors along the seam.
 const BADGE_M: f32 = 0.0110;
 
-/// The part of a convex outline that lies in `area`.
+/// Clips a convex outline to `area`.
 fn within(area: Rect, outline: Vec<Vec2>) -> Vec<Vec2> {
-    // Cut by one side after the other; how far inside that side a point is.
+    // Clips by one side after the other; each function returns the distance of a point inside that side.
     let sides: [fn(Rect, Vec2) -> f32; 4] = [
         |area, point| point.x - area.min.x,
         |area, point| area.max.x - point.x,
@@ -275,7 +275,7 @@ fn within(area: Rect, outline: Vec<Vec2>) -> Vec<Vec2> {
     })
 }
 
-/// Points around the ellipse that holds the true point 95 times in 100.
+/// Points on the ellipse that contains the true point with a probability of 95 %.
 fn ellipse_95(middle: Vec2, covariance: Covariance) -> impl Iterator<Item = Vec2> {
     let (long, short) = covariance.ellipse_95_m();
     let turn = 0.5 * (2.0 * covariance.xy).atan2(covariance.xx - covariance.yy);

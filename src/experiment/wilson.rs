@@ -1,28 +1,28 @@
-//! How sure a share is that was counted.
+//! Confidence interval of a counted share.
 
 use std::fmt;
 
 use serde::Serialize;
 
-/// So many of so many.
+/// A count of hits out of a total.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counted {
-    /// How many.
+    /// Number of hits.
     pub hits: u64,
-    /// Of how many.
+    /// Total.
     pub of: u64,
 }
 
 impl Counted {
-    /// The share (0 to 1); 0 of none.
+    /// Returns the share (0 to 1); 0 for an empty total.
     #[must_use]
     pub fn share(self) -> f64 {
         self.hits as f64 / self.of.max(1) as f64
     }
 
-    /// The interval that holds the true share 95 times in 100; 0 to 1 of none.
+    /// Returns the 95 % confidence interval of the true share; 0 to 1 for an empty total.
     ///
-    /// More hits than there are to hit count as all.
+    /// More hits than the total count as the total.
     ///
     /// # Source
     /// E. B. Wilson, Probable inference, the law of succession, and statistical inference, JASA 22 (1927).
@@ -47,7 +47,7 @@ impl std::ops::AddAssign for Counted {
     }
 }
 
-/// Per thousand with its interval, in twenty characters; a dash of none.
+/// Writes the share per thousand with its interval, in twenty characters; a dash for an empty total.
 impl fmt::Display for Counted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.of == 0 {
@@ -67,7 +67,7 @@ mod tests {
     fn intervals_are_those_of_the_textbook() {
         let (low, high) = Counted { hits: 10, of: 100 }.wilson_95();
         assert!((low - 0.0552).abs() < 1e-4 && (high - 0.1744).abs() < 1e-4, "{low} to {high}");
-        // Nothing in 20,000 is not nothing: up to 0.19 per thousand.
+        // No hits in 20,000 still allow a rate of up to 0.19 per thousand.
         let (low, high) = Counted { hits: 0, of: 20_000 }.wilson_95();
         assert!(low == 0.0 && (high - 0.000_192).abs() < 1e-6, "{high}");
         assert_eq!(Counted::default().wilson_95(), (0.0, 1.0));

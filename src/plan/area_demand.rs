@@ -1,4 +1,4 @@
-//! What one area asks of its computer.
+//! Load of one area on its computer.
 
 use serde::Serialize;
 
@@ -6,74 +6,74 @@ use super::datagram::{CONTACT_HZ, contacts, on_wire, sensor_packet};
 use super::{Crowd, Machine};
 use crate::floor::{Area, Board, Floor, Forwarding, TileBlock};
 
-/// Packets that a board sends in a second.
+/// Packets per second that a board sends.
 pub(super) const BOARD_HZ: f64 = 1000.0;
 
 const MILLISECOND_US: f64 = 1000.0;
 
-/// Feet that a person has on the floor, at most.
+/// Maximum number of feet per person on the floor.
 pub(super) const FEET: f64 = 2.0;
 
-/// Channels that move under one person: two feet, each on two tiles.
+/// Active sound channels per person: two feet, each on two tiles.
 pub(super) const CHANNELS_PER_PERSON: f64 = 4.0;
 
-/// Standard deviations by which an area may have more people than it has on average.
+/// Standard deviations above the mean number of people that an area must serve.
 const DEVIATIONS: f64 = 3.0;
 
-/// What one area asks of its computer when it is as full as it gets.
+/// Load of one area on its computer at the largest number of people that the plan expects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AreaDemand {
-    /// Its name; empty where the floor is not cut, or cut by the plan.
+    /// Name of the area; empty if the floor has no areas, or if the plan made them.
     pub id: String,
-    /// Its own tiles from west to east.
+    /// Number of the area's own tiles from west to east.
     pub columns: u32,
-    /// Its own tiles from south to north.
+    /// Number of the area's own tiles from south to north.
     pub rows: u32,
-    /// Tiles that it senses, its own among them, from west to east.
+    /// Number of sensed tiles, including the area's own, from west to east.
     pub sensed_columns: u32,
-    /// Tiles that it senses, its own among them, from south to north.
+    /// Number of sensed tiles, including the area's own, from south to north.
     pub sensed_rows: u32,
-    /// Packets of boards that come in, per second.
+    /// Board packets that the area receives, per second.
     pub packets_per_s: f64,
-    /// What they and their headers take on its wire.
+    /// Bandwidth of these packets with their headers on the area's wire (Mb/s).
     pub in_mbit: f64,
-    /// Packets of boards that it forwards, one for each computer that each goes to, per second.
+    /// Board packets that the area forwards, per second; a packet counts once for each destination computer.
     pub forwards_per_s: f64,
-    /// Computers that forward packets to it.
+    /// Number of computers that forward packets to this area.
     pub forwarders: u32,
-    /// Datagrams with contacts that go out, per second.
+    /// Contact datagrams that the area sends, per second.
     pub out_packets_per_s: f64,
-    /// What they, the forwarded packets and their headers take on its wire.
+    /// Bandwidth of the contact datagrams, the forwarded packets and their headers on the area's wire (Mb/s).
     pub out_mbit: f64,
-    /// Channels of its sound card.
+    /// Number of channels of the area's sound card.
     pub channels: u32,
-    /// People on its own tiles.
+    /// Number of people on the area's own tiles.
     pub people: f64,
-    /// People on the tiles that it senses.
+    /// Number of people on the tiles that the area senses.
     pub sensed_people: f64,
 }
 
-/// Tiles, boards and bytes before it is known how many people there are.
+/// Tiles, boards and bytes of an area, independent of the number of people.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Extent {
     pub(super) columns: u32,
     pub(super) rows: u32,
     pub(super) sensed_columns: u32,
     pub(super) sensed_rows: u32,
-    /// Boards that send to it.
+    /// Number of boards that send to the area.
     pub(super) boards: u32,
-    /// Bytes on the wire that they send each millisecond.
+    /// Bytes on the wire that these boards send each millisecond.
     pub(super) bytes: f64,
-    /// Packets that it forwards each millisecond, and their bytes on the wire.
+    /// Packets that the area forwards each millisecond, and their bytes on the wire.
     pub(super) forwards: u32,
     pub(super) forwarded_bytes: f64,
-    /// Computers that forward packets to it.
+    /// Number of computers that forward packets to this area.
     pub(super) forwarders: u32,
     pub(super) channels: u32,
 }
 
 impl AreaDemand {
-    /// Of an area of `extent` on a floor of so many `tiles`.
+    /// Computes the demand of an area of `extent` on a floor of `tiles` tiles.
     pub(super) fn new(id: &str, extent: &Extent, tiles: f64, crowd: &Crowd) -> Self {
         let Extent { columns, rows, sensed_columns, sensed_rows, boards, bytes, channels, .. } = *extent;
         let share = |columns, rows| f64::from(columns) * f64::from(rows) / tiles.max(1.0);
@@ -97,14 +97,14 @@ impl AreaDemand {
         }
     }
 
-    /// Of a floor that one computer serves.
+    /// Computes the demand of a whole floor on one computer.
     pub(super) fn whole(floor: &Floor, crowd: &Crowd) -> Self {
         let area = Area::new("", floor.geometry.block());
         Self::of(floor, &area, crowd)
     }
 
-    /// Of an area of a floor file; nothing of one that has no tile on the floor. Areas that do not say where they
-    /// listen are forwarded nothing.
+    /// Computes the demand of an area of a floor file; all numbers are 0 if the area has no tile on the floor. An
+    /// area without a listening address receives no forwarded packets.
     #[must_use]
     pub fn of(floor: &Floor, area: &Area, crowd: &Crowd) -> Self {
         let Some(part) = floor.part(area) else { return Self { id: area.id.clone(), ..Self::default() } };
@@ -135,14 +135,14 @@ impl AreaDemand {
         Self::new(&area.id, &extent, floor.geometry.tile_count() as f64, crowd)
     }
 
-    /// Tiles that it senses.
+    /// Returns the number of tiles that the area senses.
     #[must_use]
     pub fn sensed_tiles(&self) -> f64 {
         f64::from(self.sensed_columns) * f64::from(self.sensed_rows)
     }
 
-    /// What its sensing thread takes of a core: packets, those it forwards, waking for those that others forward, frames,
-    /// contacts, controls.
+    /// Returns the cores that the sensing thread needs: receiving packets, forwarding them, waking for packets that
+    /// other computers forward, assembling frames, detecting contacts, and updating controls.
     #[must_use]
     pub fn sensing_cores(&self, machine: &Machine) -> f64 {
         let work = machine.base_us
@@ -151,11 +151,12 @@ impl AreaDemand {
             + self.sensed_tiles() * (machine.assemble_tile_us + machine.sense_tile_us)
             + self.sensed_people * machine.person_us;
         let wakes = f64::from(self.forwarders) * machine.wake_us;
-        // Who is at work when a neighbour's packets come need not wake: of each wake-up, the share of time that is left.
+        // A busy thread needs no wake-up, so a wake-up costs only in the idle share of the time: solves `cores =
+        // (work + wakes * (1 - cores)) / 1 ms`.
         (work + wakes) / (MILLISECOND_US + wakes)
     }
 
-    /// What its sound takes of a core.
+    /// Returns the cores that the sound needs.
     #[must_use]
     pub fn sound_cores(&self, machine: &Machine) -> f64 {
         let channels = f64::from(self.channels);
@@ -164,7 +165,8 @@ impl AreaDemand {
     }
 }
 
-/// People on a `share` of the floor: as many as the crowding there says, and no fewer than chance brings together.
+/// Number of people on a `share` of the floor: the mean times the crowding, at least the mean plus three standard
+/// deviations (unless people are spread evenly), and at most all people.
 fn people_on(share: f64, crowd: &Crowd) -> f64 {
     let all = f64::from(crowd.people);
     let mean = all * share;
@@ -191,12 +193,13 @@ mod tests {
         let demand = AreaDemand::whole(&Floor::default(), &Crowd::of(2));
         assert_eq!((demand.columns, demand.rows, demand.sensed_columns, demand.sensed_rows), (6, 6, 6, 6));
         assert_eq!((demand.channels, demand.people, demand.sensed_people), (36, 2.0, 2.0));
-        // Six boards of 24 channels: 20 of address, 28 of tags, 4 + 96 of numbers, 66 of headers are 214 bytes.
+        // Six boards of 24 channels. Each packet: 20 bytes of address, 28 of tags, 4 + 96 of numbers, 66 of headers =
+        // 214 bytes.
         assert!(
             near(demand.packets_per_s, 6000.0) && near(demand.in_mbit, 6.0 * 214.0 * 8.0 / 1000.0),
             "{demand:?}"
         );
-        // Four feet in one datagram: 48 of bundle and count, 4 x 56 of contacts, 66 of headers.
+        // Four feet in one datagram: 48 bytes of bundle and count, 4 x 56 of contacts, 66 of headers.
         assert!(near(demand.out_packets_per_s, 100.0), "{demand:?}");
         assert!(near(demand.out_mbit, (48.0 + 224.0 + 66.0) * 8.0 * 100.0 / 1e6), "{demand:?}");
         // 20 + 6 x 1 + 36 x 0.2 + 2 x 10 us.
@@ -212,7 +215,7 @@ mod tests {
         let floor = Floor::of(Geometry::of_paper_tiles(12, 6).unwrap())
             .with_areas(vec![west.clone(), Area::new("east", east)]);
         let demand = AreaDemand::of(&floor, &west, &Crowd { crowding: 1.0, ..Crowd::of(8) });
-        // Four tiles are 1.216 m; both boards of a row reach into the ten columns.
+        // Four tiles are 1.216 m; both boards of a row have sensors in the ten sensed columns.
         assert_eq!((demand.sensed_columns, demand.sensed_rows, demand.channels), (10, 6, 36));
         assert!(near(demand.packets_per_s, 12_000.0));
         assert!(near(demand.people, 4.0) && near(demand.sensed_people, 8.0 * 60.0 / 72.0), "{demand:?}");
@@ -232,17 +235,18 @@ mod tests {
         ]);
         let crowd = Crowd { crowding: 1.0, ..Crowd::of(0) };
         let [west, middle, east] = [0, 1, 2].map(|at| AreaDemand::of(&floor, &floor.areas[at], &crowd));
-        // A board in each of two rows, which the middle forwards to both.
+        // One board in each of two rows; the middle area forwards its packets to both neighbours.
         assert!(near(west.forwards_per_s, 2000.0) && near(east.forwards_per_s, 2000.0), "{west:?} {east:?}");
         assert!(near(middle.forwards_per_s, 4000.0), "{middle:?}");
-        // 254 bytes each, and 114 of the empty contacts' datagram 100 times a second.
+        // 254 bytes for each packet, and 114 for the datagram without contacts, 100 times a second.
         assert!(
             near(middle.out_mbit, (4.0 * 254.0 * 1000.0 + 114.0 * 100.0) * 8.0 / 1e6),
             "{}",
             middle.out_mbit
         );
         assert_eq!((west.forwarders, middle.forwarders, east.forwarders), (1, 2, 1));
-        // 20 + 6 boards x 1 + 4 x 0.5 + 32 tiles x 0.2 us, and 2 neighbours x 3 us in what is left of a millisecond.
+        // 20 + 6 boards x 1 + 4 x 0.5 + 32 tiles x 0.2 us, and 2 neighbours x 3 us in the idle share of a
+        // millisecond.
         let sensing = middle.sensing_cores(&ROUND);
         assert!(near(sensing, 0.0344 + 0.006 * (1.0 - sensing)), "{sensing}");
     }
@@ -250,9 +254,9 @@ mod tests {
     #[test]
     fn more_people_than_on_average_are_expected_where_few_are() {
         let people = |share, crowding, people| people_on(share, &Crowd { crowding, ..Crowd::of(people) });
-        // Four on average: twice that, or four and three times two.
+        // Mean of four: crowding gives 2 x 4, chance gives 4 + 3 x 2.
         assert_eq!(people(0.04, 2.0, 100), 10.0);
-        // A hundred on average: twice that is more.
+        // Mean of a hundred: crowding gives 2 x 100, which is more than chance gives.
         assert_eq!(people(0.1, 2.0, 1000), 200.0);
         assert_eq!(people(0.5, 2.0, 4), 4.0, "no more than there are");
         assert_eq!(people(0.1, 1.0, 100), 10.0, "spread evenly");

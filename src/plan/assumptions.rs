@@ -1,14 +1,14 @@
-//! What the calculation takes for granted.
+//! Assumptions of the calculation.
 
 use super::area_demand::{CHANNELS_PER_PERSON, FEET};
 use super::{Crowd, Machine};
 use crate::floor::SENSED_BEYOND_M;
 use crate::wire::SensorFormat;
 
-/// People per tile of the crowd that constants are measured with: two on each 6 x 6 tiles.
+/// People per tile in the crowd that the constants are measured with: two on each 6 x 6 tiles.
 pub(super) const MEASURED_DENSITY: f64 = 2.0 / 36.0;
 
-/// What is taken for granted, in sentences; `densest` is how many people stand on a tile where they stand densest.
+/// Returns the assumptions as sentences; `densest` is the number of people per sensed tile in the fullest area.
 pub(super) fn of(crowd: &Crowd, machine: &Machine, densest: f64) -> Vec<String> {
     let format = match crowd.format {
         SensorFormat::Counts => "an OSC integer for each sensor",

@@ -1,23 +1,23 @@
-//! Which core a thread runs on.
+//! Binds a thread to a core.
 
-/// Which of the cores that this program may use.
+/// One of the cores that this program may use.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Core {
-    /// That of the lowest number.
+    /// The core with the lowest number.
     First,
-    /// That of the highest; the same if there is only one.
+    /// The core with the highest number; the same as `First` if there is only one.
     Last,
 }
 
-/// Keeps this thread on a core. Boards have none of the computer that takes their packets: if sender and receiver came
-/// to share one, waking would cost nothing.
+/// Binds this thread to a core. On a real floor the boards do not run on the receiving computer: if the simulated
+/// sender and the receiver shared a core, waking would cost nothing.
 #[cfg(target_os = "linux")]
 pub(super) fn stay_on(core: Core) {
     use nix::sched::{CpuSet, sched_getaffinity, sched_setaffinity};
     use nix::unistd::Pid;
     use std::sync::LazyLock;
     const THIS_THREAD: Pid = Pid::from_raw(0);
-    /// As the system allowed it before any thread stayed on a core: threads inherit where they may run.
+    /// Cores that the system allowed before any thread was bound: threads inherit their allowed cores.
     static ALLOWED: LazyLock<Vec<usize>> = LazyLock::new(|| {
         let allowed = sched_getaffinity(THIS_THREAD).unwrap_or_default();
         (0..CpuSet::count()).filter(|core| allowed.is_set(*core).unwrap_or(false)).collect()
@@ -28,7 +28,7 @@ pub(super) fn stay_on(core: Core) {
     };
     let mut only = CpuSet::new();
     if number.is_some_and(|number| only.set(*number).is_ok()) {
-        // Where that is not allowed, it stays where the system puts it.
+        // If the system refuses, the thread stays on the core that the system chooses.
         let _ = sched_setaffinity(THIS_THREAD, &only);
     }
 }

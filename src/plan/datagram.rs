@@ -1,17 +1,17 @@
-//! How many bytes a datagram is on an Ethernet wire.
+//! Size of a datagram on an Ethernet wire.
 
 use crate::wire::SensorFormat;
 
-/// What Ethernet adds to each packet: preamble 8, header 14, checksum 4, gap 12.
+/// Bytes that Ethernet adds to each packet: preamble 8, header 14, checksum 4, gap 12.
 const ETHERNET_BYTES: u32 = 38;
 
 /// IPv4 header and UDP header.
 const IP_UDP_BYTES: u32 = 20 + 8;
 
-/// Least that an Ethernet packet carries; what is shorter is filled up.
+/// Minimum payload of an Ethernet packet (bytes); Ethernet pads shorter ones.
 const LEAST_PAYLOAD: u32 = 46;
 
-/// An OSC text: its letters and at least one zero, in words of four bytes.
+/// Bytes of an OSC string: its letters and at least one zero byte, padded to a multiple of four bytes.
 const fn text(letters: u32) -> u32 {
     (letters / 4 + 1) * 4
 }
@@ -21,23 +21,23 @@ pub(super) const fn sensor_packet(address_letters: u32, channels: u32, format: S
     let (tags, readings) = match format {
         // A comma, the tag of the sequence number, and one per channel.
         SensorFormat::Counts | SensorFormat::Newtons => (2 + channels, 4 * channels),
-        // The blob's length, and two bytes a channel, filled up to four.
+        // The blob's length, and two bytes per channel, padded to a multiple of four bytes.
         SensorFormat::Blob => (3, 4 + (2 * channels).next_multiple_of(4)),
     };
     text(address_letters) + text(tags) + 4 + readings
 }
 
-/// Contacts in one datagram at most, and how often each is told.
+/// Maximum number of contacts in one datagram, and the rate (Hz) at which each contact is reported.
 const CONTACTS_PER_DATAGRAM: u32 = 20;
 pub(super) const CONTACT_HZ: f64 = 100.0;
 
-/// A bundle's header, and the message that says how many contacts there are, with its length.
+/// Bytes of a bundle's header, and of the message with the number of contacts, including its length field.
 const CONTACTS_BYTES: u32 = 16 + 4 + text(19) + text(2) + 4;
 
-/// One contact: its length, address, type tags, and six numbers.
+/// Bytes of one contact: its length, address, type tags, and six numbers.
 const CONTACT_BYTES: u32 = 4 + text(18) + text(7) + 24;
 
-/// Datagrams and bytes on the wire of one instant's contacts.
+/// Returns the number of datagrams, and their bytes on the wire, for the contacts of one instant.
 pub(super) fn contacts(count: u32) -> (u32, f64) {
     let datagrams = count.div_ceil(CONTACTS_PER_DATAGRAM).max(1);
     let bytes = f64::from(datagrams) * f64::from(on_wire(0) + CONTACTS_BYTES)
@@ -45,7 +45,7 @@ pub(super) fn contacts(count: u32) -> (u32, f64) {
     (datagrams, bytes)
 }
 
-/// Bytes that a datagram of so many takes on the wire.
+/// Bytes on the wire of a datagram with a payload of `bytes`.
 pub(super) const fn on_wire(bytes: u32) -> u32 {
     let packet = IP_UDP_BYTES + bytes;
     ETHERNET_BYTES + if packet < LEAST_PAYLOAD && bytes > 0 { LEAST_PAYLOAD } else { packet }
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn packets_are_as_long_as_those_that_are_sent() {
-        // Boards of 4 x k channels in addresses of one to three digits.
+        // Boards of 4 x `columns` channels with addresses of one to three digits.
         for columns in [1, 2, 3, 6, 8, 256] {
             let floor = Floor::of(Geometry::of_paper_tiles(columns, 12).unwrap());
             for format in [SensorFormat::Counts, SensorFormat::Newtons, SensorFormat::Blob] {
@@ -110,7 +110,8 @@ mod tests {
 
     #[test]
     fn a_board_of_32_channels_takes_two_megabits() {
-        // 24 of address, 36 of tags, 4 of sequence, 128 of readings; 66 of headers: 258 bytes a millisecond.
+        // 24 bytes of address, 36 of tags, 4 of sequence number, 128 of readings, 66 of headers: 258 bytes a
+        // millisecond.
         let bytes = on_wire(sensor_packet(20, 32, SensorFormat::Counts));
         assert_eq!(bytes, 24 + 36 + 4 + 128 + 66);
         assert_eq!(on_wire(4), 38 + 46, "Ethernet fills up what is short");

@@ -1,10 +1,10 @@
-//! What runs out, and how much of it is used.
+//! Resources that can run out, and the share of each that is used.
 
 use serde::Serialize;
 
 use super::{AreaDemand, Machine};
 
-/// What a floor may run out of.
+/// A resource that limits the size of a floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Resource {
@@ -16,18 +16,18 @@ pub enum Resource {
     Cores,
     /// Channels of an area's sound card.
     Channels,
-    /// What an area's network card takes in or gives out, whichever is more.
+    /// Network card of an area: the larger of the received and the sent bandwidth.
     Link,
-    /// What the network card of one app takes in that hears all contacts.
+    /// Received bandwidth of the network card of one app that receives all contacts.
     App,
-    /// Boards that one floor file has numbers for.
+    /// Board numbers in one floor file.
     Boards,
     /// Tiles along one side of a floor file.
     Side,
 }
 
 impl Resource {
-    /// What it is, for people.
+    /// Returns a readable name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl Resource {
         }
     }
 
-    /// What it is counted in, for people.
+    /// Returns the unit, for display.
     #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
@@ -54,34 +54,34 @@ impl Resource {
     }
 }
 
-/// How much of a resource is used.
+/// Use of one resource.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Limit {
-    /// Of what.
+    /// The resource.
     pub resource: Resource,
-    /// How much is needed, in its unit.
+    /// Amount needed, in the resource's unit.
     pub needed: f64,
-    /// How much may be used, headroom taken off.
+    /// Amount available, in the resource's unit, after the headroom is subtracted.
     pub available: f64,
-    /// The one divided by the other: above 1 it does not fit.
+    /// `needed / available`: above 1 the floor does not fit.
     pub share: f64,
 }
 
 impl Limit {
-    /// Nothing needed takes no share, also where nothing is available.
+    /// The share is 0 if `needed` is 0, even if `available` is 0 too.
     pub(super) fn new(resource: Resource, needed: f64, available: f64) -> Self {
         Self { resource, needed, available, share: if needed > 0.0 { needed / available } else { 0.0 } }
     }
 }
 
-/// What `area` uses of its computer, the resource used most first.
+/// Returns the use of each resource of the area's computer, the highest share first.
 pub(super) fn limits(area: &AreaDemand, machine: &Machine, usable: f64) -> Vec<Limit> {
     let (sensing, sound) = (area.sensing_cores(machine), area.sound_cores(machine));
     let mut all = vec![
         Limit::new(Resource::Sensing, sensing, usable),
         Limit::new(Resource::Sound, sound, usable),
         Limit::new(Resource::Cores, sensing + sound, usable * f64::from(machine.cores)),
-        // A channel is there or not: none is kept free.
+        // Channels need no headroom.
         Limit::new(Resource::Channels, area.channels.into(), machine.channels.into()),
         Limit::new(Resource::Link, area.in_mbit.max(area.out_mbit), usable * machine.link_mbit),
     ];
@@ -89,12 +89,12 @@ pub(super) fn limits(area: &AreaDemand, machine: &Machine, usable: f64) -> Vec<L
     all
 }
 
-/// Puts what is used most first.
+/// Sorts by share, highest first.
 pub(super) fn sort(limits: &mut [Limit]) {
     limits.sort_by(|a, b| b.share.total_cmp(&a.share));
 }
 
-/// What is used most; none of the sensing thread if there is nothing to compare.
+/// Returns the limit with the highest share; the sensing thread at 0 if the list is empty.
 pub(super) fn first(limits: &[Limit]) -> Limit {
     limits.first().copied().unwrap_or(Limit::new(Resource::Sensing, 0.0, 1.0))
 }
@@ -119,8 +119,8 @@ mod tests {
 
     #[test]
     fn what_is_used_most_comes_first() {
-        // Sensing 20 + 100 + 80 + 200 = 400 us of 500; sound 32 + 64 = 96 us of 500; both of 1000; half of the
-        // channels; 200 Mb/s of 500.
+        // Sensing uses 20 + 100 + 80 + 200 = 400 us of 500; sound uses 32 + 64 = 96 us of 500; both share 1000 us.
+        // Half of the channels are used, and 200 Mb/s of 500.
         let limits = limits(&area(), &ROUND, 0.5);
         let shares: Vec<_> =
             limits.iter().map(|limit| (limit.resource, (limit.share * 1000.0).round())).collect();

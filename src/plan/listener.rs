@@ -1,4 +1,4 @@
-//! Who is told of contacts while a floor's work is measured.
+//! A contact receiver for measuring the work of a floor.
 
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread;
@@ -9,7 +9,7 @@ use crate::sense::Contact;
 use crate::sink::{EventSink, Report};
 use crate::units;
 
-/// Hands contacts to another thread, as often as a node does.
+/// Sends contacts to another thread at the rate of a node.
 pub(super) struct Listener {
     out: SyncSender<Vec<Contact>>,
     contacts: Vec<Contact>,
@@ -17,7 +17,7 @@ pub(super) struct Listener {
 }
 
 impl Listener {
-    /// Starts the other thread, which ends with this.
+    /// Starts the receiving thread, which ends when this listener is dropped.
     pub(super) fn start() -> Self {
         let (out, told) = sync_channel(16);
         thread::spawn(move || {
@@ -39,11 +39,11 @@ impl EventSink for Listener {
     fn poll(&mut self, _: units::Instant) {
         if self.told.elapsed() >= TOLD_EVERY {
             self.told = Instant::now();
-            // The other thread is never behind for long.
+            // The receiving thread keeps up, so a full channel is rare; contacts that do not fit are dropped.
             let _ = self.out.try_send(self.contacts.clone());
         }
     }
 }
 
-/// How often a node tells a gateway its contacts.
+/// Interval at which a node sends its contacts to a gateway.
 const TOLD_EVERY: Duration = Duration::from_millis(2);

@@ -1,55 +1,55 @@
-//! What one computer does, as numbers.
+//! Performance of one computer, as constants.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// What one computer does: times are microseconds of one core for a millisecond of floor.
+/// Performance of one computer. Times are microseconds of one core per millisecond of floor time.
 ///
-/// `underfoot plan` measures them, or reads them from a file, so that plans are made for other machines too.
+/// `underfoot plan` measures them, or reads them from a file, so that you can plan for other machines too.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Machine {
-    /// Cores, 1 to 1024.
+    /// Number of cores, 1 to 1024.
     pub cores: u32,
-    /// What a floor at work takes whatever its size.
+    /// Fixed time of a running floor, independent of its size.
     pub base_us: f64,
-    /// Receiving one board's packet and reading it.
+    /// Time to receive and decode one board packet.
     pub packet_us: f64,
-    /// Forwarding one board's packet to one other computer.
+    /// Time to forward one board packet to one other computer.
     pub forward_us: f64,
-    /// Waking once more in a millisecond, for what one other computer forwards.
+    /// Time of one more wake-up per millisecond, for the packets that one other computer forwards.
     pub wake_us: f64,
-    /// Putting one tile's readings into a frame, and looking after its sensors.
+    /// Time to put one tile's readings into a frame and to monitor its sensors.
     pub assemble_tile_us: f64,
-    /// Sensing a tile that carries nothing.
+    /// Time to sense a tile without load.
     pub sense_tile_us: f64,
-    /// Sensing one person: usually two feet.
+    /// Time to sense one person: usually two feet.
     pub person_us: f64,
-    /// Rendering a channel that is silent.
+    /// Time to render a silent channel.
     pub channel_us: f64,
-    /// Rendering a channel that clicks and rubs, in addition.
+    /// Additional time to render a channel with clicks and friction.
     pub active_channel_us: f64,
-    /// Channels of the sound card, 1 to 65,535.
+    /// Number of channels of the sound card, 1 to 65,535.
     pub channels: u32,
-    /// Megabits per second of the network card, in each direction.
+    /// Bandwidth of the network card in each direction (Mb/s).
     pub link_mbit: f64,
 }
 
-/// A constant of a machine that nothing can be planned with.
+/// Error: a constant of a machine is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("the machine's `{name}` must be {expected}")]
 pub struct MachineError {
-    /// Which one.
+    /// Name of the constant.
     pub name: &'static str,
-    /// Its range.
+    /// Range of the constant.
     pub expected: &'static str,
 }
 
 impl Machine {
-    /// Whether every constant is in its range.
+    /// Checks that every constant is in its range.
     ///
     /// # Errors
-    /// [`MachineError`] names the first that is not.
+    /// Returns [`MachineError`] with the name of the first constant out of its range.
     pub fn check(&self) -> Result<(), MachineError> {
         let times = [
             ("base_us", self.base_us),
@@ -62,7 +62,7 @@ impl Machine {
             ("channel_us", self.channel_us),
             ("active_channel_us", self.active_channel_us),
         ];
-        // NaN is in no range.
+        // NaN is outside every range.
         if let Some((name, _)) = times.into_iter().find(|(_, time)| !(0.0..=1e6).contains(time)) {
             return Err(MachineError { name, expected: "0 to 1,000,000 microseconds" });
         }
@@ -83,7 +83,7 @@ impl Machine {
 pub(super) mod tests {
     use super::*;
 
-    /// Round numbers, so that a reader can follow the sums: 1 us a packet, 3 to wake, 0.1 a tile twice, 10 a person.
+    /// Round numbers, easy to add up: 1 us per packet, 3 us per wake-up, 0.1 us per tile twice, 10 us per person.
     pub(in crate::plan) const ROUND: Machine = Machine {
         cores: 2,
         base_us: 20.0,

@@ -1,4 +1,4 @@
-//! A computer's constants, measured on this one.
+//! Measures a computer's constants on this computer.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -9,29 +9,30 @@ use super::work_time::busy;
 use crate::capacity::{AssemblyLoad, RenderLoad, RenderWork};
 use crate::source::SourceError;
 
-/// Loads that are measured, one after the other.
+/// Number of loads that [`measure`] runs, one after the other.
 pub const LOADS: u64 = 6 * ROUNDS as u64 + 3;
 
-/// How often those in real time are measured: a thread wakes at one price or at another, by where the system has put it.
-/// Of a tenth of a second each, three runs agreed within 10 %; measured once, within 40 %.
+/// Number of repetitions of the real-time loads: the cost of a wake-up depends on the core that the system chooses
+/// for the thread. With repetitions of a tenth of a second, three runs agreed within 10 %; with a single one, within
+/// 40 %.
 const ROUNDS: u32 = 10;
 
-/// Most channels that ALSA opens on a card.
+/// Maximum number of channels that ALSA opens on a card.
 const CHANNELS: u32 = 64;
 
-/// An ordinary network card.
+/// Bandwidth of an ordinary network card (Mb/s).
 const LINK_MBIT: f64 = 1000.0;
 
-/// The floor whose tiles are put together: as large as what an area senses.
+/// Side of the floor whose tiles are assembled: as large as the sensed part of an area.
 const SIDE: u16 = 24;
 
-/// Channels of the loads that are rendered.
+/// Number of channels in the rendering loads.
 const RENDERED: f64 = 36.0;
 
-/// Measures this computer, each of its loads for `length`; `advance` hears [`LOADS`] times that one is done.
+/// Measures this computer, each of its loads for `length`; calls `advance` [`LOADS`] times, once after each load.
 ///
 /// # Errors
-/// [`SourceError`] if packets to this machine itself can't be had.
+/// [`SourceError`] if this machine can't send packets to itself.
 pub fn measure(length: Duration, advance: impl Fn()) -> Result<Machine, SourceError> {
     let (mut floors, mut rounds) = (Floors::new()?, Vec::new());
     for _ in 0..ROUNDS {
@@ -59,7 +60,7 @@ pub fn measure(length: Duration, advance: impl Fn()) -> Result<Machine, SourceEr
             millisecond(&mut || load.second())
         });
     let assemble_tile_us = assemble_us / f64::from(SIDE).powi(2);
-    // A machine that is busy with something else may measure less than nothing.
+    // On a machine that is busy with other work, a difference may be negative.
     Ok(Machine {
         cores: thread::available_parallelism().map_or(1, |cores| cores.get().min(1024) as u32),
         base_us: paced.base_us().max(0.0),
@@ -76,10 +77,10 @@ pub fn measure(length: Duration, advance: impl Fn()) -> Result<Machine, SourceEr
     })
 }
 
-/// Microseconds of work for each millisecond of a floor of which `second` does a second: the median of as many as are
-/// done in `length`, three at least.
+/// Microseconds of work per millisecond of a floor; one call of `second` runs one second of it. Returns the median of
+/// the calls that fit into `length`, at least three.
 fn millisecond_us(length: Duration, second: &mut dyn FnMut()) -> f64 {
-    // Tables, caches and the processor's clock warm up first.
+    // The first call warms up tables, caches and the processor's clock.
     second();
     let mut all = Vec::new();
     let begun = Instant::now();

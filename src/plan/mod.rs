@@ -1,10 +1,10 @@
-//! How many computers a floor takes: from its size, its crowd and what one machine does, which [`measure`] finds out.
+//! Number of computers that a floor needs, from its size, its crowd and the performance of one machine ([`measure`]).
 //!
-//! A floor too large for one computer is cut into areas ([`crate::floor::Area`]). Each computer receives the packets of
-//! its area and of 1.2 m around it, assembles and senses those tiles, and moves its own. What that costs is linear in
-//! packets, tiles, people and channels, with the [`Machine`]'s constants, but for wake-ups, which cost no more than the
-//! time in which a thread would sleep; the fewest areas that stay within a share of every resource are the plan. What the
-//! calculation takes for granted is said in [`Plan::assumptions`].
+//! A floor too large for one computer is cut into areas ([`crate::floor::Area`]). Each computer receives the packets
+//! of its area and of 1.2 m around it, assembles and senses those tiles, and drives its own. The cost is linear in
+//! packets, tiles, people and channels, with the [`Machine`]'s constants. Wake-ups are the exception: they cost at
+//! most the time in which a thread would sleep. The plan has the fewest areas that stay within a share of every
+//! resource. [`Plan::assumptions`] lists the assumptions of the calculation.
 
 mod area_demand;
 mod assumptions;
@@ -35,77 +35,79 @@ pub use self::whole::Total;
 use self::limit::{first, limits};
 use self::split::fewest;
 
-/// Most tiles along a side that a plan is made for: three hundred metres of the paper's tiles, four times over.
+/// Maximum number of tiles along a side that a plan accepts: four times three hundred metres of the paper's tiles.
 pub const MOST_SIDE: u32 = 4096;
 
-/// Most people that a plan is made for.
+/// Maximum number of people that a plan accepts.
 pub const MOST_PEOPLE: u32 = 10_000_000;
 
-/// A floor by its size alone: the paper's tiles, boards of eight tiles of a row, an actuator under each tile or none.
+/// A floor given by its size alone: the paper's tiles, boards for eight tiles of a row, an actuator under each tile
+/// or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
-    /// Tiles from west to east, 1 to [`MOST_SIDE`].
+    /// Number of tiles from west to east, 1 to [`MOST_SIDE`].
     pub columns: u32,
-    /// Tiles from south to north, 1 to [`MOST_SIDE`].
+    /// Number of tiles from south to north, 1 to [`MOST_SIDE`].
     pub rows: u32,
-    /// Whether there is an actuator under each tile.
+    /// True if there is an actuator under each tile.
     pub actuators: bool,
 }
 
-/// Who is on the floor, and how its boards write.
+/// People on the floor, and the format of the board packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crowd {
-    /// How many people are on the whole floor, at most [`MOST_PEOPLE`].
+    /// Number of people on the whole floor, at most [`MOST_PEOPLE`].
     pub people: u32,
-    /// How many times denser than on the whole floor people stand in the fullest area, 1 to 1000.
+    /// Density of people in the fullest area divided by the density on the whole floor, 1 to 1000.
     pub crowding: f64,
-    /// How the boards write their readings.
+    /// Format of the readings in board packets.
     pub format: SensorFormat,
-    /// Which share of each resource may be used, above 0 and at most 1; the rest is headroom.
+    /// Usable share of each resource, above 0 and at most 1; the rest is headroom.
     pub usable: f64,
 }
 
 impl Crowd {
-    /// So many people, twice as dense where they are densest, boards that send counts, half of everything kept free.
+    /// A crowd of `people`, twice as dense in the fullest area, with boards that send counts and half of each
+    /// resource as headroom.
     #[must_use]
     pub const fn of(people: u32) -> Self {
         Self { people, crowding: 2.0, format: SensorFormat::Counts, usable: 0.5 }
     }
 }
 
-/// What a floor and a crowd take.
+/// Computers and resources that a floor with a crowd needs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
-    /// Tiles from west to east.
+    /// Number of tiles from west to east.
     pub columns: u32,
-    /// Tiles from south to north.
+    /// Number of tiles from south to north.
     pub rows: u32,
-    /// People on the floor.
+    /// Number of people on the floor.
     pub people: u32,
-    /// What the plan was made with.
+    /// Constants of the computers.
     pub machine: Machine,
-    /// Which share of each resource may be used.
+    /// Usable share of each resource.
     pub usable: f64,
-    /// How the floor is cut; `None` where its file names the areas.
+    /// Division of the floor into areas; `None` if the floor file names the areas.
     pub split: Option<Split>,
-    /// The area that uses most of a resource.
+    /// The area with the highest share of any resource.
     pub fullest: AreaDemand,
-    /// What that area uses of each resource of its computer, the one used most first.
+    /// Use of each resource of that area's computer, the highest share first.
     pub limits: Vec<Limit>,
-    /// All areas together.
+    /// Sums over all areas.
     pub total: Total,
-    /// What runs out on the whole floor however many computers there are, the one used most first.
+    /// Limits of the whole floor that more computers do not raise, the highest share first.
     pub whole: Vec<Limit>,
-    /// What runs out first: a resource of the whole floor if more of it is needed than there is, else the one that the
-    /// fullest area's computer uses most.
+    /// The resource that runs out first: a resource of the whole floor if it needs more than is available, else the
+    /// resource with the highest share on the fullest area's computer.
     pub first_limit: Resource,
-    /// Whether each area's computer, and the whole, stay within their limits.
+    /// True if each area's computer and the whole floor stay within their limits.
     pub fits: bool,
-    /// What the calculation takes for granted.
+    /// Assumptions of the calculation.
     pub assumptions: Vec<String>,
 }
 
-/// Why no plan can be made.
+/// Reason why a plan can't be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PlanError {
     /// The machine's constants are not usable.
@@ -114,23 +116,23 @@ pub enum PlanError {
     /// A size, a number of people or a share is out of its range.
     #[error("{what} must be {expected}")]
     Range {
-        /// What is.
+        /// Name of the quantity.
         what: &'static str,
-        /// Its range.
+        /// Range of the quantity.
         expected: &'static str,
     },
-    /// One tile with what is sensed around it is too much for one computer.
+    /// One tile with the sensed tiles around it is too much for one computer.
     #[error("even an area of one tile takes more than one computer gives: {what}")]
     TooMuch {
-        /// Which resource runs out.
+        /// Name of the resource that runs out.
         what: &'static str,
     },
 }
 
-/// Plans a floor of which only the size is known: the fewest areas that fit, near-square and of nearly equal sizes.
+/// Plans a floor from its size alone: the fewest areas that fit, near-square and of nearly equal sizes.
 ///
 /// # Errors
-/// [`PlanError`] if a number is out of its range, or not even single tiles fit.
+/// [`PlanError`] if a number is out of its range, or if even single tiles do not fit.
 pub fn plan_size(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Plan, PlanError> {
     check(crowd, machine)?;
     if !(1..=MOST_SIDE).contains(&size.columns) || !(1..=MOST_SIDE).contains(&size.rows) {
@@ -148,9 +150,9 @@ pub fn plan_size(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Plan, P
     ))
 }
 
-/// Plans a floor by its file: the areas that it names, or as by [`plan_size`] if it names none.
+/// Plans a floor from its file: with the areas that the file names, or as [`plan_size`] does if it names none.
 ///
-/// Areas that the file names are taken as they are, also where they are too large: [`Plan::fits`] tells.
+/// The areas of the file stay as they are, even if they are too large; [`Plan::fits`] is false then.
 ///
 /// # Errors
 /// As [`plan_size`].
@@ -186,7 +188,8 @@ fn check(crowd: &Crowd, machine: &Machine) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// The plan for `areas`, which are asked for with the densest crowd and with one that is spread evenly.
+/// Makes the plan for `areas`, a function that returns the areas for a crowd: called with the densest crowd, and with
+/// people spread evenly.
 fn conclude(
     [columns, rows]: [u32; 2],
     boards: u32,
@@ -196,7 +199,7 @@ fn conclude(
     machine: &Machine,
 ) -> Plan {
     let most = |area: &AreaDemand| first(&limits(area, machine, crowd.usable)).share;
-    // Of areas that use as much of what is used most, such as channels, the one that senses most.
+    // If several areas have the same highest share, as with channels, the one that senses most is the fullest.
     let fuller = |a: &AreaDemand, b: &AreaDemand| {
         most(a).total_cmp(&most(b)).then(a.sensing_cores(machine).total_cmp(&b.sensing_cores(machine)))
     };
@@ -231,22 +234,23 @@ mod tests {
 
     #[test]
     fn a_hall_by_hand() {
-        // Sensing alone, spread evenly: 500 us, of which 20 are the same for all.
+        // Sensing is the only limit and people are spread evenly: 500 us, of which 20 are the same for all.
         let size = Size { columns: 100, rows: 100, actuators: false };
         let crowd = Crowd { crowding: 1.0, ..Crowd::of(400) };
         let plan = plan_size(size, &crowd, &ROUND).unwrap();
         assert!(plan.fits, "{plan:?}");
-        // Thirteen boards a row.
+        // Thirteen boards per row.
         assert_eq!((plan.total.boards, plan.total.links), (1300, 1300 + plan.total.computers));
         assert_eq!(plan.first_limit, Resource::Sensing);
-        // Each takes 0.2 us a tile and 0.4 us for the 0.04 people on it; the sum is what areas share and their margins.
+        // Each tile takes 0.2 us, and 0.4 us for the 0.04 people on it; the fixed time and the margins of the areas
+        // add to that.
         let split = plan.split.unwrap();
         assert_eq!(split.areas_count(), plan.total.computers);
         let share = plan.limits[0].share;
         assert!(share <= 1.0, "{share}");
         let fewer = Crowd { people: 399, ..crowd };
         assert!(plan_size(size, &fewer, &ROUND).unwrap().total.computers <= plan.total.computers);
-        // 800 feet, 100 times a second.
+        // 800 feet, 100 reports per second.
         assert!((plan.total.contacts_per_s - 80_000.0).abs() < 1e-6);
     }
 
@@ -255,11 +259,11 @@ mod tests {
         let size = Size { columns: 1000, rows: 1000, actuators: false };
         let plan = plan_size(size, &Crowd::of(30_000), &Machine { person_us: 1.0, ..ROUND }).unwrap();
         assert!(!plan.fits);
-        // 125 boards in each of 1000 rows, of 65,536; 1000 tiles of 256.
+        // 125 boards in each of 1000 rows, of 65,536 board numbers; 1000 tiles of 256 along a side.
         let shares = |resource| plan.whole.iter().find(|limit| limit.resource == resource).unwrap().share;
         assert!((shares(Resource::Boards) - 125_000.0 / 65_536.0).abs() < 1e-9);
         assert!((shares(Resource::Side) - 1000.0 / 256.0).abs() < 1e-9);
-        // 60,000 feet of 56 bytes 100 times a second are 2,688 Mb/s without headers; 500 may be used.
+        // 60,000 feet of 56 bytes at 100 Hz are 2,688 Mb/s without headers; 500 Mb/s are usable.
         assert!(
             plan.total.app_mbit > 2688.0 && plan.total.app_mbit < 1.3 * 2688.0,
             "{}",
@@ -270,7 +274,8 @@ mod tests {
 
     #[test]
     fn of_areas_with_as_many_channels_the_one_that_senses_most_is_the_fullest() {
-        // Nine areas of 8 x 8 with full cards; the one in the middle senses four tiles more on every side.
+        // Nine areas of 8 x 8 use all channels of their cards; the one in the middle senses four more tiles on every
+        // side.
         let size = Size { columns: 24, rows: 24, actuators: true };
         let plan = plan_size(size, &Crowd::of(4), &ROUND).unwrap();
         assert_eq!(plan.split, Some(Split { across: 3, up: 3 }));
@@ -289,7 +294,7 @@ mod tests {
         // 144 channels on a card of 64.
         assert!(!plan.fits && plan.first_limit == Resource::Channels);
         assert!((plan.limits[0].share - 144.0 / 64.0).abs() < 1e-9);
-        // Without areas, as many are made as it takes.
+        // Without areas in the file, the plan makes as many as it needs.
         let whole = Floor { areas: Vec::new(), ..floor };
         let plan = plan_floor(&whole, &Crowd::of(4), &ROUND).unwrap();
         assert!(plan.fits && plan.split.unwrap().areas_count() == 5, "{:?}", plan.split);

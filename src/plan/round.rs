@@ -1,4 +1,4 @@
-//! Loads that are measured in real time: on a thread with the priority of one that senses, which sleeps between packets.
+//! Loads in real time, on a thread with the priority of a sensing thread, which sleeps between packets.
 
 use std::net::{Ipv4Addr, UdpSocket};
 use std::panic::resume_unwind;
@@ -14,20 +14,20 @@ use crate::floor::{Board, Floor, Forwarding};
 use crate::sink::{Rank, claim_priority};
 use crate::source::{SensorSource, SourceError, UdpSource};
 
-/// The floor whose tiles and people are measured: as large as what an area senses.
+/// Side of the floor whose tiles and people are measured: as large as the sensed part of an area.
 const SIDE: u16 = 24;
 
-/// Walkers on it: two on 6 x 6.
+/// Number of walkers on that floor: two on 6 x 6 tiles.
 const WALKERS: u16 = SIDE * SIDE / 18;
 
-/// The smallest floor that is measured, to tell what a floor takes whatever its size.
+/// Side of the smallest measured floor, which gives the fixed time independent of the size.
 const SMALL: u16 = 6;
 
-/// By how much later than what comes from its own boards a neighbour's packets come, where a wake-up is measured: long
-/// enough for the thread to sleep again, which costs the same after 0.1 ms and after 0.5.
+/// Delay of a neighbour's packets behind those of the area's own boards, for measuring a wake-up: long enough for the
+/// thread to sleep again. The cost is the same after 0.1 ms and after 0.5 ms.
 const LATER: Duration = Duration::from_micros(200);
 
-/// The floors that loads are of.
+/// Floors for the loads.
 #[derive(Debug)]
 pub(super) struct Floors {
     small: BoardsLoad,
@@ -45,16 +45,16 @@ impl Floors {
     }
 }
 
-/// Microseconds of work for a millisecond of each load that is measured in real time.
+/// Microseconds of work per millisecond of floor time, for each real-time load.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
-    /// Packets of the empty floor, received and read.
+    /// Receiving and decoding the packets of the empty floor.
     pub(super) received: f64,
-    /// The same, forwarded to another computer.
+    /// Receiving, decoding and forwarding them to another computer.
     pub(super) forwarded: f64,
     /// Serving the small floor.
     pub(super) small: f64,
-    /// Serving the small floor, half of whose packets come [`LATER`].
+    /// Serving the small floor, with half of the packets delayed by [`LATER`].
     pub(super) twice: f64,
     /// Serving the empty floor.
     pub(super) empty: f64,
@@ -63,7 +63,7 @@ pub(super) struct Round {
 }
 
 impl Round {
-    /// Measures each of its loads for `length`; `advance` hears of each that is done.
+    /// Measures each load for `length`; calls `advance` after each.
     pub(super) fn measure(
         floors: &mut Floors,
         length: Duration,
@@ -86,37 +86,37 @@ impl Round {
         })
     }
 
-    /// One packet from the socket to its readings.
+    /// Time of one packet from the socket to its readings.
     pub(super) fn packet_us(&self) -> f64 {
         self.received / boards(SIDE)
     }
 
-    /// One packet forwarded to one other computer.
+    /// Time to forward one packet to one other computer.
     pub(super) fn forward_us(&self) -> f64 {
         (self.forwarded - self.received) / boards(SIDE)
     }
 
-    /// Waking once more in a millisecond.
+    /// Time of one more wake-up per millisecond.
     pub(super) fn wake_us(&self) -> f64 {
         self.twice - self.small
     }
 
-    /// What the small floor takes but for its packets.
+    /// Time of the small floor without its packets.
     fn small_us(&self) -> f64 {
         self.small - boards(SMALL) * self.packet_us()
     }
 
-    /// A tile that carries nothing: assembling and sensing it.
+    /// Time to assemble and sense a tile without load.
     pub(super) fn tile_us(&self) -> f64 {
         (self.empty - self.received - self.small_us()) / (tiles(SIDE) - tiles(SMALL))
     }
 
-    /// A floor at work, whatever its size.
+    /// Fixed time of a running floor, independent of its size.
     pub(super) fn base_us(&self) -> f64 {
         self.small_us() - tiles(SMALL) * self.tile_us()
     }
 
-    /// A person who walks.
+    /// Time of a person walking.
     pub(super) fn person_us(&self) -> f64 {
         (self.crowd - self.empty) / f64::from(WALKERS)
     }
@@ -130,19 +130,19 @@ fn tiles(side: u16) -> f64 {
     f64::from(side).powi(2)
 }
 
-/// What takes the packets of a floor, one at each call.
+/// Prepares a load on a floor's packets; each call of the returned function takes one packet.
 type Take = dyn Fn(&Floor, UdpSource) -> Result<Turn, SourceError> + Sync;
 type Turn = Box<dyn FnMut() -> Result<(), SourceError>>;
 
-/// What passes between the two halves of a millisecond's packets.
+/// Called between the two halves of a millisecond's packets.
 type Pause = dyn Fn() + Sync;
 
-/// Receives and reads.
+/// Receives and decodes.
 fn receive(_: &Floor, mut source: UdpSource) -> Result<Turn, SourceError> {
     Ok(Box::new(move || source.next(PATIENCE).map(|_| ())))
 }
 
-/// Receives, reads, and forwards to another computer.
+/// Receives, decodes, and forwards to another computer.
 fn forward(floor: &Floor, source: UdpSource) -> Result<Turn, SourceError> {
     let failed = |source: std::io::Error| SourceError::Socket {
         message: format!("packets can't be forwarded to this machine itself: {source}"),
@@ -153,7 +153,7 @@ fn forward(floor: &Floor, source: UdpSource) -> Result<Turn, SourceError> {
     let to = vec![neighbour.local_addr().map_err(failed)?];
     let forwarding = |board: &Board| Forwarding { address: board.address.clone(), to: to.clone() };
     let (source, _) = source.forwarding(&floor.boards.iter().map(forwarding).collect::<Vec<_>>())?;
-    // It takes them until none come any more.
+    // The neighbour receives packets until the socket reports an error.
     thread::spawn(move || {
         stay_on(Core::First);
         while neighbour.recv(&mut [0; 2048]).is_ok() {}
@@ -161,20 +161,21 @@ fn forward(floor: &Floor, source: UdpSource) -> Result<Turn, SourceError> {
     receive(floor, source)
 }
 
-/// Does all that the sensing thread of a node does.
+/// Does the work of a node's sensing thread.
 fn serve(floor: &Floor, source: UdpSource) -> Result<Turn, SourceError> {
     let mut server = ServeLoad::server(floor, Box::new(source)).with_events(Box::new(Listener::start()));
     Ok(Box::new(move || server.turn().map(|_| ())))
 }
 
-/// How long packets are taken before that is measured.
+/// Warm-up time before the measurement.
 const WARM_UP: Duration = Duration::from_millis(150);
 
-/// How long is waited for a packet.
+/// Time-out of waiting for a packet.
 const PATIENCE: Duration = Duration::from_millis(1);
 
-/// Microseconds of work for each millisecond of a floor whose packets are taken for `length` in real time and from the network, as a sensing thread does it. Between two packets it sleeps, and wakes to caches
-/// that others have used; a load that never sleeps does not tell what that takes.
+/// Microseconds of work per millisecond of a floor: takes its packets from the network in real time for `length`, as
+/// a sensing thread does. The thread sleeps between two packets and wakes to caches that other threads have used; a
+/// load that never sleeps would not include this cost.
 fn paced_us(
     length: Duration,
     boards: &mut BoardsLoad,
@@ -208,7 +209,7 @@ fn paced_us(
                 thread::sleep(Duration::from_millis(millis).saturating_sub(begun.elapsed()));
             }
         });
-        // On a thread of its own, which takes its priority with it.
+        // A new thread, so that its priority ends with it.
         let worked = scope.spawn(work).join();
         is_over.store(true, Ordering::Relaxed);
         worked.unwrap_or_else(|panic| resume_unwind(panic))

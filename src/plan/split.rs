@@ -9,10 +9,10 @@ use super::{AreaDemand, Crowd, Machine, PlanError, Size};
 use crate::floor::SENSED_BEYOND_M;
 use crate::wire::SensorFormat;
 
-/// Pitch of the paper's tiles, in metres.
+/// Pitch of the paper's tiles (m).
 const PITCH_M: f32 = 0.304;
 
-/// Tiles that one board of 32 channels reads, beside each other.
+/// Number of adjacent tiles that one board of 32 channels reads.
 const BOARD_TILES: u32 = 8;
 
 /// A floor cut into `across` x `up` areas.
@@ -25,16 +25,16 @@ pub struct Split {
 }
 
 impl Split {
-    /// Not cut.
+    /// One area: the whole floor.
     pub(super) const WHOLE: Self = Self { across: 1, up: 1 };
 
-    /// Number of areas.
+    /// Returns the number of areas.
     #[must_use]
     pub const fn areas_count(&self) -> u32 {
         self.across * self.up
     }
 
-    /// What each area asks, row by row from the south-west.
+    /// Returns the demand of each area, row by row from the south-west.
     pub(super) fn areas(&self, size: Size, crowd: &Crowd) -> Vec<AreaDemand> {
         let boards = Boards::of(size, crowd.format);
         let columns = boards.along(size.columns, self.across);
@@ -43,7 +43,7 @@ impl Split {
     }
 }
 
-/// Tiles from `first` on up to `end`, and those that are sensed with them, on one axis.
+/// Tiles from `first` up to but excluding `end` on one axis, and the sensed range around them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Span {
     first: u32,
@@ -51,35 +51,35 @@ struct Span {
     sensed: (u32, u32),
 }
 
-/// How many boards a floor of this size has.
+/// Returns the number of boards of a floor of this size.
 pub(super) fn boards(size: Size) -> u32 {
     size.columns.div_ceil(BOARD_TILES).saturating_mul(size.rows)
 }
 
-/// Which boards of a row measure something in a span, from and up to.
+/// Range of the boards in a row with sensors in the sensed part of a span: first, and end (exclusive).
 fn sensing(span: Span) -> (u32, u32) {
     (span.sensed.0 / BOARD_TILES, span.sensed.1.div_ceil(BOARD_TILES))
 }
 
-/// What a span takes along its axis.
+/// Load of a span along its axis.
 #[derive(Clone, Copy, Debug, Default)]
 struct Along {
     own: u32,
     sensed: u32,
-    /// Boards of each row that measure something in it; their packets' bytes.
+    /// Boards of each row with sensors in the sensed part of the span; bytes of their packets.
     boards: u32,
     bytes: f64,
-    /// Boards of each row whose home it is, or rows of its own; their packets' bytes.
+    /// Boards of each row that send to this span's computer (their home), or rows of its own; bytes of their packets.
     home: u32,
     home_bytes: f64,
-    /// The same, each once for each span that senses it.
+    /// The same boards or rows, each counted once for every span that senses it; bytes of their packets.
     copies: u32,
     copied_bytes: f64,
-    /// Spans, itself among them, that are the homes of what measures something in it.
+    /// Number of spans, including itself, that are homes of boards or rows sensed by this span.
     homes: u32,
 }
 
-/// `length` tiles in `parts` spans of nearly equal length.
+/// Divides `length` tiles into `parts` spans of nearly equal length.
 fn spans(length: u32, parts: u32) -> impl DoubleEndedIterator<Item = Span> + ExactSizeIterator {
     let beyond = (SENSED_BEYOND_M / PITCH_M).ceil() as u32;
     let cut = move |part: u32| (u64::from(part) * u64::from(length) / u64::from(parts.max(1))) as u32;
@@ -93,7 +93,7 @@ fn along(span: Span) -> Along {
     Along { own: span.end - span.first, sensed: span.sensed.1 - span.sensed.0, ..Along::default() }
 }
 
-/// By how many of these spans each of `count` is covered.
+/// For each of `count` positions, the number of spans that cover it.
 fn covers(count: u32, spans: impl Iterator<Item = (u32, u32)>) -> Vec<u32> {
     let mut changes = vec![0_i64; count as usize + 1];
     for (from, to) in spans {
@@ -108,7 +108,7 @@ fn covers(count: u32, spans: impl Iterator<Item = (u32, u32)>) -> Vec<u32> {
     sums.collect()
 }
 
-/// What each of `up` spans takes of so many rows.
+/// Load of each of `up` spans over `length` rows.
 fn rows(length: u32, up: u32) -> Vec<Along> {
     let all: Vec<Span> = spans(length, up).collect();
     let sensed = covers(length, all.iter().map(|span| span.sensed));
@@ -121,10 +121,10 @@ fn rows(length: u32, up: u32) -> Vec<Along> {
     all.iter().map(row).collect()
 }
 
-/// Boards of a floor of which each row has its own, eight tiles each.
+/// Boards of a floor: each row has its own, with eight tiles each.
 struct Boards {
     columns: u32,
-    /// Bytes on the wire of a full board's packet, and of the last of a row.
+    /// Bytes on the wire of a full board's packet, and of the packet of the last board in a row.
     full: f64,
     last: f64,
 }
@@ -143,33 +143,34 @@ impl Boards {
         }
     }
 
-    /// The boards of one row that measure something in a span.
+    /// Load of the boards of one row with sensors in the sensed part of a span.
     fn span(&self, span: Span) -> Along {
         let (from, to) = sensing(span);
         let bytes = (from..to).map(|board| self.bytes(board)).sum();
         Along { boards: to - from, bytes, ..along(span) }
     }
 
-    /// Bytes on the wire of a packet of a row's board.
+    /// Bytes on the wire of the packet of one board in a row.
     fn bytes(&self, board: u32) -> f64 {
         if board + 1 == self.columns.div_ceil(BOARD_TILES) { self.last } else { self.full }
     }
 
-    /// What each of `across` spans takes of a row.
+    /// Load of each of `across` spans in a row.
     fn along(&self, length: u32, across: u32) -> Vec<Along> {
         let mut all: Vec<Along> = spans(length, across).map(|span| self.span(span)).collect();
         let sensed = covers(length.div_ceil(BOARD_TILES), spans(length, across).map(sensing));
         let home = |board: u32| {
             let (west, east) = (board * BOARD_TILES, (board + 1) * BOARD_TILES);
             let tiles = |span: Span| span.end.min(east).saturating_sub(span.first.max(west));
-            // Of spans that have as many of its tiles, the first is its home; of equals, `max_by_key` gives the last.
+            // If several spans have equally many of its tiles, the first is its home; `max_by_key` returns the last
+            // of equals, hence `rev`.
             let number = spans(length, across).enumerate().rev().max_by_key(|(_, span)| tiles(*span));
             number.map(|(number, _)| number)
         };
         let homes: Vec<Option<usize>> = (0..).zip(&sensed).map(|(board, _)| home(board)).collect();
         for (span, along) in spans(length, across).zip(&mut all) {
             let (from, to) = sensing(span);
-            // Homes follow each other as boards do.
+            // Homes are in the order of the boards, so equal homes are adjacent.
             let of_boards = homes[from as usize..to as usize].chunk_by(|one, next| one == next);
             along.homes = of_boards.count() as u32;
         }
@@ -193,20 +194,19 @@ fn demand(column: &Along, row: &Along, size: Size, crowd: &Crowd) -> AreaDemand 
         sensed_rows: row.sensed,
         boards: column.boards * row.sensed,
         bytes: column.bytes * f64::from(row.sensed),
-        // Its home has a packet anyway.
+        // The home receives the packet directly from the board.
         forwards: (column.copies * row.copies).saturating_sub(column.home * row.home),
         forwarded_bytes: (column.copied_bytes * f64::from(row.copies)
             - column.home_bytes * f64::from(row.home))
         .max(0.0),
-        // An area narrower than a board may be no board's home.
+        // An area narrower than a board may be the home of no board.
         forwarders: (column.homes * row.homes).saturating_sub(u32::from(column.home * row.home > 0)),
         channels: if size.actuators { column.own * row.own } else { 0 },
     };
     AreaDemand::new("", &extent, f64::from(size.columns) * f64::from(size.rows), crowd)
 }
 
-/// The most that any of some spans takes, each number by itself; what its home has anyway is taken off, so that the
-/// least.
+/// The maximum of each number over all spans. The home numbers are subtracted later, so they are the minimum.
 fn most(all: &[Along]) -> Along {
     let all = all.iter().copied().reduce(|most, one| Along {
         own: most.own.max(one.own),
@@ -222,7 +222,7 @@ fn most(all: &[Along]) -> Along {
     all.unwrap_or_default()
 }
 
-/// The fewest areas that fit; of as many areas, those that are nearest to squares.
+/// Returns the fewest areas that fit; among equal counts, the areas nearest to squares.
 ///
 /// # Errors
 /// [`PlanError::TooMuch`] if single tiles do not fit.
@@ -237,7 +237,8 @@ pub(super) fn fewest(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Spl
         }
         let column = most(&boards.along(size.columns, across));
         let fits = |row: &Along| first(&limits(&demand(&column, row, size, crowd), machine, crowd.usable));
-        // More areas are smaller areas, but each has more neighbours: some number may fit, and a larger one not.
+        // More areas are smaller, but each has more neighbours: a number of areas may fit while a larger number does
+        // not.
         let no_more_than_best =
             best.map_or(rows.len(), |(count, ..)| rows.len().min((count / across) as usize));
         let Some(up) = rows[..no_more_than_best].iter().position(|row| fits(row).share <= 1.0) else {
@@ -266,7 +267,7 @@ mod tests {
 
     #[test]
     fn areas_by_size_ask_as_much_as_areas_by_a_file() {
-        // Sides that no number of areas or boards divides evenly, too.
+        // Includes sides that the number of areas or boards does not divide evenly.
         for (columns, rows, across, up) in [(24, 12, 2, 2), (24, 12, 3, 1), (23, 13, 3, 2), (9, 5, 9, 1)] {
             let size = Size { columns, rows, actuators: true };
             let crowd = Crowd::of(40);
@@ -293,8 +294,8 @@ mod tests {
             let name = |area: AreaDemand| AreaDemand { id: String::new(), ..area };
             let by_file: Vec<_> = by_file.into_iter().map(name).collect();
             let by_size = split.areas(size, &crowd);
-            // A floor's boards have addresses of one or two digits, and of so many letters all are taken here: the
-            // text is as long in words of four bytes.
+            // The file's addresses have one or two digits, and the size-based plan uses the longest. Both strings
+            // have the same length after padding to four bytes.
             assert_eq!(by_size, by_file, "{size:?} {split:?}");
         }
     }
@@ -309,7 +310,7 @@ mod tests {
 
     #[test]
     fn channels_decide_where_there_are_few() {
-        // 288 actuators on cards of 64 channels: five areas at least, of 24 / 5 x 12 tiles; six of 8 x 6 fit.
+        // 288 actuators on cards of 64 channels: at least five areas, of 24 / 5 x 12 tiles; six of 8 x 6 fit.
         let split = fewest(HALL, &Crowd::of(2), &ROUND).unwrap();
         assert_eq!(split.areas_count(), 5);
         assert_eq!(split, Split { across: 5, up: 1 }, "five columns of 12 tiles are 60 channels");
@@ -319,11 +320,11 @@ mod tests {
 
     #[test]
     fn people_decide_where_there_are_many() {
-        // 500 us, of which 20 + 36 x 1 + 288 x 0.2 go without anybody, are good for 38 people on the whole floor.
+        // 500 us less the fixed 20 + 36 x 1 + 288 x 0.2 us leave room for 38 people on the whole floor.
         let silent = Size { actuators: false, ..HALL };
         let even = |people| Crowd { crowding: 1.0, ..Crowd::of(people) };
         assert_eq!(fewest(silent, &even(38), &ROUND).unwrap().areas_count(), 1);
-        // One more, and each half of 12 x 12 senses 15 x 12.
+        // With one more person: two halves of 12 x 12, and each senses 15 x 12.
         assert_eq!(fewest(silent, &even(39), &ROUND), Ok(Split { across: 2, up: 1 }));
     }
 

@@ -1,4 +1,4 @@
-//! All areas together, and what they share.
+//! Sums over all areas, and the limits that they share.
 
 use serde::Serialize;
 
@@ -8,42 +8,42 @@ use super::limit::{Limit, Resource, sort};
 use super::{AreaDemand, Crowd, Machine};
 use crate::floor::Geometry;
 
-/// All areas together, with people spread evenly.
+/// Sums over all areas, with people spread evenly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Total {
-    /// Computers: one for each area.
+    /// Number of computers: one for each area.
     pub computers: u32,
-    /// Boards, each with a link of its own.
+    /// Number of boards, each with a link of its own.
     pub boards: u32,
-    /// Links of boards and computers.
+    /// Number of links of boards and computers.
     pub links: u32,
-    /// Packets that the computers receive, per second: those of a board near a border come to several.
+    /// Packets that the computers receive, per second; a board near a border reaches several computers.
     pub packets_per_s: f64,
-    /// How many of them another computer forwards.
+    /// Packets per second among them that another computer forwards.
     pub forwards_per_s: f64,
-    /// How many computers a board's packets reach, on average.
+    /// Mean number of computers that a board's packets reach.
     pub copies: f64,
-    /// What those packets take on the wires to the computers.
+    /// Bandwidth of those packets on the wires to the computers (Mb/s).
     pub sensor_mbit: f64,
-    /// Contacts that are told, per second.
+    /// Contact reports, per second.
     pub contacts_per_s: f64,
-    /// Datagrams with contacts that one app hears that is told of all, per second.
+    /// Contact datagrams that one app with all contacts receives, per second.
     pub app_packets_per_s: f64,
-    /// What they take on its wire.
+    /// Bandwidth of these datagrams on the app's wire (Mb/s).
     pub app_mbit: f64,
-    /// Cores that sensing keeps busy.
+    /// Number of cores that sensing needs.
     pub sensing_cores: f64,
-    /// Cores that sound keeps busy.
+    /// Number of cores that sound needs.
     pub sound_cores: f64,
 }
 
 impl Total {
-    /// Of `even`, the areas with people spread evenly, on a floor with so many boards.
+    /// Sums over the areas `even`, which have people spread evenly, on a floor with `boards` boards.
     pub(super) fn of(even: &[AreaDemand], boards: u32, crowd: &Crowd, machine: &Machine) -> Self {
         let sum = |of: &dyn Fn(&AreaDemand) -> f64| even.iter().map(of).sum::<f64>();
         let packets_per_s = sum(&|area| area.packets_per_s);
         let computers = u32::try_from(even.len()).unwrap_or(u32::MAX);
-        // Each computer tells of its own: at least one datagram each, and full ones where there are many.
+        // Each computer sends its own contacts: at least one datagram each, and full datagrams where there are many.
         let feet = (FEET * f64::from(crowd.people) / f64::from(computers.max(1))).ceil() as u32;
         let (datagrams, bytes) = contacts(feet);
         let app = f64::from(computers) * CONTACT_HZ;
@@ -64,10 +64,10 @@ impl Total {
     }
 }
 
-/// Boards that a floor file has numbers for.
+/// Maximum number of boards: a floor file has 16-bit board numbers.
 const MOST_BOARDS: f64 = 65_536.0;
 
-/// What more computers do not help against, the resource used most first.
+/// Limits that more computers do not raise, the highest share first.
 pub(super) fn limits(columns: u32, rows: u32, total: &Total, machine: &Machine, usable: f64) -> Vec<Limit> {
     let mut all = vec![
         Limit::new(Resource::App, total.app_mbit, usable * machine.link_mbit),

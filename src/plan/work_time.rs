@@ -1,15 +1,15 @@
-//! How long a thread has worked.
+//! Working time of a thread.
 
 use std::time::Duration;
 
-/// Processor time of this thread: the time that other programs take of the core is not this floor's cost.
+/// Processor time of this thread. It excludes the time that other programs use the core.
 #[cfg(target_os = "linux")]
 pub(super) fn busy() -> Duration {
     use nix::time::{ClockId, clock_gettime};
     clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).map(Duration::from).unwrap_or_default()
 }
 
-/// Elsewhere the time that passes: other programs count.
+/// Wall-clock time on other systems; it includes other programs.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn busy() -> Duration {
     use std::sync::LazyLock;

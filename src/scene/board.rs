@@ -1,4 +1,4 @@
-//! The drawing: marks in order, kept and drawn anew.
+//! The scene: marks in order, kept between frames and redrawn.
 
 use std::fmt::{self, Write};
 
@@ -12,8 +12,8 @@ use crate::layout::Colour;
 
 /// A drawing: marks in floor metres, painted one over the other in order.
 ///
-/// Meant to be kept and drawn anew: [`Scene::clear`] keeps the memory, so a
-/// window that redraws 60 times a second stops allocating after the first few.
+/// Keep the scene between frames: [`Scene::clear`] keeps the memory, so a window that redraws 60 times a second stops
+/// allocating after the first few frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     bounds: Rect,
@@ -31,7 +31,7 @@ impl Scene {
         Self::default()
     }
 
-    /// Takes all marks off and sets what the drawing covers and lies on.
+    /// Removes all marks, and sets the bounds and the background of the drawing.
     pub fn clear(&mut self, bounds: Rect, background: Colour) {
         self.bounds = bounds;
         self.background = background;
@@ -41,44 +41,44 @@ impl Scene {
         self.letters.clear();
     }
 
-    /// What the drawing covers, in floor metres: the floor and the margin around it.
+    /// Returns the bounds of the drawing, in floor metres: the floor and the margin around it.
     #[must_use]
     pub const fn bounds(&self) -> Rect {
         self.bounds
     }
 
-    /// The colour beneath all marks.
+    /// Returns the colour beneath all marks.
     #[must_use]
     pub const fn background(&self) -> Colour {
         self.background
     }
 
-    /// The marks, undermost first.
+    /// Returns the marks, bottom first.
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         &self.marks
     }
 
-    /// The points of a [`Mark::Path`] or [`Mark::Band`] of this scene; empty for another scene's span that reaches too
-    /// far.
+    /// Returns the points of a [`Mark::Path`] or [`Mark::Band`] of this scene; empty for a span of another scene that
+    /// is out of range.
     #[must_use]
     pub fn points(&self, span: Span) -> &[Vec2] {
         self.points.get(span.start as usize..span.end as usize).unwrap_or_default()
     }
 
-    /// The inks of a [`Mark::Field`] of this scene; empty for another scene's span that reaches too far.
+    /// Returns the inks of a [`Mark::Field`] of this scene; empty for a span of another scene that is out of range.
     #[must_use]
     pub fn inks(&self, span: Span) -> &[Ink] {
         self.inks.get(span.start as usize..span.end as usize).unwrap_or_default()
     }
 
-    /// The letters of a [`Mark::Text`] of this scene; empty for another scene's span that reaches too far.
+    /// Returns the letters of a [`Mark::Text`] of this scene; empty for a span of another scene that is out of range.
     #[must_use]
     pub fn letters(&self, span: Span) -> &str {
         self.letters.get(span.start as usize..span.end as usize).unwrap_or_default()
     }
 
-    /// Every line of text, in drawing order.
+    /// Iterates over all lines of text, in drawing order.
     pub fn texts(&self) -> impl Iterator<Item = (&str, &Lettering)> {
         self.marks.iter().filter_map(|mark| match mark {
             Mark::Text { letters, lettering } => Some((self.letters(*letters), lettering)),
@@ -86,14 +86,14 @@ impl Scene {
         })
     }
 
-    /// Adds a rectangle with corners rounded by `radius_m`; a larger radius than fits is cut down.
+    /// Adds a rectangle with corners rounded by `radius_m`, which is limited to half of the smaller side.
     pub fn add_box(&mut self, area: Rect, radius_m: f32, paint: Paint) {
         let radius_m = radius_m.clamp(0.0, 0.5 * area.size().min_element().max(0.0));
         self.marks.push(Mark::Box { area, radius_m, paint });
     }
 
-    /// Adds a shade that fades away within `reach_m` around a rectangle with corners rounded by `radius_m`; a larger
-    /// radius than fits is cut down.
+    /// Adds a shade that fades out within `reach_m` around a rectangle with corners rounded by `radius_m`, which is
+    /// limited to half of the smaller side.
     pub fn add_halo(&mut self, area: Rect, radius_m: f32, reach_m: f32, ink: Ink) {
         let radius_m = radius_m.clamp(0.0, 0.5 * area.size().min_element().max(0.0));
         self.marks.push(Mark::Halo { area, radius_m, reach_m, ink });
@@ -109,15 +109,15 @@ impl Scene {
         self.add_ellipse(centre, Vec2::splat(radius_m), paint);
     }
 
-    /// Adds straight lines through `points`; nothing for fewer than two.
+    /// Adds a polyline through `points`; nothing for fewer than two points.
     pub fn add_path(&mut self, points: impl IntoIterator<Item = Vec2>, closed: bool, paint: Paint) {
         if let Some(points) = self.line(points) {
             self.marks.push(Mark::Path { points, closed, paint });
         }
     }
 
-    /// Adds a rectangle of changing colour, its `inks` in rows of `columns` from the south-west on;
-    /// nothing for less than two rows of two. Inks that make no whole row are left out.
+    /// Adds a rectangle of changing colour. Its `inks` are in rows of `columns` from the south-west; nothing for less
+    /// than two rows of two. Ignores the inks of an incomplete row.
     pub fn add_field(&mut self, area: Rect, columns: u32, inks: impl IntoIterator<Item = Ink>) {
         let start = self.inks.len();
         self.inks.extend(inks);
@@ -131,14 +131,15 @@ impl Scene {
         self.marks.push(Mark::Field { area, columns, inks: Span { start: start as u32, end: end as u32 } });
     }
 
-    /// Adds what straight lines through `points` sweep when moved by `reach`; nothing for fewer than two points.
+    /// Adds the area that a polyline through `points` sweeps when it moves by `reach`; nothing for fewer than two
+    /// points.
     pub fn add_band(&mut self, points: impl IntoIterator<Item = Vec2>, reach: Vec2, near: Ink, far: Ink) {
         if let Some(points) = self.line(points) {
             self.marks.push(Mark::Band { points, reach, near, far });
         }
     }
 
-    /// Keeps the points of a line; `None` for fewer than two.
+    /// Stores the points of a line; `None` for fewer than two.
     fn line(&mut self, points: impl IntoIterator<Item = Vec2>) -> Option<Span> {
         let start = self.points.len();
         self.points.extend(points);
@@ -154,10 +155,10 @@ impl Scene {
         self.add_path([from, to], false, paint);
     }
 
-    /// Adds one line of text and gives back its width in metres; control characters are left out.
+    /// Adds one line of text and returns its width in metres; omits control characters.
     pub fn add_text(&mut self, lettering: Lettering, text: fmt::Arguments<'_>) -> f32 {
         let start = self.letters.len();
-        // Writing to a `String` cannot fail.
+        // Writing to a `String` does not fail.
         let _ = Printable(&mut self.letters).write_fmt(text);
         let width = widths::width(&self.letters[start..]) * lettering.size_m;
         if self.letters.len() > start {
@@ -167,7 +168,7 @@ impl Scene {
         width
     }
 
-    /// Draws what `draw` draws `by` times as large, seen from `about`.
+    /// Calls `draw`, and enlarges its marks by the factor `by` about the point `about`.
     pub(super) fn magnified(&mut self, about: Vec2, by: f32, draw: impl FnOnce(&mut Self)) {
         let (first_mark, first_point) = (self.marks.len(), self.points.len());
         draw(self);
@@ -213,7 +214,7 @@ impl Scene {
         }
     }
 
-    /// Adds `text` on a small rounded plate around `middle` and gives back the plate.
+    /// Adds `text` on a small rounded plate around `middle` and returns the plate.
     pub(crate) fn add_badge(
         &mut self,
         middle: Vec2,
@@ -222,7 +223,8 @@ impl Scene {
         plate: Paint,
         text: fmt::Arguments<'_>,
     ) -> Rect {
-        // The plate lies under its text but is as wide as it: its place is kept until the width is known.
+        // The plate lies under its text but has the text's width, so a placeholder keeps its position until the width
+        // is known.
         let place = self.marks.len();
         self.add_box(Rect::default(), 0.0, plate);
         let at = middle - Vec2::new(0.0, 0.5 * widths::CAP_HEIGHT * size_m);
@@ -237,7 +239,7 @@ impl Scene {
     }
 }
 
-/// Lets everything through but control characters, which no picture format takes.
+/// Writer that drops control characters, which no picture format accepts.
 struct Printable<'a>(&'a mut String);
 
 impl Write for Printable<'_> {
@@ -247,7 +249,7 @@ impl Write for Printable<'_> {
     }
 }
 
-/// Whether XML refuses `letter` although Unicode has it.
+/// True for a Unicode letter that XML rejects.
 fn is_noncharacter(letter: char) -> bool {
     matches!(letter, '\u{fffe}' | '\u{ffff}')
 }

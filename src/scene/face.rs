@@ -1,4 +1,4 @@
-//! What all controls have in common: a face that sinks and lights up, its label, its badges.
+//! Common parts of all controls: a face that sinks and lights up, its label, its badges.
 
 use glam::Vec2;
 
@@ -12,40 +12,40 @@ use crate::floor::Rect;
 use crate::layout::{Colour, Shape, Widget};
 use crate::widget::{Guard, Indicator, OffReason};
 
-/// Largest letters of a label, in metres: read easily from standing height.
+/// Maximum letter size of a label, in metres: easy to read from standing height.
 const LABEL_M: f32 = 0.046;
 
-/// Smallest letters of a label, in metres: 8 pixels on a floor shown 600 pixels wide.
+/// Minimum letter size of a label, in metres: 8 pixels on a floor displayed 600 pixels wide.
 pub(super) const SMALL_M: f32 = 0.024;
 
-/// Largest side of an icon, in metres.
+/// Maximum side of an icon, in metres.
 const ICON_M: f32 = 0.11;
 
-/// Smallest side of an icon that is still told from others, in metres; below it there is only the label.
+/// Minimum side of a recognisable icon, in metres; below it the face has only the label.
 const ICON_LEAST_M: f32 = 0.02;
 
-/// How far a pressed face shrinks on each side, in metres.
+/// Shrinkage of a pressed face on each side, in metres.
 const SINK_M: f32 = 0.004;
 
-/// One control's face, as it is now.
+/// The current face of one control.
 pub(super) struct Face<'a> {
     pub(super) widget: &'a Widget,
     pub(super) state: WidgetState,
     pub(super) theme: &'a Theme,
-    /// Its outline.
+    /// Shape of its outline.
     pub(super) shape: Shape,
     /// The face as drawn: smaller while pressed.
     pub(super) area: Rect,
-    /// Radius of its corners, in metres.
+    /// Radius of the corners, in metres.
     pub(super) radius_m: f32,
-    /// Its colour now.
+    /// Current colour.
     pub(super) colour: Colour,
-    /// Letters on it.
+    /// Colour of the letters.
     pub(super) ink: Colour,
 }
 
 impl<'a> Face<'a> {
-    /// The face of `widget`; `lit` is how far it has turned from its colour at rest to its lit one, 0 to 1.
+    /// Creates the face of `widget`; `lit` mixes its colour at rest (0) with its lit one (1).
     pub(super) fn new(widget: &'a Widget, state: WidgetState, theme: &'a Theme, lit: f32) -> Self {
         let look = &widget.look;
         let (rest, lit_up, ink) =
@@ -55,7 +55,7 @@ impl<'a> Face<'a> {
         let out_of_use = is_off || state.needs_lift;
         let colour = if out_of_use { at_rest.mix(theme.plate, 0.72) } else { at_rest };
         let ink = readable(ink, colour);
-        // Words of what does not work just now step back, but stay legible.
+        // The text of a control that is off is fainter, but stays legible.
         let faded = ink.mix(colour, 0.4);
         let ink = if is_off && contrast(faded, colour) >= 3.0 { faded } else { ink };
         let area = widget.area.grown(if state.pressed { -SINK_M } else { 0.0 });
@@ -67,28 +67,28 @@ impl<'a> Face<'a> {
         Self { widget, state, theme, shape, area, radius_m, colour, ink }
     }
 
-    /// What is written on it; may be empty.
+    /// The label; may be empty.
     pub(super) fn label(&self) -> &'a str {
         &self.widget.label
     }
 
-    /// Whether it does not work just now.
+    /// True if the control is off, or waits for the foot to lift.
     pub(super) fn is_out_of_use(&self) -> bool {
         off(&self.state).is_some() || self.state.needs_lift
     }
 
-    /// What its face turns to.
+    /// Colour of the lit face.
     fn lit_up(&self) -> Colour {
         self.theme.faces.map_or(self.widget.look.lit, |all| all.lit)
     }
 
-    /// The colour of what is lit on it.
+    /// Colour of lit elements on the face.
     pub(super) fn lit(&self) -> Colour {
         let lit = self.lit_up();
         if self.is_out_of_use() { lit.mix(self.theme.plate, 0.6) } else { lit }
     }
 
-    /// Draws shadow, face, edge, what guards it and the ring that fills as the force builds.
+    /// Draws shadow, face, edge, guard mark, and the ring that fills as the force grows.
     pub(super) fn draw(&self, scene: &mut Scene) {
         let flat = self.is_out_of_use();
         if self.state.pressed {
@@ -105,7 +105,7 @@ impl<'a> Face<'a> {
             _ if self.state.locked => Stroke::new(0.005, Ink::solid(self.theme.quiet)),
             _ if self.state.pressed => Stroke::new(0.004, Ink::solid(self.colour.mix(self.theme.ink, 0.45))),
             _ => match self.theme.faces {
-                // Nothing else tells a face from the plate that it stands on.
+                // With the high-contrast colours only the edge separates a face from the plate.
                 Some(all) => Stroke::new(0.005, Ink::solid(all.ink)),
                 None => Stroke::new(0.002, Ink::faint(edge, 0.8)),
             },
@@ -117,8 +117,8 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// A second line inside the edge of what takes more than a press: unbroken where a second press
-    /// confirms, broken where it must be held.
+    /// A second line inside the edge of a guarded control: solid if a second press confirms, dashed if it must be
+    /// held.
     fn guard(&self, scene: &mut Scene) {
         let line = Stroke::new(0.003, Ink::faint(self.ink, 0.55));
         let stroke = match self.widget.behaviour.thresholds().guard {
@@ -129,9 +129,9 @@ impl<'a> Face<'a> {
         self.outlined(scene, -0.0155, Paint::stroke(stroke));
     }
 
-    /// The lamp that apps switch, in the north-east: each state has a shape of its own.
+    /// The lamp controlled by apps, in the north-east corner; each state has its own shape.
     fn lamp(&self, scene: &mut Scene) {
-        // On the rim, clear of everything that is written.
+        // On the rim, clear of all text.
         let at = match self.shape {
             Shape::Box => self.area.max - Vec2::splat(0.005),
             Shape::Round => self.area.centre() + 0.5 * self.area.size() * std::f32::consts::FRAC_1_SQRT_2,
@@ -153,11 +153,11 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// A soft shadow that lies to the south, as under a lamp at the floor's far end.
+    /// A soft shadow towards the south, as from a lamp at the floor's far end.
     fn shadow(&self, scene: &mut Scene) {
         let south = Vec2::new(0.0, 0.006);
         let area = Rect::new(self.area.min - south, self.area.max - south);
-        // From inside the edge, where the face hides it: the shift to the south leaves no gap in the north.
+        // The halo starts inside the edge, under the face, so that the shift to the south leaves no gap in the north.
         self.halo(scene, area.grown(-0.006), 0.018, Ink::faint(self.theme.shadow, 0.26));
     }
 
@@ -178,10 +178,10 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// The share of the press threshold that the foot brings up, along the face's edge.
+    /// The foot's share of the press threshold, as a ring along the face's edge.
     fn ring(&self, scene: &mut Scene) {
         let share = self.state.press_share;
-        // Below this the ring would only flicker under a foot that rests.
+        // Below this share the ring would only flicker under a resting foot.
         if share.is_nan() || share < 0.03 {
             return;
         }
@@ -213,12 +213,12 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// The same face with straight sides, however round the control is: a slider's track needs them.
+    /// The same face with straight sides, even for a round control: a slider's track needs them.
     pub(super) fn straight(self) -> Self {
         Self { shape: Shape::Box, ..self }
     }
 
-    /// The part of the face that letters may fill: inside the ring, and inside the round of a round face.
+    /// The part of the face for letters: inside the ring, and inside the circle of a round face.
     pub(super) fn room(&self) -> Rect {
         let line = if self.widget.behaviour.thresholds().guard == Guard::Free { 0.0 } else { 0.006 };
         let inside = match self.shape {
@@ -232,7 +232,7 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// What is written about a control that does not work as usual just now.
+    /// Short text about a control that does not work as usual at present.
     pub(super) fn badge(&self) -> Option<&'static str> {
         let room = self.widget.area.size();
         let text = match self.state {
@@ -247,18 +247,17 @@ impl<'a> Face<'a> {
         (room.x >= 0.15 && room.y >= 0.11).then_some(text)
     }
 
-    /// Draws the lamp, and the badge of a control that does not work as usual just now, over everything else on the
-    /// face.
+    /// Draws the lamp, and the badge of a control that does not work as usual at present, on top of the face.
     pub(super) fn draw_badge(&self, scene: &mut Scene) {
         let lift = match self.shape {
             Shape::Box => 0.028,
-            // Over the rim: the round has no corner to spare.
+            // On the rim: a round face has no free corner.
             Shape::Round => 0.014,
         };
         self.draw_badge_at(scene, Vec2::new(self.area.centre().x, self.area.min.y + lift));
     }
 
-    /// The same, with its middle elsewhere.
+    /// The same, centred elsewhere.
     pub(super) fn draw_badge_at(&self, scene: &mut Scene, middle: Vec2) {
         self.lamp(scene);
         let Some(text) = self.badge() else { return };
@@ -272,7 +271,7 @@ impl<'a> Face<'a> {
         scene.add_badge(middle, SMALL_M, ink, Paint::fill(Ink::solid(ground)), format_args!("{text}"));
     }
 
-    /// Writes the label in the middle of the face, under the icon if there is one.
+    /// Writes the label in the centre of the face, under the icon if there is one.
     pub(super) fn write_label(&self, scene: &mut Scene) {
         let room = self.draw_icon(scene, self.room());
         let label = &self.widget.label;
@@ -282,7 +281,7 @@ impl<'a> Face<'a> {
         }
         let fitted = fit(label, room.size(), LABEL_M, SMALL_M);
         if self.shape == Shape::Round && self.badge().is_none() {
-            // One line may be longer than the square in the circle is wide.
+            // In a circle, one line may be longer than the width of the inscribed square.
             let middle = Rect::from_centre_size(self.area.centre(), self.area.size() * Vec2::new(0.88, 0.42));
             let flat = fit(label, middle.size(), LABEL_M, SMALL_M);
             if (fitted.shortened && !flat.shortened) || flat.size_m > fitted.size_m {
@@ -293,19 +292,19 @@ impl<'a> Face<'a> {
         set(scene, label, room, Anchor::Middle, self.ink, &fitted);
     }
 
-    /// Writes `text` into `room`, as large as it fits, with its lines' middle in the room's middle.
+    /// Writes `text` into `room`, as large as it fits, with its lines centred vertically.
     pub(super) fn write(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor) {
         self.write_in(scene, text, room, anchor, self.ink);
     }
 
-    /// Draws the icon, if there is one, and gives back the room that it leaves: beside it where there is width, else
+    /// Draws the icon, if there is one, and returns the remaining room: beside it if the room is wide, otherwise
     /// below.
     pub(super) fn draw_icon(&self, scene: &mut Scene, room: Rect) -> Rect {
         let Some(icon) = self.widget.look.icon else { return room };
         let size = room.size();
         let labelled = !self.widget.label.is_empty();
         let beside = labelled && size.x > 1.8 * size.y;
-        // The label keeps a line, of small letters at least.
+        // The label keeps at least one line of small letters.
         let strip = if labelled && !beside { (0.36 * size.y).max(LINE_HEIGHT * SMALL_M) } else { 0.0 };
         let side = (0.92 * (size.y - strip)).min(0.8 * size.x).min(ICON_M);
         if side < ICON_LEAST_M {
@@ -328,18 +327,18 @@ impl<'a> Face<'a> {
     }
 }
 
-/// Why a control is shown as off. Before the first frame all are shown as they will be.
+/// Reason why a control is drawn as off. While the floor waits for its first frame, controls are drawn as ready.
 fn off(state: &WidgetState) -> Option<OffReason> {
     let shown = state.off.filter(|reason| *reason != OffReason::Waiting);
     shown.or(state.disabled.then_some(OffReason::Disabled))
 }
 
-/// Whether a reason is a fault of the floor, which somebody has to mend.
+/// True if the reason is a fault of the floor that needs repair.
 fn is_fault(reason: OffReason) -> bool {
     reason.is_lasting() && reason != OffReason::Disabled
 }
 
-/// The words for a reason that fit on a control.
+/// Short text for a reason, for a badge.
 fn off_badge(reason: OffReason) -> Option<&'static str> {
     Some(match reason {
         OffReason::Disabled => "disabled",

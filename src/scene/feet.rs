@@ -9,13 +9,13 @@ use crate::engine::FootRole;
 use crate::floor::Rect;
 use crate::sense::Contact;
 
-/// Area of a contact's circle per newton, in square metres: 350 N, half a person, make 13 cm across.
+/// Area of a contact's circle per newton, in square metres: a circle of 350 N, half a person, is 13 cm wide.
 const CIRCLE_M2_PER_N: f32 = 0.065 * 0.065 / 350.0;
 
-/// How far ahead a contact's velocity is drawn, in seconds.
+/// Time over which a contact's velocity is extrapolated for its arrow, in seconds.
 const AHEAD_S: f32 = 0.20;
 
-/// Translucent soles, darker where they press.
+/// Translucent soles, darker under pressure.
 pub(super) fn shoes(scene: &mut Scene, view: &View<'_>) {
     for shoe in view.shoes {
         let finite = shoe.position.is_finite() && shoe.heading_rad.is_finite() && shoe.length_m.is_finite();
@@ -38,7 +38,7 @@ fn shoe(scene: &mut Scene, view: &View<'_>, shoe: &Shoe) {
     }
     let forward = Vec2::from_angle(shoe.heading_rad).rotate(Vec2::Y);
     let roll = if shoe.roll.is_finite() { shoe.roll.clamp(0.0, 1.0) } else { 0.5 };
-    // 800 N darkens the sole fully.
+    // The sole is darkest at 800 N.
     let press = 0.10 + 0.25 * (shoe.force.0 / 800.0).clamp(0.0, 1.0).sqrt();
     for (along, size, share) in [(-0.33, 0.095, 1.0 - roll), (0.24, 0.125, roll)] {
         let centre = shoe.position + forward * along * shoe.length_m;
@@ -47,13 +47,13 @@ fn shoe(scene: &mut Scene, view: &View<'_>, shoe: &Shoe) {
     }
 }
 
-/// The radius of a contact's circle, in metres.
+/// Radius of a contact's circle, in metres.
 fn radius_m(force: f32) -> f32 {
     (force.clamp(0.0, 5000.0) * CIRCLE_M2_PER_N).sqrt().max(0.012)
 }
 
-/// Circles whose area follows the force, a cross at the centroid, the way it moves, number and newtons; gives back
-/// where these are written.
+/// Draws circles with an area proportional to the force, a cross at the centroid, the velocity, number and newtons;
+/// returns the areas of the texts.
 pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) -> Vec<Rect> {
     let mut tags = Vec::new();
     for contact in &view.snapshot.contacts {
@@ -67,7 +67,7 @@ pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) -> Vec<Rect> {
 fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact, tags: &mut Vec<Rect>) {
     let theme = view.theme;
     let leads = view.snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == contact.id);
-    // Objects on the floor are drawn like what no longer counts.
+    // Objects on the floor have the colour of stale values.
     let is_object =
         view.snapshot.feet.iter().any(|foot| foot.contact == contact.id && foot.role == FootRole::Object);
     let colour = match (is_object, leads) {
@@ -87,7 +87,7 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact, tags: &mut Vec
         scene.add_line(at - arm, at + arm, cross(0.003, Ink::solid(colour)));
     }
     velocity(scene, view, contact);
-    // A larger floor is seen from further away, a single tile from nearby.
+    // The scale for the viewing distance: a larger floor is seen from further away, a single tile from nearby.
     let by = super::magnification(view.geometry).clamp(0.3, 4.0);
     let (ground, size_m) = (Paint::fill(Ink::faint(theme.plate, 0.92)), 0.026 * by);
     let middle = tag_place(view, at, radius, by, tags);
@@ -108,10 +108,10 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact, tags: &mut Vec
     );
 }
 
-/// Where a contact's tag covers neither controls, with their names and values, nor other tags, nor what lies beyond the
-/// floor: beside the circle if there is room, otherwise as near as there is; to the north-east before elsewhere.
+/// Finds a place for a contact's tag that covers no control with its name and value, no other tag, and nothing
+/// outside the floor: beside the circle if there is room, otherwise as near as possible; north-east first.
 fn tag_place(view: &View<'_>, at: Vec2, radius: f32, by: f32, tags: &mut Vec<Rect>) -> Vec2 {
-    /// Half of a tag.
+    /// Half the size of a tag.
     const HALF: Vec2 = Vec2::new(0.075, 0.022);
     /// Directions in order of preference.
     const WAYS: [Vec2; 8] = [
@@ -147,7 +147,7 @@ fn tag_place(view: &View<'_>, at: Vec2, radius: f32, by: f32, tags: &mut Vec<Rec
     best.1
 }
 
-/// A heavy ring with four ticks: this contact operates the controls.
+/// A heavy ring with four ticks for a contact that operates the controls.
 pub(super) fn cursor_ring(scene: &mut Scene, view: &View<'_>, at: Vec2, radius: f32) {
     let theme = view.theme;
     let ring = radius + 0.011;
@@ -159,7 +159,7 @@ pub(super) fn cursor_ring(scene: &mut Scene, view: &View<'_>, at: Vec2, radius: 
     }
 }
 
-/// An arrow to where the contact will be in a moment; none below the speed that noise alone reaches.
+/// An arrow to the predicted place of the contact; none below the speed of noise.
 fn velocity(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
     let speed = contact.velocity.length();
     if !speed.is_finite() || speed < 0.05 {

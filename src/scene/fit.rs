@@ -1,4 +1,4 @@
-//! Labels broken into lines and sized so that they fit.
+//! Breaks labels into lines and sizes them to fit.
 
 use std::ops::Range;
 
@@ -9,32 +9,32 @@ use unicode_segmentation::UnicodeSegmentation;
 
 use super::widths::{LINE_HEIGHT, width};
 
-/// Most lines a label is broken into.
+/// Maximum number of lines of a label.
 pub(super) const MAX_LINES: usize = 3;
 
-/// How a label is set so that it fits.
+/// Layout of a label that fits.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fitted {
-    /// Height of an em, in metres.
+    /// Size of an em, in metres.
     pub(super) size_m: f32,
-    /// The bytes of each line, top first.
+    /// Byte range of each line, top first.
     pub(super) lines: ArrayVec<Range<usize>, MAX_LINES>,
-    /// Whether the end was left out and an ellipsis has to follow the last line.
+    /// True if the end is cut off and an ellipsis must follow the last line.
     pub(super) shortened: bool,
 }
 
 impl Fitted {
-    /// Height of all lines together, in metres.
+    /// Total height of the lines, in metres.
     pub(super) fn height_m(&self) -> f32 {
         self.lines.len() as f32 * LINE_HEIGHT * self.size_m
     }
 }
 
-/// The largest setting of `text` within `room` metres, between the two sizes.
+/// Returns the largest layout of `text` within `room` metres, between the two sizes.
 ///
-/// Lines break where the Unicode algorithm of line breaks allows it: at white space, and between Chinese and Japanese
-/// letters. One line is preferred over more if it is nearly
-/// as large. What does not fit even at `smallest_m` is cut off with an ellipsis.
+/// Lines break where the Unicode line breaking algorithm allows it: at white space, and between Chinese and Japanese
+/// letters. One line is preferred over more if it is nearly as large. Text that does not fit at `smallest_m` is cut
+/// off with an ellipsis.
 pub(super) fn fit(text: &str, room: Vec2, largest_m: f32, smallest_m: f32) -> Fitted {
     let mut size_m = largest_m;
     let wrapped = loop {
@@ -56,7 +56,8 @@ pub(super) fn fit(text: &str, room: Vec2, largest_m: f32, smallest_m: f32) -> Fi
     }
 }
 
-/// The largest setting of `text` on one line of `room_m` metres, between the two sizes; cut off if it must be.
+/// Returns the largest layout of `text` on one line of `room_m` metres, between the two sizes; cuts it off if
+/// necessary.
 pub(super) fn fit_line(text: &str, room_m: f32, largest_m: f32, smallest_m: f32) -> Fitted {
     let room = Vec2::new(room_m, smallest_m);
     let size_m = (room_m / width(text.trim())).min(largest_m);
@@ -68,14 +69,14 @@ pub(super) fn fit_line(text: &str, room_m: f32, largest_m: f32, smallest_m: f32)
     }
 }
 
-/// `text` on one line, if it then is at least `smallest_m` high.
+/// The layout of `text` on one line, if its size is at least `smallest_m`.
 fn one_line(text: &str, room: Vec2, smallest_m: f32) -> Option<Fitted> {
     let size_m = room.x / width(text.trim());
     let whole = trimmed(text);
     (size_m >= smallest_m).then(|| Fitted { size_m, lines: [whole].into_iter().collect(), shortened: false })
 }
 
-/// Greedy line breaks at `room` em; `None` if that takes more than `allowed` lines or a word is too long.
+/// Greedy line breaks at `room` em; `None` if that needs more than `allowed` lines or a word is too long.
 fn wrap(text: &str, room: f32, allowed: usize) -> Option<ArrayVec<Range<usize>, MAX_LINES>> {
     let mut lines = ArrayVec::<Range<usize>, MAX_LINES>::new();
     for word in words(text) {
@@ -92,10 +93,10 @@ fn wrap(text: &str, room: f32, allowed: usize) -> Option<ArrayVec<Range<usize>, 
     Some(lines)
 }
 
-/// As much of `text` as fits at `size_m`, words broken where they must be, an ellipsis counted in if the end is
-/// left out; no line at all where not even that fits.
+/// As much of `text` as fits at `size_m`, with words broken if necessary, including the ellipsis if the end is cut
+/// off; no line if even that does not fit.
 fn shorten(text: &str, room: Vec2, size_m: f32) -> Fitted {
-    // A single line may stand a little closer to what is above and below it.
+    // A single line may be a little closer to its neighbours above and below.
     let fitting = (room.y / (LINE_HEIGHT * size_m)) as usize;
     let allowed = if room.y >= size_m { fitting.clamp(1, MAX_LINES) } else { 0 };
     let mut lines = ArrayVec::<Range<usize>, MAX_LINES>::new();
@@ -106,12 +107,12 @@ fn shorten(text: &str, room: Vec2, size_m: f32) -> Fitted {
         if last && end < left.end {
             end = left.start + prefix(&text[left.clone()], room.x / size_m - width("…"));
         } else if end < left.end && !text[end..].starts_with(char::is_whitespace) {
-            // Rather between words than within one.
+            // Prefer a break between words to one within a word.
             end = text[left.start..end].rfind(char::is_whitespace).map_or(end, |at| left.start + at);
         }
         let line = left.start..left.start + text[left.start..end].trim_end().len();
         if line.is_empty() {
-            // Not one letter more fits: the ellipsis has to find room on a line before.
+            // No further letter fits: the ellipsis must go to an earlier line.
             while let Some(before) = lines.pop() {
                 let kept = prefix(&text[before.clone()], room.x / size_m - width("…"));
                 if kept > 0 {
@@ -127,7 +128,8 @@ fn shorten(text: &str, room: Vec2, size_m: f32) -> Fitted {
     Fitted { size_m, lines, shortened: !left.is_empty() }
 }
 
-/// The bytes of the longest beginning of `text` that is at most `room` em wide; letters keep their marks.
+/// Length in bytes of the longest prefix of `text` that is at most `room` em wide; keeps letters and their marks
+/// together.
 fn prefix(text: &str, room: f32) -> usize {
     let mut used = 0.0;
     let fits = |(_, cluster): &(usize, &str)| {
@@ -142,7 +144,7 @@ fn trimmed(text: &str) -> Range<usize> {
     start..start + text.trim().len()
 }
 
-/// What no line break divides, without the white space around it.
+/// The parts between line breaks, without surrounding white space.
 fn words(text: &str) -> impl Iterator<Item = Range<usize>> {
     let mut begin = 0;
     linebreaks(text).filter_map(move |(end, _)| {
@@ -188,7 +190,7 @@ mod tests {
 
     #[test]
     fn a_letter_is_not_cut_off_from_its_marks() {
-        // 3.5 cm hold one letter of 2 cm with an ellipsis; each of the first two has two marks.
+        // 3.5 cm hold one letter of 2 cm with an ellipsis; each of the first two letters has two marks.
         let text = "ที่นี่ดี";
         let fitted = fit(text, Vec2::new(0.035, 0.02), 0.02, 0.02);
         assert_eq!(lines(text, &fitted), ["ที่"], "{fitted:?}");
@@ -196,7 +198,7 @@ mod tests {
 
     #[test]
     fn what_cannot_fit_is_cut_off_visibly() {
-        // 15 cm hold about nine letters of 3 cm, 5 cm one line of them.
+        // 15 cm hold about nine letters of 3 cm, and 5 cm hold one line of them.
         let name = "Donaudampfschifffahrt";
         let fitted = fit(name, Vec2::new(0.15, 0.05), 0.05, 0.03);
         assert!(fitted.shortened);

@@ -1,4 +1,4 @@
-//! The floor itself: plates, what they carry, sensors and actuators under them, places on it.
+//! The floor itself: plates and their loads, sensors, actuators, regions and stance zones.
 
 use glam::Vec2;
 
@@ -10,22 +10,22 @@ use crate::floor::{Corner, Rect, TileId};
 use crate::sense::Quality;
 use crate::wire::LinkState;
 
-/// The plates with their load, as one slab.
+/// Draws the plates with their load, as one slab.
 pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     let slab = view.geometry.bounds();
-    // On a floor of a few tiles all of it has to stay within the margin.
+    // On a floor of a few tiles, the whole shadow must stay within the margin.
     let by = super::magnification(view.geometry).min(1.0);
-    // A soft shadow, a little further to the south, as under a lamp at the floor's far end.
+    // A soft shadow, shifted a little to the south, as from a lamp at the floor's far end.
     let south = Vec2::new(0.0, 0.006);
     let shade = Rect::new(slab.min - south, slab.max - south);
     scene.add_halo(shade.grown(-0.006), 0.010, 0.036 * by, Ink::faint(theme.shadow, 0.11));
-    // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
+    // If plates touch, a seam of 2 mm on each side separates them visibly.
     let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022 * seen_from(view));
     seams(scene, view, gap);
     for (index, tile) in view.geometry.tiles().enumerate() {
         let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
-        // Full colour at 700 N, one person on one foot; the root shows light steps too.
+        // Full colour at 700 N, one person on one foot; the square root makes light steps visible too.
         let share = if view.show.loads { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
         let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
         if terrain::hides(view, cell) {
@@ -42,11 +42,11 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// How much of the accent's colour an active area has.
+/// Share of the accent colour in an active area.
 const TINT: f32 = 0.045;
 
-/// Whether the plate of `cell` shows by its own colour that it is active: a region of whole plates needs no sheet over
-/// them, which would be painted once more pixel by pixel.
+/// True if the plate of `cell` is tinted to show that it is active: a region of whole plates needs no extra rectangle
+/// over them, which would be painted pixel by pixel once more.
 fn tints_plates(view: &View<'_>, region: Rect, cell: Rect) -> bool {
     let pitch_m = view.geometry.pitch_m();
     let is_whole = |edge: Vec2| {
@@ -59,22 +59,21 @@ fn tints_plates(view: &View<'_>, region: Rect, cell: Rect) -> bool {
         && view.layout.grounds.is_empty()
 }
 
-/// How much wider seams are on a floor larger than the paper's, which is seen from farther away: or half of them would
-/// fall between a screen's pixels. No more than a plate can spare.
+/// Factor for the width of seams on a floor larger than the paper's, which is seen from further away: without it,
+/// half of the seams would fall between a screen's pixels. Limited to 4 % of the tile pitch.
 fn seen_from(view: &View<'_>) -> f32 {
     super::magnification(view.geometry).clamp(1.0, 0.04 * view.geometry.pitch_m() / 0.0022).max(1.0)
 }
 
-/// What is seen between the plates: a frame around all of them and lines between them.
+/// Draws a frame around all plates and lines between them.
 ///
-/// Lines rather than one large ground: a window that is painted without a
-/// graphics card spends its time on area.
+/// Lines rather than one large background: painting without a graphics card takes time in proportion to the area.
 fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
     let slab = view.geometry.bounds();
     let colour = Ink::solid(view.theme.seam);
     let width_m = 0.014 * super::magnification(view.geometry).clamp(0.4, 1.0);
     scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(width_m, colour)));
-    // A little wider than the seam, for the plates' round corners.
+    // A little wider than the seam, because of the plates' round corners.
     let stroke = Paint::stroke(Stroke::new(2.0 * gap + 0.006 * seen_from(view), colour));
     let (size, pitch_m) = (slab.size(), view.geometry.pitch_m());
     for column in 1..view.geometry.columns() {
@@ -87,12 +86,12 @@ fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
     }
 }
 
-/// Numbers of columns and rows along the south and west sides, at the tiles' middles.
+/// Column and row numbers along the south and west sides, at the tiles' centres.
 pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
     let by = super::magnification(view.geometry);
     let size_m = 0.030 * by;
     let mut lettering = Lettering::new(Vec2::ZERO, Anchor::Middle, size_m, Ink::solid(view.theme.quiet));
-    // Where tiles are smaller than their numbers, only every so many get one.
+    // If tiles are smaller than their numbers, only every n-th tile has one.
     let every = (2.0 * size_m / view.geometry.pitch_m()).ceil().max(1.0) as usize;
     let (block, corner) = (view.geometry.block(), view.geometry.bounds().min);
     for column in block.column_range().step_by(every) {
@@ -107,7 +106,7 @@ pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// Outlines of the active areas, with their names.
+/// Outlines of the regions, with their names.
 pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for region in &view.layout.regions {
@@ -132,7 +131,7 @@ pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// Places to stand: dashed, with the soles of one or two shoes.
+/// Stance zones: dashed outlines with the soles of one or two shoes.
 pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for stance in &view.layout.stances {
@@ -146,7 +145,7 @@ pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
             let middle = area.centre() + Vec2::new(0.0, 0.5 * label_m);
             let paint = Paint::fill(Ink::faint(theme.stance, 0.10))
                 .with_stroke(Stroke::new(0.0025, Ink::faint(theme.stance, 0.6)));
-            // Two soles want a little more than twice a sole's breadth of 0.36 of its length.
+            // Two soles need a little more than twice a sole's breadth, which is 0.36 of its length.
             let apart = 0.24 * length_m;
             if size.x >= 0.95 * length_m {
                 for (side, left) in [(-apart, true), (apart, false)] {
@@ -168,10 +167,10 @@ pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// Area of a sensor's dot per newton, in square metres: 300 N make a dot of 3 cm.
+/// Area of a sensor's dot per newton, in square metres: a dot of 300 N is 3 cm wide.
 const DOT_M2_PER_N: f32 = 0.015 * 0.015 / 300.0;
 
-/// Slanted lines over the tiles of which nothing is known.
+/// Hatches the tiles without current data.
 pub(super) fn unknown(scene: &mut Scene, view: &View<'_>) {
     if view.snapshot.link == LinkState::Waiting {
         return;
@@ -183,20 +182,20 @@ pub(super) fn unknown(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// Tiles from which on sensors without force are not drawn: their dots would be finer than a pixel.
+/// Number of tiles above which sensors without force are not drawn: their dots would be smaller than a pixel.
 const MANY_TILES: usize = 400;
 
-/// Dots whose area follows the sensors' forces; broken and silent sensors are shown by their own shapes.
+/// Draws dots with an area proportional to the sensors' forces; broken and silent sensors have their own shapes.
 pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
-    // Before the first packet nothing is known; 144 marks would say no more.
+    // Before the first packet there are no data, and 144 marks would add nothing.
     if view.snapshot.link == LinkState::Waiting {
         return;
     }
-    // Where no sensor is better, as on a floor that nobody calibrated, a mark on each would tell nothing.
+    // If no sensor is live, as on an uncalibrated floor, a mark on each would carry no information.
     let none_live = none_live(view);
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
         let tile = view.geometry.tile_at_index(index);
-        // The hatching says it for a tile that is silent as a whole.
+        // The hatching already shows a tile without data.
         if state.quality == [Quality::Stale; 4] {
             continue;
         }
@@ -214,7 +213,8 @@ fn sensor(scene: &mut Scene, view: &View<'_>, at: Vec2, force: f32, quality: Qua
     let theme = view.theme;
     let radius = (force.clamp(0.0, 2000.0) * DOT_M2_PER_N).sqrt();
     if view.show.sensors && quality <= Quality::Degraded {
-        // Below 1 N a dot would only show noise: a faint one marks the place, where there are few enough.
+        // Below 1 N a dot would only show noise; a faint dot of constant size marks the place, unless there are too
+        // many sensors.
         if force < 1.0 && view.geometry.tile_count() > MANY_TILES {
             return mark_quality(scene, view, at, quality);
         }
@@ -224,7 +224,8 @@ fn sensor(scene: &mut Scene, view: &View<'_>, at: Vec2, force: f32, quality: Qua
     mark_quality(scene, view, at, quality);
 }
 
-/// The shape that tells a sensor's quality: none if live, triangle, diamond, cross.
+/// Draws the shape for a sensor's quality: none if live, a triangle if degraded, a diamond if stale, a cross if
+/// faulty.
 pub(super) fn mark_quality(scene: &mut Scene, view: &View<'_>, at: Vec2, quality: Quality) {
     let theme = view.theme;
     match quality {
@@ -268,16 +269,16 @@ fn hatch(scene: &mut Scene, view: &View<'_>, tile: TileId, state: &TileState) {
     }
 }
 
-/// A bar under the middle of each tile that its actuator moves.
+/// Draws a level bar on each tile with an active actuator.
 pub(super) fn actuators(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for (index, level) in view.levels.iter().enumerate().take(view.geometry.tile_count()) {
-        // A thousandth of full scale is 40 mN: nobody feels it.
+        // A thousandth of full scale is 40 mN, too little to feel.
         if level.is_nan() || *level < 1e-3 {
             continue;
         }
         let plate = view.geometry.plate(view.geometry.tile_at_index(index));
-        // 60 dB over the bar's length, as force is felt.
+        // The bar covers 60 dB, because the perception of force is about logarithmic.
         let share = (1.0 + level.min(1.0).log10() / 3.0).clamp(0.0, 1.0);
         let half = 0.28 * plate.size().x;
         let west = Vec2::new(plate.centre().x - half, plate.min.y + 0.020);
@@ -290,7 +291,7 @@ pub(super) fn actuators(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// The outline of the selected tile.
+/// Draws the outline of the selected tile.
 pub(super) fn chosen(scene: &mut Scene, view: &View<'_>) {
     if let Some(tile) = view.chosen.filter(|tile| view.geometry.index(*tile).is_some()) {
         let stroke = Stroke::new(0.005, Ink::solid(view.theme.accent));
@@ -298,7 +299,7 @@ pub(super) fn chosen(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// Whether sensors are known of and none is better than degraded, as on a floor that nobody calibrated.
+/// True if there are sensors and all are degraded or worse, as on an uncalibrated floor.
 pub(super) fn none_live(view: &View<'_>) -> bool {
     let tiles = &view.snapshot.tiles;
     !tiles.is_empty() && !tiles.iter().any(|tile| tile.quality.contains(&Quality::Live))

@@ -1,4 +1,4 @@
-//! Icons as strokes: they stay sharp at any size, on a projector as in a picture.
+//! Icons made of strokes, sharp at any size, on a projector as well as in a picture.
 
 use glam::Vec2;
 
@@ -10,21 +10,21 @@ use crate::layout::{Colour, Icon};
 enum Piece {
     /// Open lines.
     Lines(&'static [(f32, f32)]),
-    /// Lines that come back to where they began.
+    /// Closed lines.
     Loop(&'static [(f32, f32)]),
-    /// The same, filled.
+    /// Closed lines, filled.
     Solid(&'static [(f32, f32)]),
-    /// A circle: middle and radius.
+    /// A circle: centre and radius.
     Ring(f32, f32, f32),
     /// A filled circle.
     Dot(f32, f32, f32),
-    /// Part of a circle: middle, radius, and from which to which degree, counted from the east to the north.
+    /// Part of a circle: centre, radius, first and last angle in degrees, counted from east to north.
     Arc(f32, f32, f32, f32, f32),
 }
 
 use Piece::{Arc, Dot, Lines, Loop, Ring, Solid};
 
-/// Width of strokes where the square's side is 2.
+/// Width of strokes in a square with side 2.
 const STROKE: f32 = 0.24;
 
 /// Degrees between the points of an arc.
@@ -32,7 +32,7 @@ const ARC_STEP: f32 = 15.0;
 
 /// Draws `icon` around `middle`, `side_m` wide and deep.
 pub(super) fn draw(scene: &mut Scene, icon: Icon, middle: Vec2, side_m: f32, ink: Colour) {
-    // Strokes reach half their width beyond their points.
+    // Strokes extend half their width beyond their points.
     let scale = 0.5 * side_m / (1.0 + 0.5 * STROKE);
     let at = |&(x, y): &(f32, f32)| middle + Vec2::new(x, y) * scale;
     let line = Paint::stroke(Stroke::new(STROKE * scale, Ink::solid(ink)));

@@ -1,4 +1,4 @@
-//! What can be laid over the floor to see how it senses: loads of tiles, uncertainty, trails, ignored presses, health.
+//! Optional layers over the floor that show its sensing: tile loads, uncertainty, trails, ignored presses, health.
 
 use std::f32::consts::TAU;
 use std::time::Duration;
@@ -12,13 +12,13 @@ use crate::floor::{Corner, Rect};
 use crate::sense::{Covariance, Quality};
 use crate::wire::LinkState;
 
-/// Loads below this are not written on their tile: noise alone would make them flicker.
+/// Minimum load written on a tile (N): noise alone would make smaller ones flicker.
 const LEAST_N: f32 = 5.0;
 
-/// How long the reason of an ignored press stays on its control.
+/// Time for which the reason of an ignored press stays on its control.
 pub const TOLD: Duration = Duration::from_secs(5);
 
-/// Under the controls: what each sensor is worth, as a quarter of its plate.
+/// Under the controls: the quality of each sensor, as a quarter of its plate.
 pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
     if !view.show.health || view.snapshot.link == LinkState::Waiting {
         return;
@@ -26,7 +26,7 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
         let plate = view.geometry.plate(view.geometry.tile_at_index(index)).grown(-0.004);
-        // Nothing to look into: a frame says so, and costs no area where there is no graphics card.
+        // A tile with live sensors gets only a frame, which needs no area without a graphics card.
         if state.quality == [Quality::Live; 4] {
             let frame = Paint::stroke(Stroke::new(0.005, Ink::faint(theme.good, 0.4)));
             scene.add_box(plate.grown(-0.004), 0.006, frame);
@@ -34,7 +34,7 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
         }
         let half = 0.5 * plate.size();
         for (corner, quality) in Corner::ALL.into_iter().zip(state.quality) {
-            // The worse, the heavier, so that the map reads without its colours.
+            // Worse qualities are more opaque, so that the map is readable without its colours.
             let ink = match quality {
                 Quality::Live => Ink::faint(theme.good, 0.14),
                 Quality::Degraded => Ink::faint(theme.warning, 0.34),
@@ -51,7 +51,7 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// The force on each tile, and where it acts.
+/// Draws the force on each tile, at its centroid.
 pub(super) fn tiles(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     let by = super::magnification(view.geometry).clamp(0.3, 4.0);
@@ -76,14 +76,14 @@ pub(super) fn tiles(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// The way each contact came, fading behind it.
+/// Draws the recent path of each contact, fading behind it.
 pub(super) fn trails(scene: &mut Scene, view: &View<'_>) {
     if !view.show.trails {
         return;
     }
     for trail in view.trails {
         let colour = if trail.leads { view.theme.cursor } else { view.theme.contact };
-        // Three stretches, the oldest faintest.
+        // Three parts, the oldest faintest.
         let third = trail.points.len().div_ceil(3).max(1);
         for (part, opacity) in (0..3).zip([0.25, 0.45, 0.75]) {
             let from = (part * third).saturating_sub(1);
@@ -94,7 +94,7 @@ pub(super) fn trails(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// The ellipse that holds each contact's true place 95 times in 100.
+/// Draws the 95 % confidence ellipse of each contact.
 pub(super) fn uncertainty(scene: &mut Scene, view: &View<'_>) {
     if !view.show.uncertainty {
         return;
@@ -104,7 +104,7 @@ pub(super) fn uncertainty(scene: &mut Scene, view: &View<'_>) {
         if !(long.is_finite() && short.is_finite()) {
             continue;
         }
-        // Wider than the floor says no more than as wide as it.
+        // Ellipses larger than the floor are limited to its size.
         let most = view.geometry.bounds().size().max_element();
         let radii = Vec2::new(long, short).clamp(Vec2::splat(0.002), Vec2::splat(most));
         let turn = Vec2::from_angle(direction(contact.covariance));
@@ -117,13 +117,13 @@ pub(super) fn uncertainty(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// The angle from east to the longer axis of a covariance, in radians.
+/// Angle from east to the longer axis of a covariance, in radians.
 fn direction(Covariance { xx, xy, yy }: Covariance) -> f32 {
     let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
     if angle.is_finite() { angle } else { 0.0 }
 }
 
-/// Why presses led to nothing, at the controls that did not answer; clear of what is written at `taken` places.
+/// Writes the reasons of ignored presses at their controls, clear of the texts in `taken`.
 pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) {
     if !view.show.ignored {
         return;
@@ -133,14 +133,14 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) 
     let size_m = 0.028 * by;
     let mut told = Vec::new();
     for press in view.snapshot.ignored.iter().rev().filter(|press| now.since(press.at) < TOLD) {
-        // A foot that slides over a row of controls is told where it ended.
+        // For a foot that slides over several controls, only the last one shows a reason.
         if told.contains(&press.contact) {
             continue;
         }
         told.push(press.contact);
         let Some(widget) = view.layout.widgets.iter().find(|widget| widget.id == press.id) else { continue };
         let mut text = format!("{:.0} N: {}", press.force.0, press.why);
-        // Where it depends on a person's weight, nobody can say beforehand.
+        // A threshold that depends on a person's weight has no fixed force to show.
         let wanted = widget.behaviour.thresholds();
         if press.why == Ignored::TooLight && wanted.share.is_none() {
             text.push_str(&format!(", takes {:.0} N", wanted.press.0));
@@ -154,8 +154,8 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) 
     }
 }
 
-/// Where words that reach `half` to each side stand at a control: along its south edge, or else further south or in the
-/// north, where nothing is written yet; within the floor, also for a control at its edge.
+/// Place for a text that extends `half` to each side, at a control: along its south edge, or else further south or in
+/// the north, clear of the texts in `taken`; always within the floor.
 fn beside(control: Rect, half: Vec2, floor: Rect, taken: &[Rect]) -> Vec2 {
     let low = (floor.min + half).min(floor.centre());
     let high = (floor.max - half).max(low);
@@ -211,7 +211,7 @@ mod tests {
             let without = count(show);
             *layer(&mut show) = true;
             let with = count(show);
-            // Rings lie on contacts, and nothing moves an actuator here.
+            // Rings are on contacts, and no actuator moves here.
             let is_alone = !matches!(name, "Cursors" | "Actuators");
             assert_eq!(with > without, is_alone, "{name}: {without} and {with} of {bare}");
         }

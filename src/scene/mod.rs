@@ -1,8 +1,7 @@
-//! What a floor looks like: one drawing description for windows, pictures and projectors.
+//! Drawing of a floor: one description for windows, pictures and projectors.
 //!
-//! [`draw`] turns the floor's state into a [`Scene`], a list of [`Mark`]s in
-//! floor metres. Painters for egui and SVG are small and know nothing of
-//! controls; an app that projects the floor itself can write its own.
+//! [`draw`] turns the floor's state into a [`Scene`], a list of [`Mark`]s in floor metres. Painters for egui and SVG
+//! are small and independent of the controls; an app that projects the floor itself can have its own painter.
 //!
 //! ```
 //! use underfoot::scene::{self, Scene, Theme, View};
@@ -49,21 +48,21 @@ use glam::Vec2;
 
 use crate::floor::{Geometry, Rect};
 
-/// Width of the empty edge around the paper's floor, in metres.
+/// Width of the margin around the paper's floor, in metres.
 const MARGIN_M: f32 = 0.085;
 
-/// How many times as wide as the paper's floor this one is: words around a floor grow with it.
+/// Width of this floor divided by that of the paper's: texts around a floor grow with it.
 fn magnification(geometry: &Geometry) -> f32 {
     geometry.bounds().size().x / Geometry::default().bounds().size().x
 }
 
-/// Whether `area` has all of `cell`, give or take what rounding does to metres.
+/// True if `area` contains all of `cell`, within the rounding errors of metres.
 fn holds(area: Rect, cell: Rect) -> bool {
     let area = area.grown(1e-4);
     cell.min.cmpge(area.min).all() && cell.max.cmple(area.max).all()
 }
 
-/// What a drawing of this floor covers, in floor metres: the floor, and the room that words around it take.
+/// Returns the bounds of a drawing of this floor, in floor metres: the floor and the room for texts around it.
 #[must_use]
 pub fn extent(geometry: &Geometry, show: Show) -> Rect {
     let by = magnification(geometry);
@@ -78,10 +77,10 @@ pub fn extent(geometry: &Geometry, show: Show) -> Rect {
     bounds
 }
 
-/// Draws `view` into `scene`, in place of what was there.
+/// Draws `view` into `scene`, replacing its contents.
 ///
-/// The order is that of things on a real floor: plates, the ground and the controls that are
-/// projected on them, what is under them, feet, and words about all of it.
+/// The order follows a real floor: plates, the ground and the projected controls, the marks of sensors and actuators,
+/// feet, and texts about all of them.
 pub fn draw(scene: &mut Scene, view: &View<'_>) {
     let floor = view.geometry.bounds();
     let bounds = extent(view.geometry, view.show);

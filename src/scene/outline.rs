@@ -7,9 +7,10 @@ use glam::Vec2;
 use super::{Mark, Scene};
 use crate::floor::Rect;
 
-/// Calls `visit` with points around a mark, the first one again at the end of a closed outline; none for text.
+/// Calls `visit` with points around a mark, and with the first one again at the end of a closed outline; not for
+/// text.
 ///
-/// For painters that break outlines into dashes themselves.
+/// For painters that divide outlines into dashes themselves.
 pub fn outline_of(scene: &Scene, mark: &Mark, visit: impl FnMut(Vec2)) {
     match *mark {
         Mark::Box { area, radius_m, .. } | Mark::Halo { area, radius_m, .. } => {
@@ -33,18 +34,18 @@ pub fn outline_of(scene: &Scene, mark: &Mark, visit: impl FnMut(Vec2)) {
     }
 }
 
-/// Points along a quarter of a circle.
+/// Number of steps along a quarter of a circle.
 const QUARTER_STEPS: usize = 8;
 
-/// The first `share` (0 to 1) of the way round a rounded rectangle, clockwise from the middle of its north side.
+/// The first `share` (0 to 1) of the outline of a rounded rectangle, clockwise from the middle of its north side.
 ///
-/// With the radius at half of a square's side this is a circle.
+/// With a radius of half of a square's side this is a circle.
 pub(super) fn box_arc(area: Rect, radius_m: f32, share: f32) -> impl Iterator<Item = Vec2> {
     let half = (area.size() * 0.5).max(Vec2::ZERO);
     let radius = radius_m.clamp(0.0, half.min_element());
     let centre = area.centre();
     let core = half - radius;
-    // Corners clockwise from the north-east, each with the angle at which its arc begins.
+    // Corners clockwise from the north-east, each with the start angle of its arc.
     let corners = [(1.0, 1.0, 0.5 * PI), (1.0, -1.0, 0.0), (-1.0, -1.0, -0.5 * PI), (-1.0, 1.0, PI)];
     let arcs = corners.into_iter().flat_map(move |(east, north, begin)| {
         let corner = centre + core * Vec2::new(east, north);
@@ -58,7 +59,7 @@ pub(super) fn box_arc(area: Rect, radius_m: f32, share: f32) -> impl Iterator<It
     cut(std::iter::once(start).chain(arcs).chain(std::iter::once(start)), share * length)
 }
 
-/// The first `share` (0 to 1) of the way round an ellipse, clockwise from its north.
+/// The first `share` (0 to 1) of the outline of an ellipse, clockwise from its north.
 pub(super) fn ellipse_arc(area: Rect, share: f32) -> impl Iterator<Item = Vec2> {
     const STEPS: usize = 48;
     let (centre, radii) = (area.centre(), area.size() * 0.5);
@@ -69,7 +70,7 @@ pub(super) fn ellipse_arc(area: Rect, share: f32) -> impl Iterator<Item = Vec2> 
     })
 }
 
-/// The beginning of a path, up to `length` along it.
+/// The first part of a path, up to `length` along it.
 fn cut(points: impl Iterator<Item = Vec2>, length: f32) -> impl Iterator<Item = Vec2> {
     let mut left = length;
     let mut last = None;
@@ -80,7 +81,7 @@ fn cut(points: impl Iterator<Item = Vec2>, length: f32) -> impl Iterator<Item = 
         let from = last.unwrap_or(point);
         let step = from.distance(point);
         let reached = if step > left { from.lerp(point, left / step) } else { point };
-        // One more point is given where the length ends, then none.
+        // Returns one more point at the end of the length, then none.
         left = if step > left { -1.0 } else { left - step };
         last = Some(point);
         Some(reached)
@@ -109,11 +110,11 @@ const SOLE: [(f32, f32); 18] = [
     (0.098, -0.47),
 ];
 
-/// Points between two of [`SOLE`]'s.
+/// Number of steps between two points of [`SOLE`].
 const SOLE_STEPS: usize = 4;
 
-/// The sole of a right shoe (mirrored for a left one) around `middle`, its toes `heading_rad` counter-clockwise from
-/// north.
+/// The sole of a right shoe (mirrored for a left one) around `middle`; `heading_rad` is the direction of the toes,
+/// counter-clockwise from north.
 pub(crate) fn sole(middle: Vec2, heading_rad: f32, length_m: f32, left: bool) -> impl Iterator<Item = Vec2> {
     let turn = Vec2::from_angle(heading_rad);
     let side = if left { -1.0 } else { 1.0 };
@@ -128,7 +129,7 @@ pub(crate) fn sole(middle: Vec2, heading_rad: f32, length_m: f32, left: bool) ->
     })
 }
 
-/// The smooth curve from the second to the third of four points, `share` of the way.
+/// The Catmull-Rom curve from the second to the third of four points, at `share`.
 fn catmull_rom([before, from, to, after]: [Vec2; 4], share: f32) -> Vec2 {
     let (one, two, three) = (share, share * share, share * share * share);
     0.5 * (2.0 * from
@@ -164,7 +165,7 @@ mod tests {
         let (low, high) =
             north.iter().fold((0.0_f32, 0.0_f32), |(low, high), p| (low.min(p.y), high.max(p.y)));
         assert!((high - low - 0.28).abs() < 0.003, "{}", high - low);
-        // Turned a quarter to the left, the toes are west.
+        // After a quarter turn to the left, the toes are in the west.
         let west: Vec<_> = sole(Vec2::ZERO, 0.5 * PI, 0.28, false).collect();
         let toe = north.iter().position(|p| p.y == high).unwrap();
         assert!((west[toe].x + high).abs() < 1e-6);

@@ -1,8 +1,7 @@
-//! A line of text in pieces of one direction and one script, from left to right as they are drawn.
+//! Divides a line of text into pieces of one direction and one script, in drawing order from left to right.
 //!
-//! Letters are kept in the order in which they are read. A painter that shapes each piece and puts the pieces beside
-//! each other, from the left on, draws Arabic and Hebrew as they are written, also with numbers and Latin words among
-//! them.
+//! Letters stay in reading order. A painter that shapes each piece and places the pieces beside each other, starting
+//! at the left, draws Arabic and Hebrew correctly, also with numbers and Latin words among them.
 //!
 //! # Source
 //! Unicode Standard Annex #9 (bidirectional algorithm), by the crate `unicode-bidi`; Annex #24 (scripts).
@@ -15,20 +14,20 @@ use unicode_bidi_mirroring::get_mirrored;
 use unicode_script::{Script, UnicodeScript};
 use unicode_segmentation::UnicodeSegmentation;
 
-/// The way in which the parts of a line follow each other.
+/// Order of the parts of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
-    /// That of the line's first letter that has one; left to right without any.
+    /// Direction of the line's first letter with a direction; left to right without one.
     #[default]
     OfItsLetters,
-    /// As Latin is written.
+    /// Left to right, like Latin.
     LeftToRight,
-    /// As Arabic and Hebrew are written.
+    /// Right to left, like Arabic and Hebrew.
     RightToLeft,
 }
 
 impl Direction {
-    /// The direction of `text`, which may be one line of several: that of its first letter that has one.
+    /// Returns the direction of `text`, which may have several lines: that of its first letter with a direction.
     #[must_use]
     pub fn of(text: &str) -> Self {
         match get_base_direction(text) {
@@ -46,20 +45,20 @@ impl Direction {
     }
 }
 
-/// Letters that are shaped together.
+/// Letters to shape together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Piece<'t> {
-    /// The letters in the order in which they are read; brackets are already turned as they are seen.
+    /// The letters in reading order; brackets are already mirrored for display.
     pub text: Cow<'t, str>,
-    /// Whether the first letter is the rightmost one.
+    /// True if the first letter is the rightmost one.
     pub right_to_left: bool,
 }
 
-/// The least code point that is not written from left to right: Hebrew begins there. What is below is Latin, Greek,
-/// Cyrillic and Armenian.
+/// The first code point of a right-to-left script: Hebrew starts there. Latin, Greek, Cyrillic and Armenian are below
+/// it.
 const FIRST_RIGHT_TO_LEFT: char = '\u{590}';
 
-/// The pieces of one line, the leftmost first; none for an empty one.
+/// Returns the pieces of one line, the leftmost first; none for an empty line.
 #[must_use]
 pub fn pieces(line: &str, direction: Direction) -> Vec<Piece<'_>> {
     if direction != Direction::RightToLeft && line.chars().all(|letter| letter < FIRST_RIGHT_TO_LEFT) {
@@ -79,8 +78,8 @@ pub fn pieces(line: &str, direction: Direction) -> Vec<Piece<'_>> {
     pieces
 }
 
-/// The same line as a text whose parts are in the order in which they are drawn, for a painter that turns each word of
-/// Arabic or Hebrew by itself and leaves the order of words as it is.
+/// Returns the line as a text with its parts in drawing order, for a painter that reverses each Arabic or Hebrew word
+/// but keeps the order of the words.
 #[must_use]
 pub fn in_drawn_order(line: &str) -> Cow<'_, str> {
     let mut pieces = pieces(line, Direction::OfItsLetters);
@@ -90,7 +89,7 @@ pub fn in_drawn_order(line: &str) -> Cow<'_, str> {
     }
 }
 
-/// A run from left to right, divided where the script changes.
+/// Divides a left-to-right run at changes of script.
 fn rightwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
     let mut begin = 0;
     let mut script = None;
@@ -107,7 +106,7 @@ fn rightwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
     }
 }
 
-/// A run from right to left: words, and what is between them sign by sign, the last one first.
+/// Divides a right-to-left run into words and the single signs between them, the last one first.
 fn leftwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
     let mut parts: Vec<(Range<usize>, Option<Script>)> = Vec::new();
     for (at, cluster) in run.grapheme_indices(true) {
@@ -115,7 +114,7 @@ fn leftwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
         let letter = cluster.chars().next().filter(|letter| is_letter(*letter));
         let script = letter.map(|letter| script_of(letter).unwrap_or(Script::Common));
         match parts.last_mut() {
-            // The lengthening stroke and marks have no script of their own.
+            // The elongation stroke and marks have no script of their own.
             Some((part, Some(before)))
                 if script.is_some_and(|script| script == *before || script == Script::Common) =>
             {
@@ -138,16 +137,16 @@ fn piece(run: &str, part: Range<usize>, right_to_left: bool) -> Piece<'_> {
     Piece { text: run.get(part).unwrap_or_default().into(), right_to_left }
 }
 
-/// Whether it is written from right to left by itself, and so joins its neighbours.
+/// True for a letter of a right-to-left script, which joins its neighbours.
 fn is_letter(letter: char) -> bool {
     matches!(bidi_class(letter), BidiClass::R | BidiClass::AL)
 }
 
-/// The script of a letter; `None` for what belongs to several.
+/// Script of a letter; `None` for letters of several scripts.
 fn script_of(letter: char) -> Option<Script> {
     match letter.script() {
         Script::Common | Script::Inherited | Script::Unknown => None,
-        // Japanese mixes three, which have one font.
+        // Japanese mixes three scripts with a common font.
         Script::Hiragana | Script::Katakana => Some(Script::Han),
         script => Some(script),
     }
@@ -167,7 +166,7 @@ mod tests {
 
     use super::*;
 
-    /// Pieces as they are drawn from left to right, those that are read from right to left in brackets.
+    /// Pieces in drawing order, the right-to-left ones in angle brackets.
     fn drawn(line: &str, direction: Direction) -> Vec<String> {
         let show = |piece: &Piece<'_>| {
             if piece.right_to_left { format!("<{}>", piece.text) } else { piece.text.to_string() }
@@ -194,10 +193,10 @@ mod tests {
 
     #[test]
     fn numbers_and_latin_words_among_them_keep_their_own_order() {
-        // "Room 12 B" in Hebrew: the number is left of the word, its digits as they are.
+        // "Room 12 B" in Hebrew: the number is left of the word, with its digits in order.
         assert_eq!(by_itself("חדר 12"), ["12", " ", "<חדר>"]);
         assert_eq!(by_itself("تكبير Zoom 2x"), ["Zoom 2x", " ", "<تكبير>"]);
-        // Within a Latin line only the Hebrew words change places.
+        // In a Latin line only the Hebrew words change places.
         assert_eq!(by_itself("Go בית חדש now"), ["Go ", "<חדש>", " ", "<בית>", " now"]);
     }
 
@@ -230,7 +229,7 @@ mod tests {
     fn marks_and_joining_signs_stay_with_their_letters() {
         assert_eq!(by_itself("שָׁלוֹם"), ["<שָׁלוֹם>"]);
         assert_eq!(by_itself("بـيـت"), ["<بـيـت>"]);
-        // Persian, with a sign that keeps letters from joining.
+        // Persian, with a zero-width non-joiner.
         assert_eq!(by_itself("می\u{200c}روم"), ["<می\u{200c}روم>"]);
     }
 

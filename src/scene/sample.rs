@@ -1,4 +1,4 @@
-//! A page of controls and a floor at work, for tests.
+//! A page of controls, and snapshots of a floor in use, for tests.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -33,7 +33,7 @@ pub(crate) fn switch(initial: bool) -> Behaviour {
     Behaviour::Switch(SwitchSpec { thresholds: THRESHOLDS, initial })
 }
 
-/// The behaviours beside buttons, switches and straight sliders.
+/// All behaviours except buttons, switches and straight sliders.
 pub(crate) fn others() -> Vec<Behaviour> {
     let thresholds = THRESHOLDS;
     let scale = Scale { step: 0.5, ..Scale::new(-10.0, 10.0) };
@@ -70,7 +70,7 @@ pub(crate) fn others() -> Vec<Behaviour> {
     ]
 }
 
-/// A control `size` tiles wide and deep with its south-west corner at `at`, in tiles of the paper's floor.
+/// A control of `size` tiles with its south-west corner at `at`, in tiles of the paper's floor.
 pub(crate) fn widget(
     id: &str,
     label: &str,
@@ -111,7 +111,7 @@ pub(crate) fn sand() -> Look {
     look(Shape::Box, 0xee_e6_d6, 0xe0_8a_2e, 0x3a_2e_1c)
 }
 
-/// Map navigation, much like what the program opens with.
+/// A map layout, similar to the program's initial one.
 pub(crate) fn map() -> Layout {
     let pitch = Geometry::default().pitch_m();
     let tiles = |x: f32, y: f32, w: f32, h: f32| {
@@ -158,7 +158,7 @@ pub(crate) fn map() -> Layout {
     }
 }
 
-/// `layout` on the paper's floor with nobody on it.
+/// A snapshot of `layout` on the paper's empty floor.
 pub(crate) fn at_rest(layout: &Layout) -> Snapshot {
     let live = TileState { quality: [Quality::Live; 4], ..TileState::default() };
     Snapshot {
@@ -175,7 +175,7 @@ pub(crate) fn at_rest(layout: &Layout) -> Snapshot {
     }
 }
 
-/// Puts a foot of `force` newtons at `at` that moves by `velocity`, spread over the sensors of the tile under it.
+/// Adds a foot of `force` newtons at `at` with the velocity `velocity`, spread over the sensors of the tile under it.
 pub(crate) fn step_on(snapshot: &mut Snapshot, id: u32, at: Vec2, force: f32, velocity: Vec2) {
     let geometry = Geometry::default();
     let tile = geometry.tile_under(at).unwrap();

@@ -1,4 +1,4 @@
-//! The strips above and below the floor: what is shown, when, and what the marks mean.
+//! The strips above and below the floor: title, time, link state, and a legend of the marks.
 
 use glam::Vec2;
 
@@ -15,7 +15,7 @@ pub(super) const HEADER_M: f32 = 0.195;
 /// Height of the strip below the floor, in metres.
 pub(super) const LEGEND_M: f32 = 0.085;
 
-/// Title and measures at the left, time and link at the right.
+/// Draws title and measures on the left, time and link on the right.
 pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     let theme = view.theme;
     let time_m = if view.show.contacts { 0.42 } else { 0.0 };
@@ -39,7 +39,7 @@ pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
             cause.map(|cause| format!("{}: {}", view.snapshot.link.name(), cause.name().replace('_', " ")));
         let (state, colour) = match view.snapshot.link {
             LinkState::Waiting => ("no packets yet", theme.warning),
-            // Nominal parts are what every floor begins with, and no fault.
+            // Every new floor has nominal parts; that is not a fault.
             LinkState::Live if view.snapshot.health.uncalibrated > 0 && ground::none_live(view) => {
                 ("live, not calibrated", theme.quiet)
             }
@@ -66,7 +66,7 @@ pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     }
 }
 
-/// One line of samples of the marks on this drawing, with their names.
+/// Draws one line of samples of the marks on this drawing, with their names.
 pub(super) fn legend(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     let theme = view.theme;
     let has = |wanted: Quality| {
@@ -118,7 +118,7 @@ pub(super) fn legend(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     }
 }
 
-/// Sets the legend's entries one after the other, as long as there is room.
+/// Draws the legend's entries one after the other, while there is room.
 struct Pen<'a> {
     x: f32,
     y: f32,

@@ -1,4 +1,4 @@
-//! What scenes show, mark by mark.
+//! Tests of scenes, mark by mark.
 
 use std::collections::HashSet;
 
@@ -47,12 +47,12 @@ fn labels_and_ranges_that_apps_set_are_drawn() {
     assert!(drawn(&layout, &snapshot) != before, "the handle stands elsewhere");
 }
 
-/// A layout of this one control.
+/// A layout with this control only.
 fn only(widget: Widget) -> Layout {
     Layout { widgets: vec![widget], stances: vec![], ..map() }
 }
 
-/// Where the letters of a line stand, upright lines only.
+/// Bounds of the letters of a line without a turn.
 fn extent(text: &str, lettering: &Lettering) -> Rect {
     let size = Vec2::new(width(text), CAP_HEIGHT) * lettering.size_m;
     let west = match lettering.anchor {
@@ -76,7 +76,7 @@ fn words_stay_on_their_controls_and_off_each_other() {
         "Donaudampfschifffahrtsgesellschaft",
         "一二三四五六七八九十",
     ];
-    // From the smallest target that a foot can hit (10 cm) to a whole row of tiles, both ways.
+    // From the smallest target that a foot can hit (10 cm) to a whole row of tiles, in both directions.
     let sizes = [[0.34, 0.34], [1.0, 0.4], [0.45, 1.6], [1.0, 1.0], [3.0, 0.6], [0.6, 3.0]];
     let mut behaviours = vec![
         button(),
@@ -180,7 +180,7 @@ fn each_value_of_each_behaviour_looks_its_own_way() {
         let pressed = with(&rest, |it| it.widgets[0].pressed = true);
         assert!(differs(&scenes[0], &shown(&layout, &pressed, Show::PROJECTOR)), "{name}");
     }
-    // What a selector's foot would choose is outlined before it is.
+    // A selector outlines the option under the foot before the foot chooses it.
     let selector = sample::others().swap_remove(1);
     let layout = only(widget("it", "Label", [1.0, 1.0], [1.0, 0.8], selector, sample::sand()));
     let rest = at_rest(&layout);
@@ -240,7 +240,7 @@ fn the_handle_of_a_slider_is_where_the_value_is() {
     }
 }
 
-/// The numbers of points of the paths whose middle is within a centimetre of `at`.
+/// Numbers of points of the paths with their mean within a centimetre of `at`.
 fn paths_near(scene: &Scene, at: Vec2) -> Vec<usize> {
     let near = |mark: &Mark| match mark {
         Mark::Path { points, .. } => {
@@ -262,7 +262,7 @@ fn sensors_that_cannot_be_trusted_have_shapes_of_their_own() {
     let lines = |quality| {
         let mut snapshot = at_rest(&layout);
         snapshot.tiles[index].quality[Corner::NorthWest.index()] = quality;
-        // Seen even where sensor forces are not shown.
+        // Visible even without the layer of sensor forces.
         paths_near(&shown(&layout, &snapshot, Show::LAYOUT), at)
     };
     assert_eq!(lines(Quality::Live), [0; 0]);
@@ -277,9 +277,9 @@ fn a_tile_of_which_nothing_is_known_is_hatched() {
     let mut snapshot = at_rest(&layout);
     let before = drawn(&layout, &snapshot).marks().len();
     snapshot.tiles[8].quality = [Quality::Stale; 4];
-    // Four rings of live sensors go, the lines come.
+    // The marks of four live sensors disappear, and the hatching appears.
     assert!(drawn(&layout, &snapshot).marks().len() > before + 10);
-    // Before the first packet every tile is like that, and the window says so in words.
+    // Before the first packet every tile is in that state, and the window shows a message instead.
     snapshot.link = LinkState::Waiting;
     assert!(drawn(&layout, &snapshot).marks().len() < before);
 }
@@ -329,7 +329,7 @@ fn nonsense_in_a_snapshot_draws_nothing_that_is_not_finite() {
     snapshot.widgets[0].press_share = f32::NAN;
     snapshot.widgets[9].value = Some(Value::Number(f32::INFINITY));
     snapshot.tiles[0].forces = [f32::NAN, f32::INFINITY, -1e30, 1e30];
-    // Fewer controls and tiles than the layout and the floor have, as just after a reload.
+    // Fewer controls and tiles than in the layout and the floor, as just after a reload.
     snapshot.tiles.truncate(20);
     snapshot.widgets.truncate(10);
     snapshot.widgets[3].value = Some(Value::Switch(true));

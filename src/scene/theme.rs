@@ -1,27 +1,27 @@
-//! The colours of everything but the controls' own faces, and of these as well for those who need contrast.
+//! Themes: the colours of everything but the controls' faces, and, for high contrast, of the faces too.
 
 use crate::layout::Colour;
 
-/// The colours of everything but the controls' own faces.
+/// Colours of everything except the controls' own faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Theme {
-    /// Around the floor.
+    /// Background around the floor.
     pub canvas: Colour,
-    /// Between the plates.
+    /// Seams between the plates.
     pub seam: Colour,
     /// A plate without load.
     pub plate: Colour,
-    /// What a plate turns to under load.
+    /// Plates under load.
     pub load: Colour,
     /// Text on the canvas and on plates.
     pub ink: Colour,
-    /// Text that need not be read at once: rulers, units, names of regions.
+    /// Secondary text: rulers, units, names of regions.
     pub quiet: Colour,
     /// Hairlines and the edges of panels.
     pub line: Colour,
-    /// Outlines of regions, and what is chosen.
+    /// Outlines of regions, and the selection.
     pub accent: Colour,
-    /// Places to stand.
+    /// Stance zones.
     pub stance: Colour,
     /// Contacts and sensor forces.
     pub contact: Colour,
@@ -29,39 +29,39 @@ pub struct Theme {
     pub cursor: Colour,
     /// Simulated shoes.
     pub shoe: Colour,
-    /// What the actuators do.
+    /// Actuator levels.
     pub haptic: Colour,
-    /// What a person should see to.
+    /// Warnings.
     pub warning: Colour,
-    /// What is broken.
+    /// Faults.
     pub fault: Colour,
-    /// What is too old to be trusted.
+    /// Stale values.
     pub stale: Colour,
-    /// What goes well.
+    /// Good state.
     pub good: Colour,
     /// Shadows.
     pub shadow: Colour,
-    /// The colours of all controls; `None` for those that the layout gives each.
+    /// Common colours of all controls; `None` for the colours of the layout.
     pub faces: Option<Faces>,
 }
 
-/// The colours of all controls, where contrast counts more than what the layout says.
+/// Common colours of all controls, for themes in which contrast is more important than the layout's colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faces {
     /// A face at rest.
     pub rest: Colour,
-    /// What it turns to while it is pressed or on.
+    /// A face while it is pressed or on.
     pub lit: Colour,
-    /// Its edge, and what is written on it where that can be read.
+    /// The edge of a face, and its text if that is readable.
     pub ink: Colour,
 }
 
 impl Theme {
-    /// The themes that people choose from, by name.
+    /// The themes to choose from, by name.
     pub const NAMED: [(&'static str, Self); 3] =
         [("Light", Self::LIGHT), ("Dark", Self::DARK), ("High contrast", Self::CONTRAST)];
 
-    /// Its name among [`Theme::NAMED`]; `None` for another one.
+    /// Returns the theme's name in [`Theme::NAMED`]; `None` for any other theme.
     #[must_use]
     pub fn name(&self) -> Option<&'static str> {
         Self::NAMED.iter().find(|(_, theme)| theme == self).map(|(name, _)| *name)
@@ -113,8 +113,8 @@ impl Theme {
         faces: None,
     };
 
-    /// Black with white edges and few, bright colours, at least 7 to 1: for weak eyes, bright rooms and weak
-    /// projectors. What is on differs from what is off by lightness too.
+    /// Black with white edges and few, bright colours, at least 7 to 1: for low vision, bright rooms and weak
+    /// projectors. On and off also differ in lightness.
     pub const CONTRAST: Self = Self {
         canvas: Colour::rgb(0x00, 0x00, 0x00),
         seam: Colour::rgb(0x5c, 0x5c, 0x5c),
@@ -141,7 +141,7 @@ impl Theme {
         }),
     };
 
-    /// Whether text is lighter than what it stands on.
+    /// Returns true if text is lighter than the background.
     #[must_use]
     pub fn is_dark(&self) -> bool {
         self.canvas.luminance() < self.ink.luminance()
@@ -154,7 +154,7 @@ impl Default for Theme {
     }
 }
 
-/// Contrast from which on letters of any size are called readable.
+/// Minimum contrast of readable text of any size.
 ///
 /// # Source
 /// Web Content Accessibility Guidelines 2.2, 1.4.3, level AA.
@@ -163,7 +163,7 @@ pub(super) const READABLE: f32 = 4.5;
 const DARK_INK: Colour = Colour::rgb(0x1c, 0x1b, 0x19);
 const LIGHT_INK: Colour = Colour::rgb(0xff, 0xff, 0xff);
 
-/// `wish` where it can be read on `ground`, otherwise near-black or white, whichever reads better.
+/// `wish` if it is readable on `ground`, otherwise near-black or white, whichever has the higher contrast.
 pub(super) fn readable(wish: Colour, ground: Colour) -> Colour {
     if contrast(wish, ground) >= READABLE {
         wish
@@ -174,7 +174,7 @@ pub(super) fn readable(wish: Colour, ground: Colour) -> Colour {
     }
 }
 
-/// How well two colours stand off from each other, 1 (not at all) to 21.
+/// Contrast ratio of two colours, 1 (equal) to 21.
 pub(super) fn contrast(one: Colour, other: Colour) -> f32 {
     one.contrast(other)
 }

@@ -1,4 +1,4 @@
-//! What a scene is drawn from.
+//! Input of a scene's drawing.
 
 use glam::Vec2;
 
@@ -12,23 +12,23 @@ use crate::widget::Value;
 /// A simulated shoe, for drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shoe {
-    /// Middle of the sole, in floor metres.
+    /// Centre of the sole, in floor metres.
     pub position: Vec2,
-    /// Where the toes point: 0 is north, counter-clockwise in radians.
+    /// Direction of the toes: 0 is north, counter-clockwise in radians.
     pub heading_rad: f32,
     /// Length of the sole, in metres.
     pub length_m: f32,
     /// Normal force; 0 for a shoe in the air.
     pub force: Newtons,
-    /// Where the foot presses: 0 on the heel to 1 on the toes.
+    /// Position of the pressure: 0 on the heel to 1 on the toes.
     pub roll: f32,
-    /// Whether it is a left shoe.
+    /// True for a left shoe.
     pub left: bool,
 }
 
 #[cfg(feature = "sim")]
 impl From<&crate::sim::Foot> for Shoe {
-    /// A shoe of the foot's own length.
+    /// Creates a shoe of the foot's own length.
     fn from(foot: &crate::sim::Foot) -> Self {
         Self {
             position: foot.position,
@@ -41,33 +41,33 @@ impl From<&crate::sim::Foot> for Shoe {
     }
 }
 
-/// One layer of a [`Show`], to be read or switched.
+/// Accessor of one layer of a [`Show`], for reading or switching it.
 pub type Layer = fn(&mut Show) -> &mut bool;
 
-/// Which parts of the floor's state are drawn.
+/// Visible parts of the floor's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Show {
-    /// The sensors with their forces. Sensors that are broken or silent are shown even without.
+    /// Sensors with their forces. Broken and silent sensors are visible even without this layer.
     pub sensors: bool,
     /// The plates' colour under load, and the force on each of them.
     pub loads: bool,
-    /// Where the load of each tile acts.
+    /// Centroid of each tile's load.
     pub centroids: bool,
-    /// Contacts: circles whose area follows the force.
+    /// Contacts: circles with an area proportional to the force.
     pub contacts: bool,
-    /// Around each contact the ellipse that holds its true place 95 times in 100.
+    /// The 95 % confidence ellipse around each contact.
     pub uncertainty: bool,
-    /// The way each contact came: see [`View::trails`].
+    /// Recent path of each contact: see [`View::trails`].
     pub trails: bool,
     /// Rings around the contacts that operate controls.
     pub cursors: bool,
-    /// On each control how far the force on it has come to its threshold.
+    /// On each control, the force as a share of its press threshold.
     pub engagement: bool,
-    /// Why presses were ignored, for some seconds on the controls that did not answer.
+    /// Reasons of ignored presses, for some seconds on their controls.
     pub ignored: bool,
-    /// What the actuators do.
+    /// Levels of the actuators.
     pub actuators: bool,
-    /// How far each sensor can be believed, as a quarter of its plate.
+    /// Quality of each sensor, as a quarter of its plate.
     pub health: bool,
     /// Tile numbers along the floor's west and south sides.
     pub ruler: bool,
@@ -78,7 +78,7 @@ pub struct Show {
 }
 
 impl Show {
-    /// Everything that is seen in a window at first.
+    /// The initial layers of a window.
     pub const WINDOW: Self = Self {
         sensors: true,
         loads: true,
@@ -89,13 +89,13 @@ impl Show {
         ..Self::PROJECTOR
     };
 
-    /// Everything that is seen in a picture of a floor at work.
+    /// The layers of a picture of a floor in use.
     pub const PICTURE: Self = Self { ignored: false, header: true, legend: true, ..Self::WINDOW };
 
-    /// A layout alone.
+    /// Only the layout.
     pub const LAYOUT: Self = Self { ruler: true, header: true, ..Self::PROJECTOR };
 
-    /// What a projector throws onto the floor: controls, no marks on them, nothing around.
+    /// The layers for a projector: controls without marks, and nothing around the floor.
     pub const PROJECTOR: Self = Self {
         sensors: false,
         loads: false,
@@ -113,7 +113,7 @@ impl Show {
         legend: false,
     };
 
-    /// What can be laid over the floor, by name, for a menu.
+    /// The optional layers by name, for a menu.
     pub const LAYERS: [(&'static str, Layer); 11] = [
         ("Sensor forces", |show| &mut show.sensors),
         ("Tile forces", |show| &mut show.loads),
@@ -129,41 +129,42 @@ impl Show {
     ];
 }
 
-/// Where a contact has been of late.
+/// Recent path of a contact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trail {
-    /// Its places, in floor metres, oldest first.
+    /// Positions in floor metres, oldest first.
     pub points: Vec<Vec2>,
-    /// Whether it operates controls.
+    /// True if the contact operates controls.
     pub leads: bool,
 }
 
-/// All that one drawing shows.
+/// Input of one drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// The floor.
+    /// Geometry of the floor.
     pub geometry: &'a Geometry,
-    /// The controls.
+    /// Layout with the controls.
     pub layout: &'a Layout,
-    /// Their state. A control it does not know, or knows as another kind of control, is drawn at rest;
-    /// tiles it does not know are drawn bare.
+    /// State of the floor. Controls missing in the snapshot, or of another kind there, are drawn at rest; missing
+    /// tiles are drawn without load.
     pub snapshot: &'a Snapshot,
-    /// The colours.
+    /// Colours.
     pub theme: &'a Theme,
-    /// Which parts are drawn.
+    /// Visible parts.
     pub show: Show,
     /// Simulated shoes.
     pub shoes: &'a [Shoe],
-    /// What each tile's actuator does, in tile-index order: 0 (still) to 1 (full scale); may be shorter.
+    /// Level of each tile's actuator, in tile-index order: 0 (still) to 1 (full scale); may be shorter than the
+    /// floor.
     pub levels: &'a [f32],
-    /// Where contacts have been, for the layer of that name.
+    /// Recent paths of the contacts, for the layer of trails.
     pub trails: &'a [Trail],
-    /// A tile to be outlined.
+    /// A tile to outline.
     pub chosen: Option<TileId>,
 }
 
 impl<'a> View<'a> {
-    /// The floor as a window shows it, without shoes or actuators.
+    /// Creates the view of a window, without shoes or actuators.
     #[must_use]
     pub const fn new(
         geometry: &'a Geometry,
@@ -184,7 +185,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The state of the control at `index`, at rest where the snapshot does not fit the layout.
+    /// State of the control at `index`; the state at rest if the snapshot does not fit the layout.
     pub(super) fn widget_state(&self, index: usize) -> WidgetState {
         let Some(widget) = self.layout.widgets.get(index) else { return WidgetState::default() };
         let hidden = !widget.is_on(self.snapshot.page);
@@ -195,7 +196,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The control at `index` with the label and the range that apps have set; `None` where they have set neither.
+    /// The control at `index` with the label and the range set by apps; `None` if neither is set.
     pub(super) fn as_apps_set(&self, index: usize, widget: &Widget) -> Option<Widget> {
         let label = self.snapshot.labels.iter().find(|(of, _)| *of == index).map(|(_, label)| label);
         let range = self.snapshot.ranges.iter().find(|(of, _)| *of == index);

@@ -1,24 +1,24 @@
-//! How wide texts are, so that they can be made to fit without a font at hand.
+//! Widths of texts, for fitting them without access to a font.
 
 use unicode_script::{Script, UnicodeScript};
 use unicode_width::UnicodeWidthChar;
 
-/// Height of a capital letter, in em: what looks like a line's middle is half of it above the base line.
+/// Height of a capital letter, in em; half of it above the base line is the visual middle of a line.
 ///
 /// # Source
-/// Ubuntu Light, the letters of both painters.
+/// Ubuntu Light, the font of both painters.
 pub(super) const CAP_HEIGHT: f32 = 0.693;
 
-/// From one base line to the next, in em.
+/// Distance between base lines, in em.
 pub(super) const LINE_HEIGHT: f32 = 1.15;
 
-/// Width of a letter whose script is not measured, in thousandths of an em: a full square.
+/// Width of a letter of an unmeasured script, in thousandths of an em: a full square.
 const UNKNOWN: u16 = 1000;
 
 /// Width of most Cyrillic and Greek letters in Ubuntu Light; few are wider.
 const FOREIGN: u16 = 760;
 
-/// Width of a sign of Noto Emoji, at the size in which the window draws it.
+/// Width of a Noto Emoji sign, at the size of the window's painter.
 const EMOJI: u16 = 1050;
 
 /// Widths of `' '` to `'~'` in Ubuntu Light, in thousandths of an em.
@@ -39,7 +39,7 @@ const LATIN_1: [u16; 96] = [
     582, 582, 582, 564, 582, 569, 569, 569, 569, 474, 583, 474,
 ];
 
-/// Width of `text` on one line, in em; a little too wide rather than too narrow for letters beyond Latin.
+/// Width of `text` on one line, in em; rather too wide than too narrow for letters beyond Latin.
 pub(super) fn width(text: &str) -> f32 {
     text.chars().map(letter).sum()
 }
@@ -50,7 +50,7 @@ fn letter(letter: char) -> f32 {
         0x20..=0x7e => ASCII[code - 0x20],
         0xa0..=0xff => LATIN_1[code - 0xa0],
         0x100..=0x24f => 700,
-        // Marks stand above or below their letter.
+        // Marks are above or below their letter.
         0x300.. if letter.width() == Some(0) => 0,
         0x370..=0x52f => FOREIGN,
         0x2010..=0x2015 | 0x2018..=0x201f | 0x2022 | 0x2212 => 570,
@@ -63,8 +63,9 @@ fn letter(letter: char) -> f32 {
 /// Mean width of a letter of a script, in thousandths of an em.
 ///
 /// # Source
-/// Advances of all letters in Noto Sans of the script, a tenth more: words have narrower letters more often than wide
-/// ones, and vowel signs beside letters are narrower than these. Arabic by words, since joined letters are narrower.
+/// Advances of all letters in Noto Sans of the script, plus a tenth: words have narrow letters more often than wide
+/// ones, and vowel signs beside letters are narrower than these. For Arabic, widths of words, because joined letters
+/// are narrower.
 fn of_script(letter: char) -> u16 {
     match letter.script() {
         Script::Hebrew | Script::Thai | Script::Lao => 620,
@@ -93,7 +94,7 @@ mod tests {
         assert_eq!(width("靴"), 1.0);
     }
 
-    /// Advances of whole words in Noto Sans of each script, in em, as HarfBuzz shapes them.
+    /// Advances of whole words in Noto Sans of each script, in em, as shaped by HarfBuzz.
     #[test]
     fn words_of_other_scripts_are_measured_a_little_too_wide() {
         let words = [

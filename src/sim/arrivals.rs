@@ -1,4 +1,4 @@
-//! People who come onto a simulated floor whenever somebody sends them.
+//! Adds people to a running simulated floor.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,13 +10,13 @@ use super::foot::{Foot, FootDriver};
 use super::script::Script;
 use crate::units::Instant;
 
-/// Scripts that are played at one time; each has two feet for each of its people.
+/// Maximum number of scripts that play at the same time; each has two feet per person.
 const MOST: usize = 32;
 
-/// Why nobody comes.
+/// Reason why a script can't be added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ArrivalError {
-    /// So many play already.
+    /// 32 scripts are playing already.
     #[error("{MOST} are on the floor already: wait until some have left")]
     Crowded,
     /// The floor has ended.
@@ -24,10 +24,10 @@ pub enum ArrivalError {
     Ended,
 }
 
-/// A handle to send people with, and `driver` with the feet of those who were sent beside its own.
+/// Returns a handle that adds people, and a driver with the feet of `driver` and of the added people.
 ///
-/// The driver goes to the simulated floor's thread, the handle stays with whoever sends people. The performance is
-/// over when that of `driver` is and nobody who was sent is left.
+/// The driver goes to the simulated floor's thread; the sending thread keeps the handle. The performance ends when
+/// `driver` has ended and all added scripts are over.
 #[must_use]
 pub fn arrivals(driver: Box<dyn FootDriver>) -> (ArrivalHandle, Arrivals) {
     let (sender, sent) = sync_channel(MOST);
@@ -36,7 +36,7 @@ pub fn arrivals(driver: Box<dyn FootDriver>) -> (ArrivalHandle, Arrivals) {
     (handle, Arrivals { driver, sent, playing, present: Vec::new(), theirs: Vec::new() })
 }
 
-/// Sends people onto a floor.
+/// Adds people to a floor.
 #[derive(Clone, Debug)]
 pub struct ArrivalHandle {
     sender: SyncSender<Script>,
@@ -44,32 +44,32 @@ pub struct ArrivalHandle {
 }
 
 impl ArrivalHandle {
-    /// Plays `script` once, from now on. Never blocks.
+    /// Plays `script` once, starting now. Never blocks.
     ///
     /// # Errors
-    /// [`ArrivalError`]: 32 scripts are being played, or the floor has ended.
+    /// [`ArrivalError`] if 32 scripts are playing, or if the floor has ended.
     pub fn send(&self, script: Script) -> Result<(), ArrivalError> {
         let one_more = |playing| (playing < MOST).then_some(playing + 1);
         self.playing
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_more)
             .map_err(|_| ArrivalError::Crowded)?;
-        // There is room for all that may play.
+        // The channel has room for as many scripts as may play.
         self.sender.try_send(script).map_err(|_| ArrivalError::Ended)
     }
 
-    /// How many scripts are being played, or will be from the next millisecond on.
+    /// Returns the number of scripts that are playing or start with the next millisecond.
     #[must_use]
     pub fn playing(&self) -> usize {
         self.playing.load(Ordering::Relaxed)
     }
 }
 
-/// A driver's feet, and those of people who were sent.
+/// The feet of a driver, and of the people that were added to it.
 pub struct Arrivals {
     driver: Box<dyn FootDriver>,
     sent: Receiver<Script>,
     playing: Arc<AtomicUsize>,
-    /// Who is there, and since when.
+    /// Start time and script of each added performance.
     present: Vec<(Instant, Script)>,
     theirs: Vec<Foot>,
 }
@@ -106,7 +106,7 @@ mod tests {
     use crate::floor::Geometry;
     use crate::sim::{Performance, Person, feet_by_hand};
 
-    /// Somebody who stands on the floor for as long.
+    /// A script of one person who stands on the floor for `ms` milliseconds.
     fn stands(ms: u64) -> Script {
         let mut person = Performance::new(Person::default(), 1);
         person.appear(Vec2::new(0.9, 0.9), 0.0).unwrap();

@@ -1,6 +1,6 @@
-//! Smooth curves over time, from which the motion of feet is made.
+//! Smooth curves over time for the motion of feet.
 
-/// A value at a moment, and how fast it changes there.
+/// A value at a moment, and its rate of change there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Knot {
     at_s: f64,
@@ -15,26 +15,28 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Lets the curve rest at `value` at the moment `at_s`, and keeps it there unless more follows.
+    /// Appends a knot with `value` and zero slope at `at_s`; the curve stays constant after it unless more knots
+    /// follow.
     ///
-    /// Knots come in order; one at the moment of the last makes a jump, an earlier one is put there.
+    /// Knots must be in order: a knot at the time of the last one makes a jump, and an earlier time is moved to the
+    /// last one.
     pub(super) fn rest(&mut self, at_s: f64, value: f32) {
         self.pass(at_s, value, 0.0);
     }
 
-    /// Lets the curve pass through `value` at the moment `at_s`, changing by `per_s` a second.
+    /// Appends a knot with `value` and the slope `per_s` (1/s) at `at_s`.
     pub(super) fn pass(&mut self, at_s: f64, value: f32, per_s: f32) {
         let at_s = self.knots.last().map_or(at_s, |last| at_s.max(last.at_s));
         self.knots.push(Knot { at_s, value, per_s });
     }
 
-    /// Holds the value the curve has at its end until `at_s`.
+    /// Holds the curve's last value until `at_s`.
     pub(super) fn hold(&mut self, at_s: f64) {
         let value = self.knots.last().map_or(0.0, |last| last.value);
         self.rest(at_s, value);
     }
 
-    /// The value at the moment `at_s`; zero for a curve without knots.
+    /// Returns the value at `at_s`; zero for a curve without knots.
     pub(super) fn at(&self, at_s: f64) -> f32 {
         let next = self.knots.partition_point(|knot| knot.at_s <= at_s);
         match (next.checked_sub(1).and_then(|last| self.knots.get(last)), self.knots.get(next)) {
@@ -45,12 +47,12 @@ impl Curve {
     }
 }
 
-/// The cubic that has both knots' values and slopes (Hermite's form).
+/// The cubic with both knots' values and slopes (Hermite's form).
 fn between(from: &Knot, to: &Knot, at_s: f64) -> f32 {
     let span = (to.at_s - from.at_s) as f32;
     let share = ((at_s - from.at_s) / (to.at_s - from.at_s)) as f32;
     let left = 1.0 - share;
-    // Written so that equal values stay exactly equal between them.
+    // This form keeps equal values exactly equal between the knots.
     from.value
         + (to.value - from.value) * share * share * (3.0 - 2.0 * share)
         + span * share * left * (from.per_s * left - to.per_s * share)

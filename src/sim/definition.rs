@@ -1,4 +1,4 @@
-//! Scenario files as people write them, each record described once.
+//! Format of scenario files; each record is described once.
 
 use std::f32::consts::FRAC_PI_2;
 use std::time::Duration;
@@ -13,26 +13,26 @@ use crate::format::{Codec, Name, Named, Num, OneOf, Opt, Pair, Rec, Text, choice
 use crate::units::Newtons;
 
 record! {
-    /// What people do on a floor, tied to a layout when it is played.
+    /// Actions of people on a floor; playing it needs a layout.
     pub(super) struct ScenarioRecord = "Scenario";
-    /// What people call it.
+    /// Title to display.
     pub(super) title: String = "title", Text(200);
-    /// Who does it.
+    /// The person's measures.
     pub(super) person: PersonRecord = "person", Rec => PersonRecord::of(&Person::default());
-    /// What they do, one after the other.
+    /// The person's actions, one after the other.
     pub(super) steps: Vec<Step> = "steps", list("step", MOST_STEPS, OneOf);
     /// Others on the floor at the same time.
     pub(super) others: Vec<Other> = "others", list("other", MOST_OTHERS, Rec) => Vec::new();
-    /// What goes wrong on the way of the packets, each as the option `--fault` has it, such as "loss=1%".
+    /// Faults of the packets on the network, each in the format of the option `--fault`, such as "loss=1%".
     pub(super) faults: Vec<String> = "faults", list("fault", MOST_FAULTS, Text(200)) => Vec::new();
 }
 
 record! {
     /// Another person on the same floor.
     pub(super) struct Other = "Other";
-    /// Who it is.
+    /// The person's measures.
     pub(super) person: PersonRecord = "person", Rec => PersonRecord::of(&Person::default());
-    /// What they do, one after the other.
+    /// The person's actions, one after the other.
     pub(super) steps: Vec<Step> = "steps", list("step", MOST_STEPS, OneOf);
 }
 
@@ -50,149 +50,149 @@ record! {
 choices! {
     /// One step of a performance; each begins when the one before has ended.
     pub(super) enum Step;
-    /// Lets time pass.
+    /// Waits.
     Wait(Wait),
-    /// Is on the floor from the first moment: the first step, or none.
+    /// Stands on the floor from the first moment; only as the first step.
     Stand(Stand),
-    /// Walks on from beside the floor.
+    /// Walks onto the floor from beside it.
     Enter(Enter),
     /// Walks, and stops with the feet left and right of the place.
     WalkTo(WalkTo),
-    /// Steps aside by small steps, looking where one looked before.
+    /// Steps aside by small steps, with the same facing.
     Sidestep(Sidestep),
     /// Turns on the spot.
     Turn(Turn),
     /// Puts the ball of the nearer foot on the middle of a control.
     Press(Press),
-    /// As Press, for a moment.
+    /// Presses as Press does, but only briefly.
     Tap(Tap),
     /// Presses a slider, dial or pad, or the free floor, and slides along it.
     Drag(Drag),
-    /// As Press, on a bare place.
+    /// Presses as Press does, at a place instead of a control.
     Point(Point),
     /// Walks off the floor.
     Leave(Leave),
 }
 
 record! {
-    /// Lets time pass.
+    /// Waits.
     pub(super) struct Wait = "Wait", Copy;
-    /// How long, in milliseconds.
+    /// Duration, in milliseconds.
     pub(super) time: Duration = "ms", MILLIS;
 }
 
 record! {
-    /// Is on the floor from the first moment.
+    /// Stands on the floor from the first moment.
     pub(super) struct Stand = "Stand", Copy;
-    /// Where, in tiles.
+    /// Place, in tiles.
     pub(super) at: Vec2 = "at", PLACE;
-    /// Which way they look.
+    /// Facing direction.
     pub(super) facing: Side = "facing", Name => Side::North;
 }
 
 record! {
-    /// Walks on from beside the floor.
+    /// Walks onto the floor from beside it.
     pub(super) struct Enter = "Enter", Copy;
-    /// From which side.
+    /// Side of the floor that the person comes from.
     pub(super) from: Side = "from", Name;
-    /// Where they stop, in tiles.
+    /// Place to stop at, in tiles.
     pub(super) at: Vec2 = "at", PLACE;
-    /// Which way they look then; as they walked, unless it is written.
+    /// Facing direction at the end; the walking direction by default.
     pub(super) facing: Option<Side> = "facing", Opt(Name) => None;
 }
 
 record! {
-    /// Walks somewhere.
+    /// Walks to a place.
     pub(super) struct WalkTo = "WalkTo";
-    /// Where they stop, in tiles.
+    /// Place to stop at, in tiles.
     pub(super) at: Vec2 = "at", PLACE;
-    /// Places that they go by, in tiles.
+    /// Places to pass on the way, in tiles.
     pub(super) via: Vec<Vec2> = "via", list("via", MOST_STEPS, PLACE) => Vec::new();
-    /// Which way they look then; as they walked, unless it is written.
+    /// Facing direction at the end; the walking direction by default.
     pub(super) facing: Option<Side> = "facing", Opt(Name) => None;
 }
 
 record! {
     /// Steps aside.
     pub(super) struct Sidestep = "Sidestep", Copy;
-    /// Where to, in tiles.
+    /// Place to step to, in tiles.
     pub(super) at: Vec2 = "at", PLACE;
 }
 
 record! {
     /// Turns on the spot.
     pub(super) struct Turn = "Turn", Copy;
-    /// Which way they look then.
+    /// Facing direction at the end.
     pub(super) to: Side = "to", Name;
 }
 
 record! {
     /// Presses a control.
     pub(super) struct Press = "Press";
-    /// Its id.
+    /// Id of the control.
     pub(super) widget: String = "widget", Text(64);
-    /// How hard.
+    /// Force of the press.
     pub(super) force: Newtons = "force_n", FORCE => PRESSING;
-    /// How long.
+    /// Duration of the press.
     pub(super) hold: Duration = "hold_ms", MILLIS => HOLDING;
 }
 
 record! {
-    /// Presses a control for a moment.
+    /// Presses a control briefly.
     pub(super) struct Tap = "Tap";
-    /// Its id.
+    /// Id of the control.
     pub(super) widget: String = "widget", Text(64);
-    /// How hard.
+    /// Force of the press.
     pub(super) force: Newtons = "force_n", FORCE => PRESSING;
 }
 
 record! {
     /// Moves a slider, dial or pad, or slides over free floor.
     pub(super) struct Drag = "Drag";
-    /// Its id; over free floor, none is written.
+    /// Id of the control; leave it out to slide over free floor.
     pub(super) widget: Option<String> = "widget", Opt(Text(64)) => None;
-    /// Where the foot is put down: as a share of a slider's track or of a dial's range, as shares of a pad's width and
+    /// Place of the touchdown: as a share of a slider's track or of a dial's range, as shares of a pad's width and
     /// depth, on free floor in tiles.
     pub(super) from: End = "from", END;
-    /// Where it lets go, likewise.
+    /// Place of the lift-off, in the same form as `from`.
     pub(super) to: End = "to", END;
-    /// How fast it goes.
+    /// Speed of the slide.
     pub(super) speed_m_s: f32 = "speed_m_s", num(0.01..=2.0) => 0.3;
-    /// How hard it presses.
+    /// Force of the press.
     pub(super) force: Newtons = "force_n", FORCE => Newtons(80.0);
 }
 
 record! {
-    /// Presses a bare place.
+    /// Presses at a place.
     pub(super) struct Point = "Point", Copy;
-    /// Where, in tiles.
+    /// Place, in tiles.
     pub(super) at: Vec2 = "at", PLACE;
-    /// How hard.
+    /// Force of the press.
     pub(super) force: Newtons = "force_n", FORCE => PRESSING;
-    /// How long.
+    /// Duration of the press.
     pub(super) hold: Duration = "hold_ms", MILLIS => HOLDING;
 }
 
 record! {
     /// Walks off the floor.
     pub(super) struct Leave = "Leave", Copy;
-    /// Over which side.
+    /// Side of the floor that the person leaves over.
     pub(super) to: Side = "to", Name;
 }
 
-/// Most steps of one person, and places of one way.
+/// Maximum number of steps of one person, and of places on one walk.
 pub(super) const MOST_STEPS: usize = 4096;
 
-/// Most people besides the first.
+/// Maximum number of people besides the first.
 pub(super) const MOST_OTHERS: usize = 64;
 
-/// Most faults of one scenario.
+/// Maximum number of faults in one scenario.
 const MOST_FAULTS: usize = 32;
 
-/// That places are on the floor is checked where the floor is known.
+/// The check that a place is on the floor follows when the floor is known.
 const PLACE: Pair = Pair { each: num(-1e4..=1e4), pattern: "(east, north)", parts: ["east", "north"] };
 
-/// Where a foot that drags is put down or lets go.
+/// One end of a drag: the touchdown or the lift-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End {
     /// Along a track or a range.
@@ -201,7 +201,7 @@ pub(super) enum End {
     Place(Vec2),
 }
 
-/// What a share may be is known where the control is.
+/// The check of the range of a share follows when the control is known.
 const END: By<End> = By {
     shape: || FieldType::Words("a number from 0 to 1, or (east, north)"),
     read: |node| match node.peek_number() {
@@ -219,14 +219,14 @@ const SHARE: Num = num(0.0..=1.0);
 
 const FORCE: Num = num(0.0..=3000.0);
 
-/// At most ten minutes.
+/// Durations are at most ten minutes.
 const MILLIS: Num = num(0.0..=600_000.0).milli();
 
 const PRESSING: Newtons = Newtons(120.0);
 
 const HOLDING: Duration = Duration::from_millis(300);
 
-/// A side of the floor, or the way somebody looks.
+/// A side of the floor, or a facing direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     North,
@@ -245,7 +245,7 @@ impl PersonRecord {
         Self { mass_kg: person.mass_kg, foot_m: person.foot_length_m, speed_m_s: person.speed_m_s }
     }
 
-    /// The whole person.
+    /// Returns the person with these measures and the default values for the rest.
     pub(super) fn person(&self) -> Person {
         let Self { mass_kg, foot_m, speed_m_s } = *self;
         Person { mass_kg, foot_length_m: foot_m, speed_m_s, ..Person::default() }
@@ -253,7 +253,7 @@ impl PersonRecord {
 }
 
 impl Side {
-    /// The heading of somebody who looks that way, in radians counter-clockwise from north.
+    /// Returns the heading of a person facing this side, in radians counter-clockwise from north.
     pub(super) fn heading(self) -> f32 {
         match self {
             Self::North => 0.0,
@@ -263,7 +263,7 @@ impl Side {
         }
     }
 
-    /// The place `distance` metres off this side of the floor, straight out from `point`.
+    /// Returns the place `distance` metres outside this side of the floor, straight out from `point`.
     pub(super) fn outside(self, bounds: Rect, point: Vec2, distance: f32) -> Vec2 {
         match self {
             Self::North => Vec2::new(point.x, bounds.max.y + distance),

@@ -1,4 +1,4 @@
-//! Walks that were drawn on a floor: somebody comes, goes that way, uses what is at its end, and leaves.
+//! Walks drawn on a floor: a person enters, walks along the path, uses the control at its end, and leaves.
 
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -15,36 +15,36 @@ use crate::floor::{Geometry, Rect};
 use crate::layout::{Layout, Widget};
 use crate::widget::{Behaviour, WidgetId};
 
-/// How far a drawn line may be from the way that is walked, in metres: half the width of a foot.
+/// Maximum distance between the drawn line and its simplified path (m): half the width of a foot.
 const LOOSE_M: f32 = 0.05;
 
-/// Points of a way that are nearer to each other count as one, in metres: less than half a step.
+/// Minimum distance between two points of a path (m): less than half a step. Nearer points merge.
 const APART_M: f32 = 0.25;
 
-/// Ground that somebody who stands needs on each side, in metres.
+/// Space that a standing person needs on each side (m).
 const STANDING_M: f32 = 0.16;
 
-/// How long somebody stands at the end of a way where there is nothing to use.
+/// Time that a person stands at the end of a path without a control.
 const LOOKS_ROUND: Duration = Duration::from_secs(2);
 
-/// A detour that is worth not stepping on a control, in metres.
+/// Length of a detour that is worth avoiding a control (m).
 const DETOUR_M: f32 = 2.0;
 
-/// Why nobody walks a way.
+/// Reason why a path can't be walked.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum WalkError {
-    /// It has no point.
+    /// The path has no point.
     #[error("there is no way to walk")]
     Nowhere,
-    /// From nowhere near its end is the control within reach.
+    /// The control is out of reach from every place on the path near its end.
     #[error("nobody who comes that way can use \"{0}\": end the walk on it from another side")]
     OutOfReach(WidgetId),
-    /// The floor is too small to stand on, or the like.
+    /// The walk is impossible, for example on a floor too small to stand on.
     #[error("nobody can walk there")]
     Impossible,
 }
 
-/// What somebody does who walks a drawn way, as steps of a scenario.
+/// The walk along a drawn path, as steps of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnWalk {
     steps: Vec<String>,
@@ -52,15 +52,15 @@ pub struct DrawnWalk {
 }
 
 impl DrawnWalk {
-    /// The walk along `way`, in floor metres, and what feet do in it.
+    /// Plans the walk along `way` (floor metres), and returns it with the script of its feet.
     ///
-    /// Somebody of usual measures comes over the nearest side and goes along it. If it ends on a control of `layout`
-    /// that is on the page numbered `page`, they stop where they reach it and press it, or drag it if it slides; else
-    /// they stand there for a while. Then they leave. What is beyond the floor is walked along its edge; points that
-    /// are not finite are left out.
+    /// A person of default measures enters over the best side and walks along the path. If the path ends on a control
+    /// of `layout` that is on the page with number `page`, the person stops within reach of it and presses it, or
+    /// drags it if it is a slider, dial or pad; otherwise the person stands at the end for a while. Then the person
+    /// leaves. Points outside the floor are moved to its edge; points that are not finite are ignored.
     ///
     /// # Errors
-    /// [`WalkError`].
+    /// [`WalkError`] if the path is empty or can't be walked.
     pub fn new(
         way: &[Vec2],
         page: usize,
@@ -88,14 +88,15 @@ impl DrawnWalk {
         tries.ok_or_else(|| WalkError::OutOfReach(widget.id.clone()))
     }
 
-    /// The control that is used at the end.
+    /// Returns the control at the end of the path, if the walk uses one.
     #[must_use]
     pub fn uses(&self) -> Option<&WidgetId> {
         self.uses.as_ref()
     }
 
-    /// A scenario of these walks, each beginning so long after its start, as text that [`Scenario::parse`] reads: what
-    /// was drawn, to be edited and played again. At most 65 are taken, and none later than ten minutes.
+    /// Writes a scenario of these walks, each starting after its delay, as text that [`Scenario::parse`] reads, so
+    /// that a drawn walk can be edited and played again. Includes at most 65 walks, and limits each delay to ten
+    /// minutes.
     #[must_use]
     pub fn scenario(title: &str, walks: &[(Duration, Self)]) -> String {
         let mut text = format!("Scenario(\n    title: {title:?},\n");
@@ -113,7 +114,7 @@ impl DrawnWalk {
         text + ")\n"
     }
 
-    /// The steps, one on a line, after a wait.
+    /// The steps after an initial wait, one on each line.
     fn after(&self, after: Duration, indent: &str) -> String {
         let after = after.min(Duration::from_secs(600));
         let mut text = String::new();
@@ -125,7 +126,7 @@ impl DrawnWalk {
     }
 }
 
-/// What a walk is planned on.
+/// Layout, floor and page that a walk is planned on.
 struct Plan<'a> {
     layout: &'a Layout,
     geometry: &'a Geometry,
@@ -133,7 +134,7 @@ struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// The whole walk, if somebody can do it.
+    /// Completes the walk and resolves its script; `None` if the walk is impossible.
     fn played(
         &self,
         mut steps: Vec<String>,
@@ -147,7 +148,7 @@ impl Plan<'_> {
         Some((walk, scenario.resolve(self.layout, self.geometry).ok()?))
     }
 
-    /// Comes and goes along `way`.
+    /// Steps that enter the floor and walk along `way`.
     fn steps_along(&self, way: &[Vec2]) -> Vec<String> {
         let points = spaced(&simplified(&self.on_floor(way), LOOSE_M), APART_M);
         let Some((first, rest)) = points.split_first() else { return Vec::new() };
@@ -160,15 +161,15 @@ impl Plan<'_> {
         steps
     }
 
-    /// The points moved to where one can stand.
+    /// Moves the points to where a person can stand.
     fn on_floor(&self, way: &[Vec2]) -> Vec<Vec2> {
         let bounds = self.geometry.bounds();
         let room = bounds.grown(-STANDING_M.min(0.4 * bounds.size().min_element()));
         way.iter().map(|point| point.clamp(room.min, room.max)).collect()
     }
 
-    /// The way as far as where `target` is still `away_m` ahead; for one that is drawn all within that, such a place
-    /// south of it, or north.
+    /// Cuts the path where it comes within `away_m` of `target`. A path entirely within that distance is replaced by
+    /// one place at that distance south of the target, or north if there is no room.
     fn up_to(&self, way: &[Vec2], target: Vec2, away_m: f32) -> Vec<Vec2> {
         let way = self.on_floor(way);
         let Some(last) = way.iter().rposition(|point| point.distance(target) >= away_m) else {
@@ -178,7 +179,7 @@ impl Plan<'_> {
         };
         let (mut stretch, from) = (way[..=last].to_vec(), way[last]);
         if let Some(next) = way.get(last + 1) {
-            // The line crosses the circle once, from outside.
+            // The line crosses the circle once, from outside, so bisection finds the crossing.
             let (mut outer, mut inner) = (0.0, 1.0);
             for _ in 0..20 {
                 let middle = 0.5 * (outer + inner);
@@ -190,7 +191,7 @@ impl Plan<'_> {
         stretch
     }
 
-    /// Works `widget`.
+    /// Steps that operate `widget`.
     fn use_of(&self, widget: &Widget) -> Vec<String> {
         let how = working(widget, &Person::default());
         let (id, force, hold) = (widget.id.as_str(), how.force.0.round(), how.hold.as_millis());
@@ -217,7 +218,7 @@ impl Plan<'_> {
         vec![step; how.times]
     }
 
-    /// The side of the floor over which `place` is reached best: near, and not over controls.
+    /// The best side of the floor for reaching `place`: near, and with few controls in between.
     fn side_for(&self, place: Vec2) -> &'static str {
         let bounds = self.geometry.bounds();
         let Vec2 { x, y } = place;
@@ -238,7 +239,7 @@ impl Plan<'_> {
         best.map_or("South", |(side, _)| side)
     }
 
-    /// `place` as it is written: in tiles, to a hundredth.
+    /// Formats `place` in tiles, with two decimals.
     fn tiles(&self, place: Vec2) -> String {
         let one = self.geometry.metres_from_tiles(Vec2::ONE);
         let tiles = place / one;
@@ -266,7 +267,7 @@ mod tests {
         layout.widgets.iter().find(|widget| widget.id == id).unwrap().area.centre()
     }
 
-    /// All feet of the script that press, each millisecond.
+    /// All feet of the script with more than 1 N, at each millisecond.
     fn pressing(script: &Script) -> Vec<Vec<Foot>> {
         let at = |ms| {
             let mut feet = Vec::new();
@@ -280,7 +281,7 @@ mod tests {
     #[test]
     fn somebody_who_is_drawn_a_bow_walks_the_bow_and_leaves() {
         let geometry = Geometry::default();
-        // A quarter of a circle round the south-east corner, as a mouse draws it.
+        // A quarter of a circle around the south-east corner, as if drawn with a mouse.
         let bow: Vec<Vec2> = (0..=90)
             .map(|degrees| {
                 let (sin, cos) = (degrees as f32).to_radians().sin_cos();
@@ -294,7 +295,7 @@ mod tests {
         let on_floor: Vec<&Foot> =
             frames.iter().flatten().filter(|foot| geometry.bounds().contains(foot.position)).collect();
         assert!(on_floor.len() > 2000, "{}", on_floor.len());
-        // Feet are 8 cm beside the middle of the way, which is cut short by 5 cm, and steps round a bend miss it.
+        // Feet are 8 cm beside the path, simplification shortens the path by up to 5 cm, and steps cut bends.
         let near = |foot: &&&Foot| bow.iter().any(|point| point.distance(foot.position) < 0.30);
         let share = on_floor.iter().filter(near).count() as f32 / on_floor.len() as f32;
         assert!(share > 0.8, "{share}");

@@ -1,4 +1,4 @@
-//! The whole simulated floor: feet in, a board's readings out, one millisecond at a time.
+//! The whole simulated floor: turns feet into board readings, one millisecond at a time.
 
 use arrayvec::ArrayVec;
 use glam::Vec2;
@@ -15,35 +15,35 @@ use crate::sense::TileLoad;
 use crate::units::Newtons;
 use crate::wire::{MAX_CHANNELS, Readings};
 
-/// What a simulated floor is made of.
+/// Construction of a simulated floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SimConfig {
-    /// The plates and how they are mounted.
+    /// The plates and their mounting.
     pub plate: PlateConfig,
-    /// How they adjoin.
+    /// The seams between plates.
     pub seam: SeamConfig,
-    /// What the boards measure and send.
+    /// The boards' sensors and readings.
     pub sensing: Sensing,
 }
 
 impl SimConfig {
-    /// A floor without error: plates screwed to exact sensors, boards that send
-    /// newtons, no noise, no saturation, no tare. A test's first floor.
+    /// A floor without error for first tests: plates screwed to exact sensors, boards that send newtons, no noise, no
+    /// saturation, no tare.
     #[must_use]
     pub const fn ideal() -> Self {
         Self { plate: PlateConfig::ideal(), seam: SeamConfig::even(), sensing: Sensing::Exact }
     }
 }
 
-/// What the boards of a simulated floor measure and send.
+/// Sensors of a simulated floor, and the readings that its boards send.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sensing {
-    /// Raw counts of such parts.
+    /// Raw counts of parts with these tolerances.
     Counts(PartConfig),
-    /// Newtons by boards that know the law of each of their parts (the parts' deviation from
-    /// it, noise and saturation remain) and have tared themselves on the empty floor.
+    /// Newtons from boards that know the exponential law of each part and have tared themselves on the empty floor.
+    /// The parts' deviation from the law, noise and saturation remain.
     Newtons(PartConfig),
-    /// Newtons, exactly what presses each sensor more than on the empty floor.
+    /// Newtons without error: the force on each sensor minus its force on the empty floor.
     Exact,
 }
 
@@ -56,8 +56,8 @@ impl Default for Sensing {
 
 /// A simulated floor.
 ///
-/// Plates and parts are drawn once, from the seed; with the same floor, config,
-/// seed and feet it gives the same readings to the bit.
+/// Plates and parts are drawn once, from the seed. The same floor, config, seed and feet give the same readings to
+/// the bit.
 #[derive(Clone, Debug)]
 pub struct SimFloor {
     geometry: Geometry,
@@ -67,20 +67,20 @@ pub struct SimFloor {
     parts: Vec<[Part; 4]>,
     /// Support forces on the empty floor.
     rest: Vec<[f32; 4]>,
-    /// Support forces now.
+    /// Current support forces.
     forces: Vec<[f32; 4]>,
-    /// Noise-free outputs on the empty floor, and now: volts, or newtons where sensing is exact.
+    /// Noise-free outputs on the empty floor, and current ones: volts, or newtons with exact sensing.
     rest_outputs: Vec<[f32; 4]>,
     outputs: Vec<[f32; 4]>,
-    /// What a board that sends newtons takes off.
+    /// Tare that a board subtracts before it sends newtons.
     board_tare: Vec<[f32; 4]>,
-    /// Per sensor; empty for parts without memory.
+    /// Memory of each sensor; empty for parts without memory.
     memories: Vec<[Memory; 4]>,
-    /// Milliseconds since each tile's memories were brought up to date.
+    /// Milliseconds since the last update of each tile's memories.
     behind_ms: Vec<u32>,
     /// Milliseconds since the start.
     ticks: usize,
-    /// Tiles that were loaded a millisecond ago, where there are memories.
+    /// Tiles that were loaded a millisecond ago; empty for parts without memory.
     left: Vec<usize>,
     faults: Vec<Faulty>,
     /// Load, first moment about the tile's centre and twist ([`Press`]), for the tiles in `loaded`.
@@ -92,21 +92,20 @@ pub struct SimFloor {
     noise: Pcg64Mcg,
 }
 
-/// A sensor that is broken.
+/// A broken sensor.
 #[derive(Clone, Copy, Debug)]
 struct Faulty {
     tile: usize,
     corner: usize,
     fault: SensorFault,
-    /// Its output when the fault struck.
+    /// Output of the sensor at the onset of the fault.
     output: f32,
 }
 
 impl SimFloor {
-    /// A floor with the geometry and boards of `floor` (whose calibration and tare it neither knows nor needs).
+    /// Creates a floor with the geometry and boards of `floor`; its calibration and tare are not used.
     ///
-    /// Channels for a sensor that the geometry lacks, and those past
-    /// [`MAX_CHANNELS`], are not connected.
+    /// Channels of a sensor outside the geometry, and channels beyond [`MAX_CHANNELS`], are not connected.
     #[must_use]
     pub fn new(floor: &Floor, config: SimConfig, seed: u64) -> Self {
         let geometry = floor.geometry;
@@ -173,30 +172,30 @@ impl SimFloor {
         floor
     }
 
-    /// Whether a reading depends on what came before: some part lags or creeps.
+    /// Returns true if a reading depends on earlier loads: some part has hysteresis or creep.
     #[must_use]
     pub const fn has_memory(&self) -> bool {
         !self.memories.is_empty()
     }
 
-    /// Where its tiles and sensors are.
+    /// Returns the positions of tiles and sensors.
     #[must_use]
     pub const fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
-    /// What the boards read now: one entry per board, one reading per channel; unconnected channels read zero.
+    /// Returns the current readings: one entry per board, one reading per channel. Unconnected channels read zero.
     #[must_use]
     pub fn readings(&self) -> &[Readings] {
         &self.readings
     }
 
-    /// Lets a millisecond pass with these feet on the floor and gives what the boards then read.
+    /// Advances by a millisecond with these feet on the floor, and returns the boards' readings.
     pub fn step(&mut self, feet: &[Foot]) -> &[Readings] {
         self.step_under(feet.iter().map(Foot::as_load))
     }
 
-    /// As [`SimFloor::step`], for anything that presses.
+    /// Like [`SimFloor::step`], for any loads.
     pub fn step_under(&mut self, loads: impl IntoIterator<Item = Load>) -> &[Readings] {
         self.clear();
         for load in loads {
@@ -214,7 +213,7 @@ impl SimFloor {
                 self.convert(self.loaded[slot]);
             }
         } else {
-            // What an empty tile still remembers changes slowly: a look now and then will do.
+            // The memory of an empty tile changes slowly, so it is updated every [`IDLE_TICKS`] milliseconds only.
             self.ticks = self.ticks.wrapping_add(1);
             for tile in 0..self.forces.len() {
                 self.behind_ms[tile] += 1;
@@ -230,8 +229,8 @@ impl SimFloor {
         &self.readings
     }
 
-    /// What each tile truly carries of a load, in tile-index order: as [`Load::on_tiles`], except that a
-    /// tile which stands higher than the one beside it carries more of what stands on both.
+    /// Returns the true load of each tile, in tile-index order: like [`Load::on_tiles`], except that a higher plate
+    /// carries more of a load on both it and a lower neighbour.
     #[must_use]
     pub fn carried(&self, load: &Load) -> SmallVec<[TileLoad; 4]> {
         self.parts(load).into_iter().map(|part| part.load).collect()
@@ -243,13 +242,14 @@ impl SimFloor {
         parts
     }
 
-    /// The true support forces of the tile at `index`, weight and mounting included, in [`Corner::ALL`] order.
+    /// Returns the true support forces of the tile at `index`, including weight and mounting, in [`Corner::ALL`]
+    /// order.
     #[must_use]
     pub fn support_forces(&self, index: usize) -> Option<[Newtons; 4]> {
         self.forces.get(index).map(|supports| supports.map(Newtons))
     }
 
-    /// Breaks a sensor, or repairs it with `None`. A sensor that the floor lacks is left alone.
+    /// Breaks a sensor, or repairs it with `None`. Ignores a sensor that the floor does not have.
     pub fn set_fault(&mut self, sensor: SensorId, fault: Option<SensorFault>) {
         let Some(tile) = self.geometry.index(sensor.tile) else { return };
         let corner = sensor.corner.index();
@@ -260,22 +260,23 @@ impl SimFloor {
         self.outputs[tile][corner] = self.output(tile, corner, self.forces[tile][corner]);
     }
 
-    /// The part under one sensor, and the force that rests on it when the floor is empty.
+    /// Returns the part of one sensor, and its force on the empty floor.
     pub(super) fn bench(&self, tile: usize, corner: Corner) -> (&Part, f32) {
         (&self.parts[tile][corner.index()], self.rest[tile][corner.index()])
     }
 
-    /// What one sensor puts out on the empty floor, in volts: also what its memory makes of a long rest.
+    /// Returns the output of one sensor on the empty floor (V), after a long rest if it has memory.
     pub(super) fn empty_volts(&self, tile: usize, corner: Corner) -> f32 {
         self.rest_outputs[tile][corner.index()]
     }
 
-    /// The support forces of one tile under `force` at `at` from its centre, weight and mounting included.
+    /// Returns the support forces of one tile under `force` at `at`, relative to its centre, including weight and
+    /// mounting.
     pub(super) fn pressed(&self, tile: usize, at: Vec2, force: f32) -> [f32; 4] {
         self.plates[tile].supports(Press::at(force, at))
     }
 
-    /// Standard deviation of the noise, in volts.
+    /// Standard deviation of the noise (V).
     pub(super) fn noise_v(&self) -> f32 {
         match self.sensing {
             Sensing::Counts(config) | Sensing::Newtons(config) => config.noise_v,
@@ -283,19 +284,19 @@ impl SimFloor {
         }
     }
 
-    /// Whether its readings have no noise of their own, so that they repeat under a load that keeps still.
+    /// Returns true if the readings have no noise of their own, so that they repeat under a constant load.
     #[must_use]
     pub fn is_noiseless(&self) -> bool {
         self.noise_v() == 0.0
     }
 
-    /// How this floor senses.
+    /// Returns the sensing model of this floor.
     #[must_use]
     pub const fn sensing(&self) -> Sensing {
         self.sensing
     }
 
-    /// Takes every load off.
+    /// Removes all loads.
     fn clear(&mut self) {
         for tile in self.loaded.drain(..) {
             self.loads[tile] = NO_LOAD;
@@ -319,7 +320,7 @@ impl SimFloor {
         *twist += load.force.0 * (at.x * at.y + lean);
     }
 
-    /// Turns the support forces of a tile into outputs.
+    /// Converts the support forces of a tile into outputs.
     fn convert(&mut self, tile: usize) {
         let mut forces = self.forces[tile];
         let elapsed_ms = self.behind_ms[tile];
@@ -331,7 +332,7 @@ impl SimFloor {
         self.outputs[tile] = std::array::from_fn(|corner| self.output(tile, corner, forces[corner]));
     }
 
-    /// Output of one sensor under `force`, its fault included.
+    /// Output of one sensor under `force`, including its fault.
     fn output(&self, tile: usize, corner: usize, force: f32) -> f32 {
         let part = &self.parts[tile][corner];
         let rest = self.rest[tile][corner];
@@ -398,17 +399,17 @@ impl Sensing {
     }
 }
 
-/// Noise that a converter has even where its parts have none, in volts: half a count, which is what rounding a
-/// signal to counts comes to (our choice). Without it a floor under a constant load would read as one that is frozen.
+/// Minimum noise of a converter, even with noise-free parts (V): half a count, about the error of rounding to counts
+/// (our choice). Without noise, a floor under a constant load would look frozen.
 const LEAST_NOISE_V: f32 = 0.5 * Calibration::FULL_SCALE_VOLTS / 65_535.0;
 
-/// Force, moment and twist of a tile that carries nothing.
+/// Force, moment and twist of an empty tile.
 const NO_LOAD: (f32, Vec2, f32) = (0.0, Vec2::ZERO, 0.0);
 
-/// Milliseconds from one look at the memories of an empty tile to the next.
+/// Milliseconds between two updates of the memories of an empty tile.
 const IDLE_TICKS: usize = 8;
 
-/// The force that a board which knows the part's law makes of `volts`.
+/// Force that a board computes from `volts` with the part's law.
 fn newtons(part: &Part, volts: f32) -> f32 {
     part.law.newtons(volts)
 }
@@ -423,7 +424,7 @@ mod tests {
         Foot { position, heading: 0.2, length_m: 0.27, force: Newtons(force), roll: 0.4, left: false }
     }
 
-    /// Net force and centroid of everything on the floor, by the sensors' own newtons.
+    /// Total force and centroid of everything on the floor, from the readings in newtons.
     fn sensed(floor: &Floor, readings: &[Readings]) -> (f32, Vec2) {
         let (mut force, mut moment) = (0.0, Vec2::ZERO);
         for (board, readings) in floor.boards.iter().zip(readings) {
@@ -485,7 +486,7 @@ mod tests {
     fn standing_fits_the_converters_and_stamping_on_a_corner_saturates() {
         let floor = Floor::default();
         let mut sim = SimFloor::new(&floor, SimConfig::default(), 4);
-        // 70 kg on one foot in the middle of a tile.
+        // 70 kg on one foot at the centre of a tile.
         let middle = floor.geometry.centre(TileId::new(2, 2));
         let counts = all_counts(sim.step(&[foot(middle, 690.0)]));
         assert!(counts.iter().all(|&count| count < u16::MAX));

@@ -1,4 +1,4 @@
-//! Feet and objects on the floor, and what each tile has to carry of them.
+//! Feet and objects on the floor, and the load of each tile.
 
 use glam::Vec2;
 use smallvec::{SmallVec, smallvec};
@@ -11,34 +11,34 @@ use crate::units::{Instant, Newtons};
 /// A foot in its shoe, on the floor or above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
-    /// The middle of the shoe, in floor metres.
+    /// Centre of the shoe, in floor metres.
     pub position: Vec2,
-    /// Where the toes point, in radians counter-clockwise from north.
+    /// Direction of the toes, in radians counter-clockwise from north.
     pub heading: f32,
     /// Length of the bare foot, in metres: 0.22 to 0.30 for people.
     pub length_m: f32,
-    /// What it presses with; zero or less if it is in the air.
+    /// Force on the floor; zero or less if the foot is in the air.
     pub force: Newtons,
-    /// How far the load has rolled from the heel (0) to the toes (1).
+    /// Position of the load along the foot, from the heel (0) to the toes (1).
     pub roll: f32,
-    /// Whether it is a left foot; the floor feels no difference.
+    /// True for a left foot; it does not affect the floor.
     pub left: bool,
 }
 
 impl Foot {
-    /// Where its force acts, in floor metres, whether or not there is a floor.
+    /// Returns the centre of pressure in floor metres, on or off the floor.
     #[must_use]
     pub fn centre_of_pressure(&self) -> Vec2 {
         self.as_load().centre_of_pressure()
     }
 
-    /// What each tile carries of it; see [`Load::on_tiles`].
+    /// Returns the load on each tile; see [`Load::on_tiles`].
     #[must_use]
     pub fn on_tiles(&self, geometry: &Geometry) -> SmallVec<[TileLoad; 4]> {
         self.as_load().on_tiles(geometry)
     }
 
-    /// The foot as a print that presses.
+    /// Returns the foot as a load.
     #[must_use]
     pub const fn as_load(&self) -> Load {
         Load {
@@ -50,40 +50,38 @@ impl Foot {
     }
 }
 
-/// Anything that presses on the floor: a foot, or a simple shape for an experiment.
+/// A load on the floor: a foot, or a simple shape for an experiment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// Its shape.
+    /// Shape of the contact area.
     pub print: Print,
     /// The print's origin, in floor metres.
     pub position: Vec2,
-    /// Where the print's y axis points, in radians counter-clockwise from north.
+    /// Direction of the print's y axis, in radians counter-clockwise from north.
     pub heading: f32,
-    /// What it presses with.
+    /// Force on the floor.
     pub force: Newtons,
 }
 
 impl Load {
-    /// Where the whole force acts, in floor metres, whether or not there is a floor.
+    /// Returns the centre of pressure in floor metres, on or off the floor.
     #[must_use]
     pub fn centre_of_pressure(&self) -> Vec2 {
         self.position + Vec2::from_angle(self.heading).rotate(self.print.centre_of_pressure())
     }
 
-    /// What each tile carries, in tile-index order; empty for a load in the air, off the floor or not finite.
+    /// Returns the load on each tile, in tile-index order; empty for a load in the air, off the floor or not finite.
     ///
-    /// Cells over a seam are shared between the tiles by area. A gap between
-    /// plates belongs to the tile on its own side. Cells beyond the floor's
-    /// edge load no tile: as long as half of the load or more is over the
-    /// floor, the cells on it carry the whole force (the rest hangs over);
-    /// with less, the force on the floor goes down to zero in proportion,
-    /// because the foot then stands on what is beside the floor.
+    /// Tiles share a cell over a seam by area. A gap between plates belongs to the tile on its side. Cells beyond the
+    /// floor's edge load no tile. If half of the load or more is over the floor, the cells on the floor carry the
+    /// whole force (the rest overhangs). If less is over the floor, the force decreases to zero in proportion,
+    /// because the foot then stands mainly beside the floor.
     #[must_use]
     pub fn on_tiles(&self, geometry: &Geometry) -> SmallVec<[TileLoad; 4]> {
         self.parts(geometry).into_iter().map(|part| part.load).collect()
     }
 
-    /// As [`Load::on_tiles`], with what twists each tile.
+    /// Like [`Load::on_tiles`], with the twist of each tile.
     pub(super) fn parts(&self, geometry: &Geometry) -> SmallVec<[Part; 4]> {
         let finite = self.position.is_finite() && self.heading.is_finite() && self.force.is_finite();
         if !finite || self.force <= Newtons::ZERO {
@@ -94,7 +92,7 @@ impl Load {
         if !half.is_finite() {
             return SmallVec::new();
         }
-        // The upright box around the turned print.
+        // Axis-aligned bounding box of the rotated print.
         let reach = Vec2::new(
             turn.x.abs() * half.x + turn.y.abs() * half.y,
             turn.y.abs() * half.x + turn.x.abs() * half.y,
@@ -104,7 +102,7 @@ impl Load {
             (geometry.tile_under(low), geometry.tile_under(low) == geometry.tile_under(high))
         {
             let variance = self.print.variance();
-            // The print's own axes turned into the floor's.
+            // Product of inertia in the floor's axes, from the variances along the print's axes.
             let lean = turn.x * turn.y * (variance.x - variance.y);
             return smallvec![self.part(geometry, tile, 1.0, self.centre_of_pressure(), lean)];
         }
@@ -129,25 +127,25 @@ impl Load {
     }
 }
 
-/// What one tile carries of a load.
+/// The part of a load on one tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part {
     pub(super) load: TileLoad,
-    /// Mean product of the pressure's distances east and north of its centroid, in square metres:
-    /// a foot across a tile's diagonal twists it without being off its middle.
+    /// Mean product of the pressure's distances east and north of its centroid (m²): a foot along a tile's diagonal
+    /// twists the tile even if its centroid is at the centre.
     pub(super) lean: f32,
 }
 
-/// Who moves the feet.
+/// Source of feet, moment by moment.
 pub trait FootDriver: Send {
-    /// Fills `feet` with the feet on the floor, or above it with no force, at the moment `at`.
+    /// Fills `feet` with the feet on the floor, or above it with zero force, at the moment `at`.
     ///
-    /// `feet` is cleared first; moments are asked for in order. False once the
-    /// performance is over, with `feet` left empty.
+    /// Clears `feet` first. Call it with increasing times. Returns false, with `feet` empty, after the end of the
+    /// performance.
     fn feet(&mut self, at: Instant, feet: &mut Vec<Foot>) -> bool;
 }
 
-/// The tiles that a print may touch, with the load on each.
+/// The tiles that a print may touch, with the share of the load on each.
 struct Window {
     first: TileId,
     /// South-west corner of the first tile.
@@ -155,12 +153,12 @@ struct Window {
     per_pitch: f32,
     columns: usize,
     rows: usize,
-    /// Share of the load, share times place from `origin`, and share times the place's x and y, per tile.
+    /// For each tile: share of the load, share times position from `origin`, and share times x times y.
     sums: SmallVec<[(f32, Vec2, f32); 16]>,
 }
 
 impl Window {
-    /// The tiles between two corners of an upright box; `None` if none of them is on the floor.
+    /// The tiles under an axis-aligned box with two given corners; `None` if none of them is on the floor.
     fn around(geometry: &Geometry, low: Vec2, high: Vec2) -> Option<Self> {
         let pitch_m = geometry.pitch_m();
         let TileId { column, row } = geometry.first();
@@ -181,7 +179,7 @@ impl Window {
         })
     }
 
-    /// Shares a cell among the tiles under it, taking its edges as upright.
+    /// Adds a cell to the tiles under it; treats the cell's edges as axis-aligned.
     #[inline(always)] // Runs for each cell of each foot, each millisecond; a call costs more than the work.
     fn add(&mut self, at: Vec2, size: Vec2, share: f32) {
         let at = at - self.origin;
@@ -195,7 +193,7 @@ impl Window {
         self.add_cut(low, high, share);
     }
 
-    /// Shares a cell that lies over a seam.
+    /// Adds a cell across a seam.
     #[inline(never)]
     fn add_cut(&mut self, low: Vec2, high: Vec2, share: f32) {
         for (column, part_x, x) in self.split(low.x, high.x) {
@@ -205,16 +203,17 @@ impl Window {
         }
     }
 
-    /// The column or row of the window at a distance from its origin; -1 for all before it.
+    /// Column or row of the window at a distance from its origin; -1 for all positions before the origin.
     #[inline]
     fn line(&self, distance: f32) -> i32 {
-        // Casts cut towards zero, so this is a floor, and far cheaper where the processor has none.
+        // A cast truncates towards zero, so this is a floor function, far cheaper on processors without an
+        // instruction for it.
         ((distance * self.per_pitch).max(-0.5) + 1.0) as i32 - 1
     }
 
-    /// An interval cut at the seam it crosses: the line, the share and the middle of each piece.
+    /// Splits an interval at the seam that it crosses: column or row, share and midpoint of each piece.
     ///
-    /// Cells are smaller than tiles, so there is at most one seam.
+    /// Cells are smaller than tiles, so an interval crosses at most one seam.
     fn split(&self, low: f32, high: f32) -> [(i32, f32, f32); 2] {
         let (first, last) = (self.line(low), self.line(high));
         if first == last {
@@ -240,7 +239,7 @@ impl Window {
         self.sums.iter().map(|(share, ..)| share).sum()
     }
 
-    /// Tile, share, centroid and mean product of the distances from it.
+    /// Tile, share, centroid, and mean product of the distances from the centroid.
     fn parts(&self) -> impl Iterator<Item = (TileId, f32, Vec2, f32)> + '_ {
         let loaded = self.sums.iter().enumerate().filter(|(_, (share, ..))| *share > 0.0);
         loaded.map(|(index, (share, moment, product))| {
@@ -299,7 +298,7 @@ mod tests {
 
     #[test]
     fn load_passes_over_a_seam_without_steps() {
-        // A foot parallel to the seam, moved sideways a tenth of a millimetre at a time.
+        // A foot parallel to the seam, moved sideways in steps of a tenth of a millimetre.
         let geometry = Geometry::default();
         let west = |step: usize| {
             let x = 0.55 + step as f32 * 1e-4;
@@ -310,7 +309,7 @@ mod tests {
         assert_eq!(shares[0], 700.0);
         assert_eq!(shares[1199], 0.0);
         let steepest = shares.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
-        // 700 N over 11 cm are 0.64 N per step on average, a little more in the middle of the sole.
+        // 700 N over 11 cm are a mean of 0.64 N per step, and a little more in the middle of the sole.
         assert!(steepest < 1.2, "{steepest}");
     }
 
@@ -326,7 +325,7 @@ mod tests {
 
     #[test]
     fn a_foot_across_the_diagonal_leans_the_same_whether_or_not_its_cells_are_counted() {
-        // On one tile the print's own figures tell it; over a seam a hair's breadth away the cells do.
+        // On one tile the value comes from the print's variance; just across a seam it comes from the cells.
         let geometry = Geometry::default();
         let load = |x: f32| Load {
             print: Print::Ellipse { half_m: Vec2::new(0.02, 0.1) },
@@ -338,7 +337,7 @@ mod tests {
         let [whole] = one[..] else { panic!("on one tile: {one:?}") };
         let expected = -0.5 * (0.1f32 * 0.1 - 0.02 * 0.02) / 4.0;
         assert!((whole.lean / expected - 1.0).abs() < 0.01, "{} for {expected}", whole.lean);
-        // Its box reaches over the seam, and none of its cells does.
+        // The bounding box crosses the seam, but no cell does.
         let over = load(0.608 - 0.075).parts(&geometry);
         let [counted] = over[..] else { panic!("on one tile: {over:?}") };
         assert!((counted.lean / expected - 1.0).abs() < 0.05, "{} for {expected}", counted.lean);

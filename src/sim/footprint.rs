@@ -1,7 +1,7 @@
-//! How a foot or an object spreads its force over the floor it stands on.
+//! Distribution of the force of a foot or an object over the floor.
 //!
-//! A print is a set of weighted cells in the frame of the thing that presses:
-//! origin in its middle, x to its right, y towards its toes, metres.
+//! A print is a set of weighted cells in the frame of the foot or object: origin in its centre, x to its right, y
+//! towards its toes, metres.
 
 use std::sync::LazyLock;
 
@@ -10,52 +10,52 @@ use glam::Vec2;
 /// One cell of a print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Its middle, in the print's frame.
+    /// Centre of the cell, in the print's frame.
     pub at: Vec2,
-    /// Its width (x) and length (y), in metres; zero for a point.
+    /// Width (x) and length (y) in metres; zero for a point.
     pub size: Vec2,
-    /// Its share of the force, not negative; all shares of a print add up to 1.
+    /// Share of the force, not negative; all shares of a print sum to 1.
     pub share: f32,
 }
 
-/// The shape of what presses on the floor.
+/// Shape of a contact area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Print {
     /// The sole of a shoe.
     Shoe {
-        /// Length of the bare foot, in metres; people's are 0.22 to 0.30.
+        /// Length of the bare foot, in metres; people's feet have 0.22 to 0.30.
         length_m: f32,
-        /// How far the load has rolled from the heel (0) to the toes (1).
+        /// Position of the load along the foot, from the heel (0) to the toes (1).
         roll: f32,
     },
-    /// A foot whose pressure has this centre and spread: heel and forefoot, as much of each as that takes.
+    /// A foot with a given centre and spread of pressure, modelled as two ellipses: heel and forefoot.
     Sole {
         /// Centre of pressure, in the print's frame.
         centre: Vec2,
         /// Root mean square radii of the pressure across (x) and along (y) the foot, in metres, positive.
         radii: Vec2,
-        /// Length of the foot or shoe, in metres: the heel presses about 0.33 of it behind its middle, the
-        /// forefoot 0.22 before it.
+        /// Length of the foot or shoe, in metres: the heel presses about 0.33 of it behind the centre, the forefoot
+        /// 0.22 in front of it.
         length_m: f32,
-        /// Half of the greatest width and length of what the heel stands on, in metres; infinite for a
-        /// bare or flat heel. A small heel makes the spread a little less than `radii`.
+        /// Maximum half width and half length of the heel's contact area, in metres; infinite for a bare or flat
+        /// heel. A small heel makes the spread a little less than `radii`.
         heel_m: f32,
     },
     /// A single point.
     Point,
-    /// A disc pressing evenly.
+    /// A disc with uniform pressure.
     Disc {
-        /// Its radius, in metres.
+        /// Radius, in metres.
         radius_m: f32,
     },
-    /// An ellipse pressing evenly.
+    /// An ellipse with uniform pressure.
     Ellipse {
-        /// Half of its width (x) and of its length (y), in metres.
+        /// Half of the width (x) and of the length (y), in metres.
         half_m: Vec2,
     },
-    /// A bar or rectangle pressing evenly.
+    /// A bar or rectangle with uniform pressure.
     Bar {
-        /// Half of its width (x) and of its length (y), in metres.
+        /// Half of the width (x) and of the length (y), in metres.
         half_m: Vec2,
     },
 }
@@ -93,7 +93,7 @@ impl Print {
         }
     }
 
-    /// Where the whole force acts, in the print's frame.
+    /// Returns the centre of pressure, in the print's frame.
     #[must_use]
     pub fn centre_of_pressure(&self) -> Vec2 {
         match *self {
@@ -107,7 +107,7 @@ impl Print {
         }
     }
 
-    /// Half of the print's width (x) and length (y), in metres: no cell reaches further.
+    /// Returns half of the print's width (x) and length (y), in metres: no cell extends further.
     #[must_use]
     pub fn half_size(&self) -> Vec2 {
         match *self {
@@ -122,7 +122,7 @@ impl Print {
         }
     }
 
-    /// Mean square of the pressure's distance from its centre, across (x) and along (y), in square metres.
+    /// Returns the variance of the pressure about its centre, across (x) and along (y), in square metres.
     #[must_use]
     pub fn variance(&self) -> Vec2 {
         match *self {
@@ -142,7 +142,7 @@ impl Print {
     }
 }
 
-/// An ellipse that presses evenly with a share of a sole's force.
+/// An ellipse that carries a share of a sole's force with uniform pressure.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
     share: f32,
@@ -153,14 +153,14 @@ struct Patch {
 /// Cells across and along a patch: about a centimetre each.
 const DISC_CELLS: usize = 8;
 
-/// Middles of the cells that fill a circle of radius 1.
+/// Centres of the cells that fill a circle of radius 1.
 static DISC: LazyLock<Vec<Vec2>> = LazyLock::new(|| {
     let mut cells = Vec::new();
     even_cells(Vec2::ONE / 25.0, true, |cell| cells.push(cell.at * 25.0));
     cells
 });
 
-/// Where heel and forefoot press, in foot lengths from the middle.
+/// Positions of heel and forefoot, in foot lengths from the centre.
 const HEEL_AT: f32 = -0.33;
 const FOREFOOT_AT: f32 = 0.22;
 
@@ -170,10 +170,10 @@ const FOREFOOT_AT: f32 = 0.22;
 /// Recorded steps (see `rolling_fit`): 0.06 on the heel just after landing, 0.08 on the ball.
 const PATCH_RADIUS: f32 = 0.06;
 
-/// Heel and forefoot whose pressures together have this centre and these radii.
+/// Heel and forefoot with this common centre of pressure and these common radii.
 ///
-/// Apart as far as the radius along the foot allows: under a foot that stands on both, most of the
-/// spread is the distance between them.
+/// The distance between the two is as large as the radius along the foot allows: under a foot with load on both, it
+/// makes most of the spread.
 fn patches(centre: Vec2, radii: Vec2, length_m: f32, heel_m: f32) -> [Patch; 2] {
     let (behind, before) = (centre.y - HEEL_AT * length_m, FOREFOOT_AT * length_m - centre.y);
     let apart = behind * before;
@@ -186,7 +186,7 @@ fn patches(centre: Vec2, radii: Vec2, length_m: f32, heel_m: f32) -> [Patch; 2] 
     let own = (radii.y * radii.y - stretch * apart.max(0.0)).max(0.0).sqrt();
     let half_m = 2.0 * Vec2::new(radii.x, own);
     if stretch <= 0.0 {
-        // On one of the two.
+        // All load is on one of the two.
         let half_m = if behind < before { half_m.min(Vec2::splat(heel_m)) } else { half_m };
         return [Patch { share: 1.0, at: centre, half_m }, Patch { share: 0.0, at: centre, half_m }];
     }
@@ -201,7 +201,7 @@ fn patches(centre: Vec2, radii: Vec2, length_m: f32, heel_m: f32) -> [Patch; 2] 
     ]
 }
 
-/// Width and length of the shoe on a foot `length_m` long, in metres.
+/// Returns the width and length of the shoe on a foot of `length_m`, in metres.
 ///
 /// # Source
 /// Breadth about 0.38 of the length (11 cm for 29 cm, the 95th percentile); a
@@ -211,9 +211,8 @@ pub fn shoe_size(length_m: f32) -> Vec2 {
     Vec2::new(0.38 * length_m, length_m) + 0.01
 }
 
-/// Shares of heel, waist, ball and toes in the force while the foot rolls, each
-/// row summing to 1 (chosen so that the centre of pressure runs steadily over
-/// 0.2 m, as force plates see it).
+/// Shares of heel, waist, ball and toes in the force during the roll; each row sums to 1. Chosen so that the centre
+/// of pressure moves steadily over 0.2 m, as force plates measure it.
 const ROLLING: [(f32, [f32; 4]); 6] = [
     (0.00, [1.00, 0.00, 0.00, 0.00]),
     (0.15, [0.75, 0.15, 0.10, 0.00]),
@@ -238,10 +237,10 @@ fn zone_shares(roll: f32) -> [f32; 4] {
     shares
 }
 
-/// Where the four zones lie, as shares of the shoe's length from its heel end: begin, peak, end.
+/// Positions of the four zones, as shares of the shoe's length from its heel end: begin, peak, end.
 const ZONES: [[f32; 3]; 4] = [[0.0, 0.13, 0.30], [0.20, 0.42, 0.62], [0.50, 0.70, 0.86], [0.78, 0.89, 1.0]];
 
-/// Half the sole's width as a share of its greatest half width, along its length from the heel end.
+/// Half the sole's width as a share of its maximum half width, along its length from the heel end.
 const OUTLINE: [(f32, f32); 10] = [
     (0.00, 0.30),
     (0.05, 0.60),
@@ -255,15 +254,15 @@ const OUTLINE: [(f32, f32); 10] = [
     (1.00, 0.30),
 ];
 
-/// A sole of length and width 1, from which those of all shoes are scaled.
+/// A sole of length and width 1; scaling gives the soles of all shoes.
 struct Sole {
     /// Width and length of a cell.
     cell: Vec2,
-    /// Each cell's middle and its share of the force on each zone.
+    /// Centre of each cell, and its share of the force on each zone.
     cells: Vec<(Vec2, [f32; 4])>,
     /// Centre of pressure of each zone alone.
     centres: [Vec2; 4],
-    /// Mean square of each zone's places.
+    /// Mean square of the cell positions in each zone.
     squares: [Vec2; 4],
 }
 
@@ -281,7 +280,7 @@ static SOLE: LazyLock<Sole> = LazyLock::new(|| {
             let across = (column as f32 + 0.5) * cell.x - 0.5;
             let rim = across.abs() / half_width;
             if rim < 1.0 {
-                // Pressure falls off towards the rim, where the sole bends away.
+                // The pressure decreases towards the rim, where the sole bends up.
                 let dome = 1.0 - 0.6 * rim * rim;
                 cells.push((Vec2::new(across, along - 0.5), ZONES.map(|zone| dome * bump(along, zone))));
             }
@@ -304,14 +303,14 @@ fn outline(along: f32) -> f32 {
     })
 }
 
-/// A smooth hill from `begin` over `peak` to `end`, zero outside.
+/// A raised-cosine bump from `begin` over `peak` to `end`, zero outside.
 fn bump(along: f32, [begin, peak, end]: [f32; 3]) -> f32 {
     let to_foot = if along < peak { peak - begin } else { end - peak };
     let away = (along - peak).abs() / to_foot;
     if away < 1.0 { 0.5 + 0.5 * (std::f32::consts::PI * away).cos() } else { 0.0 }
 }
 
-/// Even pressure on an ellipse or rectangle, in at most 40 x 40 cells of at most about a centimetre.
+/// Uniform pressure on an ellipse or rectangle, in at most 40 x 40 cells of at most about a centimetre.
 fn even_cells(half: Vec2, round: bool, mut visit: impl FnMut(Cell)) {
     let half = half.max(Vec2::ZERO);
     let count = (half * 200.0).ceil().clamp(Vec2::splat(8.0), Vec2::splat(40.0));
@@ -382,7 +381,7 @@ mod tests {
                 let away = cell.at - print.centre_of_pressure();
                 squares += (away * away + cell.size * cell.size / 12.0) * cell.share;
             });
-            // Ellipses are laid out in cells of up to an eighth of their width.
+            // The cells of an ellipse are up to an eighth of its width.
             let (found, told) = (squares, print.variance());
             assert!(
                 found.abs_diff_eq(told, 0.06 * told.max_element() + 2e-5),
@@ -407,7 +406,7 @@ mod tests {
         let flat = sole(f32::INFINITY);
         assert!(share(&flat, -0.2, -0.05) > 0.3 && share(&flat, 0.02, 0.2) > 0.5);
         assert!(share(&flat, -0.045, 0.01) < 0.1, "{}", share(&flat, -0.045, 0.01));
-        // A thin heel presses with the same force on a spot of its own size.
+        // A thin heel presses with the same force on a smaller area.
         let thin = sole(0.01);
         assert!((share(&thin, -0.1, -0.07) - share(&flat, -0.2, -0.01)).abs() < 0.05);
     }
@@ -416,7 +415,7 @@ mod tests {
     fn load_rolls_steadily_from_heel_to_toe() {
         let centres: Vec<f32> = (0..=50).map(|k| shoe(k as f32 / 50.0).centre_of_pressure().y).collect();
         assert!(centres.windows(2).all(|pair| pair[1] > pair[0]));
-        // Force plates see the centre of pressure run 0.13 to 0.27 m along a shoe.
+        // On force plates the centre of pressure moves 0.13 to 0.27 m along a shoe.
         let run = centres[50] - centres[0];
         assert!((0.15..0.24).contains(&run), "{run}");
     }

@@ -1,31 +1,31 @@
-//! What people wear on their feet, and what it makes of a print.
+//! Footwear and its effect on a print.
 
 use glam::Vec2;
 
 use super::footprint::Print;
 
-/// What a person wears.
+/// Footwear of a person.
 ///
-/// The recorded steps are barefoot. What a shoe changes is our assumption: a sole spreads the pressure a
-/// little and is longer than the foot; a high heel stands on a tip; a boot is large and stiff.
+/// The recorded steps are barefoot. The effect of a shoe is our assumption: a sole spreads the pressure a little and
+/// is longer than the foot; a high heel stands on a tip; a boot is large and stiff.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Footwear {
-    /// Nothing, or socks.
+    /// Bare feet, or socks.
     Barefoot,
-    /// Flat shoes: pressure spread by 8 % more, 1 cm longer.
+    /// Flat shoes: 8 % larger spread of pressure, 1 cm longer.
     #[default]
     Shoes,
-    /// High heels: a tip of 16 mm, the forefoot narrow.
+    /// High heels: a tip of 16 mm, and a narrow forefoot.
     Heels,
-    /// Boots: pressure spread by 15 % more, 2 cm longer.
+    /// Boots: 15 % larger spread of pressure, 2 cm longer.
     Boots,
 }
 
 impl Footwear {
-    /// All of them.
+    /// All kinds of footwear.
     pub const ALL: [Self; 4] = [Self::Barefoot, Self::Shoes, Self::Heels, Self::Boots];
 
-    /// The print of a foot `length_m` long whose bare sole would press with this centre and these radii.
+    /// Returns the print of a foot of `length_m`, from the centre and radii of pressure of the bare sole.
     pub(super) fn print(self, centre: Vec2, radii: Vec2, length_m: f32) -> Print {
         let (spread, longer_m, heel_m) = match self {
             Self::Barefoot => (Vec2::ONE, 0.0, f32::INFINITY),

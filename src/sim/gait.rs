@@ -1,23 +1,23 @@
-//! How a walking foot loads the floor.
+//! Timing and vertical force of a walking foot.
 
-/// One way of walking: the timing of steps and the vertical force of a stance.
+/// A gait: the timing of steps and the vertical force of a stance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gait {
     /// Walking speed, in metres per second.
     pub speed_m_s: f32,
-    /// From one footfall to the other foot's next, in metres.
+    /// Distance from one footfall to the next one of the other foot, in metres.
     pub step_m: f32,
-    /// From one footfall to the other foot's next, in seconds.
+    /// Time from one footfall to the next one of the other foot, in seconds.
     pub step_s: f32,
-    /// How long a foot stays down, in seconds.
+    /// Duration of a stance, in seconds.
     pub stance_s: f32,
     /// Height of the two peaks, in body weights.
     pub peak: f32,
     /// Depth of the valley between them, in body weights.
     pub valley: f32,
-    /// When the first peak comes, as a share of the stance; the second comes as long before its end.
+    /// Time of the first peak, as a share of the stance; the second peak is as far from the end.
     pub peak_at: f32,
-    /// Rise of the force when the foot lands, in body weights per stance; the fall at its end.
+    /// Slope of the force at touchdown, in body weights per stance; the negative of the slope at lift-off.
     pub strike: f32,
 }
 
@@ -25,13 +25,12 @@ pub struct Gait {
 pub const PREFERRED_M_S: f32 = 1.32;
 
 impl Gait {
-    /// How an adult walks at this speed; speeds below 0.4 and above 2 metres per second are taken as these.
+    /// The gait of an adult at this speed; the speed is limited to 0.4 to 2 metres per second.
     ///
     /// # Source
-    /// Steps of 0.7 m, stances of 0.65 s, peaks of 1.1 and a valley of 0.75 body
-    /// weights at the preferred speed; flatter and longer when slower. Steps
-    /// grow with the square root of the speed; two feet are down for 23 % of the
-    /// cycle, more when slower.
+    /// Steps of 0.7 m, stances of 0.65 s, peaks of 1.1 and a valley of 0.75 body weights at the preferred speed;
+    /// flatter and longer when slower. Steps grow with the square root of the speed; two feet are down for 23 % of
+    /// the cycle, more when slower.
     #[must_use]
     pub fn at_speed(speed_m_s: f32) -> Self {
         let pace = pace(speed_m_s);
@@ -54,7 +53,7 @@ impl Gait {
             stance_s,
             peak: 1.0 + 0.1 * vigour,
             valley: 1.0 - 0.25 * vigour.min(2.0),
-            // The peak comes just after the other foot has left the floor.
+            // The peak follows just after the other foot has left the floor.
             peak_at: (1.15 * double_support).clamp(0.15, 0.32),
             strike: 0.0,
         };
@@ -62,13 +61,13 @@ impl Gait {
         gait
     }
 
-    /// Force at a share of the stance, in body weights; zero before it begins (0) and after it ends (1).
+    /// Returns the force at a share of the stance, in body weights; zero before its start (0) and after its end (1).
     #[must_use]
     pub fn load(&self, stance: f32) -> f32 {
         if !(0.0..=1.0).contains(&stance) {
             return 0.0;
         }
-        // The two halves mirror each other.
+        // The two halves are symmetric.
         let phase = stance.min(1.0 - stance);
         if phase < self.peak_at {
             let (share, left) = (phase / self.peak_at, 1.0 - phase / self.peak_at);
@@ -79,33 +78,33 @@ impl Gait {
         }
     }
 
-    /// How long both feet are down at a change of feet, in seconds.
+    /// Returns the duration of double support at a change of feet, in seconds.
     #[must_use]
     pub fn double_support_s(&self) -> f32 {
         self.stance_s - self.step_s
     }
 
-    /// How long a foot is in the air, in seconds.
+    /// Returns the time that a foot is in the air, in seconds.
     #[must_use]
     pub fn swing_s(&self) -> f32 {
         2.0 * self.step_s - self.stance_s
     }
 
-    /// The strike with which the floor, over a whole step, carries exactly the body's weight.
+    /// The strike for which the floor carries exactly the body's weight on average over a step.
     fn balancing_strike(&self) -> f32 {
         let needed = self.step_s / self.stance_s;
         let rising = self.peak_at * self.peak;
         let middle = (0.5 - self.peak_at) * (self.peak + self.valley);
         let missing = needed - rising - middle;
-        // Each flank gains strike * peak_at^2 / 12. Three times its mean slope is the most a flank without a hump has.
+        // Each flank gains `strike * peak_at^2 / 12`. A flank without a hump has at most three times its mean slope.
         (missing * 6.0 / (self.peak_at * self.peak_at)).clamp(0.0, 3.0 * self.peak / self.peak_at)
     }
 }
 
-/// Nobody walks with quicker steps, in seconds.
+/// Minimum duration of a step (s).
 const SHORTEST_STEP_S: f32 = 0.4;
 
-/// Speed in preferred speeds.
+/// Speed divided by the preferred speed.
 fn pace(speed_m_s: f32) -> f32 {
     let speed = if speed_m_s.is_nan() { PREFERRED_M_S } else { speed_m_s.clamp(0.4, 2.0) };
     speed / PREFERRED_M_S
@@ -149,10 +148,10 @@ mod tests {
 
     #[test]
     fn two_feet_together_carry_the_body_at_any_speed() {
-        // The body is thrown up while both feet are down, the more the faster it walks.
+        // In double support the total force exceeds the body weight, more at higher speeds.
         for (speed, most) in [(0.6, 1.15), (0.9, 1.2), (1.32, 1.3), (1.7, 1.5)] {
             let gait = Gait::at_speed(speed);
-            // One step of the cycle: this foot from its landing, and the other foot, a step ahead.
+            // One step of the cycle: this foot from its touchdown, and the other foot, a step ahead.
             let together: Vec<f32> = (0..1000)
                 .map(|k| gait.step_s * k as f32 / 1000.0)
                 .map(|t| gait.load(t / gait.stance_s) + gait.load((t + gait.step_s) / gait.stance_s))

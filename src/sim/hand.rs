@@ -1,4 +1,4 @@
-//! Feet moved by hand: led along paths from another thread, moved at the sensor rate.
+//! Feet guided by hand: another thread sends paths, the feet move along them at the sensor rate.
 
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
@@ -9,44 +9,44 @@ use super::foot::{Foot, FootDriver};
 use super::track::turn_between;
 use crate::units::{Instant, Newtons};
 
-/// Paths that may wait for the simulated floor, which takes them each millisecond: a second of a window's frames.
+/// Maximum number of paths in the channel to the simulated floor, which empties it each millisecond: a second of a
+/// window's frames.
 const PATHS_WAITING: usize = 64;
 
-/// A handle to lead feet with, and the driver that moves them.
+/// Returns a handle that guides feet, and the driver that moves them.
 ///
-/// The driver goes to the simulated floor's thread, the handle stays with
-/// whoever knows where the feet shall be. When the handle is dropped the feet
-/// lift off and the performance is over.
+/// The driver goes to the simulated floor's thread; the guiding thread keeps the handle. When the handle is dropped,
+/// the feet lift off and the performance ends.
 #[must_use]
 pub fn feet_by_hand() -> (FootHandle, HandDriver) {
     let (paths, led) = sync_channel(PATHS_WAITING);
     (FootHandle { paths }, HandDriver { led, followers: Vec::new(), last: None })
 }
 
-/// Says where feet shall go.
+/// Guides feet along paths.
 #[derive(Debug)]
 pub struct FootHandle {
     paths: SyncSender<Led>,
 }
 
-/// The paths of all feet, and how long they take, in seconds.
+/// Duration of the paths (s), and the paths of all feet.
 type Led = (f32, Vec<Vec<Foot>>);
 
 impl FootHandle {
-    /// Leads each foot along its path, which took the hand `over_s` seconds, after all it was led along before.
+    /// Guides each foot along its path, drawn by the hand in `over_s` seconds, after all its earlier paths.
     ///
-    /// A path is a list of places with what the foot presses with there. A foot that is put down lands before it
-    /// slides, stays down for 150 ms at least, and lifts where the path lifts it. It slides as fast as it is led, at
-    /// most 2 m/s; so the path counts, not how seldom it is told. A foot's place in the list is its identity. One
-    /// without a path, or beyond the list's end, lifts where it is; so does one led to a place that is not finite. A
-    /// time that is not finite counts as none. Never blocks.
+    /// A path is a list of places with a force at each. A foot lands before it slides, stays down for at least 150
+    /// ms, and lifts at the place where the path lifts it. It slides as fast as the hand, at most 2 m/s, so the
+    /// motion follows the path however rarely the caller sends it. A foot's index in the list is its identity. A foot
+    /// without a path, or beyond the list's end, lifts at its place; so does a foot with a place that is not finite.
+    /// A time that is not finite counts as none. Never blocks.
     pub fn lead(&mut self, over_s: f32, feet: Vec<Vec<Foot>>) {
-        // A floor that has ended has no feet to lead, and one that stands still moves none.
+        // Sending fails if the floor has ended or is paused; then there are no feet to move.
         let _ = self.paths.try_send((over_s, feet));
     }
 }
 
-/// Moves the feet of a [`FootHandle`]: paths told now and then become motion at 1 kHz without steps.
+/// Moves the feet of a [`FootHandle`]: turns paths that arrive now and then into continuous motion at 1 kHz.
 #[derive(Debug)]
 pub struct HandDriver {
     led: Receiver<Led>,
@@ -54,35 +54,35 @@ pub struct HandDriver {
     last: Option<Instant>,
 }
 
-/// Time constant of what smooths the motion, in seconds: it lags 15 ms behind a steady one.
+/// Time constant of the critically damped filter of the motion (s): it lags 15 ms behind a steady motion.
 const FOLLOW_S: f32 = 0.0075;
 
-/// Time constant of the force, in seconds: nine tenths of it within 47 ms, a brisk step and not a stamp.
+/// Time constant of the filter of the force (s): it reaches nine tenths within 47 ms, as in a brisk step rather than
+/// a stamp.
 const PRESS_S: f32 = 0.012;
 
-/// Below this a foot is in the air and may be anywhere, in newtons.
+/// Force below which a foot is in the air and may move freely (N).
 const AIRBORNE: f32 = 0.5;
 
-/// Share of its force from which on a foot has landed and may slide.
+/// Share of its target force above which a foot has landed and may slide.
 const LANDED: f32 = 0.8;
 
-/// The shortest press, in seconds: a click on a mouse is over before a foot has come down.
+/// Minimum duration of a press (s): a mouse click is shorter than a footfall.
 const SHORTEST_S: f32 = 0.150;
 
-/// The fastest that a foot slides, in metres per second: no leg follows a mouse that is flung across a screen.
+/// Maximum speed of a sliding foot (m/s): a leg can't follow a mouse that is flung across a screen.
 const FASTEST_M_S: f32 = 2.0;
 
-/// How near a foot has to be to where it shall lift, in metres: it does not slide while it rises.
+/// Maximum distance from the place of lift-off at which a foot may lift (m): it does not slide while it rises.
 const THERE_M: f32 = 0.002;
 
-/// The least time in which what is left of a path is walked, in seconds, so that uneven frames of a window become an
-/// even motion.
+/// Minimum time for the rest of a path (s), so that uneven frames of a window give an even motion.
 const EVEN_S: f32 = 0.050;
 
-/// The most, however long the window stood still.
+/// Maximum time for the rest of a path (s), even after a long pause of the window.
 const LONGEST_S: f32 = 0.250;
 
-/// Places that wait at most: half a minute of a mouse that reports 125 times a second.
+/// Maximum number of queued places: half a minute of a mouse that reports 125 times a second.
 const MOST_PLACES: usize = 4096;
 
 impl FootDriver for HandDriver {
@@ -130,7 +130,7 @@ fn is_finite(foot: &Foot) -> bool {
         && [foot.heading, foot.length_m, foot.force.0, foot.roll].iter().all(|number| number.is_finite())
 }
 
-/// One foot on its way along its path.
+/// One foot on its path.
 #[derive(Clone, Debug)]
 struct Follower {
     x: Spring,
@@ -138,22 +138,22 @@ struct Follower {
     heading: Spring,
     force: Spring,
     roll: Spring,
-    /// How far along its path it is led.
+    /// Current target on the path.
     goal: Foot,
-    /// What is left of the path.
+    /// Remaining path.
     path: VecDeque<Foot>,
-    /// Time in which that is walked, in seconds.
+    /// Time for the remaining path (s).
     left_s: f32,
-    /// How long it has been down.
+    /// Time since touchdown (s).
     down_s: f32,
-    /// Whether it bears what it shall and may slide.
+    /// True if the foot carries its target force and may slide.
     landed: bool,
-    /// Whether it was left out of what it was told last.
+    /// True if the last message had no path for this foot.
     left_out: bool,
 }
 
 impl Follower {
-    /// A foot in the air over the first place of its path.
+    /// Creates a foot in the air above the first place of its path.
     fn over(first: Option<&Foot>) -> Self {
         let anywhere = Foot {
             position: Vec2::ZERO,
@@ -194,11 +194,11 @@ impl Follower {
             let place = if is_finite(place) { *place } else { Foot { force: Newtons::ZERO, ..last } };
             self.path.push_back(Foot { force: place.force.max(Newtons::ZERO), ..place });
         }
-        // A hand that rests gives no more time for what it led the foot along before.
+        // A resting hand does not extend the time for the earlier path.
         if self.length_left() > before_m {
             self.left_s = if over_s.is_finite() { over_s.clamp(EVEN_S, LONGEST_S) } else { EVEN_S };
         }
-        // Of what nobody walked for so long, the newest counts.
+        // If the queue overflows, the oldest places are dropped.
         let excess = self.path.len().saturating_sub(MOST_PLACES);
         self.path.drain(..excess);
     }
@@ -228,13 +228,13 @@ impl Follower {
         self.landed = force > Newtons::ZERO && (self.landed || self.force.value >= LANDED * force.0);
     }
 
-    /// Leads the goal along the path, as far as a foot gets in `dt` seconds.
+    /// Moves the target along the path, as far as a foot slides in `dt` seconds.
     fn walk(&mut self, dt: f32) {
         let speed = (self.length_left() / self.left_s.max(dt).max(1e-4)).min(FASTEST_M_S);
         let mut way_m = speed * dt;
         while let Some(next) = self.path.front().copied() {
             match (self.goal.force > Newtons::ZERO, next.force > Newtons::ZERO) {
-                // What was lifted has to be in the air before it is anywhere else.
+                // A lifted foot must be in the air before it moves to another place.
                 (false, _) if !self.is_airborne() => return,
                 (false, false) => self.goal = next,
                 (false, true) => {
@@ -267,7 +267,7 @@ impl Follower {
         }
     }
 
-    /// Length of the path until the foot is next lifted, in metres.
+    /// Length of the path up to the next lift-off (m).
     fn length_left(&self) -> f32 {
         let mut here = self.goal.position;
         let mut length = 0.0;
@@ -293,7 +293,7 @@ impl Follower {
     }
 
     fn foot(&self) -> Foot {
-        // A lifted foot's force only fades out; the last trace of it is not a contact.
+        // A lifted foot's force decays exponentially; the last trace of it is not a contact.
         let force = if self.force.value < 0.01 { 0.0 } else { self.force.value };
         Foot {
             position: self.place(),
@@ -306,7 +306,7 @@ impl Follower {
     }
 }
 
-/// A value that follows its goal as a critically damped spring does.
+/// A value that follows its goal as a critically damped spring: `x'' = -(2 / T) x' - (x - goal) / T²`.
 #[derive(Clone, Copy, Debug)]
 struct Spring {
     value: f32,
@@ -318,7 +318,7 @@ impl Spring {
         Self { value, per_s: 0.0 }
     }
 
-    /// The exact motion over `dt` seconds with the given time constant, so any step is stable.
+    /// Exact solution over `dt` seconds for the given time constant, so every step size is stable.
     fn follow(&mut self, goal: f32, constant_s: f32, dt: f32) {
         let rate = 1.0 / constant_s;
         let off = self.value - goal;
@@ -344,7 +344,7 @@ mod tests {
         }
     }
 
-    /// What becomes of a hand that tells its path every `frame_ms`, `at` each millisecond.
+    /// The feet for a hand that sends its path every `frame_ms`; `at` gives its place at each millisecond.
     fn led(frame_ms: u64, length_ms: u64, at: impl Fn(u64) -> Foot) -> Vec<Foot> {
         let (mut handle, mut driver) = feet_by_hand();
         let (mut feet, mut walked) = (Vec::new(), Vec::new());
@@ -363,14 +363,14 @@ mod tests {
     #[test]
     fn a_mouse_becomes_a_smooth_slide_at_ten_frames_a_second_as_at_sixty() {
         for frame_ms in [16, 33, 100] {
-            // Half a metre per second, once it is down.
+            // Half a metre per second after the touchdown.
             let walked = led(frame_ms, 1500, |ms| foot(0.0005 * ms.saturating_sub(100) as f32, 300.0));
             let speeds: Vec<f32> = walked[500..]
                 .windows(2)
                 .map(|pair| (pair[1].position.x - pair[0].position.x) * 1e3)
                 .collect();
             let (slow, fast) = speeds.iter().fold((9.0f32, 0.0f32), |(l, h), &v| (l.min(v), h.max(v)));
-            // Unsmoothed it would jump 50 mm in a millisecond (50 m/s) and then rest.
+            // Without smoothing the foot would jump 50 mm in a millisecond (50 m/s) and then stop.
             assert!(slow > 0.3 && fast < 0.8, "{slow} to {fast} m/s at {frame_ms} ms");
             let lag_s = (0.0005 * 1399.0 - walked[1499].position.x) / 0.5;
             assert!(lag_s < 0.02 + 2e-3 * frame_ms.max(50) as f32, "{lag_s} s at {frame_ms} ms");

@@ -1,4 +1,4 @@
-//! Calibrating a simulated floor the way a laboratory does: against a load cell.
+//! Calibrates a simulated floor against a load cell, as a laboratory does.
 
 use std::fmt::Write;
 
@@ -13,42 +13,41 @@ use crate::sense::{Fit, FitError, LoadPoint};
 use crate::units::Newtons;
 use crate::wire::Readings;
 
-/// Loads put on each sensor, evenly over its range.
+/// Number of loads on each sensor, evenly spaced over its range.
 const LOADS: usize = 40;
 
-/// Share of a sensor's range that is loaded: a saturated reading follows no law.
+/// Loaded share of a sensor's range: a saturated reading follows no law.
 const RANGE: f32 = 0.97;
 
-/// Readings averaged at each load.
+/// Number of readings averaged at each load.
 const READINGS: usize = 16;
 
 /// Error of the load cell, as a share of its reading (one standard deviation).
 pub(super) const CELL_ERROR: f32 = 0.005;
 
-/// Readings averaged on the empty floor for the tare.
+/// Number of readings averaged on the empty floor for the tare.
 const TARE_READINGS: usize = 200;
 
-/// A sensor that no law could be fitted to.
+/// Error: no law fits a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{sensor}: {source}")]
 pub struct CalibrationError {
-    /// Which sensor.
+    /// The sensor.
     pub sensor: SensorId,
-    /// Why.
+    /// The error of the fit.
     #[source]
     pub source: FitError,
 }
 
-/// `floor` with calibration and tare measured on its simulation `sim`.
+/// Returns `floor` with calibration and tare measured on its simulation `sim`.
 ///
-/// Each sensor is loaded on the bench in 40 steps up to 97 % of its range against
-/// a load cell that is wrong by 0.5 %, and the law fitted; then the empty floor
-/// is read for the tare. The same `seed` gives the same calibration; faults are
-/// not on the bench. A floor whose boards send newtons needs no calibration
-/// and comes back with its tare zero. A floor without noise comes back as [`Floor::noiseless`].
+/// The bench loads each sensor in 40 steps up to 97 % of its range, against a load cell with an error of 0.5 %, and
+/// fits the law; then it reads the empty floor for the tare. The same `seed` gives the same calibration. Faults of
+/// the floor do not affect the bench. A floor with boards that send newtons needs no calibration and gets a tare of
+/// zero. A floor without noise is marked as [`Floor::noiseless`].
 ///
 /// # Errors
-/// [`CalibrationError`] names the first sensor that no law fits.
+/// [`CalibrationError`] names the first sensor without a fitting law.
 pub fn calibrated(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, CalibrationError> {
     let mut floor = floor.clone();
     floor.tare.fill([Newtons::ZERO; 4]);
@@ -64,7 +63,7 @@ pub fn calibrated(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Cal
             let rest = sim.empty_volts(index, corner);
             let empty: f32 =
                 (0..TARE_READINGS).map(|_| calibration.force(read(rest, sim.noise_v(), &mut rng)).0).sum();
-            // A floor of other size than its simulation keeps what has no counterpart.
+            // If the floor and its simulation differ in size, sensors without a counterpart stay unchanged.
             if let (Some(laws), Some(tares)) = (floor.calibration.get_mut(index), floor.tare.get_mut(index)) {
                 laws[corner.index()] = calibration;
                 tares[corner.index()] = Newtons(empty / TARE_READINGS as f32);
@@ -83,7 +82,7 @@ fn on_the_bench(
     Fit::of(&loaded(sim, tile, corner, rng)).map(|fit| fit.calibration)
 }
 
-/// What a sensor's output and the load cell read, load by load.
+/// Output of a sensor and reading of the load cell at each load.
 fn loaded(sim: &SimFloor, tile: usize, corner: Corner, rng: &mut Pcg64Mcg) -> [LoadPoint; LOADS] {
     let (part, _) = sim.bench(tile, corner);
     let range = RANGE * part.capacity();
@@ -95,9 +94,10 @@ fn loaded(sim: &SimFloor, tile: usize, corner: Corner, rng: &mut Pcg64Mcg) -> [L
     })
 }
 
-/// The table of load-cell measurements that [`calibrated`] fits, as [`crate::sense::LoadTable`] reads it.
+/// Returns the table of load-cell measurements that [`calibrated`] fits, in the format of
+/// [`crate::sense::LoadTable`].
 ///
-/// Empty but for its header for a floor whose boards send newtons.
+/// For a floor with boards that send newtons, the table has only its header.
 #[must_use]
 pub fn load_table(sim: &SimFloor, seed: u64) -> String {
     let mut table = String::from("col,row,corner,volts,newtons\n");
@@ -109,7 +109,7 @@ pub fn load_table(sim: &SimFloor, seed: u64) -> String {
         for corner in Corner::ALL {
             for LoadPoint { volts, force } in loaded(sim, index, corner, &mut rng) {
                 let (column, row) = (tile.column, tile.row);
-                // Writing to a String cannot fail.
+                // Writing to a string does not fail.
                 let _ = writeln!(table, "{column},{row},{corner},{volts:.5},{:.3}", force.0);
             }
         }
@@ -130,7 +130,7 @@ mod tests {
     use crate::floor::TileId;
     use crate::sim::{Foot, PartConfig, Sensing, SimConfig};
 
-    /// Tared force and centroid of everything on the floor, through the floor's calibration.
+    /// Tared force and centroid of everything on the floor, with the floor's calibration.
     fn sensed(floor: &Floor, readings: &[Readings]) -> (f32, Vec2) {
         let (mut force, mut moment) = (0.0, Vec2::ZERO);
         for (board, readings) in floor.boards.iter().zip(readings) {
@@ -139,7 +139,7 @@ mod tests {
                 let (tile, corner) = (floor.geometry.index(sensor.tile).unwrap(), sensor.corner.index());
                 let newtons =
                     floor.calibration[tile][corner].force(counts.unwrap()) - floor.tare[tile][corner];
-                // As sensing does, leave out sensors that only show noise.
+                // Like sensing, ignore sensors with nothing but noise.
                 if newtons.abs() > Newtons(1.0) {
                     force += newtons.0;
                     moment += floor.geometry.sensor(sensor.tile, sensor.corner) * newtons.0;
@@ -162,7 +162,7 @@ mod tests {
         assert!(nominal > 500.0, "36 plates weigh on an untared floor: {nominal}");
         let (empty, _) = sensed(&floor, sim.step(&[]));
         assert!(empty.abs() < 5.0, "{empty}");
-        // Eight places all over the floor, as one stands and as one presses a button.
+        // Places all over the floor, with the force of a standing person and of a button press.
         let (mut errors, mut gains) = (Vec::new(), Vec::new());
         for force in [120.0, 350.0] {
             for step in 0..40 {
@@ -175,7 +175,7 @@ mod tests {
         }
         errors.sort_by(f32::total_cmp);
         gains.sort_by(f32::total_cmp);
-        // The paper: typically under 2 cm, under 5 cm at worst.
+        // The paper reports errors typically under 2 cm, and under 5 cm at worst.
         assert!(errors[40] < 0.02 && errors[79] < 0.05, "median {}, worst {}", errors[40], errors[79]);
         assert!(errors[40] > 0.001, "a real floor is not exact: {}", errors[40]);
         assert!(gains[0] > 0.75 && gains[79] < 1.25, "{} to {}", gains[0], gains[79]);

@@ -1,14 +1,13 @@
-//! A script played again and again.
+//! A script in a loop.
 
 use std::time::Duration;
 
 use super::{Foot, FootDriver, Script};
 use crate::units::Instant;
 
-/// A script that is played again and again, with an empty floor in between.
+/// A script in a loop, with an empty floor between repetitions.
 ///
-/// For a window, which stays open after the last step: feet that come back are
-/// better than a floor that falls silent.
+/// Meant for a window, which stays open after the last step.
 #[derive(Debug)]
 pub struct LoopingScript {
     script: Script,
@@ -16,7 +15,7 @@ pub struct LoopingScript {
 }
 
 impl LoopingScript {
-    /// `script` round and round; the floor stays empty for `pause` before each new round.
+    /// Plays `script` repeatedly; the floor stays empty for `pause` before each repetition.
     #[must_use]
     pub fn new(script: Script, pause: Duration) -> Self {
         Self { script, pause }
@@ -28,7 +27,7 @@ impl FootDriver for LoopingScript {
         feet.clear();
         let round = (self.script.duration() + self.pause).as_micros() as u64;
         let within = at.since(Instant::START).as_micros() as u64 % round.max(1);
-        // In the pause the script is over and leaves `feet` empty.
+        // During the pause the script is over and leaves `feet` empty.
         self.script.feet(Instant::from_micros(within), feet);
         true
     }
@@ -59,7 +58,7 @@ mod tests {
         assert!(!once.is_empty());
         assert!(feet_at(length + pause / 2).is_empty());
         let again = feet_at(length + pause + middle);
-        // Rounds are whole microseconds long: a foot is where it was to a hundredth of a millimetre.
+        // Repetitions are whole microseconds long, so a foot's position repeats within a hundredth of a millimetre.
         assert_eq!(again.len(), once.len());
         let near = |(one, two): (&Foot, &Foot)| one.position.distance(two.position) < 1e-5;
         assert!(once.iter().zip(&again).all(near), "{once:?} {again:?}");

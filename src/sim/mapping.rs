@@ -1,4 +1,4 @@
-//! Mapping a simulated floor the way people on site do: pressing points whose places are known.
+//! Maps a simulated floor by pressing known points, as people do on site.
 
 use std::f32::consts::PI;
 use std::fmt::Write;
@@ -15,42 +15,42 @@ use crate::floor::{Calibration, Corner, Floor, TileId};
 use crate::sense::{MapError, MapFit, Press};
 use crate::wire::Readings;
 
-/// Points along each side of a tile.
+/// Number of points along each side of a tile.
 const POINTS: usize = 9;
 
-/// The forces each point is pressed with, in newtons: from a light foot to more than half a person.
+/// Forces at each point (N): from a light foot to more than half a person.
 const FORCES: [f32; 4] = [45.0, 100.0, 200.0, 380.0];
 
-/// How far inside the plate's edge the outermost points lie, in metres.
+/// Distance of the outermost points from the plate's edge (m).
 const MARGIN_M: f32 = 0.008;
 
-/// How well a point is hit, in metres (one standard deviation along each axis).
+/// Aiming error at a point (m), one standard deviation along each axis.
 const AIM_M: f32 = 0.0005;
 
-/// Readings averaged at each point and force.
+/// Number of readings averaged at each point and force.
 const READINGS: usize = 32;
 
-/// A tile that no map could be fitted to.
+/// Error: no map fits a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("tile {tile}: {source}")]
 pub struct MappingError {
-    /// Which tile.
+    /// The tile.
     pub tile: TileId,
-    /// Why.
+    /// The error of the fit.
     #[source]
     pub source: MapError,
 }
 
-/// `floor`, calibrated and tared, with a position map of each tile measured on its simulation `sim`.
+/// Returns `floor`, which must be calibrated and tared, with a position map of each tile measured on its simulation
+/// `sim`.
 ///
-/// 9 x 9 points of each tile, closer together towards its edges, are pressed with 45, 100, 200 and 380 N each,
-/// hit within half a millimetre by a tool with a load cell that is wrong by 0.5 %, and
-/// [`MapFit::of_presses`] makes the map. Saturated presses are left out. The same `seed` gives the
-/// same maps. A floor whose boards send newtons keeps the maps it had, and so
-/// does a tile that no map improves.
+/// Presses 9 x 9 points of each tile, denser towards the edges, with 45, 100, 200 and 380 N each, within half a
+/// millimetre, with a tool that has a load cell with an error of 0.5 %. [`MapFit::of_presses`] fits the map. Ignores
+/// saturated presses. The same `seed` gives the same maps. A floor with boards that send newtons keeps its maps, and
+/// so does a tile that no map improves.
 ///
 /// # Errors
-/// [`MappingError`] names the first tile that can't be mapped.
+/// [`MappingError`] names the first tile without a fitting map.
 pub fn mapped(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, MappingError> {
     let mut floor = floor.clone();
     if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
@@ -72,9 +72,9 @@ pub fn mapped(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Mapping
     Ok(floor)
 }
 
-/// The table of pressed points that [`mapped`] makes its maps from, as [`crate::sense::PressTable`] reads it.
+/// Returns the table of presses that [`mapped`] fits its maps to, in the format of [`crate::sense::PressTable`].
 ///
-/// Empty but for its header for a floor whose boards send newtons.
+/// For a floor with boards that send newtons, the table has only its header.
 #[must_use]
 pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
     let mut table = String::from("x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne,force_n\n");
@@ -86,7 +86,7 @@ pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
         for Press { at, forces: [sw, se, nw, ne], force } in press(floor, sim, index, &mut rng) {
             let Vec2 { x, y } = sim.geometry().centre(tile) + at;
             let (column, row) = (tile.column, tile.row);
-            // Writing to a String cannot fail.
+            // Writing to a string does not fail.
             let _ = writeln!(
                 table,
                 "{x:.5},{y:.5},{column},{row},{sw:.3},{se:.3},{nw:.3},{ne:.3},{:.2}",
@@ -97,13 +97,13 @@ pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
     table
 }
 
-/// What the sensors of one tile read as its points are pressed.
+/// Forces measured by the sensors of one tile while its points are pressed.
 fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<Press> {
     let (Some(laws), Some(tares)) = (floor.calibration.get(tile), floor.tare.get(tile)) else {
         return Vec::new();
     };
     let side = 0.5 * sim.geometry().tile_m() - MARGIN_M;
-    // Closer together towards the edges: what is fitted has points on one side only there.
+    // Denser towards the edges, because a fit near an edge has points on one side only.
     let step = |number: usize| side * (PI * (number as f32 / (POINTS - 1) as f32 - 0.5)).sin();
     let points = (0..POINTS).flat_map(|row| (0..POINTS).map(move |column| (column, row)));
     let mut presses = Vec::with_capacity(POINTS * POINTS * FORCES.len());
@@ -116,8 +116,8 @@ fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<
             let forces = Corner::ALL.map(|corner| {
                 let volts = sim.bench(tile, corner).0.volts(supports[corner.index()]);
                 let law: Calibration = laws[corner.index()];
-                // What a sensor with a memory has crept under the resting plate is in its tare and in
-                // every reading. Of one without, the two are the same.
+                // The creep of a sensor under the resting plate is in its tare and in every reading. For a sensor
+                // without memory, `crept` is 0.
                 let (part, rest) = sim.bench(tile, corner);
                 let crept = law.force(counts(sim.empty_volts(tile, corner))).0
                     - law.force(counts(part.volts(rest))).0;

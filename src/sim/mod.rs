@@ -1,4 +1,4 @@
-//! A simulated floor: plates, sensors and feet that make the packets a real floor would.
+//! A simulated floor: plates, sensors and feet that produce the packets of a real floor.
 //!
 //! ```text
 //! Scenario -resolve-> Script (or a hand) -> Feet (m, N)
@@ -6,9 +6,8 @@
 //!   -parts-> volts, noise -converter-> counts -> Readings per board
 //! ```
 //!
-//! Nothing behind the packets knows that they were simulated: the floor has to
-//! be calibrated ([`calibrated`]) as a real one has. All of it is deterministic:
-//! the same seeds and feet give the same packets.
+//! Code that receives the packets can't distinguish them from real ones: the floor needs calibration ([`calibrated`])
+//! like a real one. The simulation is deterministic: the same seeds and feet give the same packets.
 //!
 //! ```
 //! use std::time::Duration;

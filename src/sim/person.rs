@@ -1,4 +1,4 @@
-//! A person's body: how it stands and how far its feet reach.
+//! A person's body: its stance and the reach of its feet.
 
 use std::f32::consts::TAU;
 
@@ -12,7 +12,7 @@ use super::plate::GRAVITY;
 use super::track::{Pose, forward};
 use crate::units::Newtons;
 
-/// A body and how it moves.
+/// Measures of a body and its movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Person {
     /// Body mass, in kilograms.
@@ -25,12 +25,12 @@ pub struct Person {
     pub step_width_m: f32,
     /// Sideways distance between the feet while standing, in metres.
     pub stand_width_m: f32,
-    /// How far each foot points outwards, in radians.
+    /// Outward angle of each foot, in radians.
     pub toe_out: f32,
-    /// How far from the standing foot the other one reaches, middle to middle, in metres.
+    /// Maximum distance from the standing foot to the other one, centre to centre, in metres.
     pub reach_m: f32,
-    /// What is worn; it shows in the print of somebody who rolls as people do
-    /// ([`super::Performance::rolling_as_people_do`]), and in no other.
+    /// Footwear. It affects the print only if the person rolls like recorded people
+    /// ([`super::Performance::rolling_as_people_do`]).
     pub footwear: Footwear,
 }
 
@@ -51,17 +51,17 @@ impl Default for Person {
 }
 
 impl Person {
-    /// The body's weight.
+    /// Returns the body's weight.
     #[must_use]
     pub fn weight(&self) -> Newtons {
         Newtons(self.mass_kg * GRAVITY)
     }
 }
 
-/// Why a person cannot do what was asked.
+/// Reason why a person can't make a move.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum MoveError {
-    /// Nobody stands anywhere yet.
+    /// The person is not on the floor yet.
     #[error("the person is not on the floor: let it Enter first")]
     NotThere,
     /// The person is on the floor already.
@@ -70,50 +70,50 @@ pub enum MoveError {
     /// A place, direction or force is NaN or infinite.
     #[error("places, directions and forces must be finite numbers")]
     NotFinite,
-    /// The foot does not reach that far from where the other one stands.
+    /// The place is out of reach of the foot, given the position of the other one.
     #[error(
         "the foot would have to reach {distance_m:.2} m from the one that stands, further than {reach_m:.2} m: WalkTo somewhere nearer first"
     )]
     OutOfReach {
         /// Distance from the standing foot.
         distance_m: f32,
-        /// How far the foot reaches.
+        /// Maximum reach of the foot.
         reach_m: f32,
     },
-    /// The other foot stands there.
+    /// The other foot stands on the place.
     #[error("the other foot stands there, {distance_m:.2} m away: WalkTo beside the place first")]
     Occupied {
         /// Distance from the standing foot.
         distance_m: f32,
     },
-    /// Nobody presses with more than the body's weight.
+    /// The force exceeds the body's weight.
     #[error("a person of {weight_n:.0} N cannot press with {force_n:.0} N")]
     TooHeavy {
-        /// Force asked for, in newtons.
+        /// Requested force, in newtons.
         force_n: f32,
         /// Weight of the person, in newtons.
         weight_n: f32,
     },
 }
 
-/// Left is 0, right is 1.
+/// Sign of the sideways direction: index 0 is left, 1 is right.
 pub(super) const SIDES: [f32; 2] = [-1.0, 1.0];
 
-/// Roll of a foot that presses: with its ball.
+/// Roll of a pressing foot: the load is on the ball.
 pub(super) const PRESS_ROLL: f32 = 0.6;
 
-/// Where somebody stands.
+/// A stance on both feet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing {
-    /// Between the feet.
+    /// Midpoint between the feet.
     pub(super) middle: Vec2,
     pub(super) facing: f32,
-    /// Left, right.
+    /// Left foot, right foot.
     pub(super) feet: [Pose; 2],
 }
 
 impl Standing {
-    /// The foot, 0 or 1, that has less far to go to `target` without crossing the other one.
+    /// The foot, 0 or 1, with the shorter way to `target` without crossing the other one.
     pub(super) fn nearer_foot(&self, target: Vec2) -> usize {
         let to_right = -forward(self.facing).perp();
         usize::from((target - self.middle).dot(to_right) >= 0.0)
@@ -121,7 +121,7 @@ impl Standing {
 }
 
 impl Person {
-    /// Where one foot is when the body's middle is there.
+    /// Pose of one foot for a body centred at `middle`.
     pub(super) fn foot_beside(&self, middle: Vec2, facing: f32, side: usize, width_m: f32) -> Pose {
         let to_right = -forward(facing).perp();
         Pose {
@@ -130,19 +130,19 @@ impl Person {
         }
     }
 
-    /// Standing with the feet side by side.
+    /// The stance with the feet side by side.
     pub(super) fn standing(&self, middle: Vec2, facing: f32) -> Standing {
         let feet = [0, 1].map(|side| self.foot_beside(middle, facing, side, self.stand_width_m));
         Standing { middle, facing, feet }
     }
 
-    /// Where the shoe has to be for its ball to press on `target`.
+    /// Pose of the shoe with its ball on `target`.
     pub(super) fn pose_pressing(&self, target: Vec2, heading: f32) -> Pose {
         let print = Print::Shoe { length_m: self.foot_length_m, roll: PRESS_ROLL };
         Pose { position: target - Vec2::from_angle(heading).rotate(print.centre_of_pressure()), heading }
     }
 
-    /// Whether a foot reaches a pose and finds it free while the other one stands in `stance`.
+    /// Checks that a foot reaches a pose, and that the pose does not overlap the other foot in `stance`.
     pub(super) fn can_put(&self, pose: Pose, stance: Pose) -> Result<(), MoveError> {
         let distance_m = pose.position.distance(stance.position);
         if distance_m > self.reach_m {
@@ -155,9 +155,9 @@ impl Person {
     }
 }
 
-/// Whether two shoes of the same half size share ground, taken as the ellipses inside their outlines.
+/// True if two shoes of the same half size overlap; each is treated as the ellipse inside its outline.
 fn shoes_overlap(one: Pose, other: Pose, half: Vec2) -> bool {
-    // Points round the edge of one, seen from the other.
+    // Points on the edge of one shoe, in the frame of the other.
     (0..24).any(|step| {
         let edge = Vec2::from_angle(step as f32 * TAU / 24.0) * half;
         let at = one.position + Vec2::from_angle(one.heading).rotate(edge);

@@ -1,4 +1,4 @@
-//! One plate, rigid or twisting, on four elastic supports that can push but not pull.
+//! One plate, rigid or twisting, on four elastic supports that push but do not pull.
 
 use glam::Vec2;
 use rand::RngExt;
@@ -6,7 +6,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::floor::{Corner, Geometry};
 
-/// How the plates of a simulated floor are built and mounted.
+/// Construction and mounting of the plates of a simulated floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlateConfig {
     /// Mass of a plate with its actuator, in kilograms.
@@ -15,13 +15,13 @@ pub struct PlateConfig {
     pub mount_preload_n: f32,
     /// Largest deviation of a support's stiffness from the mean, as a share (0 to 0.5).
     pub stiffness_spread: f32,
-    /// Whether supports also pull, as if the plate were screwed to its sensors: no corner ever lifts off.
+    /// True if supports also pull, as if the plate were screwed to its sensors: no corner ever lifts off.
     pub pulls: bool,
-    /// How far the plate gives way to twist, from 0 (rigid) to 1 (no stiffness of its own): the share
-    /// `4 k / (4 k + K)` for supports of stiffness `k` and a plate that resists twist with `K`.
+    /// Compliance of the plate in twist, from 0 (rigid) to 1 (no stiffness of its own): the share `4 k / (4 k + K)`
+    /// for supports of stiffness `k` and a plate with the twisting stiffness `K`.
     ///
-    /// A load off both middle lines then also presses the corners of its own diagonal harder and those
-    /// of the other one less, which no load on a rigid plate does; force and both moments stay the same.
+    /// A load off both middle lines then also increases the force on the corners of its own diagonal and decreases it
+    /// on the other one, unlike on a rigid plate; the force and both moments stay the same.
     ///
     /// # Source
     /// `K = G h^3 A / (3 r^4)` of a plate in pure twist (Timoshenko and Woinowsky-Krieger, Theory of Plates
@@ -29,14 +29,13 @@ pub struct PlateConfig {
     /// the middle lines: 12 mm of plywood, 0.30 m wide, give 120 kN/m. On soft feet of 20 to 50 kN/m that
     /// makes 0.4 to 0.6, on feet of 200 kN/m nearly 0.9; 20 mm on soft feet 0.12 to 0.26.
     pub twist: f32,
-    /// Largest deviation of each plate's `twist` from that, as a share (0 to 0.5).
+    /// Maximum deviation of each plate's twist from `twist`, as a share (0 to 0.5).
     pub twist_spread: f32,
 }
 
 impl Default for PlateConfig {
-    /// The paper's birch plate (30.4 x 30.4 x 2 cm) with its actuator, lightly
-    /// held down on rubber mounts whose stiffness differs by up to a tenth (mass
-    /// from its measures, the rest our choice).
+    /// The paper's birch plate (30.4 x 30.4 x 2 cm) with its actuator, lightly held down on rubber mounts that differ
+    /// in stiffness by up to a tenth (mass from its measures, the rest our choice).
     fn default() -> Self {
         Self {
             mass_kg: 2.6,
@@ -67,7 +66,7 @@ impl PlateConfig {
 /// Standard gravity, in metres per second squared.
 pub(super) const GRAVITY: f32 = 9.81;
 
-/// One plate with its supports; places are relative to its centre, in metres.
+/// One plate with its supports; positions are relative to its centre, in metres.
 #[derive(Clone, Debug)]
 pub(super) struct Plate {
     /// Distance of the supports from the centre line.
@@ -81,14 +80,14 @@ pub(super) struct Plate {
     pulls: bool,
 }
 
-/// What the loads on one plate come to; places are relative to its centre.
+/// Sum of the loads on one plate; positions are relative to its centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Press {
-    /// Their sum, in newtons.
+    /// Total force, in newtons.
     pub(super) force: f32,
-    /// Where it acts, in metres.
+    /// Position of the total force, in metres.
     pub(super) at: Vec2,
-    /// Sum of force times x times y, in newton square metres: what twists a plate.
+    /// Sum of force times x times y, in newton square metres, which twists the plate.
     pub(super) twist: f32,
 }
 
@@ -100,7 +99,7 @@ impl Press {
 }
 
 impl Plate {
-    /// A plate of this floor; `rng` draws the stiffness of its supports.
+    /// Creates a plate of this floor; `rng` draws the stiffness of its supports.
     pub(super) fn new(geometry: &Geometry, config: &PlateConfig, rng: &mut Pcg64Mcg) -> Self {
         let spread = config.stiffness_spread.clamp(0.0, 0.5);
         let stiffness = Corner::ALL.map(|_| 1.0 + rng.random_range(-1.0f32..=1.0) * spread);
@@ -120,18 +119,17 @@ impl Plate {
         }
     }
 
-    /// The forces of the supports under a load, in [`Corner::ALL`] order.
+    /// Returns the forces of the supports under a load, in [`Corner::ALL`] order.
     ///
-    /// They balance force and both moments exactly as long as the load's line,
-    /// preload included, stays inside the square of the supports. A corner that
-    /// would have to pull lifts off instead. A load further out tips the plate
-    /// until its edge rests on the frame: what the frame carries, no sensor
-    /// sees, so the load looks lighter and further inside than it is.
+    /// They balance force and both moments exactly if the line of action of the load, including the preload, is
+    /// inside the square of the supports. A corner that would have to pull lifts off instead. A load further out tips
+    /// the plate until its edge rests on the frame. The sensors do not measure the force on the frame, so the load
+    /// appears lighter and further inside than it is.
     ///
     /// # Source
-    /// Plate on springs: corner forces `k_i (z + p x_i + q y_i + t x_i y_i)` with z, p, q from balance and
-    /// t from the work of the load in twist against the stiffness of supports and plate. A plate with one
-    /// corner in the air rests on three, which balance alone determines.
+    /// Plate on springs: corner forces `k_i (z + p x_i + q y_i + t x_i y_i)` with z, p, q from balance, and t from
+    /// the work of the load in twist against the stiffness of supports and plate. A plate with one corner in the air
+    /// rests on three, and balance alone determines their forces.
     pub(super) fn supports(&self, load: Press) -> [f32; 4] {
         let total = load.force + self.preload;
         let moment = load.at * (load.force / self.reach);
@@ -147,9 +145,9 @@ impl Plate {
         if line.abs().max_element() > 1.0 { self.tipped(total, line) } else { on_three(elastic, total, line) }
     }
 
-    /// The load's line lies outside the supports, on one side or beyond a corner.
+    /// Support forces if the line of action is outside the supports, on one side or beyond a corner.
     fn tipped(&self, total: f32, line: Vec2) -> [f32; 4] {
-        // Along an axis on which the plate tips, support and frame share like a lever.
+        // Along an axis on which the plate tips, support and frame share the force like a lever.
         let carried = |line: f32| {
             let lever = self.edge - 1.0;
             if line.abs() <= 1.0 || lever < 1e-6 {
@@ -167,7 +165,7 @@ impl Plate {
     }
 }
 
-/// The corner that would pull most has lifted off; balance fixes the other three.
+/// Support forces after the corner with the most negative force has lifted off: balance determines the other three.
 fn on_three(elastic: [f32; 4], total: f32, line: Vec2) -> [f32; 4] {
     let lifted = Corner::ALL
         .into_iter()
@@ -186,8 +184,8 @@ fn on_three(elastic: [f32; 4], total: f32, line: Vec2) -> [f32; 4] {
     })
 }
 
-/// Rows of `k_i (1, x_i, y_i, x_i y_i) A^-1`, where A sums the springs' resistance to sinking, tilting
-/// and twisting, and the plate's own to twisting; the last column is zero for a rigid plate.
+/// Rows of `k_i (1, x_i, y_i, x_i y_i) A^-1`. A sums the springs' resistance to sinking, tilting and twisting, and
+/// the plate's own resistance to twisting; the last column is zero for a rigid plate.
 fn elastic_sharing(stiffness: [f32; 4], twist: f32) -> [[f32; 4]; 4] {
     let columns = |weight: fn(Vec2) -> glam::Vec3| {
         Corner::ALL.map(|corner| stiffness[corner.index()] * weight(corner.direction())).into_iter().sum()
@@ -214,7 +212,7 @@ fn elastic_sharing(stiffness: [f32; 4], twist: f32) -> [[f32; 4]; 4] {
             *resistance.col_mut(column) += modes * (modes[column] * stiffness[corner.index()]);
         }
     }
-    // The plate's own stiffness against twist, from the share of it that is left to the supports.
+    // The plate's own stiffness in twist, from the compliance `twist`.
     resistance.col_mut(3).w += supports * (1.0 / twist - 1.0);
     let compliance = resistance.inverse();
     Corner::ALL.map(|corner| (compliance * modes(corner.direction()) * stiffness[corner.index()]).to_array())
@@ -233,7 +231,7 @@ mod tests {
         Plate::new(&Geometry::default(), &config, &mut Pcg64Mcg::seed_from_u64(3))
     }
 
-    /// Force and place of the load that the sensors report, tare taken off.
+    /// Force and position of the load as the sensors report it, without tare.
     fn sensed(plate: &Plate, force: f32, at: Vec2) -> (f32, Vec2) {
         let (loaded, empty) = (plate.supports(Press::at(force, at)), plate.supports(Press::default()));
         let net: Vec<f32> = loaded.iter().zip(empty).map(|(loaded, empty)| loaded - empty).collect();
@@ -248,7 +246,7 @@ mod tests {
         fn force_and_moments_balance_anywhere_inside_the_supports(
             force in 1.0f32..1500.0, x in -REACH..REACH, y in -REACH..REACH,
         ) {
-            // Heavy loads near a corner lift the opposite one off; balance must still hold.
+            // Heavy loads near a corner lift the opposite one off; balance must hold even so.
             let plate = plate(PlateConfig::default());
             let at = Vec2::new(x, y);
             let (felt, place) = sensed(&plate, force, at);
@@ -273,7 +271,7 @@ mod tests {
     fn equal_supports_share_a_central_load_equally() {
         let plate = plate(PlateConfig::ideal());
         assert_eq!(plate.supports(Press::at(400.0, Vec2::ZERO)), [100.0; 4]);
-        // Half way to a corner: three quarters of the way up to half the load there, none opposite.
+        // Half way to a corner: half of the load on that corner, a quarter on each beside it, none opposite.
         let supports = plate.supports(Press::at(400.0, Vec2::splat(REACH / 2.0)));
         for (support, expected) in supports.iter().zip([0.0, 100.0, 100.0, 200.0]) {
             assert!((support - expected).abs() < 1e-3, "{supports:?}");
@@ -330,7 +328,7 @@ mod tests {
             sw + ne - se - nw
         };
         assert!(twist(&rigid).abs() < 0.01, "{}", twist(&rigid));
-        // On equal supports the twist is the share times force, x and y in units of the reach.
+        // On equal supports the twist is the compliance times force, x and y in units of the reach.
         let expected = 0.6 * 400.0 * at.x * at.y / (REACH * REACH);
         assert!((twist(&soft) - expected).abs() < 0.5, "{} for {expected}", twist(&soft));
     }
@@ -338,7 +336,7 @@ mod tests {
     #[test]
     fn a_plate_without_stiffness_shares_a_load_as_a_loose_cloth_would() {
         let plate = plate(PlateConfig { twist: 1.0, ..PlateConfig::ideal() });
-        // At a support, all of it; half way between two, half on each.
+        // At a support: all of the load on it. Half way between two: half on each.
         let supports = plate.supports(Press::at(100.0, Vec2::new(REACH, -REACH)));
         for (support, expected) in supports.iter().zip([0.0, 100.0, 0.0, 0.0]) {
             assert!((support - expected).abs() < 1e-3, "{supports:?}");

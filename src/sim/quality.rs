@@ -1,4 +1,4 @@
-//! Floors to try things on, from one without error to one that has seen better days.
+//! Test floors of several qualities, from an ideal one to a badly worn one.
 
 use std::fmt;
 use std::str::FromStr;
@@ -13,7 +13,7 @@ use super::seam::SeamConfig;
 use super::sensor::{PartConfig, SensorFault};
 use crate::floor::{Corner, Geometry, SensorId};
 
-/// How good a simulated floor is.
+/// Quality of a simulated floor.
 ///
 /// | | `Ideal` | `Paper` | `Slight` | `Moderate` | `Severe` |
 /// |---|---|---|---|---|---|
@@ -21,25 +21,25 @@ use crate::floor::{Corner, Geometry, SensorId};
 /// | its twist ([`PlateConfig::twist`]), give or take | 0 | 0 | 0.2, 20 % | 0.5, 20 % | 0.8, 20 % |
 /// | stiffness of supports, give or take | 0 | 10 % | 10 % | 15 % | 25 % |
 /// | uneven seams ([`SeamConfig::unevenness`]) | 0 | 0 | 2 % | 5 % | 10 % |
-/// | crosstalk to each corner beside | 0 | 0 | 0.3 % | 1 % | 2 % |
-/// | left after calibration, of full scale | 0 | 5 % | 2 % | 5 % | 5 % |
+/// | crosstalk to each adjacent corner | 0 | 0 | 0.3 % | 1 % | 2 % |
+/// | error after calibration, of full scale | 0 | 5 % | 2 % | 5 % | 5 % |
 /// | noise | 0 | 2 mV | 2 mV | 5 mV | 10 mV |
 /// | in newtons at rest, under 200 N | 0 | 0.03, 0.5 | 0.03, 0.5 | 0.08, 1.3 | 0.15, 2.7 |
 /// | soft saturation | none | none | none | 350 N | 300 N |
 /// | hysteresis | 0 | 0 | 2 % | 5 % | 10 % |
 /// | creep per decade | 0 | 0 | 1 % | 3 % | 5 % |
-/// | zeros since the tare, deviation | 0 | 0.5 N | 0.3 N | 0.5 N | 1 N |
+/// | zero drift since the tare, standard deviation | 0 | 0.5 N | 0.3 N | 0.5 N | 1 N |
 /// | broken sensors | none | none | none | none | one in 72, open or stuck |
 ///
 /// # Source
-/// Hysteresis of 10 % and creep of 5 % per decade are a maker's figures for force-sensing resistors;
-/// the rest of calibration and 2 mV are the paper's; twist as at [`PlateConfig::twist`], seams as at
-/// [`SeamConfig`]. The other steps are our choice.
+/// Hysteresis of 10 % and creep of 5 % per decade are a maker's figures for force-sensing resistors; the error after
+/// calibration and 2 mV are the paper's; twist as at [`PlateConfig::twist`], seams as at [`SeamConfig`]. The other
+/// values are our choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FloorQuality {
-    /// No error at all ([`SimConfig::ideal`]): for tests that need exactness.
+    /// No error at all ([`SimConfig::ideal`]), for tests that need exact readings.
     Ideal,
-    /// The paper's plates and parts ([`SimConfig::default`]), which neither bend nor remember.
+    /// The paper's plates and parts ([`SimConfig::default`]): rigid plates, sensors without memory.
     Paper,
     /// New and well built.
     Slight,
@@ -51,19 +51,19 @@ pub enum FloorQuality {
 }
 
 impl FloorQuality {
-    /// All of them, from best to worst.
+    /// All qualities, from best to worst.
     pub const ALL: [Self; 5] = [Self::Ideal, Self::Paper, Self::Slight, Self::Moderate, Self::Severe];
 
-    /// The three that err as real floors do.
+    /// The three qualities with the errors of real floors.
     pub const REAL: [Self; 3] = [Self::Slight, Self::Moderate, Self::Severe];
 
-    /// Whether it errs as real floors do: one of [`FloorQuality::REAL`].
+    /// Returns true for the qualities with the errors of real floors ([`FloorQuality::REAL`]).
     #[must_use]
     pub fn is_real(self) -> bool {
         Self::REAL.contains(&self)
     }
 
-    /// Its name in tables and on the command line.
+    /// Returns the name in tables and on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -75,7 +75,7 @@ impl FloorQuality {
         }
     }
 
-    /// What such a floor is made of.
+    /// Returns the construction of such a floor.
     #[must_use]
     pub fn config(self) -> SimConfig {
         let paper = (PlateConfig::default(), PartConfig::default());
@@ -114,7 +114,7 @@ impl FloorQuality {
         SimConfig { plate, seam, sensing: Sensing::Counts(parts) }
     }
 
-    /// Standard deviation of a sensor's zero since it was tared, in newtons.
+    /// Returns the standard deviation of a sensor's zero drift since the tare (N).
     #[must_use]
     pub const fn offset_n(self) -> f32 {
         match self {
@@ -125,7 +125,7 @@ impl FloorQuality {
         }
     }
 
-    /// Which sensors of a floor are broken, and how; the same `seed` breaks the same ones.
+    /// Returns the broken sensors of a floor and their faults; the same `seed` breaks the same sensors.
     #[must_use]
     pub fn broken(self, geometry: &Geometry, seed: u64) -> Vec<(SensorId, SensorFault)> {
         if self != Self::Severe {
@@ -145,10 +145,10 @@ impl FloorQuality {
     }
 }
 
-/// On a floor of the worst quality, one sensor in so many is broken: two on one of 6 x 6 tiles.
+/// Number of sensors per broken one on a floor of the worst quality: two are broken on 6 x 6 tiles.
 const SENSORS_PER_BROKEN: usize = 72;
 
-/// A name that no quality has.
+/// Error: no quality has this name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("no floor is called \"{0}\": there are ideal, paper, slight, moderate and severe")]
 pub struct UnknownQuality(String);

@@ -1,4 +1,4 @@
-//! How one foot rolls over one step, drawn as the recorded steps of people are spread.
+//! Roll of one foot over one step, drawn from the distribution of recorded steps.
 
 use glam::Vec2;
 use rand::SeedableRng;
@@ -12,10 +12,10 @@ use super::rolling_fit::{
     RADIUS_ALONG_OF_PERSON, SPEEDS_M_S, TIMING_OF_PERSON, TURN_OUT, WAY,
 };
 
-/// How one person's feet roll: what their steps have in common.
+/// Rolling pattern of one person's feet, common to all steps.
 ///
-/// Everything is drawn from the figures fitted to recorded steps (see the tables' source in
-/// `rolling_fit`); the same seed gives the same steps.
+/// All values are drawn from figures fitted to recorded steps (see the tables' source in `rolling_fit`); the same
+/// seed gives the same steps.
 #[derive(Clone, Debug)]
 pub struct RollingHabit {
     rng: Pcg64Mcg,
@@ -29,7 +29,7 @@ pub struct RollingHabit {
 }
 
 impl RollingHabit {
-    /// Somebody drawn from a seed.
+    /// A person drawn from a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x5011_ed57);
@@ -45,22 +45,22 @@ impl RollingHabit {
         }
     }
 
-    /// How long their feet stay down on average while they walk at this speed, in seconds.
+    /// Returns the mean contact time of a step at this speed, in seconds.
     ///
-    /// Speeds beyond those recorded (0.75 to 2.15 m/s) are taken as the nearest of them, NaN as 1.4.
+    /// Speeds outside the recorded range (0.75 to 2.15 m/s) are clamped to it; NaN counts as 1.4.
     #[must_use]
     pub fn contact_s(&self, speed_m_s: f32) -> f32 {
         CONTACT_S[0] * known(speed_m_s).powf(CONTACT_S[1]) * self.contact.exp()
     }
 
-    /// How far their feet point outwards on average, in radians.
+    /// Returns the mean outward angle of the feet, in radians.
     #[must_use]
     pub const fn turn_out(&self) -> f32 {
         self.turn_out
     }
 
-    /// Their next step, at a speed in metres per second (limits as in [`RollingHabit::contact_s`]),
-    /// with a foot `length_m` long whose outer side lies to its right (1) or left (-1).
+    /// Draws the next step, at a speed in metres per second (limits as in [`RollingHabit::contact_s`]), for a foot of
+    /// `length_m` with its outer side to its right (1) or left (-1).
     #[must_use]
     pub fn step(&mut self, speed_m_s: f32, length_m: f32, outward: f32) -> Rolling {
         let speed = known(speed_m_s);
@@ -105,46 +105,45 @@ impl RollingHabit {
     }
 }
 
-/// One foot over one step: its force, and where and how widely it presses.
+/// One foot over one step: its force, and the centre and spread of its pressure.
 ///
-/// Phases are shares of the contact, from landing (0) to leaving (1); others are taken as these,
-/// and NaN as 0.
+/// Phases are shares of the contact, from touchdown (0) to lift-off (1); others are clamped, and NaN counts as 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rolling {
     contact_s: f32,
-    /// Phases at which the centre of pressure has run each part of its way.
+    /// Phases at which the centre of pressure completes each part of its path.
     crossed: [f32; DWELL_STEPS + 1],
-    /// Share of the peak at equal steps of the phase.
+    /// Force as a share of the peak, at equal steps of the phase.
     force: [f32; FORCE_NODES],
-    /// Along the foot from its middle, at landing and at leaving.
+    /// Position along the foot from its centre, at touchdown and at lift-off.
     way_m: [f32; 2],
-    /// To the right of the middle line, along the way.
+    /// Position to the right of the middle line, along the path.
     across_m: [f32; PLACES],
-    /// Across and along, along the way.
+    /// Radii of the pressure across and along, along the path.
     radii_m: [Vec2; PLACES],
 }
 
 impl Rolling {
-    /// How long the foot is down, in seconds.
+    /// Returns the duration of the contact, in seconds.
     #[must_use]
     pub const fn contact_s(&self) -> f32 {
         self.contact_s
     }
 
-    /// The vertical force as a share of its peak; zero at landing and leaving.
+    /// Returns the vertical force as a share of its peak; zero at touchdown and lift-off.
     #[must_use]
     pub fn force(&self, phase: f32) -> f32 {
         smooth(&self.force, phase).max(0.0)
     }
 
-    /// Mean of the force over the contact, as a share of its peak.
+    /// Returns the mean force over the contact, as a share of its peak.
     #[must_use]
     pub fn mean_force(&self) -> f32 {
         (0..200).map(|step| self.force((step as f32 + 0.5) / 200.0)).sum::<f32>() / 200.0
     }
 
-    /// Centre of pressure (x to the foot's right, y towards its toes) from the middle of the foot,
-    /// and the root mean square radii of the pressure in the same directions, in metres.
+    /// Returns the centre of pressure (x to the foot's right, y towards its toes) from the centre of the foot, and
+    /// the root mean square radii of the pressure in the same directions, in metres.
     #[must_use]
     pub fn pressure(&self, phase: f32) -> (Vec2, Vec2) {
         let run = self.run(phase);
@@ -152,7 +151,7 @@ impl Rolling {
         (Vec2::new(between(&self.across_m, run), along), between(&self.radii_m, run))
     }
 
-    /// How much of its way the centre of pressure has run.
+    /// Completed share of the path of the centre of pressure.
     fn run(&self, phase: f32) -> f32 {
         let phase = if phase.is_nan() { 0.0 } else { phase.clamp(0.0, 1.0) };
         let step = self.crossed.partition_point(|&crossed| crossed <= phase).clamp(1, DWELL_STEPS) - 1;
@@ -165,24 +164,24 @@ impl Rolling {
 /// Forces at 0, 1/20 ... 1 of the contact.
 const FORCE_NODES: usize = 21;
 
-/// A draw from the standard normal distribution, no further out than 1.7 deviations: five people and
-/// 294 steps say nothing about rarer ones, and drawn dwell times would make feet faster than any recorded.
+/// Draws from the standard normal distribution, clamped to 1.7 deviations: five people and 294 steps give no
+/// information about rarer values, and extreme dwell times would make feet faster than any recorded.
 fn normal(rng: &mut Pcg64Mcg) -> f32 {
     let draw: f32 = StandardNormal.sample(rng);
     draw.clamp(-1.7, 1.7)
 }
 
-/// What of each mode all steps of one person share.
+/// Draws the part of each mode that all steps of one person share.
 fn of_person<const N: usize>(rng: &mut Pcg64Mcg, part: [f32; N]) -> [f32; N] {
     part.map(|part| part.sqrt() * normal(rng))
 }
 
-/// The modes of one step of somebody with these shared ones.
+/// Draws the modes of one step, given the person's shared part.
 fn of_step<const N: usize>(rng: &mut Pcg64Mcg, person: [f32; N], part: [f32; N]) -> [f32; N] {
     std::array::from_fn(|mode| person[mode] + (1.0 - part[mode]).max(0.0).sqrt() * normal(rng))
 }
 
-/// Mean at a speed, with modes.
+/// Mean at a speed, plus the modes.
 fn spread<const N: usize, const M: usize>(
     mean: &[[f32; N]],
     faster: f32,
@@ -195,19 +194,19 @@ fn spread<const N: usize, const M: usize>(
     })
 }
 
-/// The speed, within what was recorded.
+/// The speed, clamped to the recorded range.
 fn known(speed_m_s: f32) -> f32 {
     if speed_m_s.is_nan() { MIDDLE_SPEED_M_S } else { speed_m_s.clamp(SPEEDS_M_S[0], SPEEDS_M_S[1]) }
 }
 
-/// The nodes on both sides of a share of the way through all of them, and how far between.
+/// Index of the node before `share` of the whole range, and the fraction towards the next node.
 fn around(nodes: usize, share: f32) -> (usize, f32) {
     let at = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) } * (nodes - 1) as f32;
     let before = (at as usize).min(nodes.saturating_sub(2));
     (before, at - before as f32)
 }
 
-/// Linear between nodes that lie evenly.
+/// Linear interpolation between equally spaced nodes.
 fn between<T, const N: usize>(nodes: &[T; N], share: f32) -> T
 where
     T: Copy + std::ops::Sub<Output = T> + std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>,
@@ -216,7 +215,7 @@ where
     nodes[before] + (nodes[before + 1] - nodes[before]) * part
 }
 
-/// Smooth through nodes that lie evenly (Catmull and Rom's cubic).
+/// Smooth interpolation through equally spaced nodes (Catmull and Rom's cubic).
 fn smooth<const N: usize>(nodes: &[f32; N], share: f32) -> f32 {
     let (before, part) = around(N, share);
     let (from, to) = (nodes[before], nodes[before + 1]);
@@ -230,7 +229,7 @@ fn smooth<const N: usize>(nodes: &[f32; N], share: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Steps of 300 people, each at their own speed about `speed`, four of each.
+    /// Steps of 300 people, each with a speed near `speed`, four steps each.
     fn steps(speed: f32) -> Vec<Rolling> {
         (0..300)
             .flat_map(|seed| {
@@ -246,8 +245,8 @@ mod tests {
         values[((values.len() - 1) as f32 * share).round() as usize]
     }
 
-    /// Fastest 20 ms of the centre of pressure away from landing (60 ms) and leaving (80 ms), over
-    /// 40 % of the peak, in metres per second: how the recorded steps were measured.
+    /// Fastest 20 ms of the centre of pressure in metres per second, as measured for the recorded steps: not within
+    /// 60 ms of touchdown or 80 ms of lift-off, and with more than 40 % of the peak force.
     fn fastest(step: &Rolling) -> Option<f32> {
         let millis = (1000.0 * step.contact_s()) as i32;
         let phase = |ms: i32| ms as f32 / millis as f32;
@@ -258,7 +257,7 @@ mod tests {
             .max_by(f32::total_cmp)
     }
 
-    /// A simulated figure against the recorded one.
+    /// Compares a simulated figure with the recorded one.
     #[track_caller]
     fn near(found: f32, recorded: f32, slack: f32) {
         assert!((found / recorded - 1.0).abs() < slack, "{found} simulated, {recorded} recorded");
@@ -266,8 +265,8 @@ mod tests {
 
     #[test]
     fn the_centre_of_pressure_is_as_fast_as_in_recorded_steps() {
-        // Median and quartiles of 104, 96 and 94 recorded steps. Fast walkers fall into two kinds, which
-        // modes about one mean join: their quartiles agree less well.
+        // Median and quartiles of 104, 96 and 94 recorded steps. Fast walkers fall into two groups, which modes about
+        // a single mean merge: their quartiles agree less well.
         for (speed, recorded, slack) in [
             (1.00, [0.80, 0.94, 1.06], 0.15),
             (1.42, [0.95, 1.10, 1.30], 0.15),

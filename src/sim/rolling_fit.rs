@@ -1,47 +1,48 @@
-//! How feet of walking people roll, in figures: what [`super::rolling`] draws its steps from.
+//! Fitted figures of the roll of walking people's feet; [`super::rolling`] draws its steps from them.
 //!
 //! # Source
 //! Fitted to SpeedPP2DS (Pataky et al. 2008, plantar pressure of single steps at three walking
 //! speeds): 294 barefoot steps of five people at 0.7 to 2.2 m/s, 500 pressure frames a second.
 //!
-//! How it was fitted. The centre of pressure never runs far backwards, so of each step the time is
-//! taken in which it first crosses each of [`DWELL_STEPS`] equal parts of its way; the logarithm of
-//! the dwell times (as shares of the contact) and the force (as a share of its peak, at equal
-//! shares of the contact, weighted threefold) make one vector per step. A quadratic in the walking
-//! speed less 1.4 m/s is taken off by least squares, and of what is left the first six principal
-//! components are kept (74 % of the variance). Dwell times rather than places, because the centre
-//! of pressure stands still on the ball and jumps where the heel comes off: averaged over time,
-//! the jumps vanish. Sideways places and both root mean square radii are fitted the same way as
-//! functions of how far the centre has run (86, 92 and 50 % of the variance).
+//! Method of the fit. The centre of pressure never moves far backwards, so the fit takes the time at which it first
+//! crosses each of [`DWELL_STEPS`] equal parts of its path. The logarithm of the dwell times (as shares of the
+//! contact) and the force (as a share of its peak, at equal shares of the contact, with threefold weight) make one
+//! vector per step. A least-squares quadratic in the walking speed minus 1.4 m/s is subtracted, and the first six
+//! principal components of the residual are kept (74 % of the variance). The fit uses dwell times rather than
+//! positions because the centre of pressure rests on the ball and jumps when the heel lifts: a mean over time would
+//! remove the jumps. Sideways positions and both root mean square radii are fitted in the same way, as functions of
+//! the completed share of the path (86, 92 and 50 % of the variance).
 //!
-//! A mode is scaled to one standard deviation. Next to each set of modes stands the part of that
-//! variance which lies between people; five people say little about it.
+//! A mode is scaled to one standard deviation. Next to each set of modes is the share of that variance between
+//! people; five people give only a rough estimate of it.
 
-/// Equal parts of the way of the centre of pressure.
+/// Number of equal parts of the path of the centre of pressure.
 pub(super) const DWELL_STEPS: usize = 24;
 
-/// Places over the way at which sideways place and radii are given.
+/// Number of points on the path with a sideways position and radii.
 pub(super) const PLACES: usize = 13;
 
-/// Walking speed from which [`DWELL_MEAN`], [`FORCE_MEAN`] and [`RADIUS_ALONG_MEAN`] count, in metres per second.
+/// Walking speed at which the first rows of [`DWELL_MEAN`], [`FORCE_MEAN`] and [`RADIUS_ALONG_MEAN`] apply, in metres
+/// per second.
 pub(super) const MIDDLE_SPEED_M_S: f32 = 1.4;
 
-/// Walking speeds at which steps were recorded, in metres per second: beyond them nothing is known.
+/// Range of the recorded walking speeds, in metres per second; there are no data outside it.
 pub(super) const SPEEDS_M_S: [f32; 2] = [0.75, 2.15];
 
-/// Time on the floor at 1 m/s, in seconds, and the power of the speed with which it changes.
+/// Contact time at 1 m/s, in seconds, and the exponent of the speed.
 pub(super) const CONTACT_S: [f32; 2] = [0.749, -0.543];
 
-/// Deviation of the logarithm of the time on the floor between people, and between steps of one.
+/// Standard deviation of the logarithm of the contact time between people, and between steps of one person.
 pub(super) const CONTACT_SPREAD: [f32; 2] = [0.033, 0.032];
 
-/// Where the centre of pressure begins and ends, in foot lengths from the middle of the foot, and its deviations.
+/// Start and end of the path of the centre of pressure, in foot lengths from the centre of the foot, each with its
+/// standard deviation.
 pub(super) const WAY: [[f32; 2]; 2] = [[-0.434, 0.013], [0.471, 0.008]];
 
-/// Breadth of the pressed foot over its length, and its deviation between people.
+/// Breadth of the contact area divided by the foot's length, and its standard deviation between people.
 pub(super) const BREADTH: [f32; 2] = [0.339, 0.025];
 
-/// Outward turn of the foot against the way of walking, in radians: mean, and deviation between people.
+/// Outward angle of the foot from the walking direction, in radians: mean, and standard deviation between people.
 pub(super) const TURN_OUT: [f32; 2] = [0.095, 0.081];
 
 /// Logarithm of each dwell time as a share of the contact: at the middle speed, per m/s, per (m/s)2.
@@ -60,7 +61,7 @@ pub(super) const DWELL_MEAN: [[f32; 24]; 3] = [
     ],
 ];
 
-/// Its modes.
+/// Modes of the dwell times.
 pub(super) const DWELL_MODES: [[f32; 24]; 6] = [
     [
         -0.076, 0.113, 0.434, 0.353, 0.180, 0.019, -0.307, -0.303, -0.194, -0.181, -0.165, -0.159, -0.153,
@@ -88,7 +89,7 @@ pub(super) const DWELL_MODES: [[f32; 24]; 6] = [
     ],
 ];
 
-/// Deviation of what the modes leave of each dwell time.
+/// Standard deviation of the residual of each dwell time after the modes.
 pub(super) const DWELL_REST: [f32; 24] = [
     0.198, 0.213, 0.291, 0.267, 0.305, 0.253, 0.483, 0.352, 0.226, 0.182, 0.191, 0.200, 0.196, 0.213, 0.256,
     0.298, 0.247, 0.363, 0.274, 0.240, 0.196, 0.247, 0.243, 0.211,
@@ -110,7 +111,7 @@ pub(super) const FORCE_MEAN: [[f32; 19]; 3] = [
     ],
 ];
 
-/// Its modes: those of the dwell times.
+/// Modes of the force, with the same scores as those of the dwell times.
 pub(super) const FORCE_MODES: [[f32; 19]; 6] = [
     [
         -0.013, 0.002, 0.027, 0.028, 0.043, 0.058, 0.061, 0.056, 0.043, 0.030, 0.016, 0.002, -0.009, -0.011,
@@ -138,20 +139,20 @@ pub(super) const FORCE_MODES: [[f32; 19]; 6] = [
     ],
 ];
 
-/// Part of the variance of the modes of dwell and force that lies between people.
+/// Share of the variance of the modes of dwell and force between people.
 pub(super) const TIMING_OF_PERSON: [f32; 6] = [0.769, 0.368, 0.413, 0.405, 0.467, 0.206];
 
-/// Sideways place of the centre of pressure along its way, in foot breadths from the middle line, outwards.
+/// Sideways position of the centre of pressure along its path, in foot breadths from the middle line, outwards.
 pub(super) const ACROSS_MEAN: [[f32; 13]; 1] =
     [[-0.086, -0.109, -0.077, -0.058, -0.035, -0.017, -0.001, 0.014, 0.017, -0.050, -0.184, -0.260, -0.262]];
 
-/// Its modes.
+/// Modes of the sideways position.
 pub(super) const ACROSS_MODES: [[f32; 13]; 2] = [
     [-0.028, -0.030, -0.036, -0.043, -0.054, -0.062, -0.067, -0.070, -0.060, -0.022, -0.012, 0.009, 0.014],
     [-0.013, -0.011, -0.010, -0.007, -0.002, 0.003, 0.007, 0.012, 0.011, -0.002, 0.039, 0.043, 0.054],
 ];
 
-/// Part of their variance between people.
+/// Share of the variance of these modes between people.
 pub(super) const ACROSS_OF_PERSON: [f32; 2] = [0.454, 0.632];
 
 /// Root mean square radius of the pressure along the foot, in foot lengths: at the middle speed, per m/s.
@@ -160,23 +161,23 @@ pub(super) const RADIUS_ALONG_MEAN: [[f32; 13]; 2] = [
     [0.001, -0.005, -0.012, -0.010, -0.010, -0.010, -0.014, -0.022, -0.039, -0.003, -0.002, -0.006, 0.0],
 ];
 
-/// Its modes.
+/// Modes of the radius along the foot.
 pub(super) const RADIUS_ALONG_MODES: [[f32; 13]; 2] = [
     [0.001, -0.001, -0.012, -0.014, -0.018, -0.022, -0.027, -0.034, -0.045, -0.009, -0.001, 0.0, 0.0],
     [0.001, -0.007, -0.016, -0.013, -0.010, -0.007, -0.003, 0.003, 0.014, 0.009, 0.002, 0.001, 0.0],
 ];
 
-/// Part of their variance between people.
+/// Share of the variance of these modes between people.
 pub(super) const RADIUS_ALONG_OF_PERSON: [f32; 2] = [0.703, 0.711];
 
 /// Root mean square radius across the foot, in foot breadths.
 pub(super) const RADIUS_ACROSS_MEAN: [[f32; 13]; 1] =
     [[0.081, 0.127, 0.159, 0.173, 0.184, 0.193, 0.199, 0.206, 0.215, 0.225, 0.174, 0.132, 0.037]];
 
-/// Its mode.
+/// Mode of the radius across the foot.
 pub(super) const RADIUS_ACROSS_MODES: [[f32; 13]; 1] = [[
     -0.007, -0.006, -0.008, -0.007, -0.006, -0.005, -0.004, -0.002, -0.001, -0.003, -0.027, -0.044, -0.011,
 ]];
 
-/// Part of its variance between people.
+/// Share of the variance of this mode between people.
 pub(super) const RADIUS_ACROSS_OF_PERSON: [f32; 1] = [0.630];

@@ -1,4 +1,4 @@
-//! Performances put on a stage: what feet are on the floor at each moment.
+//! Scripts: performances of several people over one floor, as feet and loads at each moment.
 
 use std::time::Duration;
 
@@ -10,10 +10,9 @@ use super::performance::Performance;
 use crate::floor::Rect;
 use crate::units::Instant;
 
-/// One or several people's performances over one floor, from the clock's start.
+/// Performances of one or several people over one floor, from the clock's start.
 ///
-/// The feet come person by person, left before right; a foot wholly beside the
-/// floor is left out.
+/// The feet are in the order of the people, left before right; a foot entirely beside the floor is omitted.
 #[derive(Clone, Debug)]
 pub struct Script {
     cast: Vec<Performance>,
@@ -21,19 +20,19 @@ pub struct Script {
 }
 
 impl Script {
-    /// These people's performances at the same time over a floor with these bounds.
+    /// Combines these people's performances over a floor with these bounds.
     #[must_use]
     pub fn new(cast: Vec<Performance>, bounds: Rect) -> Self {
         Self { cast, bounds }
     }
 
-    /// From the clock's start to the end of the longest performance.
+    /// Returns the time from the clock's start to the end of the longest performance.
     #[must_use]
     pub fn duration(&self) -> Duration {
         self.cast.iter().map(Performance::duration).max().unwrap_or_default()
     }
 
-    /// Adds the feet on or above the floor at `at`; the script can be asked for any moment, in any order.
+    /// Adds the feet on or above the floor at `at`; moments may come in any order.
     pub fn feet_at(&self, at: Instant, feet: &mut Vec<Foot>) {
         for performance in &self.cast {
             feet.extend(performance.feet(at.secs()).into_iter().flatten().filter(|foot| {
@@ -45,8 +44,8 @@ impl Script {
 }
 
 impl Script {
-    /// As [`Script::feet_at`], as loads: with the prints of those who roll as people do
-    /// ([`Performance::rolling_as_people_do`]), and of others with those of their feet.
+    /// Like [`Script::feet_at`], but adds loads. People who roll like recorded people
+    /// ([`Performance::rolling_as_people_do`]) have recorded prints; others have the prints of [`Foot::as_load`].
     pub fn loads_at(&self, at: Instant, loads: &mut Vec<Load>) {
         for performance in &self.cast {
             let feet = performance.feet(at.secs());
@@ -72,7 +71,7 @@ impl FootDriver for Script {
 }
 
 impl Performance {
-    /// The load of a foot of theirs.
+    /// The load of one foot.
     fn load(&self, side: usize, foot: &Foot, at_s: f64) -> Load {
         let load = foot.as_load();
         let (Some(_), Some(track)) = (&self.habit, self.tracks.get(side)) else { return load };
@@ -91,7 +90,7 @@ impl Performance {
     fn feet(&self, at_s: f64) -> [Option<Foot>; 2] {
         let (shifted, rolled) = self.sway.at(at_s);
         let loads = [self.tracks[0].load.at(at_s), self.tracks[1].load.at(at_s)];
-        // Weight can only be shifted onto a foot that stands.
+        // Weight can only shift to a standing foot.
         let shifted = if loads.iter().all(|&load| load > 0.1) { shifted } else { 0.0 };
         let weight = self.person.weight();
         [(0, shifted), (1, -shifted)].map(|(side, shifted)| {
@@ -162,11 +161,11 @@ mod tests {
             }
             before.clone_from(&loads);
         }
-        // 70 kg on average, and no centre of pressure ever jumps.
+        // The mean force is the weight of 70 kg, and the centre of pressure never jumps.
         let mean = whole / length as f32;
         assert!((mean / 686.7 - 1.0).abs() < 0.06, "{mean} N");
         assert!(jump < 0.006, "{jump} m in a millisecond");
-        // Steps are those of the seed.
+        // A different seed gives different steps.
         let other = walk(someone().rolling_as_people_do(4));
         loads.clear();
         feet.clear();
@@ -199,7 +198,7 @@ mod tests {
         feet.iter().map(|foot| foot.centre_of_pressure() * foot.force.0).sum::<Vec2>() / total(feet)
     }
 
-    /// No foot moves while it is pressed on, unless it is meant to.
+    /// Checks that no loaded foot moves, unless a move slides it.
     fn assert_no_slip(frames: &[Vec<Foot>]) {
         for pair in frames.windows(2) {
             for (before, after) in pair[0].iter().zip(&pair[1]) {
@@ -233,12 +232,12 @@ mod tests {
         person.wait(Duration::from_millis(300));
         let frames = play(person);
         assert_no_slip(&frames);
-        // 1.3 m are two steps of 65 cm: the right foot, the left foot, the right foot beside it.
+        // 1.3 m are two steps of 65 cm: the right foot, the left foot, and the right foot beside it.
         let last = frames.last().unwrap();
         let middle = (last[0].position + last[1].position) * 0.5;
         assert!(middle.distance(Vec2::new(1.6, 0.9)) < 0.03, "{middle}");
         assert!((last[0].position.y - last[1].position.y - 0.16).abs() < 1e-3, "{last:?}");
-        // Facing east the left foot is the northern one.
+        // For a person facing east, the left foot is the northern one.
         assert!(last[0].left && !last[1].left, "{last:?}");
         for feet in &frames {
             let share = total(feet) / 686.7;
@@ -253,7 +252,7 @@ mod tests {
         let mut person = standing_at(0.2, 0.9, EAST);
         person.walk(&[Vec2::new(2.3, 0.9)]).unwrap();
         let frames = play(person);
-        // Three steps, the right foot first: the left foot's step is the one in the middle of the walk.
+        // Three steps, the right foot first: the left foot makes the step in the middle of the walk.
         let landing = (1..frames.len())
             .find(|&k| frames[k - 1][0].force.0 <= 0.0 && frames[k][0].force.0 > 0.0)
             .unwrap();
@@ -286,7 +285,7 @@ mod tests {
             assert_eq!(feet[0].position, frames[0][0].position);
             assert!((total(feet) - 686.7).abs() < 0.1, "{}", total(feet));
         }
-        // Both feet are back where they were.
+        // Both feet are back in place.
         let last = frames.last().unwrap();
         assert!(last[1].position.distance(frames[0][1].position) < 1e-6);
         assert!((last[1].force.0 - 343.0).abs() < 30.0);

@@ -1,4 +1,4 @@
-//! What happens where tiles meet: plates of unequal height, and force that leaks to the tile beside.
+//! Seams between tiles: plates of unequal height, and crosstalk to the adjacent tile.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -7,23 +7,22 @@ use smallvec::SmallVec;
 use super::foot::Part;
 use crate::floor::{Corner, Geometry, TileId};
 
-/// How the tiles of a simulated floor meet.
+/// Seams of a simulated floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeamConfig {
-    /// Largest deviation of what a tile carries of a load that it shares with others, as a share (0 to 0.9).
+    /// Maximum deviation of a tile's share of a load that several tiles carry, as a share (0 to 0.9).
     ///
-    /// Plates differ in height. A sole under a person gives way by some 10 mm (heel pads by 9 mm at
-    /// one to two body weights, De Clercq et al. 1994); a plate that is 1 mm higher thus presses about
-    /// a tenth harder.
+    /// Plates differ in height. A person's sole compresses by some 10 mm (heel pads by 9 mm at one to two body
+    /// weights, De Clercq et al. 1994); a plate that is 1 mm higher thus carries about a tenth more.
     pub unevenness: f32,
-    /// Share (0 to 0.2) of what presses a corner that each corner next to it, across a seam, carries
-    /// instead: a covering or a filled seam bridges the gap. A corner has one such neighbour at the floor's
-    /// edge and two inside it.
+    /// Share (0 to 0.2) of a corner's force that each adjacent corner across a seam carries instead, because a
+    /// covering or a filled seam bridges the gap. A corner has one such neighbour at the floor's edge and two inside
+    /// it.
     pub crosstalk: f32,
 }
 
 impl SeamConfig {
-    /// Plates of one height that don't touch.
+    /// Plates of equal height that do not touch.
     #[must_use]
     pub const fn even() -> Self {
         Self { unevenness: 0.0, crosstalk: 0.0 }
@@ -36,17 +35,17 @@ type Across = SmallVec<[(usize, usize); 2]>;
 /// The seams of one floor.
 #[derive(Clone, Debug)]
 pub(super) struct Seams {
-    /// How hard each tile presses back, about 1; empty for a level floor.
+    /// Relative stiffness of each tile, about 1; empty for a level floor.
     lift: Vec<f32>,
     crosstalk: f32,
     /// The corners across the seams, by tile and corner; empty without crosstalk.
     across: Vec<[Across; 4]>,
-    /// Force on its way: from a tile's corner to another's, in newtons.
+    /// Forces to move: tile and corner of the source, tile and corner of the destination, newtons.
     leaks: Vec<(usize, usize, usize, usize, f32)>,
 }
 
 impl Seams {
-    /// Seams of this floor; `seed` draws the heights of the plates, and draws nothing else.
+    /// Creates the seams of this floor; `seed` draws only the heights of the plates.
     pub(super) fn new(geometry: &Geometry, config: &SeamConfig, seed: u64) -> Self {
         let unevenness = config.unevenness.clamp(0.0, 0.9);
         let crosstalk = config.crosstalk.clamp(0.0, 0.2);
@@ -67,7 +66,7 @@ impl Seams {
         }
     }
 
-    /// Shares one load among its tiles by their heights; the whole stays the same.
+    /// Distributes one load among its tiles by their heights; the total stays the same.
     pub(super) fn share(&self, parts: &mut [Part]) {
         if parts.len() < 2 || self.lift.is_empty() {
             return;
@@ -85,7 +84,8 @@ impl Seams {
         }
     }
 
-    /// Lets force leak from the corners of the `loaded` tiles to those across the seams, which then count as loaded.
+    /// Moves the crosstalk from the corners of the `loaded` tiles to those across the seams, and adds their tiles to
+    /// `loaded`.
     pub(super) fn leak(&mut self, forces: &mut [[f32; 4]], rest: &[[f32; 4]], loaded: &mut Vec<usize>) {
         if self.across.is_empty() {
             return;
@@ -107,7 +107,7 @@ impl Seams {
     }
 }
 
-/// The corners of other tiles that lie right across the seams from one, by tile index and corner index.
+/// Corners of other tiles directly across the seams from one corner, by tile index and corner index.
 fn across(geometry: &Geometry, tile: TileId, corner: Corner) -> Across {
     let direction = corner.direction();
     let mirrored = |x: f32, y: f32| {
@@ -162,7 +162,7 @@ mod tests {
     #[test]
     fn a_filled_seam_hands_on_its_share_and_takes_it_back() {
         let mut sim = floor(SeamConfig { crosstalk: 0.02, ..SeamConfig::even() });
-        // The middle of tile (1, 1): each corner carries 150 N, and two corners lie across its seams.
+        // The centre of tile (1, 1): each corner carries 150 N, and two corners lie across its seams.
         sim.step_under([disc(Vec2::splat(0.456))]);
         let tile = |column: usize, row: usize| 6 * row + column;
         assert!((net(&sim, tile(1, 1)) - 600.0 * 0.96).abs() < 0.1, "{}", net(&sim, tile(1, 1)));

@@ -8,7 +8,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::floor::{Calibration, Exponential};
 use crate::units::Newtons;
 
-/// How good the sensors of a simulated floor are.
+/// Tolerances of the sensors of a simulated floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartConfig {
     /// The law of an average part.
@@ -17,24 +17,24 @@ pub struct PartConfig {
     pub a_spread: f32,
     /// Largest deviation of a part's exponent b from nominal, as a share (0 to 0.5).
     pub b_spread: f32,
-    /// How far the parts are from any exponential law: root mean square of the force error
-    /// that is left after the best fit, on average over the parts, as a share of full scale (0 to 0.08).
+    /// Mean deviation of the parts from an exponential law: root mean square of the force error after the best fit,
+    /// averaged over the parts, as a share of full scale (0 to 0.08).
     pub deviation: f32,
-    /// Standard deviation of the noise, in volts; counts have half a count of it at least, as converters do.
+    /// Standard deviation of the noise, in volts; counts have noise of at least half a count, as with real
+    /// converters.
     pub noise_v: f32,
-    /// Width of the hysteresis loop: how much more a falling force reads than a rising one, as a share.
+    /// Width of the hysteresis loop: relative difference between the readings of a falling and a rising force.
     pub hysteresis: f32,
     /// Growth of the reading under a steady force per decade of time from 0.1 to 1000 s, as a share.
     pub creep: f32,
-    /// The force that no part's reading ever quite reaches, in newtons: `f / (1 + (f / limit)^6)^(1/6)`
-    /// is read of a force `f`, 11 % too little at the limit and 3 % at eight tenths of it. Infinite where
-    /// only the converter ends the range.
+    /// Upper limit of a part's reading, in newtons: a force `f` reads as `f / (1 + (f / limit)^6)^(1/6)`, which is 11
+    /// % too little at the limit and 3 % at eight tenths of it. Infinite if only the converter limits the range.
     pub saturation_n: f32,
 }
 
 impl Default for PartConfig {
-    /// Parts as the paper has them: 25 % and 5 % from part to part, about 5 %
-    /// left after calibration, 2 mV of noise, no hysteresis, no creep.
+    /// The paper's parts: 25 % and 5 % from part to part, about 5 % error after calibration, 2 mV of noise, no
+    /// hysteresis, no creep.
     fn default() -> Self {
         Self {
             nominal: Exponential::NOMINAL,
@@ -50,7 +50,7 @@ impl Default for PartConfig {
 }
 
 impl PartConfig {
-    /// Parts that all follow the nominal law without noise; only the converter limits them.
+    /// Parts that all follow the nominal law without noise; only the converter limits their range.
     #[must_use]
     pub const fn exact() -> Self {
         Self {
@@ -72,26 +72,26 @@ impl PartConfig {
         Self { hysteresis: 0.1, creep: 0.05, ..self }
     }
 
-    /// Whether a reading depends on what came before.
+    /// True if a reading depends on earlier loads.
     pub(super) const fn has_memory(&self) -> bool {
         self.hysteresis > 0.0 || self.creep > 0.0
     }
 }
 
-/// Something wrong with one sensor.
+/// Fault of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SensorFault {
-    /// It goes on reading what it read when the fault struck.
+    /// The reading stays at its value from the onset of the fault.
     Stuck,
-    /// The line is broken: no current, 0 counts.
+    /// The line is open: no current, 0 counts.
     Open,
     /// The line is short-circuited: full scale.
     Short,
-    /// It is pressed by something other than the plate, in newtons; may be negative.
+    /// A constant additional force on the sensor, in newtons; may be negative.
     Offset(Newtons),
 }
 
-/// One part, as it came out of the box.
+/// One part with its tolerances.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     pub(super) law: Exponential,
@@ -101,7 +101,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// The next part out of the box.
+    /// Draws the next part.
     pub(super) fn draw(config: &PartConfig, rng: &mut Pcg64Mcg) -> Self {
         let mut spread = |share: f32| 1.0 + rng.random_range(-1.0f32..=1.0) * share;
         let law = Exponential {
@@ -113,15 +113,15 @@ impl Part {
         Self { law, deviation: Deviation::draw(law, config.deviation.clamp(0.0, 0.08), rng), saturation_n }
     }
 
-    /// Output under a steady force, before noise and converter: 0 volts below the
-    /// part's threshold, more than full scale where the converter saturates.
+    /// Returns the output under a steady force, before noise and converter: 0 volts below the part's threshold, more
+    /// than full scale if the converter saturates.
     pub(super) fn volts(&self, force: f32) -> f32 {
         let force = self.bounded(force);
         let apparent = force * self.deviation.at(force);
         if apparent > self.law.a_n { (apparent / self.law.a_n).ln() / self.law.b_per_volt } else { 0.0 }
     }
 
-    /// What of a force gets through as the part saturates.
+    /// Effective force with soft saturation: `f / (1 + (f / limit)^6)^(1/6)`.
     fn bounded(&self, force: f32) -> f32 {
         if self.saturation_n.is_infinite() || force <= 0.0 {
             return force;
@@ -129,9 +129,9 @@ impl Part {
         force / (1.0 + (force / self.saturation_n).powi(6)).powf(1.0 / 6.0)
     }
 
-    /// The force from which on the converter reads full scale, or at which the part itself saturates.
+    /// Force at which the converter reaches full scale, or at which the part itself saturates.
     pub(super) fn capacity(&self) -> f32 {
-        // The apparent force grows with the force, so halving an interval finds the crossing.
+        // The apparent force grows with the force, so bisection finds the crossing.
         let (mut low, mut high) = (0.0, 4.0 * self.law.newtons(Calibration::volts(u16::MAX)));
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
@@ -141,29 +141,31 @@ impl Part {
     }
 }
 
-/// The converter's reading of `volts`; 0 and full scale are its ends.
+/// The converter's reading of `volts`, clamped to 0 and full scale.
 pub(super) fn counts(volts: f32) -> u16 {
-    // A cast of a number past the ends gives the end.
+    // The cast saturates.
     (volts * (f32::from(u16::MAX) / Calibration::FULL_SCALE_VOLTS)).round() as u16
 }
 
-/// A smooth curve by which one part departs from its exponential law.
+/// Smooth deviation of one part from its exponential law: a factor `exp(A cos(w s^(3/4) + phase))` at the share `s`
+/// of the full range.
 ///
-/// About two waves over the range, a little denser at the light end. Chosen among
-/// waves because the best fit then errs about as much for light loads as for heavy ones.
+/// About two waves over the range, a little denser at the light end. With this shape the error after the best fit is
+/// about the same for light and for heavy loads.
 #[derive(Clone, Copy, Debug)]
 struct Deviation {
     /// Inverse of the force at full scale.
     per_full: f32,
-    /// Of the logarithm of the force.
+    /// Amplitude `A` of the logarithm of the force.
     amplitude: f32,
-    /// Radians over the whole range: fewer would hide in the fit's two parameters.
+    /// `w`: radians over the whole range. The fit's two parameters would follow a lower value.
     wave: f32,
     phase: f32,
 }
 
 impl Deviation {
-    /// A curve that leaves about `residual` after the best fit, a fifth more or less from part to part.
+    /// Draws a curve that leaves an error of about `residual` after the best fit, varying by a fifth from part to
+    /// part.
     fn draw(law: Exponential, residual: f32, rng: &mut Pcg64Mcg) -> Self {
         let full = law.newtons(Calibration::volts(u16::MAX));
         let mut deviation = Self { per_full: 1.0 / full, amplitude: 0.0, wave: 0.0, phase: 0.0 };
@@ -171,7 +173,7 @@ impl Deviation {
             return deviation;
         }
         let target = residual * rng.random_range(0.8..=1.2);
-        // With some phases a reading would have to fall under a growing force to leave that much. Draw anew.
+        // For some phases, so large an error would need a reading that falls while the force grows. Draw again.
         for _ in 0..32 {
             deviation.wave = rng.random_range(10.0..13.0);
             deviation.phase = rng.random_range(0.0..TAU);
@@ -190,13 +192,13 @@ impl Deviation {
         (self.amplitude * self.angle(force * self.per_full).cos()).exp()
     }
 
-    /// The wave's angle at a share of the full range.
+    /// Angle of the wave at a share of the full range.
     fn angle(&self, share: f32) -> f32 {
         let root = share.max(0.0).sqrt();
         self.wave * root * root.sqrt() + self.phase
     }
 
-    /// How steeply, per unit of amplitude, the wave falls over the logarithm of the force where it falls most.
+    /// Maximum downward slope of the wave over the logarithm of the force, per unit of amplitude; at least 1.
     fn steepest(&self) -> f32 {
         (1..=64)
             .map(|step| step as f32 / 64.0)
@@ -204,11 +206,11 @@ impl Deviation {
             .fold(1.0, f32::max)
     }
 
-    /// Root mean square, as a share of full scale and evenly over force, of what no
-    /// change of the law's a and b can follow (to first order).
+    /// Root mean square of the deviation after the best change of the law's a and b (to first order), as a share of
+    /// full scale, evenly over force.
     fn left_after_fit(&self, law: Exponential, full: f32) -> f32 {
         const STEPS: usize = 64;
-        // What a change of ln a and of b does to the force, and what the deviation does.
+        // For each force: effect of a change of ln a, effect of a change of b, and the deviation.
         let rows: [[f64; 3]; STEPS] = std::array::from_fn(|step| {
             let share = (step as f64 + 0.5) / STEPS as f64;
             let force = full * share as f32;
@@ -222,12 +224,12 @@ impl Deviation {
     }
 }
 
-/// What one sensor remembers of the past.
+/// Memory of one sensor.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// Logarithm of the force that the loop's lagging part has reached.
+    /// Logarithm of the force at the lagging part of the hysteresis loop.
     lag: Option<f32>,
-    /// Force followed over 0.1, 1, 10, 100 and 1000 seconds.
+    /// Force, low-pass filtered over 0.1, 1, 10, 100 and 1000 seconds.
     crept: [f64; 5],
 }
 
@@ -235,17 +237,17 @@ pub(super) struct Memory {
 const CREEP_MS: [f64; 5] = [1e2, 1e3, 1e4, 1e5, 1e6];
 
 impl Memory {
-    /// The memory of a sensor that has always been pressed with `force`.
+    /// Memory of a sensor after an infinite time under `force`.
     pub(super) fn settled(force: f32) -> Self {
         Self { lag: Some(force.max(LEAST_FORCE).ln()), crept: [f64::from(force.max(0.0)); 5] }
     }
 
-    /// The force the sensor feels, so many milliseconds later (fewer than 100), when `force` presses it.
+    /// Returns the effective force after `elapsed_ms` (fewer than 100 ms) under `force`.
     ///
     /// # Source
-    /// Hysteresis: half of the logarithm of the force follows with a play, which
-    /// is the elementary operator of the Prandtl-Ishlinskii model. Creep: five
-    /// first-order followers a decade apart sum to a straight line over log time.
+    /// Hysteresis: half of the logarithm of the force follows with a play, the elementary operator of the
+    /// Prandtl-Ishlinskii model. Creep: five first-order low-pass filters a decade apart sum to a straight line over
+    /// log time.
     pub(super) fn felt(&mut self, force: f32, elapsed_ms: u32, config: &PartConfig) -> f32 {
         let pressed = force.max(0.0);
         let mut crept = 0.0;
@@ -255,7 +257,7 @@ impl Memory {
         }
         let grown = pressed + config.creep * crept as f32;
         let log = grown.max(LEAST_FORCE).ln();
-        // Half the reading lags behind by `play`, up or down: the loop is then `play` wide.
+        // Half of the reading lags by `play` in either direction, so the loop is `play` wide.
         let play = config.hysteresis;
         let lag = self.lag.map_or(log, |lag| lag.clamp(log - play, log + play));
         self.lag = Some(lag);
@@ -263,10 +265,10 @@ impl Memory {
     }
 }
 
-/// Below this no part reads anything, in newtons.
+/// Minimum force in logarithms (N); no part has a reading below it.
 const LEAST_FORCE: f32 = 1e-3;
 
-/// A draw from about the normal distribution: the sum of four even ones, never beyond 3.5.
+/// Draws approximately from the standard normal distribution: the sum of four uniform values, never beyond 3.5.
 pub(super) fn normal(rng: &mut Pcg64Mcg) -> f32 {
     let bits = rng.next_u64();
     let sum = (bits & 0xffff) + (bits >> 16 & 0xffff) + (bits >> 32 & 0xffff) + (bits >> 48);

@@ -1,36 +1,37 @@
-//! The way of a foot that slides over the floor under load.
+//! Path of a foot that slides over the floor under load.
 
 use glam::Vec2;
 
 use crate::floor::Rect;
 use crate::widget::{DialSpec, Track};
 
-/// How far from a dial's middle a foot goes round it, in halves of its smaller side: well off the hub, well inside.
+/// Radius of a drag around a dial, relative to half of the dial's shorter side: well off the hub, well inside the
+/// rim.
 const ROUND: f32 = 0.6;
 
-/// The way of a foot that slides over the floor, in floor metres.
+/// Path of a foot that slides over the floor, in floor metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slide {
-    /// Straight from one place to another.
+    /// A straight line.
     Line {
-        /// Where it is put down.
+        /// Start.
         from: Vec2,
-        /// Where it lets go.
+        /// End.
         to: Vec2,
     },
-    /// Round a centre.
+    /// An arc around a centre.
     Arc {
-        /// Where it is put down.
+        /// Start.
         from: Vec2,
-        /// What it goes round.
+        /// Centre of the arc.
         centre: Vec2,
-        /// How far, in radians counter-clockwise; may be several turns.
+        /// Angle of the arc, in radians counter-clockwise; may be several turns.
         sweep: f32,
     },
 }
 
 impl Slide {
-    /// Along the track of a slider on `area`, from one share (0 to 1) of it to another.
+    /// Path along the track of a slider on `area`, from one share (0 to 1) of it to another.
     pub(super) fn along(track: Track, area: Rect, from: f32, to: f32) -> Self {
         let size = area.size();
         let at = |share: f32| area.min + track.place_at(share, size) * size;
@@ -43,7 +44,8 @@ impl Slide {
         }
     }
 
-    /// Round a dial on `area`, from where its needle is at the share `from`: clockwise to more.
+    /// Path around a dial on `area`, starting at the needle's place for the share `from`; greater shares are
+    /// clockwise.
     pub(super) fn round(spec: &DialSpec, area: Rect, from: f32, to: f32) -> Self {
         let turn = spec.turn_degrees.to_radians();
         let angle = std::f32::consts::FRAC_PI_2 + turn * (0.5 - from);
@@ -52,7 +54,7 @@ impl Slide {
         Self::Arc { from: centre + Vec2::from_angle(angle) * radius, centre, sweep: turn * (from - to) }
     }
 
-    /// Where the foot is a share (0 to 1) of the way along.
+    /// Returns the position at a share (0 to 1) of the path.
     #[must_use]
     pub fn at(self, share: f32) -> Vec2 {
         match self {
@@ -63,7 +65,7 @@ impl Slide {
         }
     }
 
-    /// How far it is, in metres.
+    /// Returns the length in metres.
     #[must_use]
     pub fn length(self) -> f32 {
         match self {
@@ -72,7 +74,7 @@ impl Slide {
         }
     }
 
-    /// Whether all of its numbers are finite.
+    /// True if all numbers are finite.
     pub(super) fn is_finite(self) -> bool {
         match self {
             Self::Line { from, to } => from.is_finite() && to.is_finite(),
@@ -80,7 +82,7 @@ impl Slide {
         }
     }
 
-    /// The same way `by` metres beside it.
+    /// The same path, shifted by `by` metres.
     pub(super) fn shifted(self, by: Vec2) -> Self {
         match self {
             Self::Line { from, to } => Self::Line { from: from + by, to: to + by },

@@ -1,4 +1,4 @@
-//! The slow wandering of somebody who stands.
+//! Slow sway of a standing person.
 
 use std::f32::consts::TAU;
 
@@ -7,10 +7,10 @@ use rand_pcg::Pcg64Mcg;
 
 use super::curve::Curve;
 
-/// One person's sway.
+/// Sway of one person: a sum of three sines in each direction.
 #[derive(Clone, Debug)]
 pub(super) struct Sway {
-    /// 1 while standing, 0 while doing something.
+    /// 1 while standing, 0 during other moves.
     pub(super) strength: Curve,
     phases: [f32; 6],
 }
@@ -21,10 +21,9 @@ impl Sway {
         Self { strength: Curve::default(), phases: std::array::from_fn(|_| rng.random_range(0.0..TAU)) }
     }
 
-    /// Weight shifted to the left foot, in body weights, and roll added to both feet.
+    /// Returns the weight shifted to the left foot, in body weights, and the roll added to both feet.
     ///
-    /// Together they move the body's centre of pressure by a few millimetres, at
-    /// 0.1 to 0.7 Hz, as that of people who stand quietly.
+    /// Together they move the body's centre of pressure by a few millimetres, at 0.1 to 0.7 Hz, as in quiet standing.
     pub(super) fn at(&self, at_s: f64) -> (f32, f32) {
         let strength = self.strength.at(at_s);
         let wave =
@@ -46,7 +45,7 @@ mod tests {
         let shifts: Vec<f32> = (0..60_000).map(|ms| sway.at(f64::from(ms) * 1e-3).0).collect();
         let (low, high) = shifts.iter().fold((0.0f32, 0.0f32), |(l, h), &s| (l.min(s), h.max(s)));
         assert!((0.02..0.08).contains(&(high - low)), "{low} to {high} of the weight");
-        // Never more than 0.1 body weights a second: that is standing and not stepping.
+        // At most 0.1 body weights per second: faster shifts would be steps.
         assert!(shifts.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 1e-4));
         sway.strength.rest(60.0, 0.0);
         assert_eq!(sway.at(61.0), (0.0, 0.0));

@@ -1,4 +1,4 @@
-//! What one foot does over a whole performance: where it is, what it carries, how it rolls.
+//! Motion of one foot over a whole performance: pose, load and roll.
 
 use std::f32::consts::{PI, TAU};
 
@@ -8,7 +8,7 @@ use super::curve::Curve;
 use super::rolling::Rolling;
 use super::slide::Slide;
 
-/// Where a shoe is and where its toes point (radians counter-clockwise from north).
+/// Position of a shoe, and direction of its toes (radians counter-clockwise from north).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Pose {
     pub(super) position: Vec2,
@@ -16,7 +16,7 @@ pub(super) struct Pose {
 }
 
 impl Pose {
-    /// The pose a share (0 to 1) of the way from `self` to `other`, turning the shorter way round.
+    /// Interpolates a share (0 to 1) from `self` to `other`, turning the shorter way.
     fn towards(self, other: Self, share: f32) -> Self {
         Self {
             position: self.position.lerp(other.position, share),
@@ -30,28 +30,28 @@ pub(super) fn turn_between(from: f32, to: f32) -> f32 {
     (to - from + PI).rem_euclid(TAU) - PI
 }
 
-/// The unit vector that a heading points along.
+/// Unit vector in the direction of a heading.
 pub(super) fn forward(heading: f32) -> Vec2 {
     Vec2::from_angle(heading).rotate(Vec2::Y)
 }
 
-/// The way of a move from where the foot is to where it goes.
+/// Path of a move from its start to its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Path {
     Straight,
-    /// By so many radians counter-clockwise round a centre, without turning.
+    /// Around a centre by `sweep` radians counter-clockwise, with constant heading.
     Round {
         centre: Vec2,
         sweep: f32,
     },
 }
 
-/// How a move spends its time.
+/// Time profile of a move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Profile {
-    /// As a limb swings: slow, fast, slow (least jerk).
+    /// Minimum jerk, as a limb swings: slow, fast, slow.
     Swing,
-    /// Steadily, with a ramp of this many seconds at both ends.
+    /// Constant speed, with a ramp of `ramp_s` seconds at both ends.
     Steady { ramp_s: f32 },
 }
 
@@ -65,34 +65,34 @@ struct Move {
     profile: Profile,
 }
 
-/// One foot's part in a performance.
+/// Track of one foot in a performance.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Track {
     /// Force on the floor, in body weights.
     pub(super) load: Curve,
-    /// Heel (0) to toes (1).
+    /// From the heel (0) to the toes (1).
     pub(super) roll: Curve,
-    /// How far it rolls as its present step does (1) or as a foot that stands (0).
+    /// Blend of the pressure: as in the current step (1) or as in standing (0).
     pub(super) stepping: Curve,
-    /// Steps by the moments they begin; none for a foot that does not roll as people do.
+    /// Steps by their start times; empty for a foot with the even roll.
     pub(super) steps: Vec<(f64, Rolling)>,
     moves: Vec<Move>,
 }
 
 impl Track {
-    /// Puts the foot somewhere at once.
+    /// Places the foot at once.
     pub(super) fn put(&mut self, at_s: f64, pose: Pose) {
         let (path, profile) = (Path::Straight, Profile::Swing);
         self.moves.push(Move { start_s: at_s, end_s: at_s, from: pose, to: pose, path, profile });
     }
 
-    /// Moves the foot from wherever it then is; moves come in order and don't overlap.
+    /// Moves the foot from its last pose; moves must be in order and must not overlap.
     pub(super) fn go(&mut self, start_s: f64, end_s: f64, to: Pose, profile: Profile) {
         let from = self.moves.last().map_or(to, |last| last.to);
         self.moves.push(Move { start_s, end_s, from, to, path: Path::Straight, profile });
     }
 
-    /// Slides the foot from where it then is along `way`, which begins there, without turning.
+    /// Slides the foot from its last pose along `way`, which starts there, with constant heading.
     pub(super) fn slide(&mut self, start_s: f64, end_s: f64, way: Slide, profile: Profile) {
         let from = self.moves.last().map_or(Pose::default(), |last| last.to);
         let to = Pose { position: way.at(1.0), ..from };
@@ -103,13 +103,13 @@ impl Track {
         self.moves.push(Move { start_s, end_s, from, to, path, profile });
     }
 
-    /// The step that it is in, or was in last.
+    /// Returns the current or the last step.
     pub(super) fn step(&self, at_s: f64) -> Option<&Rolling> {
         let begun = self.steps.partition_point(|(start_s, _)| *start_s <= at_s);
         begun.checked_sub(1).and_then(|last| self.steps.get(last)).map(|(_, step)| step)
     }
 
-    /// Where the foot is; `None` before it was put anywhere.
+    /// Returns the pose; `None` before the foot is first placed.
     pub(super) fn pose(&self, at_s: f64) -> Option<Pose> {
         let begun = self.moves.partition_point(|step| step.start_s <= at_s);
         begun.checked_sub(1).and_then(|last| self.moves.get(last)).map(|step| step.at(at_s))

@@ -1,4 +1,4 @@
-//! A visitor who uses every control of a layout, whatever layout it is.
+//! A visitor who uses every control of any layout.
 
 use std::collections::VecDeque;
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -15,49 +15,53 @@ use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
 use crate::widget::{Axis, Behaviour, Guard, WidgetId};
 
-/// How long the floor stays empty at first: enough for a tare.
+/// Time that the floor stays empty at first: enough for a tare.
 const EMPTY: Duration = Duration::from_millis(1200);
 
-/// What a foot presses with over what a control asks for, and at least; a person leaves some weight on the other foot.
+/// Force of a press as a multiple of the control's threshold, its minimum, and its maximum as a share of the weight:
+/// some weight stays on the other foot.
 const FIRMLY: f32 = 1.6;
 const LEAST: Newtons = Newtons(90.0);
 const MOST_SHARE: f32 = 0.8;
 
-/// How long a foot stays on a control beyond its dwell.
+/// Time that a foot stays on a control in addition to its dwell time.
 const HOLD: Duration = Duration::from_millis(350);
 
-/// How long one stands before one works something: until the weight rests.
+/// Time that a person stands before using a control, until the weight settles.
 pub(super) const PAUSE: Duration = Duration::from_millis(500);
 
-/// A slide along a slider, in metres per second.
+/// Speed of a slide along a slider, in metres per second.
 const SLIDE_M_S: f32 = 0.3;
 
-/// Distances from a control at which a person who works it stands, in metres; the foot reaches 0.85 m.
+/// Distances from a control at which a person stands to use it, in metres; the foot reaches 0.85 m.
 pub(super) const AWAY_M: [f32; 5] = [0.45, 0.55, 0.65, 0.36, 0.75];
 
-/// Directions from a control in which the person stands, as turns clockwise from south: who comes from the south
-/// looks north.
+/// Directions from a control in which the person stands, as turns clockwise from south; a person south of the control
+/// faces north.
 const ASIDE_RAD: [f32; 8] = [0.0, 0.5, -0.5, 1.0, -1.0, FRAC_PI_2, -FRAC_PI_2, PI];
 
-/// Steps aside up to here, in metres; walks farther ways.
+/// Maximum distance of a sidestep (m); the person walks longer distances.
 const SIDESTEP_M: f32 = 1.5;
 
-/// Ground that one who stands needs to either side, in metres.
+/// Half of the space that a standing person needs (m).
 const STANDING_M: Vec2 = Vec2::new(0.15, 0.16);
 
-/// Somebody's visit to the controls of a layout.
+/// A visit of one person to the controls of a layout.
 #[derive(Clone, Debug)]
 pub struct Visit {
-    /// What the visitor does.
+    /// Script of the visitor.
     pub script: Script,
-    /// The controls that nobody reaches: on pages without a way to them, or too far from any place to stand.
+    /// Controls that the visitor does not reach: on pages without a control that leads to them, or too far from any
+    /// place to stand.
     pub missed: Vec<WidgetId>,
 }
 
-/// One person of 70 kg comes from the south, uses the controls of `layout` in its order, page by page, and leaves.
+/// Simulates one person of 70 kg who comes from the south, uses the controls of `layout` in their order, page by
+/// page, and leaves.
 ///
-/// Buttons are pressed, sliders dragged, switches flipped; what asks to be confirmed is pressed twice. The visitor
-/// stands beside controls and off the regions where there is room. The same layout always gets the same visit.
+/// The visitor presses buttons, drags sliders, flips switches, and presses controls with confirmation twice. The
+/// visitor stands beside controls and outside the regions where there is room. The same layout always gives the same
+/// visit.
 #[must_use]
 pub fn visit(layout: &Layout, geometry: &Geometry) -> Visit {
     let mut visitor = Visitor {
@@ -91,7 +95,7 @@ struct Visitor<'a> {
 }
 
 impl Visitor<'_> {
-    /// Uses what is on the page that is shown, but what leads to another one.
+    /// Uses the controls of the current page, except those that lead to another page.
     fn use_page(&mut self) {
         for (index, widget) in self.layout.widgets.iter().enumerate() {
             let stays = widget.goto.is_none_or(|page| page == self.page);
@@ -101,12 +105,13 @@ impl Visitor<'_> {
         }
     }
 
-    /// Goes one page nearer to one that has something unused; false if there is none.
+    /// Goes one page nearer to a page with an unused control; false if there is none, or if the control that leads
+    /// there is out of reach.
     fn turn_page(&mut self) -> bool {
         let Some(first) = self.way_on() else { return false };
         let Some(widget) = self.layout.widgets.get(first) else { return false };
         let is_done = self.work(widget);
-        // Marked also if it can't be reached, or it would be tried for ever.
+        // A control out of reach stays unused; the visit then ends.
         self.used[first] = is_done;
         if let (true, Some(page)) = (is_done, widget.goto) {
             self.page = page;
@@ -114,7 +119,8 @@ impl Visitor<'_> {
         is_done
     }
 
-    /// The control that is the first step to a page with something unused, or is itself an unused way.
+    /// Breadth-first search: the control that is the first step to a page with an unused control, or is itself an
+    /// unused page control.
     fn way_on(&self) -> Option<usize> {
         let mut seen = vec![self.page];
         let mut ahead: VecDeque<(usize, Option<usize>)> = VecDeque::from([(self.page, None)]);
@@ -136,7 +142,7 @@ impl Visitor<'_> {
         None
     }
 
-    /// Goes where the control can be worked and works it; false if there is no such place.
+    /// Goes to a place within reach of the control and uses it; false if there is no such place.
     fn work(&mut self, widget: &Widget) -> bool {
         for place in self.places(widget) {
             let mut tried = self.performance.clone();
@@ -150,7 +156,7 @@ impl Visitor<'_> {
         false
     }
 
-    /// Where one could stand, the best place first.
+    /// Possible places to stand, the best first.
     fn places(&self, widget: &Widget) -> Vec<Vec2> {
         let target = widget.area.centre();
         let here = self.performance.place();
@@ -180,7 +186,7 @@ impl Visitor<'_> {
             match &widget.behaviour {
                 Behaviour::Slider(slider) => {
                     let way = |from, to| Slide::along(slider.track, widget.area, from, to);
-                    // What is too long for one reach is dragged about its middle.
+                    // A track too long for one reach is dragged around its middle.
                     performance
                         .drag(way(0.25, 0.75), SLIDE_M_S, force)
                         .or_else(|_| performance.drag(way(0.4, 0.6), SLIDE_M_S, force))?;
@@ -192,7 +198,7 @@ impl Visitor<'_> {
                 Behaviour::Dial(dial) => {
                     performance.drag(Slide::round(dial, widget.area, 0.4, 0.6), SLIDE_M_S, force)?;
                 }
-                // The middle of one that has several parts may be between them.
+                // The centre of a control with several parts may be between them.
                 Behaviour::Stepper(spec) => performance.press(at(upper(spec.axis)), force, hold)?,
                 Behaviour::Selector(spec) => performance.press(at(upper(spec.axis)), force, hold)?,
                 Behaviour::Lean(_)
@@ -211,21 +217,21 @@ impl Visitor<'_> {
             return;
         };
         let outside = Vec2::new(here.x, self.bounds.min.y - 1.0);
-        // They are there and the place is finite, so both moves can be made.
+        // The person is on the floor and the place is finite, so both moves succeed.
         let left = self.performance.walk(&[outside]).and_then(|()| self.performance.disappear());
         debug_assert!(left.is_ok(), "{left:?}");
     }
 }
 
-/// How somebody works a control.
+/// The way to use a control.
 pub(super) struct Working {
     pub(super) force: Newtons,
     pub(super) hold: Duration,
-    /// How often: what asks to be confirmed, twice.
+    /// Number of presses: two for a control with confirmation.
     pub(super) times: usize,
 }
 
-/// How `person` works `widget` firmly.
+/// Returns how `person` uses `widget` with a firm press.
 pub(super) fn working(widget: &Widget, person: &Person) -> Working {
     let thresholds = widget.behaviour.thresholds().for_weight(Some(person.weight()));
     let force = (thresholds.press * FIRMLY).max(LEAST).0.min((person.weight() * MOST_SHARE).0);
@@ -233,7 +239,7 @@ pub(super) fn working(widget: &Widget, person: &Person) -> Working {
     Working { force: Newtons(force), hold: thresholds.dwell + HOLD, times }
 }
 
-/// Goes to stand at `place`, looking north: from beside the floor, by steps aside, or the long way.
+/// Goes to stand at `place`, facing north: from beside the floor, by sidesteps, or by walking.
 fn go(performance: &mut Performance, place: Vec2, bounds: Rect) -> Result<(), MoveError> {
     match performance.place() {
         None => {
@@ -275,7 +281,7 @@ mod tests {
     use crate::widget::EventKind;
     use crate::wire::SensorPacket;
 
-    /// The controls that the visit does something with, on a floor with ideal sensors.
+    /// The controls that the visit affects, on a floor with ideal sensors.
     fn used(layout: &Layout, visit: &Visit) -> BTreeSet<WidgetId> {
         let floor = Floor::default();
         let mut sim = SimFloor::new(&floor, SimConfig::ideal(), 1);

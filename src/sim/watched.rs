@@ -1,18 +1,18 @@
-//! The feet of a simulated floor, for whoever wants to see them.
+//! Publishes the feet of a simulated floor, for display.
 
 use triple_buffer::{Input, Output, triple_buffer};
 
 use super::foot::{Foot, FootDriver};
 use crate::units::Instant;
 
-/// `driver` as before, and its feet of the last millisecond, to be read on another thread.
+/// Wraps `driver` unchanged, and returns its feet of the last millisecond for another thread to read.
 #[must_use]
 pub fn watched(driver: Box<dyn FootDriver>) -> (WatchedFeet, Output<Vec<Foot>>) {
     let (seen, shown) = triple_buffer(&Vec::new());
     (WatchedFeet { driver, seen }, shown)
 }
 
-/// A driver whose feet somebody looks at.
+/// A driver that publishes its feet.
 pub struct WatchedFeet {
     driver: Box<dyn FootDriver>,
     seen: Input<Vec<Foot>>,

@@ -1,10 +1,10 @@
-//! Ways over the floor along straight lines.
+//! Polylines over the floor.
 
 use glam::Vec2;
 
 use super::track::turn_between;
 
-/// A way along straight lines.
+/// A polyline.
 pub(super) struct Way<'a> {
     points: &'a [Vec2],
     pub(super) length: f32,
@@ -15,7 +15,7 @@ impl<'a> Way<'a> {
         Self { points, length: points.windows(2).map(|pair| pair[0].distance(pair[1])).sum() }
     }
 
-    /// The place after `distance` metres, and the heading of the way there; the last place after its end.
+    /// Returns the point after `distance` metres and the heading there; the last point beyond the end.
     pub(super) fn at(&self, distance: f32) -> (Vec2, f32) {
         let mut left = distance;
         let mut last = (self.points.first().copied().unwrap_or_default(), 0.0);
@@ -35,25 +35,25 @@ impl<'a> Way<'a> {
     }
 }
 
-/// The heading of somebody who moves along `direction`.
+/// Heading of a person who moves along `direction`.
 fn heading_of(direction: Vec2) -> f32 {
     (-direction.x).atan2(direction.y)
 }
 
-/// How sharply the way turns at `at`, in radians.
+/// Angle of the bend at `at`, in radians.
 pub(super) fn bend(from: Vec2, at: Vec2, to: Vec2) -> f32 {
     turn_between(heading_of(at - from), heading_of(to - at)).abs()
 }
 
-/// The points of `points` that its shape needs: no other is farther than `off_m` from the lines between them.
+/// Simplifies a polyline: keeps so many points that no other is farther than `off_m` from the lines between them.
 ///
 /// # Source
-/// Ramer 1972, Douglas and Peucker 1973: of each stretch the point that is farthest from the straight line is kept, and
-/// so on to both sides of it.
+/// Ramer 1972, Douglas and Peucker 1973: keeps the point of each stretch that is farthest from the straight line, and
+/// continues on both sides of it.
 pub(super) fn simplified(points: &[Vec2], off_m: f32) -> Vec<Vec2> {
     let Some(end) = points.len().checked_sub(1) else { return Vec::new() };
     let mut kept = vec![false; points.len()];
-    // Not by calls of itself: a line may be long.
+    // Iterative instead of recursive, because a line may be long.
     let mut stretches = vec![(0, end)];
     while let Some((first, last)) = stretches.pop() {
         (kept[first], kept[last]) = (true, true);
@@ -66,15 +66,15 @@ pub(super) fn simplified(points: &[Vec2], off_m: f32) -> Vec<Vec2> {
     points.iter().zip(kept).filter(|(_, is_kept)| *is_kept).map(|(point, _)| *point).collect()
 }
 
-/// How far `point` is from the straight stretch between two others.
+/// Distance of `point` from the line segment between two others.
 fn distance_from(point: Vec2, from: Vec2, to: Vec2) -> f32 {
     let (along, beside) = (to - from, point - from);
     let share = (beside.dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
     beside.distance(along * share)
 }
 
-/// The points without those that are within `apart_m` of the one kept before; the last one stays, as the only one if
-/// all are.
+/// Removes the points nearer than `apart_m` to the previously kept one, then replaces the last kept point with the
+/// end of the line.
 pub(super) fn spaced(points: &[Vec2], apart_m: f32) -> Vec<Vec2> {
     let mut kept: Vec<Vec2> = Vec::new();
     for point in points {
@@ -113,7 +113,7 @@ mod tests {
         assert_eq!(simplified(&corner, 0.005).len(), 4);
         assert_eq!(simplified(&[Vec2::X], 0.05), [Vec2::X]);
         assert!(simplified(&[], 0.05).is_empty());
-        // A zigzag keeps every point, however many.
+        // A zigzag keeps every point, even with thousands of them.
         let zigzag: Vec<Vec2> = (0..5000).map(|k| Vec2::new(k as f32, (k % 2) as f32)).collect();
         assert_eq!(simplified(&zigzag, 0.05).len(), 5000);
     }

@@ -15,12 +15,12 @@ use crate::widget::{Scale, Track};
 /// Points along a track.
 const POINTS: usize = 48;
 
-/// A slider whose track is an arc or lies at an angle: a broad line that is filled up to the handle.
+/// A slider with a curved or slanted track: a broad line, filled up to the handle.
 pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Track, value: f32) {
     face.draw(scene);
     let size = face.area.size();
     let broad = (0.18 * size.min_element()).clamp(0.016, 0.05);
-    // The handle is where the foot is; a line ends a little before the face does.
+    // The handle is at the foot's place; a line ends a little before the face does.
     let whole = face.widget.area;
     let at = |share: f32| whole.min + track.place_at(share, whole.size()) * whole.size();
     let line = |from: f32, to: f32| {
@@ -28,7 +28,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Tra
     };
     let (low, high) = match track {
         Track::Line { .. } => {
-            // Askew, it comes nearer to the side than to its end.
+            // A slanted line comes nearer to the side of the face than to its end.
             let edge = 1.5 * (0.5 * broad + 0.012) / at(0.0).distance(at(1.0));
             (edge.min(0.4), 1.0 - edge.min(0.4))
         }
@@ -55,7 +55,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Tra
     face.draw_badge(scene);
 }
 
-/// Where the value and the label stand: the middle of an arc, or the corner that a line leaves free.
+/// Position and width of the value and the label: at the centre of an arc, or in the corner that a line leaves free.
 fn words(track: Track, area: Rect, broad: f32) -> (Vec2, f32) {
     match (track, track.circle(area.size())) {
         (_, Some((centre, radius))) => {
@@ -79,7 +79,7 @@ fn write(scene: &mut Scene, face: &Face<'_>, middle: Vec2, room: f32, reading: &
     let mut lettering = Lettering::new(middle, Anchor::Middle, size_m, Ink::solid(face.ink)).strong();
     scene.add_text(lettering, format_args!("{}", reading.text));
     let below = middle.y - 0.006 - CAP_HEIGHT * SMALL_M - 0.25 * SMALL_M;
-    // A badge needs the strip.
+    // A badge needs the strip for itself.
     if face.badge().is_none() && below > face.area.min.y + 0.004 {
         lettering.at.y = below + 0.25 * SMALL_M;
         lettering.size_m = SMALL_M;

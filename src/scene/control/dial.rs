@@ -19,7 +19,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &DialSpec, value: f
     let centre = face.area.centre();
     let radius = 0.5 * face.area.size().min_element() - 0.020;
     let broad = (0.14 * radius).clamp(0.008, 0.020);
-    // More than one turn is shown as one.
+    // A dial of more than one turn is drawn as one turn.
     let turn = spec.turn_degrees.min(330.0);
     let angle = |share: f32| (90.0 + turn * (0.5 - share)).to_radians();
     let at = |share: f32, reach: f32| centre + Vec2::from_angle(angle(share)) * reach;
@@ -48,7 +48,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &DialSpec, value: f
 fn words(scene: &mut Scene, face: &Face<'_>, centre: Vec2, reach: f32, reading: &Reading) {
     let size_m = (1.5 * reach / reading.widest).min(0.046).min(0.9 * reach);
     let label = face.label();
-    // Narrower below, where the needle may stand on either side.
+    // Narrower at the bottom, where the needle may be on either side.
     let room = 1.5 * reach;
     let small = (room / width(label).max(1e-3)).clamp(SMALL_M, 0.032);
     let labelled = !label.is_empty() && reach > 0.035;

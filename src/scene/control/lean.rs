@@ -7,7 +7,7 @@ use super::super::face::Face;
 use super::super::mark::{Anchor, Ink, Paint, Stroke};
 use crate::floor::Rect;
 
-/// Four arrows around the label, lit as far as the foot leans their way, and a dot where it leans.
+/// Four arrows around the label, lit in proportion to the foot's lean in their direction, and a dot at the lean.
 pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, value: Vec2) {
     face.draw(scene);
     let centre = face.area.centre();

@@ -1,4 +1,4 @@
-//! Controls: a face each, and on it what tells their kinds apart.
+//! Controls: each has a face with the features of its kind.
 
 mod curved;
 mod dial;
@@ -23,10 +23,10 @@ use crate::layout::{Colour, Shape, Widget};
 use crate::widget::{Axis, Behaviour, Scale, Track, Value};
 use reading::Reading;
 
-/// A slider's handle.
+/// Colour of a slider's handle.
 const HANDLE: Colour = Colour::rgb(0xff, 0xff, 0xff);
 
-/// Most steps that are shown as ticks.
+/// Maximum number of steps drawn as ticks.
 const MOST_STOPS: f32 = 20.5;
 
 /// Draws every control in the layout's order.
@@ -45,11 +45,11 @@ pub(super) fn draw_all(scene: &mut Scene, view: &View<'_>) {
 fn draw(scene: &mut Scene, view: &View<'_>, widget: &Widget, state: WidgetState) {
     let pressed = f32::from(u8::from(state.pressed));
     let face = |lit: f32| Face::new(widget, state, view.theme, lit);
-    // Faces that show their value keep their colour: only a breath of the lit one.
+    // Faces with a value keep their colour, with only a trace of the lit one.
     let calm = || face(0.12 * pressed).straight();
     match (&widget.behaviour, state.value) {
         (Behaviour::Switch(_), Some(Value::Switch(on))) => {
-            // On is lit; pressing shows half of the other colour under either.
+            // A switch that is on is lit; pressing mixes in 30 % of the other colour.
             let lit = if on { 1.0 - 0.3 * pressed } else { 0.3 * pressed };
             switch::draw(scene, &face(lit), on);
         }
@@ -81,7 +81,7 @@ fn draw(scene: &mut Scene, view: &View<'_>, widget: &Widget, state: WidgetState)
     }
 }
 
-/// How far a face is lit while the force on it is still growing.
+/// Lit share of a face while the force on it is growing.
 fn building(state: WidgetState) -> f32 {
     if state.press_share.is_finite() { 0.25 * state.press_share.clamp(0.0, 1.0) } else { 0.0 }
 }
@@ -92,7 +92,7 @@ fn button(scene: &mut Scene, face: &Face<'_>) {
     face.draw_badge(scene);
 }
 
-/// The label, and a bar that a foot holds down.
+/// A hold control: the label, and a bar that a foot holds down.
 fn hold(scene: &mut Scene, face: &Face<'_>, on: bool) {
     face.draw(scene);
     let area = beside(scene, face, 0.11, 0.62);
@@ -102,7 +102,7 @@ fn hold(scene: &mut Scene, face: &Face<'_>, on: bool) {
     let base = Vec2::new(0.5 * size.x, 0.06 * size.y);
     let south = Vec2::new(area.centre().x, area.min.y + base.y);
     scene.add_line(south - Vec2::new(base.x, 0.0), south + Vec2::new(base.x, 0.0), stroke(0.007));
-    // An arrow that stands on the bar while it is held, and above it otherwise.
+    // An arrow, on the bar while it is held and above it otherwise.
     let tip = south + Vec2::new(0.0, if on { 0.010 } else { 0.24 * size.y });
     let tail = Vec2::new(tip.x, area.max.y);
     scene.add_line(tip, tail, stroke(0.006));
@@ -111,8 +111,8 @@ fn hold(scene: &mut Scene, face: &Face<'_>, on: bool) {
     face.draw_badge(scene);
 }
 
-/// Writes the label, and gives back the place beside or above it for a figure of at most `widest_m`,
-/// `tall` times as deep as wide.
+/// Writes the label, and returns the area beside or above it for a symbol of at most `widest_m`, with the depth
+/// `tall` times the width.
 fn beside(scene: &mut Scene, face: &Face<'_>, widest_m: f32, tall: f32) -> Rect {
     let room = face.room();
     let size = room.size();
@@ -141,17 +141,17 @@ fn beside(scene: &mut Scene, face: &Face<'_>, widest_m: f32, tall: f32) -> Rect 
     Rect::from_centre_size(middle, figure)
 }
 
-/// Depth of the strip at the top of a face that holds its label and its value.
+/// Depth of the strip with label and value at the top of a face.
 fn strip_m(face: &Face<'_>) -> f32 {
     (0.34 * face.area.size().y).min(0.062)
 }
 
-/// Label at the strip's beginning, value at its end.
+/// Writes the label at the strip's start and the value at its end.
 fn caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: &Reading) {
-    // Clear of the round ends of a slider whose kind is round.
+    // Clear of the round ends of a slider with a round shape.
     let inset = 0.022 + 0.5 * (face.radius_m - 0.028).max(0.0);
     let room = strip.size().x - 2.0 * inset;
-    // The label is worth as much room as the value.
+    // The label gets about as much room as the value.
     let part = if face.label().is_empty() { 1.0 } else { 0.46 };
     let size_m = (0.60 * strip.size().y).min(0.036).min(part * room / reading.widest);
     let wide = reading.widest * size_m;
@@ -164,7 +164,7 @@ fn caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: &Reading) {
     scene.add_line_of(lettering, face.label(), end - start, SMALL_M.min(size_m));
 }
 
-/// The shares of the scale where the value may stop between its ends, if they are few enough to be told apart.
+/// Shares of the scale with a stop between its ends; `None` if they are too many to distinguish.
 fn stops(scale: &Scale) -> Option<impl Iterator<Item = f32> + use<>> {
     let width = if scale.step > 0.0 { scale.step } else { scale.detent };
     let stops = scale.range() / width;

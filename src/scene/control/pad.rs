@@ -11,7 +11,7 @@ use super::{HANDLE, caption, stops, strip_m};
 use crate::floor::Rect;
 use crate::widget::{PadSpec, Scale};
 
-/// A caption, and a field with a crosshair where the values are.
+/// A caption, and a field with a crosshair at the values.
 pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &PadSpec, value: Vec2) {
     face.draw(scene);
     let area = face.area;
@@ -21,7 +21,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &PadSpec, value: Ve
     let field = Rect::new(area.min + 0.010, Vec2::new(area.max.x - 0.010, area.max.y - strip));
     let ground = face.colour.mix(face.theme.shadow, 0.13);
     scene.add_box(field, face.radius_m - 0.008, Paint::fill(Ink::solid(ground)));
-    // The control's own edges are what the foot is measured by.
+    // The foot's position is measured from the control's own edges.
     let whole = face.widget.area;
     let at = |share: Vec2| (whole.min + share * whole.size()).clamp(field.min, field.max);
     grid(&spec.x(), |share| {
@@ -45,7 +45,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &PadSpec, value: Ve
     face.draw_badge(scene);
 }
 
-/// Calls `draw` with the shares of a scale at which lines lie: its stops, or quarters.
+/// Calls `draw` with the shares of a scale for grid lines: its stops, or quarters.
 fn grid(scale: &Scale, mut draw: impl FnMut(f32)) {
     match stops(scale) {
         Some(stops) => stops.for_each(draw),

@@ -10,10 +10,10 @@ use super::{caption, strip_m};
 use crate::floor::Rect;
 use crate::widget::Scale;
 
-/// Grooves across a pedal.
+/// Number of grooves across a pedal.
 const GROOVES: usize = 5;
 
-/// A caption, and a grooved plate that fills from the heel as the foot presses harder.
+/// A caption, and a grooved plate that fills from the heel in proportion to the force.
 pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, value: f32) {
     face.draw(scene);
     let area = face.area;

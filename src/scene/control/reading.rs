@@ -1,4 +1,4 @@
-//! A control's value in letters.
+//! A control's value as text.
 
 use std::fmt::Write;
 
@@ -8,26 +8,26 @@ use glam::Vec2;
 use super::super::widths::width;
 use crate::widget::Scale;
 
-/// A control's value in letters, with as many decimals as its steps need.
+/// A control's value as text, with the decimals that its steps need.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reading {
     pub(super) text: ArrayString<64>,
-    /// Width that any value of the range may need, in em, so that a label beside it never jumps.
+    /// Maximum width over the whole range, in em, so that a label beside the value does not move.
     pub(super) widest: f32,
 }
 
 impl Reading {
-    /// `value`, a number of `scale`.
+    /// Formats `value`, a number of `scale`.
     pub(super) fn of(scale: &Scale, value: f32) -> Self {
         let widest = width(&number(scale, scale.min)).max(width(&number(scale, scale.max)));
         Self { text: number(scale, value), widest }
     }
 
-    /// Two numbers.
+    /// Formats two numbers.
     pub(super) fn pair(x: &Scale, y: &Scale, value: Vec2) -> Self {
         let (east, north) = (Self::of(x, value.x), Self::of(y, value.y));
         let mut text = ArrayString::new();
-        // What does not fit 64 letters is cut off: far beyond the range of values.
+        // The buffer cuts off text beyond 64 letters, which only values far outside the range need.
         let _ = write!(text, "{}  {}", east.text, north.text);
         Self { text, widest: east.widest + north.widest + width("  ") }
     }
@@ -35,7 +35,7 @@ impl Reading {
 
 fn number(scale: &Scale, value: f32) -> ArrayString<64> {
     let decimals = decimals(scale);
-    // No minus sign before a value that reads as zero.
+    // No minus sign before a value that rounds to zero.
     let half = 0.5 * 10_f32.powi(-(decimals as i32));
     let value = if value.abs() < half { 0.0 } else { value };
     let mut text = ArrayString::new();
@@ -51,7 +51,7 @@ fn decimals(scale: &Scale) -> usize {
             let scaled = step * ten;
             scaled > 0.5 && (scaled - scaled.round()).abs() < 1e-3 * scaled
         } else {
-            // Without steps a hundredth of the range is as fine as a foot can do.
+            // Without steps, a hundredth of the range is the finest resolution of a foot.
             0.01 * (max - min) * ten >= 0.999
         }
     };

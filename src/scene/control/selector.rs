@@ -33,7 +33,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &SelectorSpec, choi
     for (index, option) in (0_u16..).zip(spec.options.iter()) {
         let from = f32::from(index) / count;
         let (low, high) = (from, from + 1.0 / count);
-        // The control's own parts, as the foot is measured by; only the outermost are cut down to the field.
+        // The parts as measured for the foot; only the outermost are clipped to the field.
         let whole = face.widget.area;
         let cell = match spec.axis {
             Axis::East => Rect::new(

@@ -12,9 +12,9 @@ use super::{HANDLE, caption, stops};
 use crate::floor::Rect;
 use crate::widget::{Axis, Scale};
 
-/// A caption strip with label and value, and a track whose filled part ends at the handle.
+/// A caption strip with label and value, and a track filled up to the handle.
 ///
-/// Along its axis the track is as long as the control: the handle is where the foot is.
+/// Along its axis the track is as long as the control, so the handle is at the foot's place.
 pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, axis: Axis, value: f32) {
     face.draw(scene);
     let area = face.area;
@@ -36,7 +36,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, axis: Axis
     };
     self::track(scene, face, scale, axis, track, value);
     match axis {
-        // On the half of the track where the handle is not.
+        // On the half of the track without the handle.
         Axis::East => {
             let east = if scale.share(value) > 0.5 { 0.25 } else { 0.75 };
             let x = track.min.x + east * track.size().x;
@@ -57,7 +57,7 @@ fn track(scene: &mut Scene, face: &Face<'_>, scale: &Scale, axis: Axis, track: R
         Axis::East => Vec2::X,
         Axis::North => Vec2::Y,
     };
-    // The control's own ends, not the track's: what the foot is measured by.
+    // The foot's position is measured from the control's own ends, not from the track's.
     let (low, high) = (face.widget.area.min, face.widget.area.max);
     let at = (low + (high - low) * share).clamp(track.min, track.max);
     let end = track.max * (Vec2::ONE - along) + at * along;
@@ -73,7 +73,7 @@ fn track(scene: &mut Scene, face: &Face<'_>, scale: &Scale, axis: Axis, track: R
         let shadow = Paint::fill(Ink::faint(face.theme.shadow, 0.16));
         scene.add_box(handle.grown(0.003), 0.012, shadow);
     }
-    // Light on a lit track, and told from the rest of it by its edge.
+    // The handle is light on a lit track; its edge separates it from the track.
     let colour = HANDLE.mix(face.colour, if out_of_use { 0.5 } else { 0.0 });
     let outline = readable(face.ink, colour);
     let edge = Stroke::new(if face.state.pressed { 0.006 } else { 0.0035 }, Ink::solid(outline));
@@ -82,7 +82,7 @@ fn track(scene: &mut Scene, face: &Face<'_>, scale: &Scale, axis: Axis, track: R
     scene.add_line(middle - grip, middle + grip, Paint::stroke(Stroke::new(0.003, Ink::faint(outline, 0.7))));
 }
 
-/// Small ticks where the value may stop, if they are few enough to be told apart.
+/// Small ticks at the stops, unless they are too many to distinguish.
 fn steps(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Rect, along: Vec2) {
     let Some(stops) = stops(scale) else { return };
     let (low, high) = (face.widget.area.min, face.widget.area.max);
@@ -95,7 +95,7 @@ fn steps(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Rect, along: 
     }
 }
 
-/// Value at the top of a narrow strip, the label turned upright below it.
+/// Writes the value at the top of a narrow strip, and the label upright below it.
 fn upright_caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: &Reading) {
     let inset = 0.008;
     let size_m = ((strip.size().x - inset) / reading.widest).min(0.034);
@@ -109,7 +109,7 @@ fn upright_caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: &Re
     lettering.anchor = Anchor::Start;
     lettering.turn_rad = std::f32::consts::FRAC_PI_2;
     lettering.size_m = 0.036_f32.min(0.7 * (strip.size().x - inset));
-    // Turned to read northwards, the letters stand west of their base line.
+    // Turned to read northwards, the letters are west of their base line.
     lettering.at.x += 0.5 * CAP_HEIGHT * lettering.size_m;
     let smallest_m = SMALL_M.min(lettering.size_m);
     scene.add_line_of(lettering, &face.widget.label, top - 0.012 - south, smallest_m);

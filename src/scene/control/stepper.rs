@@ -10,7 +10,7 @@ use super::reading::Reading;
 use crate::floor::Rect;
 use crate::widget::{Axis, StepperSpec};
 
-/// Two halves with a minus and a plus, the value with the label beneath it between them.
+/// Two halves with a minus and a plus; between them the value, with the label beneath it.
 pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &StepperSpec, value: f32) {
     face.draw(scene);
     let (area, size) = (face.area, face.area.size());
@@ -23,7 +23,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &StepperSpec, value
     let low = Rect::new(area.min, area.min + along * end + size * across).grown(-0.010);
     let high = Rect::new(area.max - along * end - size * across, area.max).grown(-0.010);
     let sign = (0.32 * low.size().min_element()).min(0.032);
-    // Faint where there is no more to come.
+    // Faint at the end of the range.
     let strength = |end: f32| if value == end { 0.3 } else { 1.0 };
     let halves = [(low, strength(spec.scale.min), false), (high, strength(spec.scale.max), true)];
     for (half, strength, plus) in halves {

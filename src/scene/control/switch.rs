@@ -10,7 +10,7 @@ use super::super::widths::CAP_HEIGHT;
 use super::beside;
 use crate::floor::Rect;
 
-/// The label, and a pill whose knob stands at one end.
+/// The label, and a pill with a knob at one end.
 pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, on: bool) {
     face.draw(scene);
     let area = beside(scene, face, 0.135, 0.46);
@@ -21,7 +21,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, on: bool) {
 fn pill(scene: &mut Scene, face: &Face<'_>, area: Rect, on: bool) {
     let radius = 0.5 * area.size().y;
     let edge = Stroke::new(0.004, Ink::solid(face.ink));
-    // On: filled with ink, a hole for a knob. Off: an outline with a knob of ink.
+    // On: filled with ink, with a hole as the knob. Off: an outline with a knob of ink.
     let (paint, knob) = if on {
         (Paint::fill(Ink::solid(face.ink)).with_stroke(edge), face.colour)
     } else {

@@ -1,4 +1,4 @@
-//! Clear ice over dark water: thick and thin places, bubbles, and cracks with their planes going down into it.
+//! Clear ice over dark water: thick and thin places, bubbles, and cracks with their planes in the ice.
 
 use glam::Vec2;
 
@@ -25,15 +25,15 @@ pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec) {
     }
 }
 
-/// What is seen of an event that long ago, 0 to 1.
+/// Visibility of an event at the time `then`, 0 to 1.
 fn freshness(land: &Land<'_>, spec: &IceSpec, then: crate::units::Instant) -> f32 {
     Crack { born: then, ..Crack::default() }.openness(land.now, spec.sheet.refreeze_s)
 }
 
-/// The sheet: lighter where it is thick, dark where it is broken through, white where it was crushed.
+/// The sheet: lighter where it is thick, dark where it is broken, white where it is crushed.
 fn body(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec) {
     let area = land.area();
-    // Crushed ice around each seed, gathered first: seeds are few and each reaches only some points.
+    // Crushed ice around each seed, computed first: seeds are few and each affects only some points.
     let count = (land.columns * land.rows) as usize;
     let mut crushed = vec![0.0_f32; count];
     let cell = area.size() / Vec2::new((land.columns - 1) as f32, (land.rows - 1) as f32);
@@ -60,20 +60,20 @@ fn body(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec) {
         let hills = 0.62 * land.noise.hills(1, at, 0.58)
             + 0.30 * land.noise.hills(2, at, 0.21)
             + 0.14 * land.noise.hills(3, at, 0.085);
-        // A lamp beyond the north-west corner.
+        // Light from beyond the north-west corner.
         let light = (at - area.centre()).dot(Vec2::new(-0.7, 0.7)) / area.size().length();
         let thick = (0.53 + 0.30 * hills + 0.20 * light).clamp(0.12, 0.96);
         let broken = land.depth(i64::from(column), i64::from(row));
         let ice = land.deep.mix(land.surface, thick * (1.0 - 0.80 * broken));
         let white = crushed.get((row * land.columns + column) as usize).copied().unwrap_or(0.0);
-        // Frost creeps in from the bank.
+        // Frost at the edges.
         let bank = (at - area.min).min(area.max - at).min_element();
         let frost = 0.42 * (-bank / 0.035).exp() * (1.0 + 0.5 * hills);
         ice.mix(land.white, (0.72 * white + frost * (1.0 - white)).clamp(0.0, 0.9))
     });
 }
 
-/// Bubbles that froze on their way up, in columns of a few.
+/// Frozen bubbles, in columns of a few.
 fn bubbles(scene: &mut Scene, land: &Land<'_>) {
     let (area, noise) = (land.area(), land.noise);
     let size = area.size();
@@ -92,7 +92,7 @@ fn bubbles(scene: &mut Scene, land: &Land<'_>) {
     }
 }
 
-/// Cracks of other winters, long healed.
+/// Old, healed cracks.
 fn old_lines(scene: &mut Scene, land: &Land<'_>) {
     let (area, noise) = (land.area(), land.noise);
     let length = area.size().length();
@@ -113,10 +113,10 @@ fn old_lines(scene: &mut Scene, land: &Land<'_>) {
     }
 }
 
-/// What of the cracks is drawn: all of one before any of the next.
+/// Layer of the cracks' drawing: each layer is complete before the next begins.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Pass {
-    /// The plane of a crack, which goes down aslant and catches the light.
+    /// The plane of a crack, which extends into the ice at a slant and reflects the light.
     Plane,
     /// The dark gap.
     Gap,
@@ -124,22 +124,22 @@ enum Pass {
     Edge,
 }
 
-/// How finely cracks are drawn: what is seen of a few is lost among thousands, and a window that is
-/// painted without a graphics card spends its time on the triangles of which lines are made.
+/// Level of detail of the cracks: details of a few cracks are invisible among thousands, and a window without a
+/// graphics card spends its time on the triangles of lines.
 #[derive(Clone, Copy)]
 struct Detail {
-    /// Distance of the points of a ragged line, in metres.
+    /// Distance between the points of a ragged line, in metres.
     ragged_m: f32,
-    /// The width, as a share of the widest, from which on cracks show the dark gap.
+    /// Minimum width of cracks with a dark gap, as a share of the widest.
     gap: f32,
-    /// The share of a star's splinters that is drawn.
+    /// Drawn share of a star's splinters.
     splinters: f32,
-    /// Whether splinters are bent; a straight one has a point less.
+    /// True if splinters are bent; a straight one has one point less.
     bends: bool,
 }
 
 impl Detail {
-    /// For so many pieces.
+    /// The level of detail for this number of pieces.
     fn of(pieces: usize) -> Self {
         let many = ((pieces as f32 - 300.0) / 1200.0).clamp(0.0, 1.0);
         Self {
@@ -151,10 +151,10 @@ impl Detail {
     }
 }
 
-/// Steps in which cracks differ in width and age: pieces that look alike are drawn as one.
+/// Number of steps of width and age: adjacent pieces in the same step are drawn as one.
 const STEPS: f32 = 4.0;
 
-/// One line of joined pieces.
+/// Draws one line of joined pieces.
 fn line(
     scene: &mut Scene,
     land: &Land<'_>,
@@ -164,8 +164,8 @@ fn line(
 ) {
     let Some(first) = pieces.first() else { return };
     let count = pieces.len();
-    // A line is as wide as the strongest of its pieces, thinner from branch to branch and at its end:
-    // a width for each piece would make beads of it.
+    // A line has the width of its strongest piece, and is thinner at higher branches and at its end: a separate width
+    // for each piece would look like beads.
     let strongest = pieces.iter().map(|piece| piece.energy_j).fold(0.0, f32::max);
     let share = (strongest / spec.energy.most_j).clamp(0.0, 2.0).sqrt();
     let widest = (0.35 + 0.65 * share) * 0.78_f32.powi(i32::from(first.rank.min(4)));
@@ -188,13 +188,13 @@ fn line(
             || run.iter().enumerate().flat_map(move |(at, piece)| rough(piece, at == 0, detail.ragged_m));
         match pass {
             Pass::Plane if open > 0.0 => {
-                // Each line has its own slant, to one side of the way it goes.
+                // Each line has its own slant, to one side of its direction.
                 let way = (run[run.len() - 1].to - run[0].from).normalize_or(Vec2::X);
                 let side = if land.noise.at(30, first.line) < 0.5 { 1.0 } else { -1.0 };
                 let slant = 0.010 + 0.012 * land.noise.at(31, first.line);
                 let reach = (way.perp() * side + way * 0.35).normalize() * slant * (0.5 + width);
                 let near = Ink::faint(land.white, 0.40 * open);
-                // Along the pieces' ends alone: what is ragged on the surface is even in the depth.
+                // Along the pieces' ends only: the line is ragged on the surface and smooth in the depth.
                 let ends = run.iter().map(|piece| piece.to);
                 scene.add_band(
                     run.first().map(|piece| piece.from).into_iter().chain(ends),
@@ -220,7 +220,7 @@ fn line(
     }
 }
 
-/// The points of a piece of crack, ragged as ice breaks: both ends stay where they are.
+/// Points of a crack piece with a ragged course; both ends stay in place.
 fn rough(piece: &Crack, with_start: bool, spacing_m: f32) -> impl Iterator<Item = Vec2> + use<> {
     let Crack { from, to, number, .. } = *piece;
     let steps = (from.distance(to) / spacing_m).round().clamp(1.0, 12.0) as u32;
@@ -233,7 +233,7 @@ fn rough(piece: &Crack, with_start: bool, spacing_m: f32) -> impl Iterator<Item 
     })
 }
 
-/// Short splinters around a seed, where the foot came down.
+/// Short splinters around a seed, the place of the foot's impact.
 fn star(
     scene: &mut Scene,
     land: &Land<'_>,

@@ -1,4 +1,4 @@
-//! Snow, gravel and sand: hollows where feet have been.
+//! Snow, gravel and sand, with hollows under former footsteps.
 
 use glam::Vec2;
 
@@ -15,7 +15,7 @@ pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, grain: Grain) {
     }
 }
 
-/// Soft drifts with blue shadows, and crystals that catch the light.
+/// Soft drifts with blue shadows, and bright crystals.
 fn snow(scene: &mut Scene, land: &Land<'_>) {
     land.paint(scene, |column, row| {
         let at = land.point(column, row);
@@ -34,7 +34,7 @@ fn snow(scene: &mut Scene, land: &Land<'_>) {
     }
 }
 
-/// Ripples that the wind has left, smoothed where somebody trod.
+/// Wind ripples, smooth where feet have trodden.
 fn sand(scene: &mut Scene, land: &Land<'_>) {
     land.paint(scene, |column, row| {
         let at = land.point(column, row);
@@ -56,7 +56,7 @@ fn sand(scene: &mut Scene, land: &Land<'_>) {
     }
 }
 
-/// Crests that the wind has left, lit from the north-west; none where somebody trod.
+/// Crests of the wind ripples, lit from the north-west; none where feet have trodden.
 fn ripples(scene: &mut Scene, land: &Land<'_>) {
     let area = land.area();
     let size = area.size();
@@ -77,7 +77,7 @@ fn ripples(scene: &mut Scene, land: &Land<'_>) {
             let paint = Paint::stroke(Stroke::new(width, Ink::faint(colour, opacity)));
             let mut step = 0;
             while step < steps {
-                // Each crest is broken here and there.
+                // Each crest has random gaps.
                 let end = (step + 4 + (land.noise.at(22, crest * 64 + step) * 22.0) as u32).min(steps);
                 let run = (step..=end).map(|step| place(crest, step)).take_while(|at| !trodden(*at));
                 scene.add_path(run.map(|at| (at + aside).clamp(area.min, area.max)), false, paint);
@@ -87,7 +87,7 @@ fn ripples(scene: &mut Scene, land: &Land<'_>) {
     }
 }
 
-/// Most stones that are drawn one by one.
+/// Maximum number of stones drawn one by one.
 const MOST_STONES: u32 = 800;
 
 /// Stones of many greys, each with its shadow.
@@ -100,7 +100,7 @@ fn gravel(scene: &mut Scene, land: &Land<'_>) {
             0.62 + 0.20 * land.noise.hills(1, at, 0.12) + 0.25 * depth - 0.6 * land.slope(column, row);
         land.surface.mix(land.deep, shade.clamp(0.0, 1.0))
     });
-    // An even grid with every stone moved off its place: no two lie on each other, and none in rows.
+    // A regular grid with every stone displaced at random, so that stones do not overlap or form rows.
     let size = area.size();
     let spacing = (size.x * size.y / MOST_STONES as f32).sqrt().max(0.024);
     let (columns, rows) = ((size.x / spacing) as u32, (size.y / spacing) as u32);

@@ -1,4 +1,4 @@
-//! What the floor seems to be made of: one file per look.
+//! Appearance of the simulated grounds: one file per material.
 
 mod ice;
 mod loose;
@@ -19,10 +19,10 @@ use noise::Noise;
 const WHITE: Colour = Colour::rgb(0xff, 0xff, 0xff);
 const BLACK: Colour = Colour::rgb(0x00, 0x00, 0x00);
 
-/// How much darker grounds are in a darkened room.
+/// Darkening of grounds in a dark theme.
 const DARKER: f32 = 0.32;
 
-/// Whether a ground that is shown hides all of `cell`.
+/// True if a visible ground hides all of `cell`.
 pub(super) fn hides(view: &View<'_>, cell: Rect) -> bool {
     view.layout
         .grounds
@@ -30,7 +30,7 @@ pub(super) fn hides(view: &View<'_>, cell: Rect) -> bool {
         .any(|ground| ground.spec.is_on(view.snapshot.page) && super::holds(ground.spec.area, cell))
 }
 
-/// The grounds of the page that is shown.
+/// Draws the grounds of the current page.
 pub(super) fn draw(scene: &mut Scene, view: &View<'_>) {
     for (index, ground) in view.layout.grounds.iter().enumerate() {
         if !ground.spec.is_on(view.snapshot.page) {
@@ -46,25 +46,25 @@ pub(super) fn draw(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// One ground as it is now.
+/// The current state of one ground.
 struct Land<'a> {
     ground: &'a Ground,
-    /// `None` before anything was seen of it.
+    /// `None` before the first state.
     state: Option<&'a GroundState>,
     now: Instant,
-    /// Chance of its own for what never changes: the same ground always looks the same.
+    /// Deterministic noise for the constant features: the same ground always looks the same.
     noise: Noise,
     surface: Colour,
     deep: Colour,
     white: Colour,
-    /// Grid points of its colour, eastwards and northwards.
+    /// Number of grid points, eastwards and northwards.
     columns: u32,
     rows: u32,
 }
 
 impl<'a> Land<'a> {
     fn new(view: &View<'_>, ground: &'a Ground, state: Option<&'a GroundState>, snapshot: &Snapshot) -> Self {
-        // A state of another layout's ground says nothing of this one.
+        // Ignore the state of another layout's ground.
         let state =
             state.filter(|state| state.relief.size() == (0, 0) || state.relief.area() == ground.spec.area);
         let tone = |colour: Colour| if view.theme.is_dark() { colour.mix(BLACK, DARKER) } else { colour };
@@ -88,13 +88,13 @@ impl<'a> Land<'a> {
         self.ground.spec.area
     }
 
-    /// Where a point of the grid is.
+    /// Position of a grid point.
     fn point(&self, column: u32, row: u32) -> Vec2 {
         let share = Vec2::new(column as f32 / (self.columns - 1) as f32, row as f32 / (self.rows - 1) as f32);
         self.area().min + self.area().size() * share
     }
 
-    /// How far a point of the grid is worn, 0 to 1; points beyond the grid are as its edge.
+    /// Wear of a grid point, 0 to 1; points beyond the grid have the value of its edge.
     fn depth(&self, column: i64, row: i64) -> f32 {
         let relief: Option<&Relief> = self.state.map(|state| &state.relief);
         let column = column.clamp(0, i64::from(self.columns) - 1) as u32;
@@ -102,20 +102,21 @@ impl<'a> Land<'a> {
         relief.map_or(0.0, |relief| relief.depth(column, row, self.now))
     }
 
-    /// How much light falls on a point for what is hollow around it: the lamp stands in the north-west.
+    /// Shading of a point from the hollows around it, with the light in the north-west: difference of depth between
+    /// the north-western and the south-eastern neighbour.
     fn slope(&self, column: u32, row: u32) -> f32 {
         let (column, row) = (i64::from(column), i64::from(row));
         self.depth(column - 1, row + 1) - self.depth(column + 1, row - 1)
     }
 
-    /// Paints all of it, as `colour` says for each point of the grid.
+    /// Paints the whole area; `colour` gives the colour of each grid point.
     fn paint(&self, scene: &mut Scene, colour: impl Fn(u32, u32) -> Colour) {
         let points = (0..self.rows).flat_map(|row| (0..self.columns).map(move |column| (column, row)));
         let inks = points.map(|(column, row)| Ink::solid(colour(column, row)));
         scene.add_field(self.area(), self.columns, inks);
     }
 
-    /// Where the tiles end, barely to be seen: their forces are still told tile by tile.
+    /// Draws the tile borders faintly: forces are still shown tile by tile.
     fn seams(&self, scene: &mut Scene, view: &View<'_>) {
         let (area, pitch_m) = (self.area(), view.geometry.pitch_m());
         let paint = super::Paint::stroke(super::Stroke::new(0.0012, Ink::faint(self.deep, 0.16)));
@@ -157,7 +158,7 @@ mod tests {
         scene.marks().iter().filter(|mark| matches!(mark, Mark::Band { .. })).count()
     }
 
-    /// Two joined pieces that opened a second after the clock began.
+    /// Two joined pieces that opened one second after the start.
     fn cracked() -> Snapshot {
         let piece = |from: [f32; 2], to: [f32; 2], number| Crack {
             from: from.into(),
@@ -182,7 +183,7 @@ mod tests {
             .iter()
             .filter_map(|mark| if let Mark::Field { area, .. } = mark { Some(*area) } else { None })
             .collect();
-        // Wood is made of boxes.
+        // Wood is drawn with boxes.
         let wanted: Vec<Rect> = layout.grounds[1..].iter().map(|ground| ground.spec.area).collect();
         assert_eq!(fields, wanted);
         assert!(scene == drawn(&layout, &Snapshot::default()), "the same each time");

@@ -1,13 +1,13 @@
-//! Numbers that look random and always are the same for the same place.
+//! Deterministic noise: pseudo-random numbers that depend only on seed and place.
 
 use glam::{IVec2, Vec2};
 
-/// Numbers that look random and always are the same for the same seed and place.
+/// Deterministic noise with a seed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Noise(pub(super) u32);
 
 impl Noise {
-    /// A number from 0 up to 1 for the `n`-th thing of a kind.
+    /// A number from 0 up to 1 for element `n` of a kind.
     pub(super) fn at(self, kind: u32, n: u32) -> f32 {
         // Two rounds of a well-mixing integer hash.
         let mut x = self.0 ^ kind.wrapping_mul(0x9e37_79b9) ^ n.wrapping_mul(0x85eb_ca6b);
@@ -19,17 +19,17 @@ impl Noise {
         (x >> 8) as f32 / (1 << 24) as f32
     }
 
-    /// The same from -1 to 1.
+    /// A number from -1 to 1 for element `n` of a kind.
     pub(super) fn signed(self, kind: u32, n: u32) -> f32 {
         2.0 * self.at(kind, n) - 1.0
     }
 
-    /// A point anywhere in the unit square.
+    /// A random point in the unit square.
     pub(super) fn place(self, kind: u32, n: u32) -> Vec2 {
         Vec2::new(self.at(kind, 2 * n), self.at(kind, 2 * n + 1))
     }
 
-    /// Smooth hills and hollows between -1 and 1, `grain_m` metres from one to the next.
+    /// Smooth value noise between -1 and 1, with a grid of `grain_m` metres.
     pub(super) fn hills(self, kind: u32, at: Vec2, grain_m: f32) -> f32 {
         let scaled = at / grain_m;
         let cell = scaled.floor();

@@ -9,7 +9,7 @@ use crate::floor::Rect;
 use crate::ground::WoodSpec;
 use crate::widget::Axis;
 
-/// Most planks that are drawn one by one.
+/// Maximum number of planks drawn one by one.
 const MOST: u32 = 120;
 
 pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, spec: &WoodSpec) {
@@ -17,7 +17,7 @@ pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, spec: &WoodSpec) {
     let size = area.size();
     let is_east = spec.along == Axis::East;
     let (long, wide) = if is_east { (size.x, size.y) } else { (size.y, size.x) };
-    // Along the plank, across it.
+    // Along the plank and across it.
     let place = |along: f32, across: f32| {
         area.min + if is_east { Vec2::new(along, across) } else { Vec2::new(across, along) }
     };
@@ -26,7 +26,7 @@ pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, spec: &WoodSpec) {
     let each = wide / planks as f32;
     for plank in 0..planks {
         let across = plank as f32 * each;
-        // Butt joints, not side by side with the neighbour's.
+        // Butt joints, at different places on adjacent planks.
         let joint = long * (0.22 + 0.56 * noise.at(1, plank));
         for (part, (from, to)) in [(0.0, joint), (joint, long)].into_iter().enumerate() {
             let n = 2 * plank + part as u32;
@@ -55,7 +55,7 @@ pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, spec: &WoodSpec) {
     }
 }
 
-/// The rings of the tree, cut lengthwise: lines that wander together.
+/// The grain: nearly parallel wavy lines.
 fn grain(
     scene: &mut Scene,
     land: &Land<'_>,

@@ -1,4 +1,4 @@
-//! What one person does, put together move by move.
+//! Performance of one person, composed of moves.
 
 mod walking;
 
@@ -14,35 +14,35 @@ use super::track::{Pose, Profile, Track, turn_between};
 use super::way::bend;
 use crate::units::Newtons;
 
-/// A person's performance, put together move by move; each begins when the one before ends.
+/// A person's performance, composed of moves; each move begins when the one before ends.
 #[derive(Clone, Debug)]
 pub struct Performance {
     pub(super) person: Person,
     pub(super) tracks: [Track; 2],
     pub(super) sway: Sway,
-    /// How they roll; `None` for the even roll of [`super::Print::Shoe`].
+    /// The person's rolling pattern; `None` for the even roll of [`super::Print::Shoe`].
     pub(super) habit: Option<RollingHabit>,
     now_s: f64,
     standing: Option<Standing>,
 }
 
-/// Roll of a foot that stands: a little more than half of the load on the heel.
+/// Roll of a standing foot: a little more than half of the load is on the heel.
 const STAND_ROLL: f32 = 0.4;
 
-/// Seconds to shift the weight onto one foot, and back.
+/// Time to shift the weight onto one foot, and back (s).
 const SHIFT_S: f64 = 0.35;
 
-/// Nobody walks less than this.
+/// Minimum length of a walk (m).
 const SHORTEST_WAY_M: f32 = 0.02;
 
-/// Sharpest bend that is walked round without stopping, in radians.
+/// Maximum bend that a person walks round without stopping (rad).
 const EASY_BEND: f32 = 0.8;
 
-/// Largest turn made with one pair of steps on the spot, in radians.
+/// Maximum turn with one pair of steps on the spot (rad).
 const TURN_STEP: f32 = 0.9;
 
 impl Performance {
-    /// Somebody who is not there yet; `seed` makes the sway.
+    /// A performance of a person outside the floor; `seed` determines the sway.
     #[must_use]
     pub fn new(person: Person, seed: u64) -> Self {
         Self {
@@ -55,10 +55,10 @@ impl Performance {
         }
     }
 
-    /// The same person with feet that roll, press and stay down as those of recorded people do
-    /// ([`RollingHabit`]), who turn their toes out accordingly: for somebody who is not there yet.
+    /// Makes the person's feet roll, press and stay down like those of recorded people ([`RollingHabit`]), and sets
+    /// the toe-out angle accordingly. Call it before the person appears.
     ///
-    /// What they do is the same; [`super::Script::loads_at`] gives their prints.
+    /// The moves stay the same; [`super::Script::loads_at`] returns the prints.
     #[must_use]
     pub fn rolling_as_people_do(mut self, seed: u64) -> Self {
         let habit = RollingHabit::new(seed);
@@ -67,24 +67,24 @@ impl Performance {
         self
     }
 
-    /// How long the performance takes so far.
+    /// Returns the duration of the performance so far.
     #[must_use]
     pub fn duration(&self) -> Duration {
         Duration::from_secs_f64(self.now_s.max(0.0))
     }
 
-    /// Between the feet of the person, in floor metres; `None` while nobody is there.
+    /// Returns the place between the person's feet, in floor metres; `None` while the person is off the floor.
     #[must_use]
     pub fn place(&self) -> Option<Vec2> {
         self.standing.map(|standing| standing.middle)
     }
 
-    /// Lets time pass; who is there stands, swaying a little.
+    /// Waits; a person on the floor stands and sways a little.
     pub fn wait(&mut self, time: Duration) {
         self.now_s += time.as_secs_f64();
     }
 
-    /// Appears, standing at `middle` and looking along `facing` (radians counter-clockwise from north).
+    /// Appears, standing at `middle` and facing `facing` (radians counter-clockwise from north).
     ///
     /// # Errors
     /// [`MoveError::AlreadyThere`], [`MoveError::NotFinite`].
@@ -105,7 +105,7 @@ impl Performance {
         Ok(())
     }
 
-    /// Is gone from one moment to the next: for somebody who has walked off the floor.
+    /// Disappears at once, for a person outside the floor.
     ///
     /// # Errors
     /// [`MoveError::NotThere`].
@@ -118,9 +118,9 @@ impl Performance {
         Ok(())
     }
 
-    /// Walks along straight lines to each of `points` and stops on the last with the feet side by side.
+    /// Walks in straight lines through `points` and stops at the last with the feet side by side.
     ///
-    /// Turns on the spot where the way bends sharply. Less than 2 cm is not walked.
+    /// Turns on the spot at sharp bends. Ignores walks of less than 2 cm.
     ///
     /// # Errors
     /// [`MoveError::NotThere`], [`MoveError::NotFinite`].
@@ -141,7 +141,7 @@ impl Performance {
         self.walk_stretch(&stretch)
     }
 
-    /// Turns on the spot to look along `facing`, by small steps.
+    /// Turns on the spot to face `facing`, by small steps.
     ///
     /// # Errors
     /// [`MoveError::NotThere`], [`MoveError::NotFinite`].
@@ -153,7 +153,7 @@ impl Performance {
         if turn.abs() < 0.02 {
             return Ok(());
         }
-        // The foot on the inner side goes first, so that the feet never cross.
+        // The foot on the inner side moves first, so that the feet never cross.
         let order = if turn > 0.0 { [0, 1] } else { [1, 0] };
         let parts = (1..=steps as usize)
             .map(|step| self.person.standing(standing.middle, standing.facing + turn * step as f32 / steps));
@@ -162,7 +162,7 @@ impl Performance {
         Ok(())
     }
 
-    /// Steps aside to stand at `to`, looking where one looked before, by small steps.
+    /// Steps aside to `to` by small steps, with the same facing.
     ///
     /// # Errors
     /// [`MoveError::NotThere`], [`MoveError::NotFinite`].
@@ -174,7 +174,7 @@ impl Performance {
         if way.length() < SHORTEST_WAY_M {
             return Ok(());
         }
-        // The foot that has less far to go goes first, so that the feet never cross.
+        // The foot with the shorter way moves first, so that the feet never cross.
         let leading = standing.nearer_foot(to);
         let parts: Vec<Standing> = (1..=steps as usize)
             .map(|step| self.person.standing(standing.middle + way * (step as f32 / steps), standing.facing))
@@ -183,23 +183,24 @@ impl Performance {
         Ok(())
     }
 
-    /// Presses with the ball of the nearer foot on `target`, standing on the other one, and brings it back.
+    /// Presses `target` with the ball of the nearer foot, stands on the other one meanwhile, and moves the foot back.
     ///
-    /// The force rises within 60 to 120 ms, stays `hold` long and falls again.
-    /// The standing foot stays where it is and carries the rest of the weight.
+    /// The force rises within 60 to 120 ms, stays for `hold` and falls again. The standing foot stays in place and
+    /// carries the rest of the weight.
     ///
     /// # Errors
-    /// [`MoveError`]: nobody there, out of reach, on the other foot, heavier than the body, or not finite.
+    /// [`MoveError`] if the person is not on the floor, the target is out of reach or under the other foot, the force
+    /// exceeds the body weight, or a number is not finite.
     pub fn press(&mut self, target: Vec2, force: Newtons, hold: Duration) -> Result<(), MoveError> {
         self.press_along(Slide::Line { from: target, to: target }, force, hold, 0.0)
     }
 
-    /// Presses where `way` begins, slides along it at `speed_m_s` under the same force, and lets go at its end.
+    /// Presses at the start of `way`, slides along it at `speed_m_s` with the same force, and lifts at its end.
     ///
-    /// The shoe points where it pointed, however the way bends.
+    /// The shoe keeps its heading, also along a bend.
     ///
     /// # Errors
-    /// As [`Performance::press`].
+    /// The same as [`Performance::press`].
     pub fn drag(&mut self, way: Slide, speed_m_s: f32, force: Newtons) -> Result<(), MoveError> {
         self.press_along(way, force, Duration::from_millis(150), speed_m_s.max(0.01))
     }
@@ -221,15 +222,15 @@ impl Performance {
         let reached = self.reach(&standing, nearer, way);
         let (side, [start, end]) = match reached {
             Ok(poses) => (nearer, poses),
-            // The other foot may do; if not, the nearer one's trouble is the one to tell.
+            // If the nearer foot can't do it, try the other one; if both fail, report the nearer foot's error.
             Err(trouble) => (1 - nearer, self.reach(&standing, 1 - nearer, way).map_err(|_| trouble)?),
         };
         let home = standing.feet[side];
 
         self.leave_standing();
-        // Nobody pulls at the floor.
+        // A foot can't pull at the floor.
         let share = (force / weight).max(0.0);
-        // Heavier presses take longer to build up.
+        // Heavier presses take longer to rise.
         let rise_s = (0.06 + 0.0003 * f64::from(force.0)).min(0.12);
         let is_still = way.length() == 0.0;
         let slide_s = if is_still { 0.0 } else { f64::from(way.length() / speed_m_s) + RAMP_S };
@@ -270,7 +271,8 @@ impl Performance {
         Ok(())
     }
 
-    /// The shoe's poses at both ends of a press of one foot, if it can go there and all the way between.
+    /// Poses of the shoe at both ends of a press with one foot; an error if the foot can't reach some part of the
+    /// way.
     fn reach(&self, standing: &Standing, side: usize, way: Slide) -> Result<[Pose; 2], MoveError> {
         let (home, stance) = (standing.feet[side], standing.feet[1 - side]);
         let pose = |target| self.person.pose_pressing(target, home.heading);
@@ -280,7 +282,7 @@ impl Performance {
         Ok([pose(way.at(0.0)), pose(way.at(1.0))])
     }
 
-    /// Puts one foot after the other, in this order, where each part of the way has it.
+    /// Moves the feet one after the other, in this order, to each of the stances in `parts`.
     fn shuffle(&mut self, parts: &[Standing], order: [usize; 2]) {
         self.leave_standing();
         let mut carried = 0.5;
@@ -290,7 +292,7 @@ impl Performance {
                 let lifted = self.now_s;
                 self.now_s += REPLANT_S;
                 self.tracks[side].go(lifted, self.now_s, part.feet[side], Profile::Swing);
-                // The other foot goes next, and carries everything now.
+                // The other foot moves next, and this one now carries the whole weight.
                 carried = 1.0;
             }
         }
@@ -300,7 +302,7 @@ impl Performance {
         }
     }
 
-    /// Shifts weight between the feet until one of them carries `to`, which now carries `from`.
+    /// Shifts the share of the weight on foot `side` from `from` to `to`.
     fn shift_weight(&mut self, side: usize, from: f32, to: f32) {
         for (track, from, to) in [(side, from, to), (1 - side, 1.0 - from, 1.0 - to)] {
             let load = &mut self.tracks[track].load;
@@ -310,13 +312,13 @@ impl Performance {
         self.now_s += SHIFT_S;
     }
 
-    /// Sways until now, and no more.
+    /// Ends the sway now.
     fn leave_standing(&mut self) {
         self.sway.strength.rest(self.now_s, 1.0);
         self.sway.strength.rest(self.now_s + 0.2, 0.0);
     }
 
-    /// Stands from now on, swaying.
+    /// Starts standing and swaying now.
     fn resume_standing(&mut self, standing: Standing) {
         self.sway.strength.rest(self.now_s - 0.1, 0.0);
         self.sway.strength.rest(self.now_s, 1.0);
@@ -324,19 +326,19 @@ impl Performance {
     }
 }
 
-/// Seconds that a foot is in the air for a small step.
+/// Time that a foot is in the air for a small step (s).
 const REPLANT_S: f64 = 0.3;
 
-/// Longest small step aside, in metres.
+/// Maximum length of a small step aside (m).
 const ASIDE_STEP_M: f32 = 0.3;
 
-/// How many parts of a drag's way are looked at: five in a turn of a dial's ten.
+/// Number of points checked along a drag: five for each of a dial's ten turns.
 const WAY_PARTS: u16 = 50;
 
-/// Seconds in which a drag reaches its speed.
+/// Time in which a drag reaches its speed (s).
 const RAMP_S: f64 = 0.1;
 
-/// Seconds that a foot takes from one place to another, without load.
+/// Duration of moving a foot from one place to another without load (s).
 fn swing_time(from: Pose, to: Pose) -> f64 {
     f64::from((0.25 + 0.5 * from.position.distance(to.position)).min(0.7))
 }

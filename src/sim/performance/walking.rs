@@ -1,4 +1,4 @@
-//! Walking: what each foot carries and how it rolls, from step to step.
+//! Walking: load and roll of each foot, step by step.
 
 use glam::Vec2;
 
@@ -11,7 +11,7 @@ use crate::sim::track::{Profile, Track, forward};
 use crate::sim::way::Way;
 
 impl Performance {
-    /// Walks along a way without sharp bends.
+    /// Walks along a path without sharp bends.
     pub(super) fn walk_stretch(&mut self, points: &[Vec2]) -> Result<(), MoveError> {
         let way = Way::new(points);
         if way.length < SHORTEST_WAY_M {
@@ -22,11 +22,11 @@ impl Performance {
 
         let usual = Gait::at_speed(self.person.speed_m_s);
         let steps = (way.length / usual.step_m).round().max(1.0) as usize;
-        // Steps that don't quite fit become shorter or longer, in the same rhythm.
+        // The step length is adjusted so that a whole number of steps fits; the rhythm stays the same.
         let step_m = way.length / steps as f32;
         let mut gait = Gait::with_step(step_m, usual.speed_m_s * step_m / usual.step_m);
         if let Some(habit) = &self.habit {
-            // Feet overlap a little, and swing at least as long as Gait's quickest.
+            // Stances overlap by at least 6 % of a step, and a swing lasts at least half a step.
             let contact_s = habit.contact_s(gait.speed_m_s);
             gait.stance_s = contact_s.clamp(1.06 * gait.step_s, 1.5 * gait.step_s);
         }
@@ -34,7 +34,7 @@ impl Performance {
         let first_lift = self.now_s + SHIFT_S;
         let first_landing = first_lift + f64::from(gait.swing_s());
         let landing = |step: usize| first_landing + step_s * (step as f64 - 1.0);
-        // The right foot starts; the other one is the stance it starts from.
+        // The right foot moves first; the left one starts as the stance foot.
         let side_of = |step: usize| step % 2;
         self.shift_weight(1, 0.5, 0.0);
         self.push_off(0, landing(1) + f64::from(gait.double_support_s()), &gait);
@@ -53,7 +53,7 @@ impl Performance {
                 self.arrive(side, landing(step), &gait);
             }
         }
-        // The last foot comes beside the one that has arrived.
+        // The last foot moves beside the one that has arrived.
         let (middle, heading) = way.at(way.length);
         let side = side_of(steps + 1);
         let gathered = landing(steps + 1);
@@ -71,14 +71,14 @@ impl Performance {
         Ok(())
     }
 
-    /// The step that a foot begins at a moment; `None` for somebody who rolls evenly.
+    /// Returns the step that a foot begins at a moment; `None` for a person who rolls evenly.
     fn next_step(&mut self, side: usize, at_s: f64, gait: &Gait) -> Option<Rolling> {
         let step = self.habit.as_mut()?.step(gait.speed_m_s, self.person.foot_length_m, SIDES[side]);
         self.tracks[side].steps.push((at_s, step.clone()));
         Some(step)
     }
 
-    /// A foot's load and roll from landing to leaving, in the middle of a walk.
+    /// Load and roll of a foot from touchdown to lift-off, in the middle of a walk.
     fn stride(&mut self, side: usize, landing: f64, gait: &Gait) {
         let step = self.next_step(side, landing, gait);
         let stance_s = f64::from(gait.stance_s);
@@ -105,13 +105,13 @@ impl Performance {
         roll.pass(at(1.0), 1.0, 1.0 / gait.stance_s);
     }
 
-    /// A foot's load from landing to standing alone on it, at the end of a walk.
+    /// Load of a foot from touchdown to standing on it alone, at the end of a walk.
     fn arrive(&mut self, side: usize, landing: f64, gait: &Gait) {
         let step = self.next_step(side, landing, gait);
         let Track { load, roll, stepping, .. } = &mut self.tracks[side];
         load.rest(landing, 0.0);
         if let Some(step) = step {
-            // Rolls on as in a step, until it stands.
+            // Rolls as in a step until the foot stands.
             stepping.rest(landing, 1.0);
             stepping.rest(landing + f64::from(0.15 * gait.stance_s), 1.0);
             stepping.rest(landing + f64::from(0.5 * gait.stance_s), 0.0);
@@ -130,7 +130,7 @@ impl Performance {
         roll.rest(landing + f64::from(0.5 * gait.stance_s), STAND_ROLL);
     }
 
-    /// A foot's load from standing alone on it, which it does now, to leaving the floor at `off`.
+    /// Load of a foot from standing on it alone, as now, to leaving the floor at `off`.
     fn push_off(&mut self, side: usize, off: f64, gait: &Gait) {
         let peak = off - f64::from(gait.stance_s * gait.peak_at);
         let now_s = self.now_s;
@@ -148,12 +148,12 @@ impl Performance {
     }
 }
 
-/// The peak, in body weights, with which steps like this one carry the body on average.
+/// Peak force, in body weights, for which steps like this one carry the body weight on average.
 fn balanced(step: &Rolling, gait: &Gait) -> f32 {
     gait.step_s / (gait.stance_s * step.mean_force().max(0.2))
 }
 
-/// Lets a curve follow `value` from phase 0 to `end` of a stance of `stance_s` seconds.
+/// Appends knots of `value` from phase 0 to `end` of a stance of `stance_s` seconds.
 fn through(curve: &mut Curve, landing: f64, stance_s: f32, end: f32, value: impl Fn(f32) -> f32) {
     const KNOTS: u16 = 40;
     let apart = end / f32::from(KNOTS);

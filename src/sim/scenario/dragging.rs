@@ -1,4 +1,4 @@
-//! The way that a foot drags: along the geometry of a control, or over free floor.
+//! Path of a dragging foot: along the geometry of a control, or over free floor.
 
 use glam::Vec2;
 
@@ -9,7 +9,7 @@ use crate::sim::slide::Slide;
 use crate::widget::Behaviour;
 
 impl Stage<'_> {
-    /// The way of a drag, in floor metres; `None` after it has reported what can't be dragged so.
+    /// Returns the path of a drag, in floor metres; `None` after reporting why the drag is impossible.
     pub(super) fn way(&self, step: &Drag, written: Written<'_>) -> Option<Slide> {
         let Some(id) = &step.widget else {
             let ends =
@@ -48,7 +48,8 @@ impl Stage<'_> {
         }
     }
 
-    /// Both ends with their fields' names as `read` has them; `None` after it has reported those that it has not.
+    /// Returns both ends, converted by `read`, with the names of their fields; `None` after reporting the ends that
+    /// `read` rejects.
     fn ends<T>(
         &self,
         step: &Drag,

@@ -1,4 +1,4 @@
-//! Scenarios: files that say what people do on a floor, tied to a layout and played.
+//! Scenarios: files with the actions of people on a floor, resolved against a layout and played.
 
 mod dragging;
 #[cfg(test)]
@@ -27,7 +27,7 @@ use crate::format::{Record, Variants};
 use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
 
-/// A scenario file, read and its numbers checked, not yet tied to a layout.
+/// A scenario file, parsed and with its numbers checked, not yet resolved against a layout.
 ///
 /// ```ron
 /// Scenario(
@@ -63,11 +63,10 @@ use crate::units::Newtons;
 /// ```
 ///
 /// Places are in tiles (1.0 = one tile pitch) from the south-west corner.
-/// `Stand` is for somebody who is on the floor from the first moment, so it comes first or not at all.
+/// `Stand` is for a person on the floor from the first moment, so it can only be the first step.
 ///
-/// Who presses stands on the other foot, which stays where it is, so a control
-/// must lie within reach (about 0.85 m) and not under the feet. The foot comes
-/// back after each press; a press with nothing to wait for takes about two seconds.
+/// A pressing person stands on the other foot, which stays in place, so a control must lie within reach (about 0.85
+/// m) and not under the feet. The foot returns after each press; the shortest press takes about two seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     file: String,
@@ -75,37 +74,37 @@ pub struct Scenario {
     written: ScenarioRecord,
 }
 
-/// How far beside the floor people come from and go to, in metres: one and a half steps.
+/// Distance beside the floor at which people start and end (m): one and a half steps.
 const BESIDE_M: f32 = 1.0;
 
-/// How long a tap stays on its place.
+/// Duration of a tap.
 const TAP: Duration = Duration::from_millis(60);
 
 impl Scenario {
-    /// The built-in scenario of somebody who crosses the floor and touches no control; fits floors of 4 x 3 tiles and
-    /// more.
+    /// The built-in scenario of a person who crosses the floor and touches no control; fits floors of at least 4 x 3
+    /// tiles.
     pub const CROSSING: &str = include_str!("../scenarios/crossing.ron");
 
     /// The built-in session on the shipped layout `map`: walk on, press a button, drag a slider, flip a switch, walk
     /// off.
     pub const SESSION: &str = include_str!("../scenarios/session.ron");
 
-    /// The built-in scenario for layouts without controls: a stroll over the floor and back; fits floors of 6 x 5 tiles
-    /// and more.
+    /// The built-in scenario for layouts without controls: a stroll over the floor and back; fits floors of at least
+    /// 6 x 5 tiles.
     pub const STROLL: &str = include_str!("../scenarios/stroll.ron");
 
-    /// The scenario in the file at `path`.
+    /// Loads the scenario in the file at `path`.
     ///
     /// # Errors
-    /// Everything wrong with the file, or that it cannot be read.
+    /// All problems of the file, or the reason why it can't be read.
     pub fn load(path: &Path) -> Result<Self, Diagnostics> {
         Self::parse(&path.display().to_string(), &read_text(path)?)
     }
 
-    /// The scenario written in `text`; `file` is what messages call it.
+    /// Parses the scenario in `text`; messages call it `file`.
     ///
     /// # Errors
-    /// Everything wrong with the text.
+    /// All problems of the text.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let source = Source::new(file, text)?;
         let reader = Reader::new(&source, ScenarioRecord::NAME, Limits::LAYOUT);
@@ -114,28 +113,28 @@ impl Scenario {
         Ok(Self { file: file.into(), text: text.into(), written })
     }
 
-    /// What people call it.
+    /// Returns the title.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.written.title
     }
 
-    /// What is known of scenarios, and of their steps.
+    /// Describes the fields of scenarios, and of their steps.
     pub(crate) fn describe() -> (Description, Vec<Description>) {
         (ScenarioRecord::describe(), Step::describe())
     }
 
-    /// What goes wrong with the packets meanwhile, as `--fault` has it.
+    /// Returns the faults of the packets during the scenario, in the format of `--fault`.
     #[must_use]
     pub fn faults(&self) -> &[String] {
         &self.written.faults
     }
 
-    /// The scenario played on this layout and floor.
+    /// Resolves the scenario against this layout and floor.
     ///
     /// # Errors
-    /// Every control that the layout doesn't have and every place that is not on the floor, and for each person the
-    /// first move that nobody could make, each where it is written.
+    /// Every control that is not in the layout, every place that is not on the floor, and the first impossible move
+    /// of each person, each with its position in the file.
     pub fn resolve(&self, layout: &Layout, geometry: &Geometry) -> Result<Script, Diagnostics> {
         let stage = Stage { layout, geometry, bounds: geometry.bounds() };
         let source = Source::new(&self.file, &self.text)?;
@@ -157,14 +156,14 @@ impl Scenario {
     }
 }
 
-/// What a scenario is played on.
+/// Layout and floor that a scenario is resolved against.
 struct Stage<'a> {
     layout: &'a Layout,
     geometry: &'a Geometry,
     bounds: Rect,
 }
 
-/// Where a step is written.
+/// Position of a step in the file.
 #[derive(Clone, Copy)]
 struct Written<'r> {
     step: Node<'r>,
@@ -172,7 +171,7 @@ struct Written<'r> {
 }
 
 impl Written<'_> {
-    /// Reports what is wrong with the step's field of this name, or with all of it.
+    /// Reports a problem with the step's field of this name, or with the whole step.
     fn wrong(&self, field: &'static str, message: impl Into<String>, help: Option<String>) {
         let at = self.step.peek(self.name, field).unwrap_or(self.step);
         self.step.report(Problem::error(at.span(), message).help_if(help));
@@ -180,7 +179,7 @@ impl Written<'_> {
 }
 
 impl Stage<'_> {
-    /// What one person does; `None` after it has reported what nobody could do.
+    /// Performs the steps of one person; `None` after reporting an impossible move.
     fn perform(
         &self,
         person: &PersonRecord,
@@ -191,7 +190,7 @@ impl Stage<'_> {
         let owner = if number == 0 { ScenarioRecord::NAME } else { super::definition::Other::NAME };
         let nodes = node.peek(owner, "steps")?.list("step", MOST_STEPS)?;
         let mut performance = Performance::new(person.person(), number);
-        // After a move that cannot be made the later ones start from the wrong place: names are still checked.
+        // After an impossible move the later ones start from the wrong place, so only their names are still checked.
         let mut lost = false;
         for (index, (step, node)) in steps.iter().zip(nodes).enumerate() {
             let written = Written { step: node, name: step.variant() };
@@ -213,7 +212,7 @@ impl Stage<'_> {
         (!lost).then_some(performance)
     }
 
-    /// The step with its names and places looked up; `None` after it has reported what there is not.
+    /// Looks up the step's names and places; `None` after reporting those that do not exist.
     fn ready(&self, step: &Step, written: Written<'_>) -> Option<Ready> {
         let middle = |id: &str| Some(self.widget(id, written)?.area.centre());
         let place = |at: Vec2| self.place(at, written.step.peek(written.name, "at")?);
@@ -268,7 +267,7 @@ impl Stage<'_> {
         }
     }
 
-    /// The place `at` in tiles, which is written at `node`, in floor metres.
+    /// Converts the place `at` (tiles), written at `node`, to floor metres.
     fn place(&self, at: Vec2, node: Node<'_>) -> Option<Vec2> {
         let metres = self.geometry.metres_from_tiles(at);
         let is_there = self.bounds.contains(metres);
@@ -291,7 +290,7 @@ impl Stage<'_> {
     }
 }
 
-/// A step whose names and places are known.
+/// A step with its names and places resolved.
 enum Ready {
     Wait(Duration),
     Stand(Vec2, f32),

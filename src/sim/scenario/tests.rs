@@ -1,4 +1,4 @@
-//! Scenarios as they are written and played.
+//! Parsing and playing scenarios.
 
 use super::*;
 use crate::feel::Feel;
@@ -61,7 +61,7 @@ fn play(script: &mut Script) -> Vec<Vec<Foot>> {
     (0..).map_while(|ms| script.feet(Instant::from_millis(ms), &mut feet).then(|| feet.clone())).collect()
 }
 
-/// The block that the documentation shows.
+/// The code block in the documentation.
 fn documented() -> String {
     let lines = include_str!("mod.rs").lines();
     let block = lines.skip_while(|line| *line != "/// ```ron").skip(1).take_while(|line| *line != "/// ```");
@@ -106,7 +106,7 @@ fn presses_and_drags_meet_their_controls() {
     let mut script = scenario.unwrap().resolve(&layout, &Geometry::default()).unwrap();
     let frames = play(&mut script);
     let held = |force: f32| -> Vec<Foot> {
-        // Held is what is pressed for longer than a moment.
+        // A foot is held if its force stays constant between two frames.
         let steady = |pair: &[Vec<Foot>]| {
             pair[0]
                 .iter()

@@ -1,4 +1,4 @@
-//! Who acts in a scene.
+//! People in scenes.
 
 use std::f32::consts::TAU;
 
@@ -13,7 +13,7 @@ use crate::sim::performance::Performance;
 use crate::sim::person::Person;
 use crate::sim::rolling::RollingHabit;
 
-/// Somebody made up from a seed, from a child of 20 kg to 140 kg.
+/// A person drawn from a seed, from a child of 20 kg to an adult of 140 kg.
 #[derive(Clone, Debug)]
 pub struct Body {
     person: Person,
@@ -22,7 +22,7 @@ pub struct Body {
     seed: u64,
 }
 
-/// Mass and usual length of the foot: children of 6, adults of usual weight, heavy adults.
+/// Mass and usual foot length: children of 6, adults of usual weight, heavy adults.
 ///
 /// # Source
 /// Our assumption from shoe sizes: 18 cm at 20 kg (six years), 26 cm at 70 kg; heavy people's feet are
@@ -30,9 +30,9 @@ pub struct Body {
 const FEET_M: [(f32, f32); 4] = [(20.0, 0.18), (45.0, 0.235), (75.0, 0.262), (140.0, 0.285)];
 
 impl Body {
-    /// The person that follows from a seed: masses are spread evenly over their logarithm, so that one
-    /// in five weighs less than 30 kg and one in four more than 86; those of 45 to 90 kg wear heels one
-    /// time in four, the others shoes, boots or nothing.
+    /// Draws a person from a seed. Masses are spread evenly over their logarithm, so that one in five weighs less
+    /// than 30 kg and one in four more than 86. People of 45 to 90 kg wear heels one time in four; the others wear
+    /// shoes, boots or nothing.
     #[must_use]
     pub fn of(seed: u64) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x0b0d_1e55);
@@ -60,18 +60,18 @@ impl Body {
         Self { person, habit, rng, seed }
     }
 
-    /// Their measures.
+    /// Returns the person's measures.
     #[must_use]
     pub const fn person(&self) -> &Person {
         &self.person
     }
 
-    /// In newtons.
+    /// Weight in newtons.
     pub(super) fn weight_n(&self) -> f32 {
         self.person.weight().0
     }
 
-    /// The same person as somebody who walks.
+    /// A performance of the same person, for walking.
     pub(super) fn performance(&mut self) -> Performance {
         let seed = self.rng.random();
         Performance::new(self.person, seed).rolling_as_people_do(self.seed)
@@ -93,7 +93,7 @@ impl Body {
         self.within(0.0, TAU)
     }
 
-    /// A place on the floor at least `margin_m` from its edges, or its middle.
+    /// A place on the floor at least `margin_m` from its edges, or the floor's centre if there is none.
     pub(super) fn place(&mut self, bounds: Rect, margin_m: f32) -> Vec2 {
         let inner = bounds.grown(-margin_m);
         if inner.size().min_element() <= 0.0 {

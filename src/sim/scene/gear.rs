@@ -1,4 +1,4 @@
-//! Scenes with things that people bring: sticks and wheels.
+//! Scenes with objects that people bring: sticks and wheels.
 
 use glam::Vec2;
 use rand::RngExt;
@@ -9,16 +9,16 @@ use crate::floor::Rect;
 use crate::sim::gait::Gait;
 use crate::sim::track::forward;
 
-/// Somebody who walks straight over the floor, step by step.
+/// A person who walks straight over the floor, step by step.
 struct Stroll {
-    /// The feet in the order of their steps.
+    /// The feet, in the order of their steps.
     steps: Vec<Thing>,
-    /// Where the body was at each landing, and when.
+    /// Position of the body at each touchdown, and its time.
     landings: Vec<(Vec2, f64)>,
     step_s: f64,
 }
 
-/// A way straight over the floor through a point: where it begins, its direction and its length.
+/// A straight path over the floor through a point: start, heading and length.
 fn way(body: &mut Body, bounds: Rect) -> (Vec2, f32, f32) {
     let through = body.place(bounds, 0.5);
     let heading = body.angle();
@@ -26,11 +26,11 @@ fn way(body: &mut Body, bounds: Rect) -> (Vec2, f32, f32) {
     (through - forward(heading) * half, heading, 2.0 * half)
 }
 
-/// Walks the way at a speed in metres per second, carrying `weight_n`.
+/// Walks the path at a speed in metres per second, with the weight `weight_n`.
 fn stroll(body: &mut Body, (from, heading, length): (Vec2, f32, f32), speed: f32, weight_n: f32) -> Stroll {
     let gait = Gait::at_speed(speed);
     let contact_s = body.habit.contact_s(gait.speed_m_s);
-    // As often as feet of that contact time overlap by a quarter of a step.
+    // Step duration at which stances of that contact time overlap by a quarter of a step.
     let step_s = f64::from((contact_s / 1.25).max(gait.step_s * 0.8));
     let step_m = gait.speed_m_s * step_s as f32;
     let right = -forward(heading).perp();
@@ -50,7 +50,7 @@ fn stroll(body: &mut Body, (from, heading, length): (Vec2, f32, f32), speed: f32
     Stroll { steps, landings, step_s }
 }
 
-/// A stick of 15 mm radius that comes down with every other step on the far side and carries 5 to 25 %.
+/// A stick of 15 mm radius on the far side, which lands with every other step and carries 6 to 25 % of the weight.
 pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let way = way(body, bounds);
     let speed = body.within(0.5, 1.0);
@@ -72,12 +72,12 @@ pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     things
 }
 
-/// Four wheels of a trolley (30 to 80 kg) or of a wheelchair with somebody in it (60 to 140 kg), pushed
-/// by somebody who walks behind it.
+/// Four wheels of a trolley (30 to 80 kg) or of an occupied wheelchair (60 to 140 kg), pushed by a person walking
+/// behind.
 ///
 /// # Source
-/// Our assumption of usual sizes. Wheelchairs: some 0.42 m from axle to axle, 0.55 m wide, two thirds of the weight on
-/// the large wheels behind; trolleys: 0.6 m long and 0.4 m wide.
+/// Our assumption of usual sizes. Wheelchairs: some 0.42 m from axle to axle, 0.55 m wide, two thirds of the weight
+/// on the large rear wheels; trolleys: 0.6 m long and 0.4 m wide.
 pub(super) fn wheels(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (from, heading, length) = way(body, bounds);
     let speed = body.within(0.4, 1.1);
@@ -86,7 +86,7 @@ pub(super) fn wheels(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (base, wide, behind) = if chair { (0.42, 0.55, 0.66) } else { (0.6, 0.4, 0.5) };
     let total = 9.81 * if chair { body.within(60.0, 140.0) } else { body.within(30.0, 80.0) };
     let right = -forward(heading).perp();
-    // Pushed with both hands: the walker's feet come half a metre behind the wheels.
+    // Pushed with both hands: the walker's feet are half a metre behind the wheels.
     let Stroll { mut steps, .. } =
         stroll(body, (from - forward(heading) * 0.55, heading, length + 0.55), speed, weight);
     let took = f64::from(length / Gait::at_speed(speed).speed_m_s);

@@ -1,4 +1,4 @@
-//! What people and things do on floors that is hard to sense: scenes made up from a seed.
+//! Scenes that are hard to sense, with people and objects drawn from a seed.
 
 mod body;
 mod gear;
@@ -18,24 +18,24 @@ use crate::units::Instant;
 pub use body::Body;
 use thing::Thing;
 
-/// What happens in a scene.
+/// Kind of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SceneKind {
-    /// Somebody walks onto the floor, stops, walks on and leaves.
+    /// A person walks onto the floor, stops, walks on and leaves.
     Walking,
-    /// Somebody stands and shifts their weight, down to 10 to 20 % on one foot, in 0.2 or 1.2 s.
+    /// A person stands and shifts weight, down to 10 to 20 % on one foot, in 0.2 or 1.2 s.
     Shifting,
-    /// Somebody jumps three times.
+    /// A person jumps three times.
     Jumping,
-    /// Somebody steps aside, there and back.
+    /// A person steps aside and back.
     SideSteps,
-    /// Somebody turns on one heel and puts the other foot after.
+    /// A person turns on one heel and moves the other foot after it.
     HeelPivot,
-    /// Somebody kneels down on one knee or both, and gets up.
+    /// A person kneels down on one knee or both, and gets up.
     Kneeling,
-    /// Somebody walks with a stick.
+    /// A person walks with a stick.
     Stick,
-    /// Somebody pushes a trolley over the floor, or a wheelchair with somebody in it.
+    /// A person pushes a trolley or an occupied wheelchair over the floor.
     Wheels,
     /// Two people come, stand face to face and leave.
     FaceToFace,
@@ -52,7 +52,7 @@ pub enum SceneKind {
 }
 
 impl SceneKind {
-    /// All of them, in the order of tables.
+    /// All kinds, in the order of tables.
     pub const ALL: [Self; 14] = [
         Self::Walking,
         Self::Shifting,
@@ -70,7 +70,7 @@ impl SceneKind {
         Self::Turn,
     ];
 
-    /// Its name in tables.
+    /// Returns the name in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -92,10 +92,10 @@ impl SceneKind {
     }
 }
 
-/// A scene: what presses on the floor, moment by moment.
+/// A scene: the loads on the floor, moment by moment.
 ///
-/// People are of 20 to 140 kg, barefoot, in shoes, heels or boots, and roll their feet as recorded
-/// people do ([`super::RollingHabit`]); see [`Body`].
+/// People have 20 to 140 kg, are barefoot or wear shoes, heels or boots, and roll their feet like recorded people
+/// ([`super::RollingHabit`]); see [`Body`].
 #[derive(Clone, Debug)]
 pub struct Scene {
     script: Option<Script>,
@@ -104,12 +104,12 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The scene of this kind that follows from `seed`, about the middle of a floor.
+    /// Creates the scene of this kind from `seed`, around the centre of a floor.
     ///
-    /// Made for floors of some 1.8 m and more; on smaller ones feet come to stand beside the floor.
+    /// Meant for floors of at least some 1.8 m; on smaller ones some feet stand beside the floor.
     ///
     /// # Errors
-    /// [`MoveError`], which no seed should bring about.
+    /// [`MoveError`] if a move is impossible, which no seed should cause.
     pub fn of(kind: SceneKind, seed: u64, geometry: &Geometry) -> Result<Self, MoveError> {
         let mut body = Body::of(seed);
         let bounds = geometry.bounds();
@@ -134,13 +134,13 @@ impl Scene {
         }
     }
 
-    /// From its beginning to its end.
+    /// Returns the duration of the scene.
     #[must_use]
     pub const fn duration(&self) -> Duration {
         self.duration
     }
 
-    /// Adds what presses on the floor at a moment, each thing at its own place in the order.
+    /// Adds the loads on the floor at a moment, always in the same order.
     pub fn loads_at(&self, at: Instant, loads: &mut Vec<Load>) {
         if let Some(script) = &self.script {
             script.loads_at(at, loads);
@@ -162,7 +162,7 @@ impl Scene {
 mod tests {
     use super::*;
 
-    /// Every 10 ms of a scene.
+    /// The loads of a scene every 10 ms.
     fn frames(kind: SceneKind, seed: u64) -> Vec<Vec<Load>> {
         let scene = Scene::of(kind, seed, &Geometry::default()).unwrap();
         let moments = (0..scene.duration().as_millis() as u64).step_by(10);
@@ -227,7 +227,7 @@ mod tests {
                     let mut loads = Vec::new();
                     scene.loads_at(Instant::from_millis(ms), &mut loads);
                     for load in loads.iter().filter(|load| load.force.0 > 60.0) {
-                        // Its own place, a millisecond before.
+                        // Its own position a millisecond before.
                         let near = before
                             .iter()
                             .filter(|other| other.position.distance(load.position) < 0.01)

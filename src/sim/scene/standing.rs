@@ -1,4 +1,4 @@
-//! Scenes of people who stay where they are: shifting, jumping, turning, kneeling, landing.
+//! Scenes of people who stay in place: shifting, jumping, turning, kneeling, landing.
 
 use glam::Vec2;
 use rand::RngExt;
@@ -9,7 +9,7 @@ use crate::floor::Rect;
 use crate::sim::sway::Sway;
 use crate::sim::track::forward;
 
-/// Two feet of somebody who stands about the middle of the floor and sways; left first, without force yet.
+/// Two feet of a standing, swaying person near the centre of the floor; left foot first, without force yet.
 fn two_feet(body: &mut Body, bounds: Rect, width_m: f32) -> [Thing; 2] {
     let middle = body.place(bounds, 0.5);
     let facing = body.angle();
@@ -25,13 +25,13 @@ fn two_feet(body: &mut Body, bounds: Rect, width_m: f32) -> [Thing; 2] {
     })
 }
 
-/// Both feet carry shares of the weight from a moment on, reached evenly.
+/// Moves the load of both feet to shares of the weight; the feet reach them at `at_s`.
 fn share_weight(feet: &mut [Thing; 2], at_s: f64, weight_n: f32, right: f32) {
     feet[0].presses(at_s, weight_n * (1.0 - right));
     feet[1].presses(at_s, weight_n * right);
 }
 
-/// Somebody steps onto the floor, one foot after the other, and stands on both after a second.
+/// The person steps onto the floor, one foot after the other, and stands on both after a second.
 fn step_on(body: &mut Body, feet: &mut [Thing; 2], weight_n: f32) {
     let first = if body.sign() > 0.0 { 0.0 } else { 1.0 };
     share_weight(feet, 0.1, 0.0, 0.5);
@@ -40,7 +40,7 @@ fn step_on(body: &mut Body, feet: &mut [Thing; 2], weight_n: f32) {
     share_weight(feet, 0.95, weight_n, 0.5);
 }
 
-/// Weight taken off to 10 to 20 % by one foot, in 0.2 or 1.2 s, and taken back; twice.
+/// One foot unloads to 10 to 20 %, in 0.2 or 1.2 s, and takes the weight back; twice.
 pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (weight, width) = (body.weight_n(), body.within(0.14, 0.30));
     let mut feet = two_feet(body, bounds, width);
@@ -63,11 +63,11 @@ pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     feet.into()
 }
 
-/// Three jumps, each to another place some centimetres off.
+/// Three jumps, each to a place a few centimetres away.
 ///
 /// # Source
-/// Our assumption of somebody who hops about: a push of a quarter of a second with 1.6 to 2.2 body
-/// weights, 0.30 to 0.45 s in the air (11 to 25 cm high), a landing with 1.8 to 3 body weights within 60 ms.
+/// Our assumption of a hopping person: a push of a quarter of a second with 1.6 to 2.2 body weights, 0.30 to 0.45 s
+/// in the air (11 to 25 cm high), a landing with 1.8 to 3 body weights within 60 ms.
 pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (weight, width) = (body.weight_n(), body.within(0.16, 0.35));
     let mut stand = two_feet(body, bounds, width);
@@ -113,7 +113,7 @@ pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     done
 }
 
-/// Turns on one heel by 30 to 110 degrees, the other foot lifted and put down after; there and back.
+/// Turns on one heel by 30 to 110 degrees, with the other foot lifted and put down afterwards; there and back.
 pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (weight, width) = (body.weight_n(), body.person().stand_width_m);
     let mut feet = two_feet(body, bounds, width);
@@ -135,7 +135,7 @@ pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<Thing> {
         pivot.roll.rest(begin, 0.05);
         pivot.roll.rest(end, 0.05);
         pivot.roll.rest(end + 0.4, STAND_ROLL);
-        // About the heel: its middle goes round it, by small parts of the turn.
+        // About the heel: the foot's centre moves around it in small parts of the turn.
         let (at, heading) = (Vec2::new(pivot.x.at(now), pivot.y.at(now)), pivot.heading.at(now));
         let about = at + forward(heading) * heel;
         pivot.stays(begin);
@@ -151,7 +151,7 @@ pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<Thing> {
             pivot.y.pass(moment, at.y, sideways.y);
             pivot.heading.pass(moment, heading, turn * per_s);
         }
-        // The other foot comes down beside it, turned as far.
+        // The other foot lands beside it, turned by the same angle.
         let was = Vec2::new(other.x.at(now), other.y.at(now));
         let placed = about + Vec2::from_angle(turn).rotate(was - about);
         let mut next = Thing::foot(body, placed, other.heading.at(now) + turn);
@@ -169,10 +169,10 @@ pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     things
 }
 
-/// Down on one knee or both, and up again: knees of 6 x 8 cm, the toes behind them.
+/// Kneels on one knee or both, and gets up: knees of 6 x 8 cm, the toes behind them.
 ///
 /// # Source
-/// Our assumption of how the weight lies: on one knee half of it stays on the front foot; on both, three
+/// Our assumption of the load distribution: on one knee, half of the weight stays on the front foot; on both, three
 /// quarters rest on the knees.
 pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (weight, width) = (body.weight_n(), body.within(0.16, 0.26));
@@ -193,7 +193,7 @@ pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let hold = f64::from(body.within(1.5, 4.0));
     let both = body.sign() > 0.0;
     step_on(body, &mut feet, weight);
-    // The right foot gives its weight up, its toes come down behind and its knee before them.
+    // The right foot unloads, its toes land behind it and its knee in front of them.
     share_weight(&mut feet, 1.35, weight, 0.0);
     right.1.presses(1.7, 0.0).presses(2.0, 0.25 * weight).presses(2.3, 0.25 * weight);
     feet[0].presses(1.7, weight).presses(2.0, 0.75 * weight).presses(2.3, 0.75 * weight);
@@ -226,7 +226,7 @@ pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     } else {
         hold_all(&mut [(&mut right.0, 0.35), (&mut right.1, 0.15), (&mut feet[0], 0.5)], now, now);
     }
-    // Up and off the floor at once: everything lifts within 0.5 s.
+    // Gets up and off the floor at once: everything lifts within 0.5 s.
     let [first, second] = feet;
     let mut things = vec![first, second, left.0, left.1, right.0, right.1];
     for thing in &mut things {

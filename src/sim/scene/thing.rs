@@ -1,4 +1,4 @@
-//! One thing that presses on the floor in a scene: a foot, a knee, a wheel, the tip of a stick.
+//! One object on the floor in a scene: a foot, a knee, a wheel, the tip of a stick.
 
 use glam::Vec2;
 
@@ -12,37 +12,37 @@ use crate::sim::sway::Sway;
 use crate::sim::track::forward;
 use crate::units::Newtons;
 
-/// What it looks like from below.
+/// Contact area of an object.
 #[derive(Clone, Debug)]
 pub(super) enum Sole {
-    /// A foot that stands or works: its roll says how.
+    /// A standing or working foot: `roll` is the position of the load between heel and toes.
     Foot { length_m: f32, footwear: Footwear },
-    /// A foot in a step of its own: its roll is the phase of it.
+    /// A foot in a recorded step: `roll` is the phase of the step.
     Step { length_m: f32, footwear: Footwear, rolling: Box<Rolling> },
-    /// Half of the width and length of something that presses evenly.
+    /// Half of the width and length of an object with uniform pressure.
     Round { half_m: Vec2 },
 }
 
-/// Something that presses; it is there as long as its force says.
+/// An object on the floor; it is present while its force is above zero.
 #[derive(Clone, Debug)]
 pub(super) struct Thing {
     pub(super) sole: Sole,
-    /// In newtons.
+    /// Force in newtons.
     pub(super) force: Curve,
-    /// The middle of it, in floor metres.
+    /// Position of the centre, in floor metres.
     pub(super) x: Curve,
     pub(super) y: Curve,
-    /// Radians counter-clockwise from north.
+    /// Heading, in radians counter-clockwise from north.
     pub(super) heading: Curve,
-    /// Heel (0) to toes (1).
+    /// Roll, from the heel (0) to the toes (1), or the phase of a step.
     pub(super) roll: Curve,
-    /// How it sways, and which share of the sideways sway it gets.
+    /// The sway, and the object's share of the sideways sway.
     pub(super) sway: Option<(Sway, f32)>,
     end_s: f64,
 }
 
 impl Thing {
-    /// Something at a place, without force yet.
+    /// An object at a place, without force yet.
     pub(super) fn at(sole: Sole, at: Vec2, heading: f32) -> Self {
         let still = |value| {
             let mut curve = Curve::default();
@@ -61,14 +61,14 @@ impl Thing {
         }
     }
 
-    /// A foot of somebody, standing.
+    /// A standing foot of a person.
     pub(super) fn foot(body: &Body, at: Vec2, heading: f32) -> Self {
         let person = body.person();
         let sole = Sole::Foot { length_m: person.foot_length_m, footwear: person.footwear };
         Self::at(sole, at, heading)
     }
 
-    /// One step of somebody who walks, from `landing_s` on, with the peak `peak_n`.
+    /// One step of a walking person, from `landing_s` on, with the peak `peak_n`.
     pub(super) fn step(
         body: &mut Body,
         (at, heading): (Vec2, f32),
@@ -105,21 +105,21 @@ impl Thing {
         thing
     }
 
-    /// Presses with `newtons` from `at_s` on, reached evenly from what it was.
+    /// Changes the force smoothly to `newtons` at `at_s`.
     pub(super) fn presses(&mut self, at_s: f64, newtons: f32) -> &mut Self {
         self.force.rest(at_s, newtons.max(0.0));
         self.end_s = self.end_s.max(at_s);
         self
     }
 
-    /// Moves there until `at_s`, from where it was when it last came to rest.
+    /// Moves to a place, which it reaches at `at_s`, from its last resting place.
     pub(super) fn goes(&mut self, at_s: f64, to: Vec2) -> &mut Self {
         self.x.rest(at_s, to.x);
         self.y.rest(at_s, to.y);
         self
     }
 
-    /// Stays where it is until `at_s`, in every respect but its force.
+    /// Holds position, heading and roll until `at_s`, but not the force.
     pub(super) fn stays(&mut self, at_s: f64) -> &mut Self {
         for curve in [&mut self.x, &mut self.y, &mut self.heading, &mut self.roll] {
             curve.hold(at_s);
@@ -127,12 +127,12 @@ impl Thing {
         self
     }
 
-    /// When it has last pressed.
+    /// Time of the last force value (s).
     pub(super) const fn end_s(&self) -> f64 {
         self.end_s
     }
 
-    /// The load at a moment; `None` while it is in the air.
+    /// Returns the load at a moment; `None` while the object is in the air.
     pub(super) fn load(&self, at_s: f64) -> Option<Load> {
         let (mut force, mut roll) = (self.force.at(at_s), self.roll.at(at_s));
         if force <= 0.0 {
@@ -165,10 +165,10 @@ impl Thing {
     }
 }
 
-/// Roll of a foot that stands, a little more than half of its load on the heel.
+/// Roll of a standing foot: a little more than half of its load is on the heel.
 pub(super) const STAND_ROLL: f32 = 0.4;
 
-/// Where the feet stand on both sides of a middle, left first: place and heading.
+/// Positions and headings of the feet on both sides of a midpoint, left first.
 pub(super) fn pair(middle: Vec2, facing: f32, width_m: f32, turn_out: f32) -> [(Vec2, f32); 2] {
     let right = -forward(facing).perp();
     [-1.0, 1.0].map(|side| (middle + right * (0.5 * width_m * side), facing - turn_out * side))

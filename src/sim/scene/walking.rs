@@ -1,4 +1,4 @@
-//! Scenes of people who walk about.
+//! Scenes of walking people.
 
 use std::f32::consts::PI;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::floor::Rect;
 use crate::sim::person::MoveError;
 use crate::sim::script::Script;
 
-/// How far from the middle of the floor people come from: no part of a foot is on it there.
+/// A starting place outside the floor: far enough from its centre that no part of a foot is on the floor.
 fn outside(bounds: Rect, angle: f32) -> Vec2 {
     bounds.centre() + Vec2::from_angle(angle) * (0.5 * bounds.size().length() + 0.45)
 }
@@ -19,12 +19,12 @@ fn seconds(body: &mut Body, low: f32, high: f32) -> Duration {
     Duration::from_secs_f32(body.within(low, high))
 }
 
-/// The heading of somebody who goes along a way.
+/// Heading of a person who walks along `way`.
 fn heading(way: Vec2) -> f32 {
     way.to_angle() - 0.5 * PI
 }
 
-/// Onto the floor, a stop, and off it.
+/// Walks onto the floor, stops, and walks off it.
 pub(super) fn walk(body: &mut Body, bounds: Rect) -> Result<Script, MoveError> {
     let stop = body.place(bounds, 0.45);
     let from = outside(bounds, body.angle());
@@ -57,7 +57,7 @@ pub(super) fn sidesteps(body: &mut Body, bounds: Rect) -> Result<Script, MoveErr
     Ok(Script::new(vec![person], bounds))
 }
 
-/// Two people come from both sides, stand toe to toe, shift about, and go back.
+/// Two people come from opposite sides, stand toe to toe, shift their weight, and go back.
 pub(super) fn face_to_face(one: &mut Body, other: &mut Body, bounds: Rect) -> Result<Script, MoveError> {
     let way = one.angle();
     let middle = bounds.centre() + Vec2::new(one.within(-0.15, 0.15), one.within(-0.15, 0.15));

@@ -1,4 +1,4 @@
-//! Scenes of one foot that works a control, alone or beside the foot that stands.
+//! Scenes of one foot that operates a control, alone or beside a standing foot.
 
 use std::f32::consts::PI;
 
@@ -11,18 +11,18 @@ use crate::floor::Rect;
 use crate::sim::sway::Sway;
 use crate::sim::track::forward;
 
-/// One foot that comes down on a control and rests on it, perhaps beside a standing one.
+/// One foot that lands on a control and rests on it, perhaps beside a standing one.
 struct Work {
     foot: Thing,
     stands: Option<Thing>,
-    /// What the working foot rests with, in newtons.
+    /// Force of the working foot at rest (N).
     rests_n: f32,
-    /// When it begins to work.
+    /// Start of the work (s).
     begin: f64,
 }
 
 impl Work {
-    /// Lands, and rests for up to 1.5 s; `way` is where it will go, if anywhere.
+    /// Lands, and rests for up to 1.5 s; `way` is the direction of the later slide, if any.
     fn of(body: &mut Body, bounds: Rect, way: Option<f32>) -> Self {
         let beside = body.rng.random_bool(0.5);
         let weight = body.weight_n();
@@ -51,7 +51,7 @@ impl Work {
         Self { foot, stands, rests_n, begin: landing + 0.12 + rest }
     }
 
-    /// Presses with so much more than at rest from a moment on; the standing foot carries less.
+    /// Adds `more_n` to the resting force at `at_s`; the standing foot carries less.
     fn presses(&mut self, at_s: f64, more_n: f32, weight_n: f32) {
         self.foot.presses(at_s, self.rests_n + more_n);
         if let Some(stands) = &mut self.stands {
@@ -78,11 +78,11 @@ pub(super) fn slide(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let way = body.angle();
     let mut work = Work::of(body, bounds, Some(way));
     let start = Vec2::new(work.foot.x.at(0.0), work.foot.y.at(0.0));
-    // No further than the floor goes.
+    // Limited to the floor.
     let inner = bounds.grown(-0.15);
     let goal = (start + Vec2::from_angle(way) * body.within(0.1, 0.6)).clamp(inner.min, inner.max);
     let speed = [0.1, 0.2, 0.35, 0.6, 1.0][body.rng.random_range(0..5_usize)];
-    // A smooth ramp is half as fast again in its middle.
+    // The peak speed of a smooth ramp is 1.5 times its mean speed.
     let took = f64::from((1.5 * start.distance(goal) / speed).max(0.1));
     let again = f64::from(body.within(0.2, 0.8));
     let mut now = work.begin;
@@ -92,7 +92,7 @@ pub(super) fn slide(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     work.leave(body, now)
 }
 
-/// Three times 50 to 250 N more within 0.1 to 0.4 s, leaning a little.
+/// Presses three times with 50 to 250 N more, within 0.1 to 0.4 s, and leans a little.
 pub(super) fn press(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let mut work = Work::of(body, bounds, None);
     let weight = body.weight_n();
@@ -110,7 +110,7 @@ pub(super) fn press(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     work.leave(body, now)
 }
 
-/// Three times from heel to ball and back within 0.25 to 0.9 s, without lifting.
+/// Rocks three times from heel to ball and back within 0.25 to 0.9 s, without lifting.
 pub(super) fn rock(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let mut work = Work::of(body, bounds, None);
     let mut now = work.begin;
@@ -127,7 +127,7 @@ pub(super) fn rock(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     work.leave(body, now + 0.2)
 }
 
-/// By 20 to 60 degrees about heel or ball within 0.3 to 1 s, and back.
+/// Turns by 20 to 60 degrees about heel or ball within 0.3 to 1 s, and back.
 pub(super) fn turn(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let mut work = Work::of(body, bounds, None);
     let length = body.person().foot_length_m;
