@@ -179,7 +179,7 @@ impl<'t> Lines<'t> {
         }
         let before_comma = self.0.get(element.value.span.end..element.end()).unwrap_or_default();
         let mut behind: Vec<String> = comments(before_comma).into_iter().map(closed).collect();
-        behind.extend(self.owns_lines(element).filter(|comment| !comment.is_empty()).map(str::to_owned));
+        behind.extend(self.only_comment(element.end()).filter(|comment| !comment.is_empty()).map(str::to_owned));
         let above = self.0.get(self.above(parent, index)..element.start()).unwrap_or_default().trim_end();
         let line =
             |line: &str| line.strip_prefix(indent).unwrap_or_else(|| line.trim_start()).trim_end().to_owned();
@@ -317,6 +317,11 @@ impl<'t> Lines<'t> {
         let above = self.above(parent, index);
         if let [splice] = &mut splices[..] {
             splice.at.start = splice.at.start.min(above);
+            let element = parent.elements.get(index);
+            if let Some(last) = element.filter(|element| self.only_comment(element.end()).is_some()) {
+                // The comment at the end of a line that it shares with the entries before it.
+                splice.at.end = splice.at.end.max(self.end(last.end()));
+            }
             // Also remove the line if nothing else is on it.
             let start = self.start(splice.at.start);
             let is_begin_blank = self.0[start..splice.at.start].trim().is_empty();

@@ -433,8 +433,8 @@ mod tests {
     use super::{Args, SERVED_HERE};
 
     /// Options of what is shown and how, whoever serves it.
-    const SHOWN: [&str; 10] =
-        ["layout", "widgets", "effects", "floor", "grid", "join", "follow", "project", "monitor", "corners"];
+    const SHOWN: [&str; 11] =
+        ["_option", "layout", "widgets", "effects", "floor", "grid", "join", "follow", "project", "monitor", "corners"];
 
     #[test]
     fn every_option_is_of_a_floor_served_here_or_of_any() {
