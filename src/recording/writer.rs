@@ -44,7 +44,7 @@ impl Job {
     }
 }
 
-/// A file in writing.
+/// A recording file, open for writing.
 pub(super) struct RecordingFile {
     writer: Writer<BufWriter<File>>,
     disk: Disk,

@@ -145,7 +145,7 @@ impl CommandHandler {
         if let Err(error) = std::fs::create_dir_all(&folder) {
             return format!("{} can't be made: {error}", folder.display());
         }
-        // Comments that a person has written beside the numbers stay.
+        // Text that a person has added beside the numbers stays.
         let old = std::fs::read_to_string(&path).unwrap_or_default();
         let text = edit::refit(&old, text);
         match schema::save_text(&text, &path) {

@@ -105,7 +105,7 @@ fn a_file_that_is_cut_anywhere_gives_its_beginning() {
         let data_end = file.len() - OURS.write(&Vec::new()).len().min(file.len());
         let mut most = 0;
         for cut in (0..file.len()).step_by(37) {
-            // The floor comes last in this file, so a truncated one has none.
+            // Some tools write the floor last: a truncated file then has none.
             let Ok(given) = read(file[..cut].to_vec()) else { continue };
             let case = format!("{tool:?} cut at {cut} of {}", file.len());
             check_beginning(&given.entries, &taken, &case);
