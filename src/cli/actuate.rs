@@ -17,13 +17,13 @@ use underfoot::units::{HostClock, Instant};
 
 use super::number::delay_ms;
 
-/// Where actuator samples go.
+/// Options for the output of actuator samples.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct ActuateArgs {
     /// Record the actuator channels in a WAV file instead of playing them.
     #[arg(long, value_name = "FILE")]
     wav: Option<PathBuf>,
-    /// Samples per second and channel; without it 48000 in a file, and what the sound card likes best.
+    /// Samples per second and channel; without it, 48000 in a file, and the preferred rate of the sound card.
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(8000..=384_000))]
     rate: Option<u32>,
     /// How the sound card plays the actuators.
@@ -35,17 +35,17 @@ pub(crate) struct ActuateArgs {
     #[cfg(feature = "audio")]
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
-    /// Frames that the sound card takes at once: the shorter, the sooner a click is felt. Without it, 128 (64 with
-    /// `--device paced`), and more if samples come late again and again.
+    /// Frames per block of the sound card: the shorter, the sooner a click is felt. Without it, 128 (64 with
+    /// `--device paced`), and more if samples are late again and again.
     #[cfg(feature = "audio")]
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=8192))]
     block: Option<u32>,
-    /// Convert samples where the sound card has not the rate of `--rate`; without it, such a card is refused.
+    /// Convert samples if the sound card does not support the rate of `--rate`; without it, such a card is refused.
     #[cfg(feature = "audio")]
     #[arg(long, requires = "rate")]
     resample: bool,
-    /// Play every click exactly so many milliseconds after the foot that caused it; without it, as soon as possible.
-    /// A delay that is too short for the sound card makes clicks late, which is counted.
+    /// Play every click exactly this many milliseconds after the foot that caused it; without it, as soon as
+    /// possible. A delay that is too short for the sound card makes clicks late; they are counted.
     #[arg(long, value_name = "MS", value_parser = delay_ms)]
     delay_ms: Option<Duration>,
 }
@@ -60,28 +60,29 @@ enum Sound {
     Tiles,
     /// All actuators on two loudspeakers, placed by their column.
     Stereo,
-    /// None.
+    /// No sound.
     Off,
 }
 
-/// Cues in, samples out.
+/// Haptic output: cues in, samples out.
 pub(crate) struct Actuation {
-    /// The sensing thread's end.
+    /// Sends cues, from the sensing thread.
     pub(crate) feel: CueSender,
-    /// What plays the samples; it stays on the thread that made it.
+    /// Plays the samples; it stays on the thread that created it.
     pub(crate) sink: Box<dyn ActuatorSink>,
-    /// Where the samples go, or why nobody hears them.
+    /// The destination of the samples, or the reason why they are not audible.
     pub(crate) notice: String,
 }
 
 impl ActuateArgs {
-    /// Starts what was asked for. Without a sound card that fits, the samples go nowhere and the notice says why.
+    /// Starts the output that the options choose. Without a suitable sound card, it discards the samples, and the
+    /// notice has the reason.
     ///
-    /// `start` is the present on the floor's sample clock, `clock` the one that stamps packets. `prepare` sees the
-    /// renderer before it plays: of several, where more than one sound card is tried, the last one counts.
+    /// `start` is the present on the floor's sample clock, and `clock` stamps packets. `prepare` gets the renderer
+    /// before it plays: if several sound cards are tried, the last call counts.
     ///
     /// # Errors
-    /// The recording can't be begun, or the sound card asked for by name can't be used.
+    /// The recording can't begin, or the requested sound card can't be used.
     pub(crate) fn start(
         &self,
         floor: &Floor,
@@ -114,7 +115,7 @@ impl ActuateArgs {
         Ok(playing)
     }
 
-    /// What a session opens its actuators by; `notice` hears what is played by what.
+    /// Returns the function with which a session opens its actuators; `notice` gets a description of the output.
     pub(crate) fn opener(
         &self,
         latency: LatencyStages,
@@ -131,12 +132,12 @@ impl ActuateArgs {
         }
     }
 
-    /// Where to record, if that was asked for.
+    /// The WAV file to record, if any.
     pub(crate) fn wav(&self) -> Option<&Path> {
         self.wav.as_deref()
     }
 
-    /// The same, but each tile on a channel of its own, whatever the sound card makes of it.
+    /// The same options, but with a channel per tile in place of the automatic choice.
     pub(crate) fn for_wiring(&self) -> Self {
         #[cfg(feature = "audio")]
         if self.sound == Sound::Auto {
@@ -219,11 +220,11 @@ impl ActuateArgs {
     }
 }
 
-/// Why the sound card does not play.
+/// Reasons why the sound card does not play.
 enum NoSound {
-    /// Go on without, and say this.
+    /// The program continues without sound and shows this text.
     Silent(String),
-    /// It was asked for, so that the program must not go on without.
+    /// The options request sound explicitly, so the program must not continue without it.
     #[cfg_attr(not(feature = "audio"), expect(dead_code, reason = "nothing can be asked for without sound"))]
     Refused(SinkError),
 }

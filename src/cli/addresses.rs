@@ -8,7 +8,7 @@ use super::layout_args::LayoutArgs;
 use super::output::print_json;
 use super::outputs::PrefixArg;
 
-/// What `underfoot addresses` is asked to do.
+/// Options of `underfoot addresses`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -22,7 +22,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Lists every OSC address that the floor understands or says, with its arguments.
+/// Lists every OSC address that the floor receives or sends, with its arguments.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let layout = args.layout.load(&floor.geometry)?;
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// One address on a line: which way, address, arguments, what it says.
+/// One address on a line: direction, address, arguments, meaning.
 fn line(entry: &Entry) -> String {
     let way = match entry.direction {
         Direction::In => "in",

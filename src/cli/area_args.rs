@@ -10,29 +10,30 @@ use underfoot::source::UdpSource;
 
 use super::failure::Failure;
 
-/// Which part of a large floor it is about.
+/// Option that selects a part of a large floor.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct AreaArgs {
     /// Serve only this area of the floor file: its boards and those within 1.2 m of it, its controls, its actuators.
-    /// Its packets arrive where the floor file says, unless --listen does, and go on to the areas that need them too.
+    /// Its packets arrive at the address in the floor file, unless --listen gives one, and go on to the areas that
+    /// need them too.
     #[arg(long, value_name = "NAME", requires = "floor", conflicts_with = "record")]
     area: Option<String>,
 }
 
-/// What one computer serves.
+/// The part of a floor that one computer serves.
 #[derive(Clone, Debug)]
 pub(crate) struct Served {
-    /// Of the whole floor, which layouts and outputs are about.
+    /// Geometry of the whole floor, to which layouts and outputs refer.
     pub(crate) geometry: Geometry,
     /// `None` for the whole floor.
     area: Option<Area>,
-    /// What the others need of its boards, and from where they forward what it needs of theirs.
+    /// Packets of its boards to forward to other areas, and addresses that forward packets to it.
     forwardings: Vec<Forwarding>,
     forwarders: Vec<IpAddr>,
 }
 
 impl AreaArgs {
-    /// What is served of `floor`, and the part of it that is.
+    /// Returns the description of the served part, and this part of `floor`.
     pub(crate) fn of(&self, floor: Floor) -> Result<(Served, Floor), Failure> {
         let geometry = floor.geometry;
         let Some(id) = &self.area else {
@@ -63,12 +64,12 @@ impl AreaArgs {
 }
 
 impl Served {
-    /// Where packets arrive, as the floor file says.
+    /// The address for packets in the floor file.
     pub(crate) fn listen(&self) -> Option<SocketAddr> {
         self.area.as_ref()?.listen
     }
 
-    /// `source`, which takes what other areas' computers forward, and forwards what they need.
+    /// Makes `source` accept packets that other areas' computers forward, and forward packets that they need.
     pub(crate) fn among_neighbours(&self, source: UdpSource) -> Result<UdpSource, Failure> {
         let source = source.also_allowing(self.forwarders.iter().copied());
         if self.forwardings.is_empty() {
@@ -78,7 +79,7 @@ impl Served {
         Ok(source)
     }
 
-    /// What of `layout` is served here.
+    /// The part of `layout` that is served here.
     pub(crate) fn layout(&self, layout: Layout) -> Layout {
         match &self.area {
             Some(area) => layout.part(area, &self.geometry),
@@ -86,7 +87,7 @@ impl Served {
         }
     }
 
-    /// `outputs`, told of what is served here.
+    /// Limits `outputs` to the part that is served here.
     pub(crate) fn outputs(&self, outputs: Fanout) -> Fanout {
         let Some(area) = &self.area else { return outputs };
         let mut own = Fanout::new();

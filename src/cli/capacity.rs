@@ -1,4 +1,4 @@
-//! `underfoot capacity`: how large a floor this machine carries.
+//! `underfoot capacity`: the largest floor that this machine can serve.
 
 use std::num::NonZeroUsize;
 use std::time::Duration;
@@ -15,21 +15,21 @@ use super::failure::Failure;
 use super::meter::{Measured, Meter};
 use super::number::{patience, threads};
 
-/// What `underfoot capacity` is asked to do.
+/// Options of `underfoot capacity`.
 ///
-/// Does standard work as fast as it can, on one core, and says how much faster than real time that was: the rendering
-/// of 36 tiles at 96 kHz, the reading and assembling of packets, the sensing of three sizes of floor with people
-/// walking on them, and a floor at work; and what limits this machine first. Takes about twenty seconds. Other
-/// programs at work make the answer smaller.
+/// Runs standard loads as fast as possible on one core and reports how many times faster than real time they are: the
+/// rendering of 36 tiles at 96 kHz, the reading and assembling of packets, the sensing of three sizes of floor with
+/// people walking on them, and a running floor. Also reports the first limit of this machine. Takes about twenty
+/// seconds. Other running programs make the result smaller.
 #[derive(ClapArgs, Clone, Debug)]
 pub(crate) struct Args {
     /// How long each load is measured.
     #[arg(long, value_name = "S", default_value = "1", value_parser = patience)]
     seconds: Duration,
-    /// On how many cores at once each load is done, every core a floor of its own; `all` for as many as there are.
+    /// Number of cores that run each load at once, every core a floor of its own; `all` for every core.
     #[arg(long, value_name = "N|all", default_value = "1", value_parser = threads)]
     threads: NonZeroUsize,
-    /// On how many cores the feet of a crowd are sensed on one floor.
+    /// Number of cores that sense the feet of a crowd on one floor.
     #[arg(long, value_name = "N|all", default_value = "1", value_parser = threads, conflicts_with = "threads")]
     sensing_threads: NonZeroUsize,
     /// Print the result as JSON on standard output.
@@ -37,34 +37,34 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Share of the cores that each kind of work may take, so that there is room for everything else.
+/// Share of the cores that each kind of work may use; the rest is left for everything else.
 const HALF: f64 = 0.5;
 
-/// Channels and tiles of the loads that the floor is judged by.
+/// Channels and tiles of the loads that determine the result.
 const RENDERED_TILES: f64 = 36.0;
 const SENSED_SIDE: u16 = 96;
 
-/// Walkers per tile: two on 6 x 6.
+/// Number of walkers: two per 6 x 6 tiles.
 const WALKERS: u16 = SENSED_SIDE * SENSED_SIDE / 18;
 
-/// The floor that is served: as large as one core may still carry.
+/// Size of the served floor: as large as one core may still carry.
 const SERVED_SIDE: u16 = 36;
 const SERVED_WALKERS: u16 = SERVED_SIDE * SERVED_SIDE / 18;
 
-/// Loads that are measured: six of rendering, three of receiving, four of sensing, one of serving.
+/// Number of measured loads: six of rendering, three of receiving, four of sensing, one of serving.
 const LOADS: u64 = 14;
 
-/// One kind of work, and the tiles that it is good for with half of the cores.
+/// One kind of work, and the number of tiles that half of the cores can process.
 struct Limit {
     id: &'static str,
     name: &'static str,
     tiles: f64,
 }
 
-/// Measures, and prints what was found.
+/// Measures, and prints the results.
 ///
 /// # Errors
-/// [`Failure`] if no packet reaches this machine from itself.
+/// [`Failure`] if this machine receives no packet from itself.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if cfg!(debug_assertions) {
         errln!("This is a debug build: a release build is many times faster.");
@@ -136,7 +136,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// How many tiles each kind of work is good for, by its heaviest load that an ordinary floor makes.
+/// Maximum number of tiles for each kind of work, by its heaviest load on an ordinary floor.
 fn limits(rendering: &[Measured], receiving: &[Measured], sensing: &[Measured]) -> [Limit; 4] {
     let factor = |all: &[Measured], id: &str| {
         all.iter().find(|measured| measured.id == id).map_or(0.0, |measured| measured.times_real_time)
@@ -157,16 +157,16 @@ fn limits(rendering: &[Measured], receiving: &[Measured], sensing: &[Measured]) 
     ]
 }
 
-/// Tiles that one core does for that receives, assembles and senses, and does all else that a floor at work takes.
+/// Number of tiles for one core that receives, assembles and senses, and does all other work of a running floor.
 fn together(limits: &[Limit; 4], serving: &[Measured]) -> f64 {
     let [packets, ..] = limits;
     let served = f64::from(SERVED_SIDE).powi(2) * HALF;
     let served: f64 = serving.iter().map(|measured| served * measured.times_real_time).sum();
-    // Times add up, and each is the reciprocal of tiles.
+    // Times add up, and each is the reciprocal of a number of tiles.
     (packets.tiles.recip() + served.recip()).recip().floor()
 }
 
-/// What limits first: sound, or what takes most of the core that the others share.
+/// The first limit: sound, or the largest part of the work on the core that the others share.
 fn first(limits: &[Limit; 4], together: f64) -> &Limit {
     let [packets, assembling, sensing, sound] = limits;
     if sound.tiles <= together {

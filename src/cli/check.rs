@@ -1,4 +1,4 @@
-//! `underfoot check`: everything that is wrong with layouts.
+//! `underfoot check`: reports all problems of layouts.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use super::fonts::fonts;
 use super::layout_args::{LayoutArgs, MisplacedLayout};
 use super::output::{colours, print_json};
 
-/// What `underfoot check` is asked to do.
+/// Options of `underfoot check`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// Layout files, or names of built-in layouts (map, surgical, first_steps, all_controls, pond, winter_walk).
@@ -28,7 +28,7 @@ pub(crate) struct Args {
     /// Folder of effects to add; without it, an `effects` folder beside each layout or beside its folder.
     #[arg(long, value_name = "DIR")]
     effects: Option<PathBuf>,
-    /// Print each layout as it comes out on standard output: every value of every control, be it written or from its
+    /// Print each layout in its resolved form on standard output: every value of every control, written or from its
     /// kind.
     #[arg(long, conflicts_with = "json")]
     resolved: bool,
@@ -38,7 +38,7 @@ pub(crate) struct Args {
     /// Fail on warnings too.
     #[arg(long)]
     strict: bool,
-    /// Say what an ergonomic rule asks for, why, and who says so, such as U101.
+    /// Explain an ergonomic rule, such as U101: its requirement, its reason and its source.
     #[arg(long, value_name = "CODE", conflicts_with = "layouts")]
     explain: Option<String>,
     /// List all ergonomic rules.
@@ -46,7 +46,7 @@ pub(crate) struct Args {
     rules: bool,
 }
 
-/// Reads every layout and says everything that is wrong with it, for the program and for feet.
+/// Reads every layout and reports all its problems, for the program and for feet.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(code) = &args.explain {
         return explain(code, args.json);
@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Everything there is to say of the layout at `path`.
+/// All diagnostics of the layout at `path`.
 fn check(path: &std::path::Path, args: &Args, floor: &Floor) -> Diagnostics {
     let files = LayoutArgs {
         layout: Some(path.to_path_buf()),

@@ -1,5 +1,4 @@
-//! What an operator sees of a floor at work: one line that is kept up to date on a terminal, and what to look at
-//! when nothing arrives.
+//! The console of a running floor: a status line that is updated on a terminal, and advice when nothing arrives.
 
 use std::io::{self, IsTerminal};
 use std::net::SocketAddr;
@@ -15,24 +14,24 @@ use underfoot::wire::{LinkCounters, LinkState};
 
 use super::output;
 
-/// How often the line is renewed: as often as a number can be read.
+/// Interval of updates of the line: as short as a number can be read.
 const EVERY: Duration = Duration::from_millis(250);
 
-/// Silence after which it is said what to look at.
+/// Silence after which the console logs advice.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// The console at work; ends, and takes its line away, when dropped.
+/// A running console; ends and removes its line when dropped.
 pub(crate) struct Console {
-    /// `None` only while being dropped.
+    /// `None` only during the drop.
     end: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Console {
-    /// Begins to show how `session` is; `listen` is where packets are awaited.
+    /// Starts to show the state of `session`; `listen` is the address for packets.
     ///
     /// # Errors
-    /// What the system says if it gives no thread.
+    /// The error of the system if it provides no thread.
     pub(crate) fn start(listen: SocketAddr, session: Session) -> io::Result<Self> {
         let (end, ended) = channel();
         let thread = Builder::new().name("console".into()).spawn(move || keep(&session, &ended, listen))?;
@@ -43,7 +42,7 @@ impl Console {
 impl Drop for Console {
     fn drop(&mut self) {
         self.end = None;
-        // It only draws: that it has panicked has been said.
+        // The thread only draws, and a panic in it has been reported.
         let _ = self.thread.take().map(JoinHandle::join);
     }
 }
@@ -56,7 +55,7 @@ fn keep(session: &Session, ended: &Receiver<()>, listen: SocketAddr) {
         let (now, seen) = (Instant::now(), session.snapshot().floor);
         let arriving = rate.update(now, seen.counters.packets);
         let advice = silence.update(now, seen.link, &seen.counters, listen);
-        // The cause has been logged, and says more.
+        // The cause has been logged, with more details.
         if let Some(advice) = advice.filter(|_| seen.link_cause.is_none()) {
             warn!("{advice}");
         }
@@ -94,7 +93,7 @@ impl Rate {
     }
 }
 
-/// Since when nothing usable has come, and whether that has been said.
+/// Start of the time without usable packets, and whether the advice has been logged.
 struct Silence {
     since: Instant,
     told: bool,
@@ -106,7 +105,7 @@ impl Silence {
         Self { since: now, told: false, before: LinkCounters::default() }
     }
 
-    /// What to look at, once for each silence.
+    /// Advice, once for each silence.
     fn update(
         &mut self,
         now: Instant,
@@ -127,7 +126,7 @@ impl Silence {
     }
 }
 
-/// What to look at when nothing usable has come since `before`.
+/// Advice for the case that nothing usable has arrived since `before`.
 fn advice(before: &LinkCounters, now: &LinkCounters, listen: SocketAddr) -> String {
     let seconds = SILENCE.as_secs();
     let port = listen.port();
@@ -163,7 +162,7 @@ fn advice(before: &LinkCounters, now: &LinkCounters, listen: SocketAddr) -> Stri
     format!("datagrams arrive on port {port} but for {seconds} s none could be used: {}", reasons.join("; "))
 }
 
-/// The floor in one line.
+/// The state of the floor in one line.
 fn line(seen: &Snapshot, arriving: u64, warnings: u64) -> String {
     let link = match seen.link {
         LinkState::Waiting => "waiting for boards",

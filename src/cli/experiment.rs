@@ -19,7 +19,7 @@ use super::fonts::fonts;
 use super::output::print_json;
 use super::progress::Progress;
 
-/// What `underfoot experiment` is asked to do.
+/// Options of `underfoot experiment`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     #[command(subcommand)]
@@ -28,36 +28,37 @@ pub(crate) struct Args {
 
 #[derive(Debug, Subcommand)]
 enum What {
-    /// Which way lines, ellipses and a disc across a seam seem to point (the paper's figure 7).
+    /// Measured orientation of lines, ellipses and a disc across a seam (the paper's figure 7).
     Figure7(FigureArgs),
     /// Estimated against true positions of a point load over one tile (the paper's figure 8).
     Figure8(FigureArgs),
     /// An object of 51 N over the seam of two tiles at several angles (the paper's figure 9).
     Figure9(FigureArgs),
-    /// Two feet on 2 x 2 tiles, before and after they are told apart (the paper's figure 11).
+    /// Two feet on 2 x 2 tiles, before and after they are separated (the paper's figure 11).
     Figure11(FigureArgs),
-    /// How well one contact is found, over a whole tile and at its seams.
+    /// Accuracy of one contact, over a whole tile and at its seams.
     Spot(SpotArgs),
-    /// How well one foot is found by its force and its distance from a seam: what `underfoot check` predicts by.
+    /// Accuracy of one foot by its force and its distance from a seam: the basis of the predictions of `underfoot
+    /// check`.
     Place(SpotArgs),
-    /// How well both feet of people are found, and the cursor of a foot that works beside a heavy one.
+    /// Accuracy of both feet of people, and of the cursor of a foot that operates beside a heavy one.
     Feet(FeetArgs),
-    /// How well everything that presses is found in fourteen scenes that are hard to sense, on floors with
-    /// slight, moderate and severe faults: walking, shifting weight, jumping, kneeling, sticks, wheels.
+    /// Accuracy of all contacts in fourteen scenes that are hard to sense, on floors with slight, moderate and severe
+    /// faults: walking, shifting weight, jumping, kneeling, sticks, wheels.
     Scenes(ScenesArgs),
-    /// How often controls act that nobody meant, and miss what somebody meant: people who cross and use
-    /// every shipped layout, and rows of buttons of many sizes and thresholds.
+    /// Rates of unintended activations and of missed presses: people who cross and use every shipped layout, and rows
+    /// of buttons of many sizes and thresholds.
     Intent(IntentArgs),
-    /// Whether the frozen pond follows its model, and how many cracks each manner of walking opens.
+    /// Whether the frozen pond follows its model, and the number of cracks for each manner of walking.
     Pond(PondArgs),
 }
 
 #[derive(clap::Args, Debug)]
 struct FigureArgs {
-    /// Folder for the PNG, SVG and CSV files; made if it is missing.
+    /// Folder for the PNG, SVG and CSV files; created if it is missing.
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// Which parts the simulated floor is made of.
+    /// Seed of the parts of the simulated floor.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Width of the PNG, in pixels.
@@ -67,100 +68,100 @@ struct FigureArgs {
 
 #[derive(clap::Args, Debug)]
 struct SpotArgs {
-    /// How many floors, each of other parts.
+    /// Number of floors, each of other parts.
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     floors: u64,
-    /// The first floor's parts; the next ones follow.
+    /// Seed of the first floor's parts; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// One JSON object instead of tables.
+    /// Print one JSON object instead of tables.
     #[arg(long)]
     json: bool,
 }
 
 #[derive(clap::Args, Debug)]
 struct FeetArgs {
-    /// How many people, each on a floor of other parts.
+    /// Number of people, each on a floor of other parts.
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     people: u64,
     /// The floor's faults: ideal or paper (rigid plates, even rolling feet), slight, moderate or severe.
     #[arg(long, value_name = "FAULTS", default_value_t)]
     faults: FloorQuality,
-    /// The first person; the next ones follow.
+    /// Seed of the first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// One JSON object instead of tables.
+    /// Print one JSON object instead of tables.
     #[arg(long)]
     json: bool,
 }
 
 #[derive(clap::Args, Debug)]
 struct ScenesArgs {
-    /// How many people, each on floors of other parts.
+    /// Number of people, each on floors of other parts.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     people: u64,
-    /// The first person; the next ones follow.
+    /// Seed of the first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// The floors' faults, separated by commas: ideal, paper, slight, moderate, severe.
     #[arg(long, value_name = "FAULTS", value_delimiter = ',', default_values_t = FloorQuality::REAL)]
     faults: Vec<FloorQuality>,
-    /// One JSON object instead of tables.
+    /// Print one JSON object instead of tables.
     #[arg(long)]
     json: bool,
 }
 
 #[derive(clap::Args, Debug)]
 struct IntentArgs {
-    /// How many people, each on a floor of other parts.
+    /// Number of people, each on a floor of other parts.
     #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     people: u64,
-    /// How many steps they take altogether over the shipped layouts.
+    /// Total number of their steps over the shipped layouts.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
     steps: u64,
-    /// How many presses they mean altogether on the shipped layouts.
+    /// Total number of their intended presses on the shipped layouts.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
     presses: u64,
     /// The floor's faults: ideal or paper (rigid plates, even rolling feet), slight, moderate or severe.
     #[arg(long, value_name = "FAULTS", default_value_t)]
     faults: FloorQuality,
-    /// The first person; the next ones follow.
+    /// Seed of the first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Folder for the tables as CSV and the plot as PNG and SVG; made if it is missing.
+    /// Folder for the tables as CSV and the plot as PNG and SVG; created if it is missing.
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// Width of the PNG, in pixels.
     #[arg(long, value_name = "PX", default_value_t = 1800)]
     width: u32,
-    /// One JSON object instead of tables; no files.
+    /// Print one JSON object instead of tables; no files.
     #[arg(long)]
     json: bool,
 }
 
 #[derive(clap::Args, Debug)]
 struct PondArgs {
-    /// How many crack events.
+    /// Number of crack events.
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1000..=10_000_000))]
     events: u64,
-    /// How many steps of each manner of walking.
+    /// Number of steps for each manner of walking.
     #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     steps: u64,
-    /// What chance begins with.
+    /// Seed of the random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u32,
-    /// Folder for the pictures of the pond (PNG) and the table of walking (CSV); made if it is missing.
+    /// Folder for the pictures of the pond (PNG) and the table of walking (CSV); created if it is missing.
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// Width of the pictures, in pixels.
     #[arg(long, value_name = "PX", default_value_t = 1400)]
     width: u32,
-    /// One JSON object instead of tables; no files.
+    /// Print one JSON object instead of tables; no files.
     #[arg(long)]
     json: bool,
 }
 
-/// Makes the experiment.
+/// Runs the experiment.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.what {
         What::Figure7(args) => args.make("figure7", &Orientation::measure(args.seed)?),
@@ -207,7 +208,7 @@ fn pond(args: &PondArgs) -> Result<(), Failure> {
 fn intent(args: &IntentArgs) -> Result<(), Failure> {
     let each =
         IntentEffort { steps: args.steps.div_ceil(args.people), presses: args.presses.div_ceil(args.people) };
-    // The rows of buttons see a tenth of it.
+    // The rows of buttons get a tenth of the steps and a quarter of the presses.
     let sweepers = args.people.div_ceil(4);
     let tenth = IntentEffort {
         steps: (args.steps / 10).div_ceil(sweepers),
@@ -215,7 +216,7 @@ fn intent(args: &IntentArgs) -> Result<(), Failure> {
     };
     let empty = || (IntentTable::on(args.faults), IntentSweep::on(args.faults));
     let (mut table, mut sweep) = empty();
-    // In the order of people, whoever was done first: the same seed gives the same table.
+    // In the order of people, not of completion: the same seed gives the same table.
     for person in in_parallel("person", args.people, |number| {
         let seed = args.seed.wrapping_add(number);
         let (mut table, mut sweep) = empty();
@@ -244,8 +245,7 @@ fn intent(args: &IntentArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Does something so many times on all processors, telling a person at the terminal how far it has
-/// come; gives back what came of each time, in order.
+/// Calls `act` `times` times on all processors and shows the progress on a terminal; returns the results in order.
 fn in_parallel<T: Send>(
     what: &'static str,
     times: u64,
@@ -282,7 +282,7 @@ fn in_parallel<T: Send>(
 }
 
 impl FigureArgs {
-    /// Writes the picture twice and its data, and says what came out and where.
+    /// Writes the picture twice and its data, and reports the results and the paths.
     fn make(&self, name: &str, figure: &dyn Figure) -> Result<(), Failure> {
         let failed = |path: &Path| {
             let path = path.to_path_buf();
@@ -332,7 +332,7 @@ fn place(args: &SpotArgs) -> Result<(), Failure> {
 
 fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
     let mut table = SceneTable::on(&args.faults);
-    // In the order of people, whoever was done first: the same seed gives the same table.
+    // In the order of people, not of completion: the same seed gives the same table.
     for person in in_parallel("person", args.people, |number| {
         let mut table = SceneTable::on(&args.faults);
         table.add_person(args.seed.wrapping_add(number))?;
@@ -371,7 +371,7 @@ fn feet(args: &FeetArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Does something so many times, telling a person at the terminal how far it has come.
+/// Calls `act` `times` times and shows the progress on a terminal.
 fn counted(
     what: &'static str,
     times: u64,

@@ -16,17 +16,17 @@ use underfoot::source::{SensorSource, SourceError};
 use super::failure::Failure;
 use super::replay::whole;
 
-/// What `underfoot export` is asked to do.
+/// Options of `underfoot export`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// The recording, as `underfoot run --record` leaves it.
+    /// The recording, as `underfoot run --record` writes it.
     file: PathBuf,
     /// Folder for forces.csv (which `underfoot sense` reads), contacts.csv and events.csv.
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
 }
 
-/// Writes the tables; fails, after all of it, if the recording breaks off.
+/// Writes the tables; fails at the end if the recording is incomplete.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     std::fs::create_dir_all(&args.out).map_err(|error| Failure::File(args.out.clone(), error))?;
     forces(&args.file, &args.out.join("forces.csv"))?;
@@ -40,7 +40,7 @@ fn create(path: &Path) -> Result<BufWriter<File>, Failure> {
     File::create(path).map(BufWriter::new).map_err(|error| Failure::File(path.into(), error))
 }
 
-/// Each frame, with every tile that carries anything; a frame without any has a line of its first tile.
+/// Writes each frame with all loaded tiles; a frame without load gets a line for its first tile.
 fn forces(file: &Path, to: &Path) -> Result<(), Failure> {
     let failed = |error| Failure::File(to.into(), error);
     let recording = Recording::open(file)?;
@@ -72,13 +72,13 @@ fn forces(file: &Path, to: &Path) -> Result<(), Failure> {
     out.flush().map_err(failed)
 }
 
-/// The events of controls as they were recorded.
+/// Writes the recorded events of controls.
 fn events(file: &Path, to: &Path) -> Result<(), Failure> {
     const FIELDS: [&str; 8] = ["t_s", "id", "event", "value", "force_n", "x_m", "y_m", "contact"];
     let failed = |error| Failure::File(to.into(), error);
     let mut out = create(to)?;
     writeln!(out, "{}", FIELDS.join(",")).map_err(failed)?;
-    // Where it breaks off the replay of the contacts says.
+    // The replay of the contacts reports a break in the recording.
     for line in Recording::open(file)?.events().map_while(Result::ok) {
         let Ok(event) = serde_json::from_slice::<Value>(&line) else { continue };
         if event.get("id").is_none() {
@@ -95,7 +95,7 @@ fn events(file: &Path, to: &Path) -> Result<(), Failure> {
     out.flush().map_err(failed)
 }
 
-/// The contacts of each frame.
+/// Writes the contacts of each frame.
 fn contacts(file: &Path, to: &Path) -> Result<(), Failure> {
     let failed = |error| Failure::File(to.into(), error);
     let recording = Recording::open(file)?;
@@ -121,7 +121,7 @@ fn contacts(file: &Path, to: &Path) -> Result<(), Failure> {
     whole(&progress)
 }
 
-/// Takes contacts as lines of a table.
+/// Collects contacts as lines of a table.
 struct ContactRows(Arc<Mutex<Vec<u8>>>);
 
 impl EventSink for ContactRows {
@@ -131,7 +131,7 @@ impl EventSink for ContactRows {
         for contact in contacts {
             let (at_s, id, force) = (at.secs(), contact.id.0, contact.force.0);
             let (centroid, velocity, ambiguous) = (contact.centroid, contact.velocity, contact.ambiguous);
-            // A list in memory takes everything.
+            // A write to memory never fails.
             let _ = writeln!(
                 rows,
                 "{at_s:.6},{id},{},{},{force},{},{},{ambiguous}",

@@ -1,4 +1,4 @@
-//! Why a command failed, as it is told on standard error.
+//! Failures of commands, as reported on standard error.
 
 use std::path::PathBuf;
 
@@ -11,38 +11,38 @@ use underfoot::schema::{Diagnostics, SaveError};
 use underfoot::sink::SinkError;
 use underfoot::source::SourceError;
 
-/// Why a command failed, in words for the person who gave it.
+/// The reason why a command failed, in words for its user.
 #[derive(Debug, Error)]
 pub(crate) enum Failure {
-    /// A file of ours has problems.
+    /// One of our files has errors.
     #[error("{0}")]
     Diagnostics(#[from] Diagnostics),
-    /// The packets' source failed.
+    /// The source of packets failed.
     #[error("error: {0}")]
     Source(#[from] SourceError),
-    /// Samples or events can't be put out.
+    /// Samples or events can't be sent.
     #[error("error: {0}")]
     Sink(#[from] SinkError),
     /// A file can't be written or read.
     #[error("error: {path}: {error}", path = .0.display(), error = .1)]
     File(PathBuf, std::io::Error),
-    /// There can be no window.
+    /// No window can be opened.
     #[cfg(feature = "preview")]
     #[error("error: no window can be opened: {0}; `underfoot session` plays the same without one")]
     NoWindow(String),
-    /// A floor can't be kept.
+    /// A floor can't be saved.
     #[error("error: {0}")]
     Save(#[from] SaveError),
-    /// A picture can't be made.
+    /// A picture can't be drawn.
     #[error("error: {0}")]
     Picture(#[from] PictureError),
-    /// A recording can't be begun.
+    /// A recording can't be opened.
     #[error("error: {0}")]
     Recording(#[from] RecordingError),
-    /// The system gives no threads.
+    /// The system provides no threads.
     #[error("error: {0}")]
     ThreadPool(#[from] ThreadPoolError),
-    /// Anything else, said in full.
+    /// Anything else, as a complete sentence.
     #[error("error: {0}")]
     Other(String),
 }

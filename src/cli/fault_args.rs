@@ -1,22 +1,22 @@
-//! Options for faults that are rehearsed.
+//! Options for the rehearsal of faults.
 
 use underfoot::source::{FaultInjector, Faults, SensorSource};
 
-/// What goes wrong between the boards and this program, so that people can see what becomes of it.
+/// Faults between the boards and this program, for rehearsals.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct FaultArgs {
-    /// Rehearse a fault on the way of the packets; several may be given. Times are seconds since the start:
+    /// Rehearse a fault between the boards and this program; several may be given. Times are seconds since the start:
     /// loss=5%, duplicate=10%, delay=10%:20ms, damage=1%, bursts=1s:50ms, silent=10s..12s, board=3:10s..12s,
     /// frozen=3:10s..12s, stall=10s..10.2s, swapped=0:1, panic=20s, nemesis=SEED:60s:BOARDS.
     #[arg(long = "fault", value_name = "FAULT")]
     faults: Vec<Faults>,
-    /// Which packets are hit follows from this number.
+    /// Seed that determines the affected packets.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "faults")]
     fault_seed: u64,
 }
 
 impl FaultArgs {
-    /// `source` with these faults and those of a scenario; says so, lest somebody takes them for real.
+    /// `source` with these faults and those of a scenario; reports them, so that they are not mistaken for real ones.
     pub(crate) fn wrap<S: SensorSource + 'static>(
         &self,
         source: S,
@@ -31,7 +31,7 @@ impl FaultArgs {
     }
 }
 
-/// Says that faults are rehearsed, if there are any.
+/// Reports that faults are rehearsed, if there are any.
 pub(crate) fn say_what_is_rehearsed(faults: &Faults) {
     if *faults != Faults::default() {
         errln!(

@@ -18,37 +18,37 @@ use super::failure::Failure;
 use super::fonts::fonts;
 use super::number::{gesture, number};
 
-/// What `underfoot feel` is asked to do.
+/// Options of `underfoot feel`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Name of an effect (`--list` tells them), or a file: ours (.ron) or Apple's (.ahap).
+    /// Name of an effect (`--list` shows them), or a file: ours (.ron) or Apple's (.ahap).
     #[arg(value_name = "EFFECT", required_unless_present = "list")]
     effect: Option<PathBuf>,
-    /// Name and kind of every effect.
+    /// List the name and kind of every effect.
     #[arg(long, conflicts_with_all = ["wav", "png", "ron", "ahap"])]
     list: bool,
     /// Folder of effects to add; without it, a folder `effects` here.
     #[arg(long, value_name = "DIR")]
     effects: Option<PathBuf>,
-    /// Write it as sound: one channel, newtons over `--full-scale`.
+    /// Write the effect as sound: one channel, newtons over `--full-scale`.
     #[arg(long, value_name = "FILE")]
     wav: Option<PathBuf>,
     /// Write a picture of waveform, spectrum and band: PNG, or SVG if the name ends in .svg.
     #[arg(long, value_name = "FILE")]
     png: Option<PathBuf>,
-    /// Write it as one of our files.
+    /// Write the effect as one of our files.
     #[arg(long, value_name = "FILE")]
     ron: Option<PathBuf>,
-    /// Write it as one of Apple's files.
+    /// Write the effect as one of Apple's files.
     #[arg(long, value_name = "FILE")]
     ahap: Option<PathBuf>,
-    /// Slip speed of an even slide, in metres per second; without it, a gesture that shows what the effect can do.
+    /// Slip speed of an even slide, in metres per second; without it, a gesture that demonstrates the effect.
     #[arg(long, value_name = "M_S", value_parser = speed)]
     speed: Option<f32>,
     /// Normal force of an even slide, in newtons.
     #[arg(long, value_name = "N", value_parser = force)]
     force: Option<f32>,
-    /// How long the slide lasts, or a press is held, in seconds.
+    /// Duration of the slide, or of a press, in seconds.
     #[arg(long, value_name = "S", value_parser = gesture)]
     seconds: Option<Duration>,
     /// Newtons at the sound's full scale.
@@ -60,7 +60,7 @@ pub(crate) struct Args {
     /// Width of a PNG, in pixels.
     #[arg(long, value_name = "PX", default_value_t = 1800)]
     width: u32,
-    /// What was measured as one JSON object.
+    /// Print the measurements as one JSON object.
     #[arg(long)]
     json: bool,
 }
@@ -153,10 +153,10 @@ impl Args {
     }
 }
 
-/// The largest file of an effect or pattern that is read.
+/// Maximum size of the file of an effect or pattern, in bytes.
 const MOST_BYTES: u64 = 4 << 20;
 
-/// The effect of this name or in this file.
+/// The effect with this name or in this file.
 fn find(wanted: &Path, effects: &Effects) -> Result<NamedEffect, Failure> {
     let name = wanted.to_str().unwrap_or_default();
     if let Some(named) = effects.get(name).filter(|_| !wanted.is_file()) {

@@ -1,4 +1,4 @@
-//! The floor file that fits a simulated floor: written beside the simulation, for the program that hears it.
+//! The floor file that fits a simulated floor, written for the program that serves it.
 
 use std::borrow::Cow;
 use std::collections::hash_map::DefaultHasher;
@@ -12,10 +12,10 @@ use underfoot::schema;
 
 use super::layout_args::DEFAULT_LAYOUT;
 
-/// Writes `floor`, as a lab would measure it, into a file of its own in the folder for the state of programs. Gives the
-/// path; `None` if the file can't be written, which is logged, since the simulation works without it.
+/// Writes `floor`, as a lab would measure it, into a file of its own in the folder for the state of programs. Returns
+/// the path; `None` if the file can't be written: that is logged, since the simulation works without it.
 ///
-/// The file's name has a number made of its content: a file that fits one simulation is never replaced by another's.
+/// The file's name has a hash of its content: the file of one simulation never replaces another's.
 pub(super) fn keep(floor: &Floor, seed: u64) -> Option<PathBuf> {
     let mut hasher = DefaultHasher::new();
     hasher.write(schema::write_floor(floor).as_bytes());
@@ -49,11 +49,11 @@ pub(super) fn commands(
         let listen = listen.map(|listen| format!(" --listen {listen}")).unwrap_or_default();
         return vec![format!("{base}{listen}")];
     }
-    // Where each area's computer listens stands in the floor file.
+    // Each area's computer listens at its address in the floor file.
     areas.iter().map(|area| format!("{base} --area {}", word(area))).collect()
 }
 
-/// A word of a command, in quotes if a shell would take it apart.
+/// A word of a command, in quotes if a shell would split or change it.
 fn word(text: &str) -> Cow<'_, str> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-:+,@%\\".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {

@@ -1,4 +1,4 @@
-//! Options that choose a floor, and saving one.
+//! Options that choose a floor, and functions that save one.
 
 use std::path::{Path, PathBuf};
 
@@ -8,19 +8,19 @@ use underfoot::schema::{self, Saved};
 
 use super::failure::Failure;
 
-/// Which floor it is about.
+/// Options that choose the floor.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct FloorArgs {
     /// Floor file: geometry, boards, calibration, actuators. Without it, the paper's 6 x 6 floor.
     #[arg(long, value_name = "FILE", conflicts_with = "grid")]
     pub(crate) floor: Option<PathBuf>,
-    /// The paper's tiles in another number, for example 8x4 (columns x rows).
+    /// A floor of this many of the paper's tiles, for example 8x4 (columns x rows).
     #[arg(long, value_name = "CxR", value_parser = grid)]
     pub(crate) grid: Option<Geometry>,
 }
 
 impl FloorArgs {
-    /// The floor described.
+    /// Loads the chosen floor.
     pub(crate) fn load(&self) -> Result<Floor, Failure> {
         match &self.floor {
             Some(path) => Ok(schema::load_floor(path)?),
@@ -29,14 +29,14 @@ impl FloorArgs {
     }
 }
 
-/// Reads `6x6`.
+/// Parses `6x6`.
 pub(crate) fn grid(text: &str) -> Result<Geometry, String> {
     let (columns, rows) = text.split_once(['x', 'X']).ok_or("write it like 6x6: columns x rows")?;
     let number = |digits: &str| digits.trim().parse::<u16>().map_err(|error| format!("{digits:?}: {error}"));
     Geometry::of_paper_tiles(number(columns)?, number(rows)?).map_err(|error| error.to_string())
 }
 
-/// Writes the floor file, keeps what it held before, and says both on standard error.
+/// Writes the floor file, keeps its previous content as a backup, and reports both on standard error.
 pub(crate) fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, Failure> {
     let saved = schema::save_floor(floor, path)?;
     match &saved {
@@ -49,26 +49,26 @@ pub(crate) fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, Failure> {
     Ok(saved)
 }
 
-/// A floor file that will be written at the end of some work, and what it holds at its beginning.
+/// A floor file for the result of some work, and its content at the start.
 #[derive(Debug)]
 pub(crate) struct FloorOut<'p> {
     path: &'p Path,
-    /// `None` if there is no such file, or it can't be read.
+    /// `None` if the file is missing or unreadable.
     held: Option<String>,
 }
 
 impl<'p> FloorOut<'p> {
-    /// Looks at what `path` holds; to be called before the work begins.
+    /// Reads the content of `path`; call it before the work begins.
     pub(crate) fn new(path: &'p Path) -> Self {
         Self { path, held: held(path) }
     }
 
-    /// Which file it is.
+    /// Path of the file.
     pub(crate) const fn path(&self) -> &'p Path {
         self.path
     }
 
-    /// As [`save_floor`], if nobody else has changed the file meanwhile.
+    /// As [`save_floor`], if no other program has changed the file meanwhile.
     pub(crate) fn save(&self, floor: &Floor) -> Result<Saved, Failure> {
         if held(self.path) != self.held {
             return Err(Failure::Other(format!(
@@ -80,14 +80,14 @@ impl<'p> FloorOut<'p> {
     }
 }
 
-/// More than any floor file has.
+/// Maximum size of a floor file in bytes, larger than any real one.
 const MOST_BYTES: u64 = 64 << 20;
 
 fn held(path: &Path) -> Option<String> {
     schema::read_bounded(path, MOST_BYTES).ok()
 }
 
-/// Where a floor was kept, for programs.
+/// The paths of a saved floor and its backup, for programs.
 pub(crate) fn saved_json(path: &Path, saved: &Saved) -> serde_json::Value {
     let backup = match saved {
         Saved::Replaced { backup } => Some(backup),

@@ -1,10 +1,10 @@
-//! The fonts that pictures are set in.
+//! The fonts of pictures.
 
 use std::sync::LazyLock;
 
 use underfoot::letters::Fonts;
 
-/// Those within the program, and for letters that they lack those of this computer.
+/// The built-in fonts, and for letters that they lack those of this computer.
 pub(crate) fn fonts() -> &'static Fonts {
     static FONTS: LazyLock<Fonts> = LazyLock::new(Fonts::of_this_computer);
     &FONTS

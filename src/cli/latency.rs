@@ -8,10 +8,10 @@ use underfoot::sink::{LatencyMeter, LatencyStages};
 
 use super::failure::Failure;
 
-/// What is to be told of how quickly the floor answers.
+/// Options for reports of the latency.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct LatencyArgs {
-    /// Print at the end how long it took from each packet to its click, stage by stage.
+    /// Print at the end the latency from each packet to its click, stage by stage.
     #[arg(long)]
     latency: bool,
     /// Write the same as a table: stage, from and to in microseconds, number of clicks.
@@ -20,7 +20,7 @@ pub(crate) struct LatencyArgs {
 }
 
 impl LatencyArgs {
-    /// Tells what `stages` have gathered; beside JSON on standard output, on standard error.
+    /// Prints the latencies in `stages`; on standard error if standard output has JSON.
     pub(crate) fn tell(&self, stages: &LatencyStages, is_json: bool) -> Result<(), Failure> {
         match stages.whole.summary() {
             None => errln!("No cue was played."),
@@ -35,7 +35,7 @@ impl LatencyArgs {
     }
 }
 
-/// Each stage's name, what it is, and its meter.
+/// Name, description and meter of each stage.
 fn named(stages: &LatencyStages) -> [(&'static str, &'static str, &LatencyMeter); 5] {
     [
         ("link", "from the packet's arrival until it is taken", &stages.link),
@@ -73,13 +73,13 @@ fn report(stages: &LatencyStages) -> String {
     text
 }
 
-/// Rows of a histogram up to the 99th percentile; one more for what is longer.
+/// Number of rows of a histogram up to the 99th percentile; one more holds longer latencies.
 const ROWS: u64 = 14;
 
-/// Width of the longest bar.
+/// Width of the longest bar, in characters.
 const BAR: u64 = 50;
 
-/// The distribution as text, a row per range of equal width; `None` if there is nothing.
+/// The distribution as text, a row per range of equal width; `None` without data.
 fn histogram(meter: &LatencyMeter) -> Option<String> {
     let summary = meter.summary()?;
     let from = summary.p5.as_micros() as u64;
@@ -111,7 +111,7 @@ fn histogram(meter: &LatencyMeter) -> Option<String> {
     Some(text)
 }
 
-/// The least of 1, 2, 5, 10, 20, ... microseconds that is not less.
+/// The least of 1, 2, 5, 10, 20, ... microseconds that is not less than `least`.
 fn step(least: u64) -> u64 {
     let mut unit = 1;
     loop {
@@ -149,7 +149,7 @@ mod tests {
         let text = histogram(&meter).unwrap();
         let sum: u64 = text.lines().filter_map(|line| line.rsplit(' ').next()?.parse::<u64>().ok()).sum();
         assert_eq!(sum, 1002, "{text}");
-        // A step of 1, 2 or 5 leaves between two fifths and all of the rows; two more are for what is rare.
+        // A step of 1, 2 or 5 leaves between two fifths and all of the rows; two more are for outliers.
         assert!((ROWS as usize * 2 / 5 + 2..=ROWS as usize + 3).contains(&text.lines().count()), "{text}");
         assert!(text.lines().next().unwrap().contains("under") && text.contains(" over "), "{text}");
     }

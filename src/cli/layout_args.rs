@@ -16,7 +16,7 @@ use underfoot::schema::{self, Diagnostics, Effects, Kinds, Loaded};
 use super::failure::Failure;
 use super::fonts::fonts;
 
-/// Which layout it is about.
+/// Options that choose the layout.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LayoutArgs {
     /// Layout file, or the name of a built-in one (map, surgical, first_steps, all_controls, pond, winter_walk).
@@ -32,7 +32,7 @@ pub(crate) struct LayoutArgs {
     pub(crate) effects: Option<PathBuf>,
 }
 
-/// The option that other programs have for their files: understood only to say where the layout stands here.
+/// The option that other programs have for their files: accepted only to report where the layout belongs here.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct MisplacedLayout {
     #[arg(long = "layout", hide = true, value_name = "LAYOUT", value_parser = misplaced)]
@@ -44,11 +44,11 @@ fn misplaced(layout: &str) -> Result<String, String> {
     Err(format!("the layout stands without an option: leave out `--layout` and write {layout} alone"))
 }
 
-/// The layout that stands for none: the main job's.
+/// The layout that is used if none is given.
 pub(crate) const DEFAULT_LAYOUT: &str = "map";
 
 impl LayoutArgs {
-    /// The layout named or described, checked for this floor, with its warnings.
+    /// Reads the chosen layout, checked for this floor, with its warnings.
     pub(crate) fn read(&self, geometry: &Geometry) -> Result<Loaded, Diagnostics> {
         let kinds = self.kinds()?;
         match self.path() {
@@ -61,7 +61,7 @@ impl LayoutArgs {
         }
     }
 
-    /// The layout named or described, checked for this floor; its warnings go to standard error.
+    /// Reads the chosen layout, checked for this floor; prints its warnings on standard error.
     pub(crate) fn load(&self, geometry: &Geometry) -> Result<Layout, Failure> {
         let loaded = self.read(geometry)?;
         if !loaded.warnings.is_empty() {
@@ -70,7 +70,7 @@ impl LayoutArgs {
         Ok(loaded.layout)
     }
 
-    /// As [`LayoutArgs::load`], for a picture: letters that no font has are told as well.
+    /// As [`LayoutArgs::load`], for a picture: also warns of letters that no font has.
     pub(crate) fn load_drawn(&self, geometry: &Geometry) -> Result<Layout, Failure> {
         let Loaded { layout, mut warnings, places } = self.read(geometry)?;
         warnings.merge(places.undrawn(|text| fonts().missing(text)));
@@ -80,7 +80,7 @@ impl LayoutArgs {
         Ok(layout)
     }
 
-    /// As [`LayoutArgs::load`], with everything that `underfoot check` would warn of, and nothing on standard error.
+    /// As [`LayoutArgs::load`], with all warnings of `underfoot check`, and without output on standard error.
     #[cfg(feature = "preview")]
     pub(crate) fn reviewed(&self, floor: &Floor) -> Result<(Layout, Diagnostics), Failure> {
         let loaded = match self.begun() {
@@ -96,8 +96,8 @@ impl LayoutArgs {
         Ok((loaded.layout, warnings))
     }
 
-    /// The file that a window begins: an empty one, or one that is not there but could be made: its name ends in `.ron`,
-    /// and its folder is there. `None` for any other.
+    /// The file that a window begins: an empty one, or a missing one that could be created, since its name ends in
+    /// `.ron` and its folder exists. `None` for any other.
     #[cfg(feature = "preview")]
     pub(crate) fn begun(&self) -> Option<&Path> {
         let path = self.path()?;
@@ -140,7 +140,7 @@ impl LayoutArgs {
 
     /// The folder with the user's effects, if there is one.
     pub(crate) fn effects_folder(&self) -> Option<PathBuf> {
-        // A built-in layout lies nowhere: what is here is the user's.
+        // A built-in layout has no folder: the effects in the current folder are the user's.
         let here =
             || Some(PathBuf::from("effects")).filter(|folder| self.path().is_none() && folder.is_dir());
         let beside = || schema::folder_beside(self.path()?, "effects");

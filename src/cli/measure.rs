@@ -20,10 +20,10 @@ use super::number::patience;
 use super::senders::BoardArgs;
 use super::stop::stop_flag;
 
-/// What `underfoot measure` is asked to do.
+/// Options of `underfoot measure`.
 ///
-/// Stand, step and press as people will, and see what the tiles feel. With a layout, the
-/// forces on each control's tiles are set beside its thresholds. Ctrl-C ends it early with what was seen so far.
+/// Stand, step and press as people will, and see the forces on the tiles. With a layout, the forces on each control's
+/// tiles are shown beside its thresholds. Ctrl-C ends it early with the results so far.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -35,7 +35,7 @@ pub(crate) struct Args {
     listen: SocketAddr,
     #[command(flatten)]
     boards: BoardArgs,
-    /// How long to watch.
+    /// How long to measure.
     #[arg(long, value_name = "S", default_value = "10", value_parser = patience)]
     seconds: Duration,
     /// Print the result as JSON on standard output.
@@ -43,7 +43,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Watches the floor and prints what it felt.
+/// Measures the floor and prints the forces.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let layout = match &args.layout.layout {
@@ -115,7 +115,7 @@ fn watch_floor(
     Ok(())
 }
 
-/// Each control, and the forces on the tile under it that felt most.
+/// Each control, with the forces on the tile under it that carried most.
 fn controls<'a>(
     layout: &'a Layout,
     geometry: &underfoot::floor::Geometry,
@@ -150,7 +150,7 @@ fn print(ranges: &[TileRange]) {
 }
 
 fn shown(range: &ForceRange) -> String {
-    // Adding zero takes the sign off a zero.
+    // Adding zero removes the sign of a zero.
     let tenths = |force: f32| (10.0 * force).round() / 10.0 + 0.0;
     let [least, median, most] = [range.least_n, range.median_n, range.greatest_n].map(tenths);
     format!("  {least:>6.1} {median:>6.1} {most:>6.1}")

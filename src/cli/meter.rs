@@ -1,4 +1,4 @@
-//! Standard loads against the clock.
+//! Speed measurements of standard loads.
 
 use std::num::NonZeroUsize;
 use std::sync::{Mutex, PoisonError};
@@ -10,7 +10,7 @@ use underfoot::capacity::SocketLoad;
 use super::failure::Failure;
 use super::progress::Progress;
 
-/// How fast one load was done.
+/// The measured speed of one load.
 pub(super) struct Measured {
     pub(super) id: &'static str,
     pub(super) name: String,
@@ -18,7 +18,7 @@ pub(super) struct Measured {
     pub(super) times_real_time: f64,
 }
 
-/// How loads are measured.
+/// The way in which loads are measured.
 pub(super) struct Meter {
     length: Duration,
     threads: NonZeroUsize,
@@ -26,12 +26,12 @@ pub(super) struct Meter {
 }
 
 impl Meter {
-    /// Measures each of so many loads for `length`, on so many threads at once.
+    /// Measures each of `loads` loads for `length`, on this many threads at once.
     pub(super) fn new(length: Duration, threads: NonZeroUsize, loads: u64) -> Self {
         Self { length, threads, progress: Progress::of("load", loads) }
     }
 
-    /// How many seconds of floor go into a second of work, all threads together, each with a load of its own.
+    /// Seconds of floor per second of work, summed over all threads, each with a load of its own.
     pub(super) fn measure<Load: FnMut()>(
         &self,
         id: &'static str,
@@ -43,11 +43,10 @@ impl Meter {
         Measured { id, name, times_real_time }
     }
 
-    /// The same for the packets of 96 x 96 tiles that come over this machine's own network, from the socket to their
-    /// readings.
+    /// The same for the packets of 96 x 96 tiles over this machine's own network, from the socket to their readings.
     ///
     /// # Errors
-    /// [`Failure`] if there is no port, or nothing arrives.
+    /// [`Failure`] if there is no port, or no packet arrives.
     pub(super) fn measure_sockets(&self, id: &'static str, name: String) -> Result<Measured, Failure> {
         let loads: Result<Vec<_>, _> = (0..self.threads.get()).map(|_| SocketLoad::new()).collect();
         let loads = Mutex::new(loads?);
@@ -62,18 +61,18 @@ impl Meter {
         Err(Failure::Other("packets to this machine itself are lost, so nothing can be measured".into()))
     }
 
-    /// What all threads do at the same time, added up.
+    /// Runs `work` on all threads at the same time, and adds up the results.
     fn together(&self, work: impl Fn() -> f64 + Sync) -> f64 {
         thread::scope(|scope| {
             let others: Vec<_> = (1..self.threads.get()).map(|_| scope.spawn(&work)).collect();
             let own = work();
-            // A thread that panicked has done nothing.
+            // A thread that panicked counts as zero.
             own + others.into_iter().map(|other| other.join().unwrap_or(0.0)).sum::<f64>()
         })
     }
 }
 
-/// How many seconds of floor go into a second of work: the median of as many as are done in `length`, three at least.
+/// Seconds of floor per second of work: the median of as many runs as fit into `length`, at least three.
 fn factor(length: Duration, mut second: impl FnMut()) -> f64 {
     // Tables, caches and the processor's clock warm up first.
     second();
@@ -88,8 +87,7 @@ fn factor(length: Duration, mut second: impl FnMut()) -> f64 {
     factors[factors.len() / 2]
 }
 
-/// The same of packets that come through a socket, by the median of many batches; `None` if it fails or loses nearly
-/// all.
+/// The same for packets through a socket, as the median of many batches; `None` if it fails or loses nearly all.
 fn socket_factor(length: Duration, mut load: SocketLoad) -> Option<f64> {
     let mut factors = Vec::new();
     let begun = Instant::now();
@@ -97,7 +95,7 @@ fn socket_factor(length: Duration, mut load: SocketLoad) -> Option<f64> {
         load.send();
         let start = Instant::now();
         let packets = load.take().ok()?;
-        // The patience of a batch with losses is not work.
+        // A batch with losses does not count, since its time includes a time-out.
         if packets == SocketLoad::BATCH {
             factors.push(packets as f64 / SocketLoad::PACKETS_PER_S / start.elapsed().as_secs_f64());
         } else if factors.is_empty() && begun.elapsed() > 10 * length.max(Duration::from_secs(1)) {

@@ -1,7 +1,7 @@
 //! The command line: one file per subcommand.
 //!
-//! Exit status 0: done; 1: the work failed (standard error says what to do next), or what was said could not be
-//! written; 2: wrong usage.
+//! Exit status 0: success; 1: the work failed (standard error has the next step), or output could not be written; 2:
+//! wrong usage.
 
 #[macro_use]
 mod output;
@@ -68,7 +68,7 @@ use failure::Failure;
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Say more on standard error (-v: what happens, -vv: everything).
+    /// Log more on standard error (-v: more, -vv: everything).
     #[arg(short, long, action = clap::ArgAction::Count, global = true)]
     verbose: u8,
 }
@@ -84,22 +84,22 @@ enum Command {
     Simulate(simulate::Args),
     /// Play the built-in session without a window and leave a picture, a sound file and an event log.
     Session(session::Args),
-    /// Play a recorded floor again: the same events, at any speed.
+    /// Replay a recorded floor: the same events, at any speed.
     Replay(replay::Args),
     /// Write a recorded floor's forces, contacts and events as tables.
     Export(export::Args),
-    /// Read layouts and say everything that is wrong with them.
+    /// Read layouts and report all their problems.
     Check(check::Args),
-    /// Every OSC address of a layout, in and out, with its arguments.
+    /// List every OSC address of a layout, in and out, with its arguments.
     Addresses(addresses::Args),
-    /// What layouts, kinds and effects may say: each field with its unit, range and default.
+    /// List the fields of layouts, kinds and effects: each with its unit, range and default.
     Reference(reference::Args),
     /// Render an effect: sound, picture, figures; read and write Apple's haptic patterns.
     #[cfg(feature = "lab")]
     Feel(feel::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
-    /// The actuators and what plays them: a walk from tile to tile, the devices, the channel map.
+    /// Check the actuators and their sound device: a walk from tile to tile, the devices, the channel map.
     Rack(rack::Args),
     /// Find which board reads which tiles, by stepping from board to board.
     Wiring(wiring::Args),
@@ -109,10 +109,10 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Least, median and greatest force of each tile and sensor, for choosing thresholds.
     Measure(measure::Args),
-    /// How large a floor this machine carries: rendering and sensing, in times real time.
+    /// Measure the largest floor for this machine: rendering and sensing, in times real time.
     #[cfg(feature = "lab")]
     Capacity(capacity::Args),
-    /// How many computers a floor and its people take: areas, links, packets, megabits and cores.
+    /// Plan the computers for a floor and its people: areas, links, packets, megabits and cores.
     #[cfg(feature = "lab")]
     Plan(plan::Args),
     /// Make the paper's figures and the accuracy tables on a simulated floor.
@@ -120,12 +120,12 @@ enum Command {
     Experiment(experiment::Args),
     /// Print completions for a shell.
     Completions {
-        /// Which shell.
+        /// The shell.
         shell: clap_complete::Shell,
     },
 }
 
-/// Runs the program and gives its exit status.
+/// Runs the program and returns its exit status.
 pub(crate) fn main() -> ExitCode {
     let status = match Cli::try_parse() {
         Ok(cli) => {
@@ -139,7 +139,7 @@ pub(crate) fn main() -> ExitCode {
             )
         }
         Err(asked) => {
-            // Help and version, too.
+            // Help and version arrive here, too.
             if let Err(error) = asked.print() {
                 output::note_failure(error);
             }
@@ -178,7 +178,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         #[cfg(feature = "lab")]
         Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Completions { shell }) => {
-            // Written to standard output directly, it would panic when the reader has gone.
+            // A direct write to standard output would panic after the reader has gone.
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut script);
             out!("{}", String::from_utf8_lossy(&script));
@@ -187,7 +187,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
     }
 }
 
-/// The main job with nothing asked: the window if there can be one, the played session otherwise.
+/// Runs the program without a command: the window if there is a display, the built-in session otherwise.
 fn by_default() -> Result<(), Failure> {
     #[cfg(feature = "preview")]
     if preview::has_display() {
@@ -201,10 +201,10 @@ fn by_default() -> Result<(), Failure> {
     session::run(&session::Args::default())
 }
 
-/// Warnings and errors by default; `RUST_LOG` overrules.
+/// Logs warnings and errors by default; `RUST_LOG` overrides that.
 fn start_logging(verbose: u8) {
     let level = match verbose {
-        // JACK's library complains of servers that are not there, which is for us to judge.
+        // JACK's library complains about absent servers, which this program reports itself if they matter.
         0 => "warn,jack=off",
         1 => "info,underfoot=debug,jack=off",
         _ => "trace",

@@ -1,50 +1,50 @@
-//! Numbers on the command line: finite, within their range, and said so where they are not.
+//! Parsers for numbers on the command line: finite and within their range, with a message otherwise.
 
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::thread;
 use std::time::Duration;
 
-/// Longest time that a program is asked to work: a year.
+/// Maximum running time of a program: a year.
 const LONGEST_S: f64 = 365.0 * 86_400.0;
 
-/// Reads a finite number within `range`; `unit` stands behind the range in the message, such as `newtons`.
+/// Parses a finite number within `range`; `unit` follows the range in the message, such as `newtons`.
 pub(crate) fn number(text: &str, range: &RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
-    // NaN lies in no range.
+    // NaN is in no range.
     let read = text.parse::<f64>().ok().filter(|number| range.contains(number));
     read.ok_or_else(|| format!("expected {} to {} {unit}", range.start(), range.end()))
 }
 
-/// Reads a time in seconds within `range`.
+/// Parses a time in seconds within `range`.
 fn span(text: &str, range: &RangeInclusive<f64>) -> Result<Duration, String> {
     number(text, range, "seconds").map(Duration::from_secs_f64)
 }
 
-/// Reads the seconds after which a program ends: 0 to a year.
+/// Parses the running time of a program: 0 to a year.
 pub(crate) fn lifetime(text: &str) -> Result<Duration, String> {
     span(text, &(0.0..=LONGEST_S))
 }
 
-/// Reads the seconds that a person waits for a measurement: 0.1 s to a day.
+/// Parses the duration of a measurement: 0.1 s to a day.
 pub(crate) fn patience(text: &str) -> Result<Duration, String> {
     span(text, &(0.1..=86_400.0))
 }
 
-/// Reads how long a simulated foot slides or presses: 0.01 s to a minute.
+/// Parses the duration of a simulated slide or press: 0.01 s to a minute.
 #[cfg(feature = "lab")]
 pub(crate) fn gesture(text: &str) -> Result<Duration, String> {
     span(text, &(0.01..=60.0))
 }
 
-/// Reads a delay in milliseconds: 0 to a second.
+/// Parses a delay in milliseconds: 0 to a second.
 pub(crate) fn delay_ms(text: &str) -> Result<Duration, String> {
     number(text, &(0.0..=1000.0), "milliseconds").map(|ms| Duration::from_secs_f64(ms * 1e-3))
 }
 
-/// Most threads that may be asked for.
+/// Maximum number of threads.
 const MOST_THREADS: usize = 1024;
 
-/// Reads a number of threads, or `all`.
+/// Parses a number of threads, or `all`.
 pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     if text == "all" {
         return Ok(thread::available_parallelism().unwrap_or(NonZeroUsize::MIN));

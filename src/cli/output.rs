@@ -1,8 +1,8 @@
-//! What the program says: results on standard output, everything else on standard error.
+//! Output of the program: results on standard output, everything else on standard error.
 //!
-//! Either may be closed, on a full disk, or read by nobody. The work goes on then, and the exit status says that
-//! something was lost. Standard error is written by a thread of its own, so that a reader that stalls holds up
-//! neither sensing nor anything else that logs.
+//! Either stream may be closed, on a full disk, or without a reader. The work then continues, and the exit status
+//! reports the loss. A thread of its own writes standard error, so that a stalled reader blocks neither sensing nor
+//! any other code that logs.
 
 use std::fmt;
 use std::io::{self, ErrorKind, Write};
@@ -29,45 +29,45 @@ macro_rules! out {
     ($($text:tt)*) => { $crate::cli::output::print(format_args!($($text)*)) };
 }
 
-/// Says a line on standard error.
+/// Prints a line on standard error.
 macro_rules! errln {
     () => { $crate::cli::output::say(format_args!("\n")) };
     ($($text:tt)*) => { $crate::cli::output::say(format_args!("{}\n", format_args!($($text)*))) };
 }
 
-/// Says something on standard error.
+/// Prints on standard error.
 macro_rules! err {
     ($($text:tt)*) => { $crate::cli::output::say(format_args!($($text)*)) };
 }
 
-/// Texts that may wait for the reader of standard error.
+/// Maximum number of texts that wait for the reader of standard error.
 const WAITING: usize = 1024;
 
-/// How long a command waits for that reader; the log does not wait.
+/// Maximum time for which a command waits for that reader; the log does not wait.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Whether something was lost that the exit status must tell of.
+/// Whether output was lost, which the exit status must report.
 static LOST: AtomicBool = AtomicBool::new(false);
 
-/// Texts that were left out of standard error because its reader was too slow.
+/// Number of texts dropped from standard error because its reader was too slow.
 static LEFT_OUT: AtomicU64 = AtomicU64::new(0);
 
 /// The first failure of standard output.
 static FAILED: OnceLock<io::Error> = OnceLock::new();
 
-/// Warnings and errors that were logged.
+/// Number of logged warnings and errors.
 static WARNINGS: AtomicU64 = AtomicU64::new(0);
 
-/// What the thread that writes standard error is handed.
+/// Input of the thread that writes standard error.
 enum Job {
     Text(Vec<u8>),
-    /// The line below all texts from now on; empty for none.
+    /// The status line below all texts from now on; empty for none.
     Line(String),
-    /// All before is written: say so.
+    /// Requests a message as soon as everything before is written.
     Flush(mpsc::Sender<()>),
 }
 
-/// Prints `text`; what cannot be written is noted for [`was_lost`].
+/// Prints `text`; notes a failure for the exit status.
 pub(crate) fn print(text: fmt::Arguments<'_>) {
     let mut out = anstream::stdout().lock();
     if let Err(error) = out.write_all(text.to_string().as_bytes()) {
@@ -82,14 +82,14 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Notes that standard output takes no more.
+/// Notes a failure of standard output.
 pub(crate) fn note_failure(error: io::Error) {
     LOST.store(true, Ordering::Relaxed);
-    // Only the first one tells something.
+    // Only the first failure is informative.
     let _ = FAILED.set(error);
 }
 
-/// Says `text` on standard error, and waits for a slow reader, but not for ever.
+/// Prints `text` on standard error, and waits for a slow reader up to the time-out.
 pub(crate) fn say(text: fmt::Arguments<'_>) {
     let mut job = Job::Text(text.to_string().into_bytes());
     let until = Instant::now() + PATIENCE;
@@ -103,8 +103,8 @@ pub(crate) fn say(text: fmt::Arguments<'_>) {
     }
 }
 
-/// Shows `line` below everything that is said, in place of the one before; for terminals only. One that does not fit
-/// into the queue is left out: another comes soon.
+/// Shows `line` below all other output, in place of the one before; for terminals only. Drops a line that does not
+/// fit into the queue: another comes soon.
 pub(crate) fn show_line(line: String) {
     let _ = queue().try_send(Job::Line(line));
 }
@@ -114,12 +114,12 @@ pub(crate) fn warnings() -> u64 {
     WARNINGS.load(Ordering::Relaxed)
 }
 
-/// Whether somebody looks at standard error who sees colours; a file or a pipe gets none.
+/// Whether standard error shows colours; a file or a pipe gets none.
 pub(crate) fn colours() -> bool {
     anstream::stderr().current_choice() != anstream::ColorChoice::Never
 }
 
-/// Brings everything to its end: whether nothing was lost. Says so of a disk; a reader that left knows.
+/// Completes all output; returns whether it is complete. Reports a full disk, but not a reader that has gone.
 pub(crate) fn finish() -> bool {
     if let Err(error) = io::stdout().flush() {
         note_failure(error);
@@ -132,7 +132,7 @@ pub(crate) fn finish() -> bool {
     is_written && !LOST.load(Ordering::Relaxed) && LEFT_OUT.load(Ordering::Relaxed) == 0
 }
 
-/// What is written through it is a result: a failure is noted for the exit status.
+/// A writer for results: it notes a failure for the exit status.
 pub(crate) struct Results<W>(pub(crate) W);
 
 impl<W: Write> Write for Results<W> {
@@ -145,12 +145,12 @@ impl<W: Write> Write for Results<W> {
     }
 }
 
-/// The same error once more.
+/// A copy of the error.
 fn copy(error: &io::Error) -> io::Error {
     error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
 }
 
-/// Takes what is logged; never waits and never fails.
+/// The writer of the log; never waits and never fails.
 pub(crate) struct Log;
 
 impl Write for Log {
@@ -184,13 +184,13 @@ impl MakeWriter<'_> for Logs {
     }
 }
 
-/// The way to the thread that writes standard error, which is started when something is first said.
+/// The queue to the thread that writes standard error; the first call starts the thread.
 fn queue() -> &'static SyncSender<Job> {
     static QUEUE: OnceLock<SyncSender<Job>> = OnceLock::new();
     QUEUE.get_or_init(|| {
         let (jobs, waiting) = sync_channel(WAITING);
         if thread::Builder::new().name("standard error".into()).spawn(move || write_all(&waiting)).is_err() {
-            // Without a thread nobody takes what is said; that much the exit status tells.
+            // Without a thread, messages are lost; only the exit status reports that.
             LOST.store(true, Ordering::Relaxed);
         }
         jobs
@@ -210,7 +210,7 @@ fn write_all(jobs: &Receiver<Job>) {
                 continue;
             }
             Job::Flush(done) => {
-                // Who asked may have lost patience.
+                // The caller may have stopped waiting.
                 let _ = done.send(());
                 continue;
             }
@@ -236,8 +236,8 @@ fn write_all(jobs: &Receiver<Job>) {
     }
 }
 
-/// Draws `line` in the terminal's last line, over what is there. The terminal cuts what is too long for it: wrapped, it
-/// could not be taken away again.
+/// Draws `line` in the terminal's last line, over the previous one. The terminal truncates a line that is too long: a
+/// wrapped line could not be removed.
 fn draw(line: &str) {
     let text =
         if line.is_empty() { "\r\x1b[K".to_owned() } else { format!("\r\x1b[K\x1b[?7l{line}\x1b[?7h") };

@@ -11,10 +11,11 @@ use underfoot::wire::Prefix;
 use super::failure::Failure;
 use super::output::Results;
 
-/// Who is told what happens.
+/// Options for the receivers of events.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct OutputArgs {
-    /// Where events and contacts are sent as OSC; may be given several times, and be a broadcast or multicast address.
+    /// Send events and contacts as OSC to this address; may be given several times, and be a broadcast or multicast
+    /// address.
     #[arg(long, value_name = "HOST:PORT", default_values_t = [OSC_TARGET], value_parser = osc_target)]
     osc: Vec<SocketAddr>,
     /// Send no OSC.
@@ -27,20 +28,20 @@ pub(crate) struct OutputArgs {
     /// Print every event as a line of JSON on standard output.
     #[arg(long)]
     json: bool,
-    /// Print contacts among them as well, 100 times a second.
+    /// Also print contacts, 100 times a second.
     #[arg(long, requires = "json")]
     json_contacts: bool,
 }
 
-/// What addresses begin with.
+/// Option for the prefix of OSC addresses.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct PrefixArg {
-    /// What OSC addresses begin with, in and out: apart from those of the boards, which the floor file names.
+    /// Prefix of OSC addresses, in and out, except those of the boards, which the floor file names.
     #[arg(long, value_name = "PREFIX", default_value_t)]
     pub(crate) osc_prefix: Prefix,
 }
 
-/// Who is told of contacts as TUIO.
+/// Options for the receivers of TUIO.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct TuioArgs {
     /// Send contacts as TUIO 1.1 (port 3333 if none is given); may be given several times.
@@ -49,12 +50,12 @@ pub(crate) struct TuioArgs {
     /// Send contacts as TUIO 2.0 pointers with pressure; may be given several times.
     #[arg(long, value_name = "HOST:PORT", value_parser = tuio_target)]
     tuio2: Vec<SocketAddr>,
-    /// What a foot is in TUIO 1.1; where a client takes both for touches, `cursors`.
+    /// Profiles of TUIO 1.1 for a foot; use `cursors` for a client that treats both as touches.
     #[arg(long, value_name = "WHICH", value_enum, default_value_t, requires = "tuio")]
     tuio_profiles: Profiles,
 }
 
-/// Which profiles of TUIO 1.1 tell of a foot.
+/// Profiles of TUIO 1.1 that contain a foot.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default)]
 enum Profiles {
     /// `2Dcur`.
@@ -76,10 +77,10 @@ impl From<Profiles> for TuioProfiles {
     }
 }
 
-/// Where an app on the same machine listens.
+/// Default address of an app on the same machine.
 const OSC_TARGET: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 9001);
 
-/// TUIO's own port.
+/// Default port of TUIO.
 const TUIO_PORT: u16 = 3333;
 
 impl Default for OutputArgs {
@@ -101,12 +102,12 @@ impl OutputArgs {
         self.json
     }
 
-    /// Everybody who is told; those who read JSON lines slowly are left lines out.
+    /// Opens all outputs; a reader of JSON lines that is slow misses lines.
     pub(crate) fn open(&self, geometry: &Geometry) -> Result<Fanout, Failure> {
         self.open_with(geometry, |lines| lines)
     }
 
-    /// Everybody who is told; those who read JSON lines slowly are waited for.
+    /// Opens all outputs; waits for a reader of JSON lines that is slow.
     pub(crate) fn open_patiently(&self, geometry: &Geometry) -> Result<Fanout, Failure> {
         self.open_with(geometry, JsonSink::waiting)
     }
@@ -132,7 +133,7 @@ impl OutputArgs {
 }
 
 impl TuioArgs {
-    /// Adds those who are told.
+    /// Adds the receivers of TUIO to `events`.
     pub(crate) fn open(&self, geometry: &Geometry, events: &mut Fanout) -> Result<(), Failure> {
         let one = TuioVersion::One(self.tuio_profiles.into());
         for (targets, version) in [(&self.tuio, one), (&self.tuio2, TuioVersion::Two)] {
@@ -144,7 +145,7 @@ impl TuioArgs {
     }
 }
 
-/// Where OSC goes.
+/// Parses the address of a receiver of OSC.
 pub(crate) fn osc_target(text: &str) -> Result<SocketAddr, String> {
     target(text, OSC_TARGET.port())
 }
@@ -153,7 +154,7 @@ fn tuio_target(text: &str) -> Result<SocketAddr, String> {
     target(text, TUIO_PORT)
 }
 
-/// The address of `HOST:PORT` or `HOST`; one of IPv4 rather than one of IPv6.
+/// Resolves `HOST:PORT` or `HOST`; prefers IPv4 to IPv6.
 fn target(text: &str, port: u16) -> Result<SocketAddr, String> {
     if let Ok(ip) = text.parse::<IpAddr>() {
         return Ok(canonical(SocketAddr::new(ip, port)));

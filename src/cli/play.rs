@@ -9,16 +9,16 @@ use underfoot::source::Faults;
 
 use super::failure::Failure;
 
-/// What a scenario is played on: which simulated floor of its kind.
+/// Options of the simulated floor on which a scenario is played.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct SimArgs {
-    /// Which floor of its kind: sensors and noise follow from this number.
+    /// Seed of the floor: it determines sensors and noise.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Perfect sensors: alike, exact, without noise, sending newtons.
     #[arg(long)]
     pub(crate) ideal: bool,
-    /// Also press known points on every tile and use the position maps that come of it.
+    /// Also press known points on every tile and use the resulting position maps.
     #[arg(long, conflicts_with = "ideal")]
     pub(crate) mapped: bool,
 }
@@ -30,12 +30,12 @@ impl Default for SimArgs {
 }
 
 impl SimArgs {
-    /// What the simulated floor is made of.
+    /// Configuration of the simulated floor.
     pub(crate) fn config(&self) -> SimConfig {
         if self.ideal { SimConfig::ideal() } else { SimConfig::default() }
     }
 
-    /// A simulated floor wired as `floor`, and `floor` as it comes out of the lab: calibrated, tared and perhaps
+    /// A simulated floor wired as `floor`, and `floor` after the work in the lab: calibrated, tared and perhaps
     /// mapped.
     pub(crate) fn calibrated(&self, floor: &Floor) -> Result<(SimFloor, Floor), Failure> {
         let sim = SimFloor::new(floor, self.config(), self.seed);
@@ -55,8 +55,8 @@ impl SimArgs {
     }
 }
 
-/// The scenario in `file`, or the built-in session where it fits `layout`, or a visit to each of its controls; without
-/// controls, a stroll. With it, what goes wrong meanwhile.
+/// The scenario in `file`, or the built-in session if it fits `layout`, or a visit to each of its controls; without
+/// controls, a stroll. Also returns the faults of the scenario.
 pub(crate) fn script(
     file: Option<&Path>,
     layout: &Layout,

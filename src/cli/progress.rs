@@ -1,14 +1,13 @@
-//! How far work has come that takes its time, and how long it will still take: a line on a terminal, nothing in a pipe.
+//! Progress of long work, and its remaining time: a line on a terminal, nothing in a pipe.
 
 use std::fmt;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Work of equal parts; its line is taken away when this is dropped.
+/// Work of equal parts; removes its line when dropped.
 ///
-/// Written through the thread that writes standard error, as everything else is: a terminal that stalls holds up
-/// no work.
+/// The thread that writes standard error also writes the line, so that a stalled terminal delays no work.
 pub(crate) struct Progress {
     /// One part of the work, such as "person".
     part: &'static str,
@@ -19,7 +18,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Begins work of so many parts.
+    /// Begins work of this many parts.
     pub(crate) fn of(part: &'static str, parts: u64) -> Self {
         let is_shown = std::io::stderr().is_terminal();
         let progress = Self { part, parts, done: AtomicU64::new(0), begun: Instant::now(), is_shown };
@@ -27,7 +26,7 @@ impl Progress {
         progress
     }
 
-    /// One more part is done.
+    /// Counts one more finished part.
     pub(crate) fn advance(&self) {
         self.show(self.done.fetch_add(1, Ordering::Relaxed) + 1);
     }
@@ -44,7 +43,7 @@ impl Progress {
         }
     }
 
-    /// The time that the parts to come take if they are like the ones before.
+    /// The time for the remaining parts if they take as long as the ones before.
     fn left(&self, elapsed: Duration, done: u64) -> Left {
         if done == 0 {
             return Left(None);
@@ -56,13 +55,13 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         if self.is_shown {
-            // Over what was written there, so that what follows begins on a clean line.
+            // Overwrites the line, so that the next output begins on a clean line.
             err!("\r{:60}\r", "");
         }
     }
 }
 
-/// A time that is left, as it is read at a glance; nothing while it is not known.
+/// A remaining time in a short form; empty while it is unknown.
 struct Left(Option<Duration>);
 
 impl fmt::Display for Left {
@@ -89,7 +88,7 @@ mod tests {
         assert_eq!(left(5, 50), ", 5 s left");
         assert_eq!(left(60, 20), ", 4 min 00 s left");
         assert_eq!(left(7200, 40), ", 3 h 00 min left");
-        // Never negative, whatever is counted.
+        // Never negative, for any count.
         assert_eq!(left(60, 200), ", 0 s left");
     }
 }

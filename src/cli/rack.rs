@@ -19,7 +19,7 @@ use super::floor_args::FloorArgs;
 use super::number::number;
 use super::stop::stop_flag;
 
-/// What `underfoot rack` is asked to do.
+/// Options of `underfoot rack`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     #[command(subcommand)]
@@ -28,9 +28,9 @@ pub(crate) struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum Task {
-    /// Click tile after tile and say which: for checking the wiring by hand or foot.
+    /// Click tile after tile and print each: for checking the wiring by hand or foot.
     Walk(Walk),
-    /// List what can play: hosts, devices, channels, rates.
+    /// List the devices for playback: hosts, devices, channels, rates.
     Devices(Devices),
     /// Show which output channel moves which tile.
     Map(Map),
@@ -91,13 +91,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// What a hand on a plate feels at once and a microphone hears: short, in the middle of the actuators' band.
+/// A click that a hand on a plate feels at once and a microphone hears: short, in the middle of the actuators' band.
 const CLICK: [Mode; 2] = [
     Mode { frequency_hz: 160.0, decay_s: 0.03, amplitude: 0.7 },
     Mode { frequency_hz: 320.0, decay_s: 0.015, amplitude: 0.3 },
 ];
 
-/// How long the last click may ring.
+/// Time for the last click to decay.
 const TAIL: Duration = Duration::from_millis(300);
 
 impl Walk {
@@ -110,7 +110,7 @@ impl Walk {
         }
     }
 
-    /// The tiles to be clicked, with their channels.
+    /// The tiles to click, with their channels.
     fn steps(&self, floor: &Floor) -> Result<Vec<(TileId, u16)>, Failure> {
         let map = ChannelMap::new(floor);
         let mut steps = Vec::new();
@@ -139,7 +139,7 @@ impl Walk {
         Cue { at, received: at, spots, click, ..Cue::default() }
     }
 
-    /// Every click of the walk: when, and where.
+    /// Every click of the walk: time, tile and channel.
     fn clicks<'a>(&self, steps: &'a [(TileId, u16)]) -> impl Iterator<Item = (Instant, TileId, u16)> + 'a {
         let (clicks, pace) = (self.clicks as usize, self.pace_ms);
         let repeated = steps.iter().flat_map(move |step| std::iter::repeat_n(*step, clicks));
@@ -195,7 +195,7 @@ fn say(at: Instant, tile: TileId, channel: u16) {
     outln!("{:8.2} s  tile {tile}  channel {channel}", at.secs());
 }
 
-/// Waits until `at`; false if the walk is to end before.
+/// Waits until `at`; false if the walk ends before.
 fn wait(
     at: Instant,
     clock: &dyn Fn() -> Instant,

@@ -1,17 +1,17 @@
-//! `underfoot reference`: what files may say.
+//! `underfoot reference`: the fields of files.
 
 use underfoot::schema::write_reference;
 
 use super::failure::Failure;
 
-/// What `underfoot reference` is asked to do.
+/// Options of `underfoot reference`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Only this: controls, feel, look, effects, grounds, or one of them by its name, such as Slider.
+    /// Only this part: controls, feel, look, effects, grounds, or one of them by its name, such as Slider.
     name: Option<String>,
 }
 
-/// Prints what files may say: each field with its unit, range, default and meaning.
+/// Prints the fields of files: each with its unit, range, default and meaning.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let text = write_reference(args.name.as_deref()).map_err(Failure::Other)?;
     outln!("{}", text.trim_end());

@@ -13,11 +13,10 @@ use super::floor_args::FloorArgs;
 use super::fonts::fonts;
 use super::layout_args::LayoutArgs;
 
-/// How long the floor is empty before the picture is taken, in milliseconds: longer than any control wants to see it
-/// so.
+/// Time for which the floor is empty before the picture is drawn, in milliseconds: longer than any control requires.
 const EMPTY_MS: u64 = 100;
 
-/// What `underfoot render` is asked to do.
+/// Options of `underfoot render`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -30,7 +29,7 @@ pub(crate) struct Args {
     /// Width of a PNG, in pixels.
     #[arg(long, value_name = "PX", default_value_t = 1200)]
     width: u32,
-    /// Only what a projector would throw onto the floor: no title, no ruler.
+    /// Only the picture of a projector: no title, no ruler.
     #[arg(long)]
     bare: bool,
 }
@@ -41,7 +40,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let layout = args.layout.load_drawn(&geometry)?;
     let mut snapshot = Snapshot::default();
     let mut engine = Engine::new(geometry, layout, Method::default());
-    // A floor that has been seen empty for a while: no control waits for a foot to lift.
+    // The floor has been empty for a while: no control waits for a foot to lift.
     let mut frame = ForceFrame::empty(&geometry);
     for millis in 1..=EMPTY_MS {
         frame.at = Instant::from_millis(millis);

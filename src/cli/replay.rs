@@ -1,4 +1,4 @@
-//! `underfoot replay`: a recorded floor, again.
+//! `underfoot replay`: replays a recorded floor.
 
 use std::path::PathBuf;
 
@@ -12,19 +12,19 @@ use super::failure::Failure;
 use super::outputs::OutputArgs;
 use super::stop::stop_flag;
 
-/// What `underfoot replay` is asked to do.
+/// Options of `underfoot replay`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// The recording, as `underfoot run --record` leaves it.
+    /// The recording, as `underfoot run --record` writes it.
     file: PathBuf,
-    /// How many times as fast as it was recorded, or `max`.
+    /// Speed as a multiple of the recorded one, or `max`.
     #[arg(long, value_name = "N|max", default_value = "1", value_parser = speed)]
     speed: Speed,
     #[command(flatten)]
     outputs: OutputArgs,
 }
 
-/// Replays a recording; fails, after all of it, if it breaks off.
+/// Replays a recording; fails at the end if it is incomplete.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let stop = stop_flag()?;
     let recording = Recording::open(&args.file)?;
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = recording.source(args.speed);
     let progress = source.progress();
     let outputs = args.outputs.open_patiently(&floor.geometry)?;
-    // What was muted is told again; nothing is rendered.
+    // The renderer only repeats the reports of the mute state; its samples are not used.
     let (feel, _renderer) = renderer(RendererConfig::of(&floor, RATE));
     let mut server = Server::new(&floor, layout, method, Box::new(source))
         .with_prefix(args.outputs.prefix.osc_prefix.clone())
@@ -45,10 +45,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     whole(&progress)
 }
 
-/// Samples a second of a renderer that nobody asks for any.
+/// Sample rate of the renderer, whose samples are not used.
 const RATE: u32 = 48_000;
 
-/// Fails if the recording broke off; says where it is not whole.
+/// Fails if the recording is cut off or damaged; reports its gaps.
 pub(crate) fn whole(progress: &Progress) -> Result<(), Failure> {
     if progress.left_out() > 0 {
         errln!(
@@ -77,7 +77,7 @@ fn speed(text: &str) -> Result<Speed, String> {
     times.map(Speed::Times).ok_or_else(|| "write a number from 0.01 to 1000, or max".into())
 }
 
-/// No actuators.
+/// A sink without actuators.
 struct Unplayed;
 
 impl ActuatorSink for Unplayed {

@@ -1,4 +1,4 @@
-//! `underfoot run`: a floor is served.
+//! `underfoot run`: serves a floor.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::num::NonZeroUsize;
@@ -37,10 +37,10 @@ use super::stop::{panic_flag, stop_flag};
 use super::watch::Watch;
 use super::web::WebArgs;
 
-/// Where packets arrive unless anything says otherwise.
+/// Default address for packets.
 const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
-/// What `underfoot run` is asked to do.
+/// Options of `underfoot run`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -49,11 +49,11 @@ pub(crate) struct Args {
     floor: FloorArgs,
     #[command(flatten)]
     area: AreaArgs,
-    /// Where the boards' packets arrive: an address of this machine and a port. Another machine's boards need the
-    /// address of the network card that they are on. 127.0.0.1:9000 unless the floor file says where for --area.
+    /// Where the boards' packets arrive: an address of this machine and a port. Boards in a network need the address
+    /// of the network card that they are on. Without it, the floor file's address for --area, or else 127.0.0.1:9000.
     #[arg(long, value_name = "ADDR", value_parser = read_address)]
     listen: Option<SocketAddr>,
-    /// Wait for that address if this machine has not got it yet, as when it starts before its network does.
+    /// Wait for that address if this machine does not have it yet, as when it starts before its network does.
     #[arg(long)]
     await_address: bool,
     #[command(flatten)]
@@ -73,20 +73,20 @@ pub(crate) struct Args {
     /// The paper's plain sensing: one contact per group of connected tiles.
     #[arg(long)]
     eq4: bool,
-    /// On how many threads the feet of a crowd are sensed; `all` for as many as there are cores. Those beyond the first
+    /// Number of threads that sense the feet of a crowd; `all` for as many as there are cores. Those beyond the first
     /// sleep while fewer than a hundred feet are on the floor, and keep a core busy each while there are more.
     #[arg(long, value_name = "N|all", default_value = "1", value_parser = threads)]
     sensing_threads: NonZeroUsize,
-    /// Record everything that decides what happens into this file, for `underfoot replay`; what was there is replaced.
-    /// Latencies are not measured meanwhile.
+    /// Record everything that determines the events into this file, for `underfoot replay`; an existing file is
+    /// replaced. Latencies are not measured meanwhile.
     #[arg(long, value_name = "FILE", conflicts_with = "latency")]
     record: Option<PathBuf>,
-    /// Stop after so many seconds.
+    /// Stop after this many seconds.
     #[arg(long, value_name = "S", value_parser = lifetime)]
     seconds: Option<Duration>,
 }
 
-/// Serves a floor until it is told to stop.
+/// Serves a floor until it is stopped.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (served, floor) = args.area.of(args.floor.load()?)?;
     let layout = served.layout(args.layout.load(&served.geometry)?);
@@ -116,7 +116,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let latency = LatencyStages::default();
     let lost = Arc::<AtomicU64>::default();
     let (notice, noticed) = mpsc::channel();
-    // Who no longer listens need not know.
+    // The receiver may be gone.
     let notice = move |text| drop(notice.send(text));
     let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
     let mut outputs = args.outputs.open(&served.geometry)?;
@@ -187,7 +187,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     unrecorded.map_or(Ok(()), |lost| whole(&lost, "entries"))
 }
 
-/// Waits for the last event; what else happens the sinks tell.
+/// Waits for the last event; the sinks report all others.
 pub(crate) fn end(session: &Session) -> Event {
     loop {
         let event = session.next_event_timeout(Duration::from_secs(3600));
@@ -204,7 +204,7 @@ fn stop_after(span: Duration, stop: Arc<AtomicBool>) {
     });
 }
 
-/// Fails if a recording lacks some of `what`, such as frames, because the disk did not take it.
+/// Fails if a recording lacks some of `what`, such as frames, because the disk was too slow.
 pub(crate) fn whole(lost: &AtomicU64, what: &str) -> Result<(), Failure> {
     match lost.load(Ordering::Relaxed) {
         0 => Ok(()),
@@ -214,7 +214,7 @@ pub(crate) fn whole(lost: &AtomicU64, what: &str) -> Result<(), Failure> {
     }
 }
 
-/// What was not felt as it should be; nothing is said if all was well.
+/// Reports cues that were not played as intended; prints nothing if there are none.
 fn report_felt(felt: &FeelCounters) {
     let FeelCounters { dropped, muted, late, unfelt, refused, stolen, .. } = *felt;
     let FeelCounters { not_finite, overloaded, silenced, heated, .. } = *felt;
@@ -240,7 +240,7 @@ fn report_felt(felt: &FeelCounters) {
     }
 }
 
-/// The ground events on each ground of the layout that is on the floor at the end, a line each.
+/// The counts of each ground of the layout at the end, a line each.
 fn grounds(layout: &Layout, states: &[GroundState]) -> Vec<String> {
     let grounds = layout.grounds.iter().zip(states);
     grounds
@@ -262,7 +262,7 @@ fn grounds(layout: &Layout, states: &[GroundState]) -> Vec<String> {
         .collect()
 }
 
-/// What came in and what was not used.
+/// Reports the counts of received packets and of unused ones.
 fn report(counters: &LinkCounters, dropped: u64) {
     errln!(
         "{} packets, {} frames; lost {}, late {}, repeated {}, refused {} (may not send {}, sent too much {}), skipped {}, bad readings {}; requests not met {}, labels cleaned {}; events not sent {dropped}.",

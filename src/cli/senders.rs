@@ -1,4 +1,4 @@
-//! Options for who may send: boards their packets, apps their requests.
+//! Options for permitted senders: boards for packets, apps for requests.
 
 use std::io::ErrorKind;
 use std::net::SocketAddr;
@@ -12,25 +12,25 @@ use underfoot::source::{SourceError, UdpSource};
 
 use super::failure::Failure;
 
-/// Which boards are heard.
+/// Options for permitted boards.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct BoardArgs {
-    /// Take sensor packets from this address or range, such as 192.168.1.20 or 192.168.1.0/24; several may be given.
-    /// Without it, from where the floor file says, and else from this machine only.
+    /// Accept sensor packets from this address or range, such as 192.168.1.20 or 192.168.1.0/24; several may be
+    /// given. Without it, from the networks in the floor file, or else from this machine only.
     #[arg(long, value_name = "CIDR")]
     allow: Vec<Network>,
-    /// Hold each board to the address from which it is first heard.
+    /// Pin each board to the address of its first packet.
     #[arg(long)]
     pin: bool,
 }
 
-/// Which apps are heard.
+/// Options for permitted apps.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct CommandArgs {
-    /// Take apps' requests on this port of their own; without it, on the sensors' port from this machine only.
+    /// Accept apps' requests on this port of their own; without it, on the sensors' port from this machine only.
     #[arg(long, value_name = "ADDR", value_parser = read_address)]
     commands: Option<SocketAddr>,
-    /// Take requests from this address or range; several may be given. Without it, from this machine only.
+    /// Accept requests from this address or range; several may be given. Without it, from this machine only.
     #[arg(long, value_name = "CIDR", requires = "commands")]
     allow_commands: Vec<Network>,
 }
@@ -49,8 +49,8 @@ impl BoardArgs {
         Ok(if self.pin { source.pinned() } else { source })
     }
 
-    /// As [`BoardArgs::bind`], but waits for an address that this machine has not got yet; an error if it is stopped
-    /// meanwhile.
+    /// As [`BoardArgs::bind`], but waits for an address that this machine does not have yet; an error if it is
+    /// stopped meanwhile.
     pub(crate) fn bind_once_there(
         &self,
         listen: SocketAddr,
@@ -74,7 +74,7 @@ impl BoardArgs {
     }
 }
 
-/// `error` of a socket, with the option that chooses its address.
+/// The `error` of a socket, with the option that chooses its address.
 fn chosen_by(option: &str, error: SourceError) -> SourceError {
     match error {
         SourceError::Socket { message, source } => {
@@ -84,18 +84,18 @@ fn chosen_by(option: &str, error: SourceError) -> SourceError {
     }
 }
 
-/// How often an address that is not there yet is tried.
+/// Interval between attempts to open an address that this machine does not have yet.
 const AGAIN: Duration = Duration::from_millis(250);
 
 impl CommandArgs {
-    /// Opens the port of apps, if there is to be one.
+    /// Opens the port for apps, if one is given.
     pub(crate) fn open(&self, source: UdpSource) -> Result<UdpSource, Failure> {
         let Some(address) = self.commands else { return Ok(source) };
         let opened = source.with_commands(address, self.apps().iter().copied());
         Ok(opened.map_err(|error| chosen_by("--commands", error))?)
     }
 
-    /// From where requests are taken.
+    /// Networks from which requests are accepted.
     pub(crate) fn apps(&self) -> &[Network] {
         if self.allow_commands.is_empty() { &Network::LOOPBACK } else { &self.allow_commands }
     }

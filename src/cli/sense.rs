@@ -14,7 +14,7 @@ use super::floor_args::FloorArgs;
 use super::output::note_failure;
 use super::table;
 
-/// What `underfoot sense` is asked to do.
+/// Options of `underfoot sense`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SenseArgs {
     /// Force table: CSV with the columns `t_s,col,row,f_sw,f_se,f_nw,f_ne`
@@ -29,17 +29,16 @@ pub(crate) struct SenseArgs {
     eq4: bool,
 }
 
-/// The largest table: a day of a floor of 36 tiles at 1 kHz, which is read line by line.
+/// Maximum size of a table in bytes: a day of a floor of 36 tiles at 1 kHz, read line by line.
 const MOST_BYTES: u64 = 128 << 30;
 
 /// Prints one JSON line per instant of the table on standard output.
 ///
-/// The cursor is the one of a region as large as the floor. Ends when
-/// nobody reads the output any more.
+/// The cursor is that of a region as large as the floor. Ends when the reader of the output is gone.
 ///
 /// # Errors
-/// If the floor file is refused or the table can't be opened or read; after all instants, if lines of the table
-/// were left out.
+/// If the floor file is invalid or the table can't be opened or read; after all instants, if lines of the table were
+/// skipped.
 pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let geometry = floor.geometry;
@@ -79,7 +78,7 @@ struct Line<'a> {
     cursor: Option<CursorLine>,
 }
 
-/// Serialises straight from the contacts, so that a long table costs no list per line.
+/// Serialises directly from the contacts, without a list per line.
 struct Contacts<'a>(&'a [Contact]);
 
 impl Serialize for Contacts<'_> {

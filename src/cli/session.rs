@@ -1,4 +1,4 @@
-//! `underfoot session`: a scenario played without a window.
+//! `underfoot session`: plays a scenario without a window.
 
 use std::fs::File;
 use std::net::SocketAddr;
@@ -33,7 +33,7 @@ use super::play::{self, SimArgs};
 use super::run::whole;
 use super::stop::stop_flag;
 
-/// What `underfoot session` is asked to do.
+/// Options of `underfoot session`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -54,13 +54,14 @@ pub(crate) struct Args {
     /// Scenario file; without it, the built-in session.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
-    /// Also leave the floor file of the simulated floor, calibrated as in a lab, beside the picture.
+    /// Also write the floor file of the simulated floor, calibrated as in a lab, beside the picture.
     #[arg(long)]
     calibrate: bool,
     /// Folder for the picture, the sound file and the event log.
     #[arg(short, long, value_name = "DIR", default_value = DEFAULT_OUT)]
     out: PathBuf,
-    /// Record everything that decides what happens into this file, for `underfoot replay`; what was there is replaced.
+    /// Record everything that determines the events into this file, for `underfoot replay`; an existing file is
+    /// replaced.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Samples per second and actuator channel.
@@ -93,8 +94,8 @@ impl Default for Args {
     }
 }
 
-/// Plays a scenario on a simulated floor, faster than in real time, and leaves what a visitor would have seen, felt and
-/// caused.
+/// Plays a scenario on a simulated floor, faster than in real time, and writes a picture, the sound of the actuators
+/// and the events.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let stop = stop_flag()?;
     let floor = args.floor.load()?;
@@ -162,7 +163,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Keeps the most telling moment of a session.
+/// Keeps the snapshot of the most informative moment of a session.
 #[derive(Default)]
 struct Camera {
     now: Snapshot,
@@ -171,10 +172,10 @@ struct Camera {
     pressed_since: Option<Instant>,
 }
 
-/// How often the camera looks.
+/// Interval between two snapshots.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-/// How long a control has been pressed when it is telling: the foot has settled or slides.
+/// Duration of an informative press: the foot has settled or slides.
 const SETTLED: Duration = Duration::from_millis(500);
 
 impl Camera {
@@ -185,13 +186,13 @@ impl Camera {
         }
         self.seen = Some(at);
         server.snapshot(&mut self.now);
-        // Where there is nothing to press, the ground tells what was done to it: the last step has most of it.
+        // On a floor without controls, the ground shows the steps: the last one has most of them.
         if self.now.widgets.is_empty() && !self.now.contacts.is_empty() {
             self.best = Some((0, self.now.clone()));
             return;
         }
         let pressed = self.now.widgets.iter().filter(|widget| widget.pressed);
-        // A slider on its way tells more than a button that is held.
+        // A slider in motion is more informative than a held button.
         let worth =
             pressed.map(|widget| if matches!(widget.value, Some(Value::Number(_))) { 3 } else { 2 }).max();
         let Some(mut worth) = worth else {

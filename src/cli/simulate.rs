@@ -24,10 +24,10 @@ use super::number::lifetime;
 use super::play::{self, SimArgs};
 use super::stop::stop_flag;
 
-/// Where boards send unless anything says otherwise.
+/// Default address to which boards send.
 const SEND: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
-/// What `underfoot simulate` is asked to do.
+/// Options of `underfoot simulate`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// Scenario file; without it, the built-in session on the built-in map layout.
@@ -39,24 +39,25 @@ pub(crate) struct Args {
     floor: FloorArgs,
     #[command(flatten)]
     sim: SimArgs,
-    /// Where all boards send their packets; several, with commas between them, where several computers serve areas.
-    /// Without it, each board sends to its area's computer if the floor file says where, and to 127.0.0.1:9000 if not.
+    /// Where all boards send their packets; several addresses, with commas between them, if several computers serve
+    /// areas. Without it, each board sends to its area's computer if the floor file has its address, or else to
+    /// 127.0.0.1:9000.
     #[arg(long, value_name = "ADDR", value_delimiter = ',', value_parser = read_address)]
     send: Vec<SocketAddr>,
-    /// What the boards send; newtons with --ideal, counts otherwise.
+    /// Format of the boards' readings; newtons with --ideal, counts otherwise.
     #[arg(long, value_enum)]
     format: Option<Format>,
     /// Where to write the floor file that fits this floor, as a lab would: calibrated sensor by sensor and tared.
-    /// Without it, it is written into the folder for the state of programs.
+    /// Without it, the file is written into the folder for the state of programs.
     #[arg(long, value_name = "FILE")]
     write_floor: Option<PathBuf>,
-    /// Also write what a load cell shows of every sensor, for `underfoot calibrate curves`.
+    /// Also write load-cell measurements of every sensor, for `underfoot calibrate curves`.
     #[arg(long, value_name = "FILE.csv")]
     write_loads: Option<PathBuf>,
-    /// Also write what the calibrated sensors read under known points, for `underfoot calibrate map`.
+    /// Also write the calibrated sensors' readings under known points, for `underfoot calibrate map`.
     #[arg(long, value_name = "FILE.csv")]
     write_presses: Option<PathBuf>,
-    /// Stop after so many seconds, although the scenario goes on.
+    /// Stop after this many seconds, even within the scenario.
     #[arg(long, value_name = "S", value_parser = lifetime)]
     seconds: Option<Duration>,
     #[command(flatten)]
@@ -120,7 +121,7 @@ impl Args {
         Ok((SimFloor::new(floor, config, self.sim.seed), SensorEncoder::new(floor, format)))
     }
 
-    /// Writes the floor file that fits this simulated floor, and says how to serve it.
+    /// Writes the floor file that fits this simulated floor, and prints the commands that serve it.
     fn write_fitted(&self, floor: &Floor, sim: &SimFloor) -> Result<(), Failure> {
         let fitted = self.sim.measured(floor, sim)?;
         let path = match (&self.write_floor, &self.floor.floor) {
@@ -128,7 +129,7 @@ impl Args {
                 save_floor(&fitted, path)?;
                 Some(path.clone())
             }
-            // A file that was written so before fits already.
+            // A file that an earlier run wrote fits already.
             (None, Some(path)) if fitted == *floor => Some(path.clone()),
             (None, _) => fitted_floor::keep(&fitted, self.sim.seed),
         };
@@ -142,20 +143,20 @@ impl Args {
         Ok(())
     }
 
-    /// Where the program that serves this floor listens, if all boards send to one address that is not the usual one.
+    /// Address for the program that serves this floor, if all boards send to one address other than the default.
     fn listen(&self, floor: &Floor) -> Option<SocketAddr> {
         let targets: BTreeSet<SocketAddr> = self.targets(floor).into_iter().flatten().collect();
         targets.first().copied().filter(|first| targets.len() == 1 && *first != SEND)
     }
 
-    /// Where each board sends.
+    /// Target addresses of each board.
     fn targets(&self, floor: &Floor) -> Vec<Vec<SocketAddr>> {
         let home = |board| floor.home(board).and_then(|area| area.listen).unwrap_or(SEND);
         let targets = |board| if self.send.is_empty() { vec![home(board)] } else { self.send.clone() };
         floor.boards.iter().map(targets).collect()
     }
 
-    /// Gives the number of packets sent.
+    /// Sends the packets of all boards; returns their number.
     fn send_all(
         &self,
         floor: &Floor,
@@ -174,7 +175,7 @@ impl Args {
         let sockets: BTreeMap<_, _> = all.into_iter().map(socket_to).collect::<Result<_, _>>()?;
         let stop = stop_flag()?;
         let until = self.seconds.map(|seconds| Instant::now() + seconds);
-        // Boards are punctual.
+        // Boards send on time.
         claim_priority(Rank::Sensing);
         let mut sent = 0;
         loop {
@@ -196,7 +197,7 @@ impl Args {
                     let Some(socket) = sockets.get(to) else { continue };
                     match socket.send_to(datagram, *to) {
                         Ok(_) => sent += 1,
-                        // Nobody listens yet: a board doesn't mind either.
+                        // No program listens yet, which a real board ignores as well.
                         Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {}
                         Err(error) => return Err(no_socket(*to, error)),
                     }

@@ -1,4 +1,4 @@
-//! Ctrl-C, termination, a terminal or console that is closed and a panic end a command in order.
+//! Ends a command in order on Ctrl-C, termination, a closed terminal or console, and a panic.
 
 use std::io;
 use std::panic;
@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::failure::Failure;
 
-/// A flag that Ctrl-C, a polite kill and a terminal that is closed set; a second Ctrl-C ends the program at once.
+/// A flag that Ctrl-C, SIGTERM and a closed terminal set; a second Ctrl-C ends the program at once.
 ///
-/// Only that: service managers send several signals to end a program once. On Windows the end of a session and of the
-/// system set it too.
+/// Only Ctrl-C has this effect: service managers send several signals to end a program once. On Windows, the end of a
+/// user session and of the system also set the flag.
 pub(crate) fn stop_flag() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     set_at_the_end(&stop).map_err(|error| Failure::Other(format!("signals can't be handled: {error}")))?;
@@ -48,11 +48,11 @@ mod console {
 
     static STOPS: Mutex<Vec<Arc<AtomicBool>>> = Mutex::new(Vec::new());
 
-    /// Longer than Windows waits for a program whose console closes, or whose user logs off: 5 and 20 s.
+    /// Longer than Windows waits for a program after its console closes (5 s) or its user logs off (20 s).
     const UNTIL_KILLED: Duration = Duration::from_secs(30);
 
-    /// Windows calls this on a thread of its own. It ends the program as soon as this returns from an event that is not a
-    /// key, so that it does not: the program ends by itself, or is ended.
+    /// Windows calls this on a thread of its own. After an event that is not a key, Windows ends the program as soon
+    /// as this returns, so it does not return: the program ends by itself, or Windows ends it.
     unsafe extern "system" fn end(event: u32) -> i32 {
         let stops = STOPS.lock().unwrap_or_else(PoisonError::into_inner);
         let again = stops.iter().fold(false, |again, stop| stop.swap(true, Ordering::Relaxed) || again);
@@ -67,14 +67,14 @@ mod console {
 
     pub(super) fn set_at_the_end(stop: &Arc<AtomicBool>) -> io::Result<()> {
         STOPS.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::clone(stop));
-        // SAFETY: the handler has the signature that is asked for, lives as long as the program, and runs on a
-        // thread of its own, which may lock.
+        // SAFETY: the handler has the required signature, exists as long as the program, and runs on a thread of its
+        // own, which may lock.
         let added = unsafe { SetConsoleCtrlHandler(Some(end), 1) };
         if added == 0 { Err(io::Error::last_os_error()) } else { Ok(()) }
     }
 }
 
-/// A flag that a panic in any thread sets, besides `stop`: threads that still work end in order.
+/// A flag that a panic in any thread sets together with `stop`: threads that still work end in order.
 pub(crate) fn panic_flag(stop: &Arc<AtomicBool>) -> Arc<AtomicBool> {
     let panicked = Arc::new(AtomicBool::new(false));
     let (stop, set, report) = (Arc::clone(stop), Arc::clone(&panicked), panic::take_hook());

@@ -1,4 +1,4 @@
-//! Tables of measurements as files: opened within bounds, and their bad lines reported.
+//! Tables of measurements in files: opened within limits, with reports of bad lines.
 
 use std::io::BufReader;
 use std::path::Path;
@@ -8,7 +8,7 @@ use underfoot::sense::{TableError, TableProblems};
 
 use super::failure::Failure;
 
-/// Opens the table at `path`, of which at most `most` bytes are read.
+/// Opens the table at `path`; at most `most` bytes of it are read.
 pub(crate) fn open(path: &Path, most: u64) -> Result<BufReader<BoundedFile>, Failure> {
     let file = open_bounded(path, most).map_err(|error| Failure::File(path.into(), error))?;
     Ok(BufReader::with_capacity(1 << 16, file))
@@ -34,7 +34,7 @@ pub(crate) fn warn_of_unread(path: &Path, columns: &[String]) {
     errln!("warning: {}: columns that are not read: {}{more}", path.display(), names.join(", "));
 }
 
-/// The lines that were left out, if any, with all their problems.
+/// Message about the skipped lines, if any, with all their problems.
 pub(crate) fn left_out(path: &Path, problems: &TableProblems) -> Option<String> {
     let lines = match problems.lines() {
         0 => return None,

@@ -15,10 +15,10 @@ use super::number::patience;
 use super::senders::BoardArgs;
 use super::stop::stop_flag;
 
-/// What `underfoot wiring` is asked to do.
+/// Options of `underfoot wiring`.
 ///
 /// For each board the floor file names a tile that it should read. Step on that tile when it is shown, and off again:
-/// the board that feels it is the one that is there. Where boards have changed places, the floor file kept with --out
+/// the board that senses the step is the one at that tile. If boards are swapped, the floor file written with --out
 /// has their addresses exchanged.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
@@ -32,7 +32,7 @@ pub(crate) struct Args {
     /// How long to wait for a step on each tile.
     #[arg(long, value_name = "S", default_value = "60", value_parser = patience)]
     wait: Duration,
-    /// Where to keep the floor with the wiring that was found.
+    /// Output file for the floor with the wiring that was found.
     #[arg(long, value_name = "FLOOR.ron")]
     out: Option<PathBuf>,
 }
@@ -72,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     conclude(out.as_ref(), &walk, &floor)
 }
 
-/// Which board felt a step.
+/// Describes the board that sensed a step.
 fn felt(step: &WiringStep, floor: &Floor) -> String {
     let address = floor.boards.get(step.found).map_or("?", |board| board.address.as_str());
     if step.felt == step.tile || step.found != step.board {
@@ -82,7 +82,7 @@ fn felt(step: &WiringStep, floor: &Floor) -> String {
     format!("{address} feels it where the floor file has its tile {felt}: its channels are in another order.")
 }
 
-/// What was waited for in vain.
+/// The message after a time-out.
 fn waited(wait: Duration, task: WiringTask, walk: &WiringWalk, floor: &Floor) -> String {
     let what = match task {
         WiringTask::KeepOff => "packets of every board".to_owned(),
@@ -102,7 +102,7 @@ fn waited(wait: Duration, task: WiringTask, walk: &WiringWalk, floor: &Floor) ->
     format!("waited {} s for {what}{unheard}", wait.as_secs_f64())
 }
 
-/// Says what was found, and keeps it if that is wanted.
+/// Reports the wiring that was found, and saves it if requested.
 fn conclude(out: Option<&FloorOut<'_>>, walk: &WiringWalk, floor: &Floor) -> Result<(), Failure> {
     let Some(found) = walk.outcome(floor) else { return Ok(()) };
     let found = found.map_err(|twice| Failure::Other(twice.to_string()))?;

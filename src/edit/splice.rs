@@ -179,7 +179,9 @@ impl<'t> Lines<'t> {
         }
         let before_comma = self.0.get(element.value.span.end..element.end()).unwrap_or_default();
         let mut behind: Vec<String> = comments(before_comma).into_iter().map(closed).collect();
-        behind.extend(self.only_comment(element.end()).filter(|comment| !comment.is_empty()).map(str::to_owned));
+        behind.extend(
+            self.only_comment(element.end()).filter(|comment| !comment.is_empty()).map(str::to_owned),
+        );
         let above = self.0.get(self.above(parent, index)..element.start()).unwrap_or_default().trim_end();
         let line =
             |line: &str| line.strip_prefix(indent).unwrap_or_else(|| line.trim_start()).trim_end().to_owned();

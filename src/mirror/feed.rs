@@ -1,4 +1,4 @@
-//! What a server takes, as frames for whoever has joined.
+//! The results of a server's source, as frames for the windows that have joined.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -10,10 +10,10 @@ use crate::recording::{Entries, EntrySink, TappedSource};
 use crate::sink::{SinkError, Worker};
 use crate::source::SensorSource;
 
-/// How much of the floor's time makes a frame: what it adds to the delay, at most.
+/// Span of the floor's time in one frame, which is the maximum delay that framing adds.
 const BATCH: Duration = Duration::from_millis(4);
 
-/// Taps the source of a server, and gives what it takes as frames; costs nothing while nobody has joined.
+/// Taps the source of a server and turns its results into frames; does no work while no window has joined.
 #[derive(Clone, Debug)]
 pub struct MirrorFeed {
     worker: Arc<Worker<Entries>>,
@@ -22,10 +22,11 @@ pub struct MirrorFeed {
 }
 
 impl MirrorFeed {
-    /// Calls `tell` with each frame, on a thread of its own, while `joined` is not zero: how many have joined.
+    /// Calls `tell` with each frame, on a thread of its own, while `joined`, the number of joined windows, is not
+    /// zero.
     ///
     /// # Errors
-    /// [`SinkError::Output`] if the system gives no thread.
+    /// [`SinkError::Output`] if the system provides no thread.
     pub fn start(
         joined: Arc<AtomicUsize>,
         mut tell: impl FnMut(Vec<u8>) + Send + 'static,
@@ -45,13 +46,13 @@ impl MirrorFeed {
         Ok(Self { worker, joined, lost: Arc::default() })
     }
 
-    /// `inner`, with all that it gives told to whoever has joined; for a floor of this geometry.
+    /// Wraps `inner`, for a floor of this geometry, so that its results are sent to all joined windows.
     #[must_use]
     pub fn source(&self, inner: Box<dyn SensorSource>, geometry: Geometry) -> TappedSource {
         TappedSource::new(inner, Box::new(self.clone()), geometry)
     }
 
-    /// What could not be told because its thread did not keep up; where it is missing, the stream says so.
+    /// Number of entries dropped because the thread did not keep up; the stream has a gap entry in their place.
     #[must_use]
     pub fn lost(&self) -> u64 {
         self.lost.load(Ordering::Relaxed)
@@ -67,7 +68,7 @@ impl EntrySink for MirrorFeed {
         BATCH
     }
 
-    /// The server's own time is not touched by who looks on.
+    /// Joined windows do not change the server's own time.
     fn is_exact(&self) -> bool {
         false
     }

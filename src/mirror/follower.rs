@@ -1,4 +1,4 @@
-//! Keeps controls as the server says they are.
+//! Keeps the controls of a window equal to the server's.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -12,30 +12,30 @@ use crate::layout::Layout;
 use crate::widget::WidgetId;
 use crate::wire::{ControlMessage, read_json};
 
-/// How long the server's word must have stood before a control here that differs is set: both hear of the same feet,
-/// and one of them a little later.
+/// Time for which the server's state must be unchanged before a differing control here is set: both sides sense the
+/// same feet, and one of them a little later.
 const SETTLED: Duration = Duration::from_millis(200);
 
-/// How often a control is set to the same word: what is refused so often stays refused.
+/// Maximum number of attempts to set a control to the same state: a state that is refused so often stays refused.
 const MOST_TRIES: u8 = 3;
 
-/// What the server said of its controls, and what has to be asked here for them to be the same.
+/// The reported states of a server's controls, and the requests needed here to match them.
 ///
-/// A window that joins in the middle has not seen the feet that came before, so its controls may hold other values than
-/// the server's. The server is right.
+/// A window that joins later has not seen the earlier feet, so its controls may differ from the server's. The
+/// server's values win.
 #[derive(Clone, Debug, Default)]
 pub struct Follower {
-    /// The controls of its layout, and what was said of each.
+    /// The controls of its layout, with the last report about each.
     controls: BTreeMap<String, Option<Word<ServerLine>>>,
     pages: Vec<String>,
     page: Option<Word<String>>,
 }
 
-/// Something the server said.
+/// A report of the server.
 #[derive(Clone, Debug)]
 struct Word<T> {
     said: T,
-    /// When it may be looked at again.
+    /// Time of the next comparison.
     due: Duration,
     tries: u8,
 }
@@ -45,7 +45,7 @@ impl<T> Word<T> {
         Self { said, due, tries: 0 }
     }
 
-    /// Whether it may be asked for at `now`; counts that it is.
+    /// Whether a request is due at `now`; counts it as an attempt.
     fn take_try(&mut self, now: Duration) -> bool {
         if now < self.due || self.tries >= MOST_TRIES {
             return false;
@@ -57,7 +57,7 @@ impl<T> Word<T> {
 }
 
 impl Follower {
-    /// Takes what a greeting said, in place of all that was said before.
+    /// Replaces all earlier reports by those of a greeting.
     pub fn begin(&mut self, greeting: &Greeting, now: Duration) {
         let ids = greeting.layout.widgets.iter().map(|widget| (widget.id.to_string(), None));
         self.controls = ids.collect();
@@ -66,8 +66,8 @@ impl Follower {
         self.page = greeting.page.as_ref().map(|page| Word::new(page.clone(), now));
     }
 
-    /// Takes a line of the server's, at `now` on any clock that does not go back. Nothing is kept of controls and pages
-    /// that its layout does not have.
+    /// Processes a line of the server, at `now` on any monotonic clock. Ignores controls and pages that its layout
+    /// does not have.
     pub fn hear(&mut self, line: &ServerLine, now: Duration) {
         match line.event() {
             "state" => self.hear_state(line, now + SETTLED),
@@ -85,7 +85,7 @@ impl Follower {
         }
     }
 
-    /// How many controls something is kept of.
+    /// Number of controls with stored reports.
     #[cfg(test)]
     pub(super) fn kept(&self) -> usize {
         self.controls.len()
@@ -97,7 +97,7 @@ impl Follower {
         }
     }
 
-    /// What has to be asked of the floor here; nothing about controls that a foot has pressed.
+    /// The requests needed on the floor here; none for controls that a foot has pressed.
     pub fn corrections(&mut self, layout: &Layout, here: &Snapshot, now: Duration) -> Vec<ControlMessage> {
         let mut asked = Vec::new();
         for (index, widget) in layout.widgets.iter().enumerate() {
@@ -123,13 +123,13 @@ impl Follower {
     }
 }
 
-/// What makes a control that is as `own` says be as `said` says.
+/// The requests that change a control from the state `own` to the state `said`.
 fn differences(id: &WidgetId, own: &ServerLine, said: &ServerLine) -> Vec<ControlMessage> {
     let mut asked = Vec::new();
     let mut ask = |request: &str, arguments: &[Value]| {
         asked.extend(read_json(&format!("widget/{id}/{request}"), arguments));
     };
-    // The range before the value, which must be in it.
+    // The range precedes the value, which must be within it.
     for (own, said, request) in [
         (&own.range, &said.range, "range/set"),
         (&own.value, &said.value, "set"),
@@ -143,7 +143,7 @@ fn differences(id: &WidgetId, own: &ServerLine, said: &ServerLine) -> Vec<Contro
     if let Some(on) = said.locked.flag().filter(|_| own.locked != said.locked) {
         ask(if on { "lock" } else { "unlock" }, &[]);
     }
-    // Whatever else keeps a control off follows from the same packets here.
+    // All other reasons for a control to be off follow from the same packets here.
     if let Some(off) = said.is_disabled().filter(|off| own.is_disabled() != Some(*off)) {
         ask(if off { "disable" } else { "enable" }, &[]);
     }

@@ -1,15 +1,15 @@
-//! Frames of the stream: what the server took within some milliseconds, as bytes.
+//! Frames of the stream: the entries that the server took within some milliseconds, as bytes.
 //!
-//! All numbers are little-endian. A frame is the version (one byte), the moment of its first entry in microseconds of
-//! the server's clock (eight), and its entries, each of which is
+//! All numbers are little-endian. A frame consists of the version (one byte), the time of its first entry in
+//! microseconds on the server's clock (eight bytes), and its entries. Each entry consists of
 //!
-//! | bytes | what |
+//! | bytes | field |
 //! |---|---|
-//! | 1 | its kind: a packet, silence, a request, a layout, a gap, the end, from 0 |
-//! | 4 | the length of what follows the times |
-//! | 4 | when the server took it, in microseconds after the frame's moment |
-//! | 4 | when it came, in microseconds after (or, negative, before) that |
-//! | ... | the message that a recording has of it |
+//! | 1 | the kind: a packet, silence, a request, a layout, a gap, the end, from 0 |
+//! | 4 | the length of the message after the times |
+//! | 4 | time at which the server took it, in microseconds after the frame's time |
+//! | 4 | time of its arrival, in microseconds after (or, negative, before) that |
+//! | ... | its message, as in a recording |
 
 use thiserror::Error;
 
@@ -21,10 +21,10 @@ use crate::wire::Decoder;
 /// The kinds of entries by their numbers.
 const TOPICS: [&str; 6] = [PACKETS, SILENCE, REQUESTS, LAYOUTS, GAPS, END];
 
-/// Most entries of one frame: what a stadium's boards send in the milliseconds that it spans.
+/// Maximum number of entries in one frame: those that a stadium's boards send in the milliseconds of its span.
 const MOST_ENTRIES: usize = 8192;
 
-/// A frame that is cut, damaged, too large or of another version; nothing of it is taken.
+/// The error for a frame that is truncated, damaged, too large or of another version; the receiver uses none of it.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("a frame of the stream makes no sense")]
 pub struct BadFrame;
@@ -39,7 +39,7 @@ pub(super) fn write(entries: &Entries, bytes: &mut Vec<u8>) {
         bytes.push(kind.and_then(|kind| u8::try_from(kind).ok()).unwrap_or(u8::MAX));
         let length_at = bytes.len();
         bytes.extend([0; 4]);
-        // A frame spans milliseconds: what does not fit in an hour has no meaning.
+        // A frame spans milliseconds: an offset of more than an hour is meaningless.
         let after = u32::try_from(taken.micros().saturating_sub(first)).unwrap_or(u32::MAX);
         bytes.extend(after.to_le_bytes());
         let came = entry.came(*taken).micros().cast_signed().saturating_sub(taken.micros().cast_signed());
@@ -54,7 +54,7 @@ pub(super) fn write(entries: &Entries, bytes: &mut Vec<u8>) {
     }
 }
 
-/// The entries of a frame, each with the moment at which the server took it.
+/// The entries of a frame, each with the time at which the server took it.
 pub(super) fn read(bytes: &[u8], decoder: &Decoder) -> Result<Entries, BadFrame> {
     read_all(bytes, decoder).ok_or(BadFrame)
 }

@@ -1,4 +1,4 @@
-//! What a window that joins has to know first.
+//! The greeting: the data that a window needs first when it joins.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -15,44 +15,44 @@ use crate::sense::Method;
 use crate::sink::control_json;
 use crate::units::Instant;
 
-/// Why a window can't join.
+/// Reasons why a window can't join.
 #[derive(Debug, Error)]
 pub enum MirrorError {
-    /// What was said is not a greeting.
+    /// The server's message is not a greeting.
     #[error("the server does not greet as one of this program does: {0}")]
     Greeting(#[from] serde_json::Error),
-    /// The server speaks another version.
+    /// The server uses another version.
     #[error(
         "the server speaks version {0} of the stream, this program {VERSION}: use the same program on both sides"
     )]
     Version(u8),
-    /// Its floor or its layout can't be read.
+    /// The server's floor or layout can't be read.
     #[error("{0}")]
     Diagnostics(#[from] Diagnostics),
 }
 
-/// A floor at work, as it is when somebody joins.
+/// The state of a running floor at the time when a window joins.
 #[derive(Clone, Debug)]
 pub struct Greeting {
-    /// The floor, with the tare that is in use.
+    /// The floor, with the current tare.
     pub floor: Floor,
-    /// The layout that is on it.
+    /// The current layout.
     pub layout: Layout,
-    /// The same as text.
+    /// The text of that layout.
     pub layout_text: String,
-    /// How feet are told apart.
+    /// The method that makes contacts from tile forces.
     pub method: Method,
     /// The server's time.
     pub now: Instant,
-    /// The page that is shown; `None` in a layout without pages.
+    /// The current page; `None` in a layout without pages.
     pub page: Option<String>,
-    /// Whether layouts of others may be put on the floor.
+    /// Whether the server accepts layouts from others.
     pub takes_layouts: bool,
-    /// How each control is.
+    /// The state of each control.
     pub controls: Vec<ServerLine>,
 }
 
-/// The greeting as it is sent.
+/// The greeting as sent.
 #[derive(Serialize)]
 struct Words {
     event: &'static str,
@@ -66,10 +66,10 @@ struct Words {
     controls: Vec<Value>,
 }
 
-/// Most controls of which a greeting tells: as many as a layout has.
+/// Maximum number of controls in a greeting: as many as a layout has.
 const MOST_CONTROLS: usize = 4096;
 
-/// The greeting as it is read, as much of it as there can be.
+/// The greeting as received, within its limits.
 #[derive(Deserialize)]
 struct Read {
     method: Word,
@@ -81,7 +81,7 @@ struct Read {
     controls: Few<ServerLine, MOST_CONTROLS>,
 }
 
-/// Of another version nothing else need be as it is here.
+/// Parsed first, since another version may differ in everything else.
 #[derive(Deserialize)]
 struct Version {
     version: u64,
@@ -113,17 +113,17 @@ impl Greeting {
             layout: schema::write_layout(layout),
             controls: states.map(|state| control_json(&state)).collect(),
         };
-        // Text and numbers always have a form in JSON.
+        // Strings and numbers can always be written as JSON.
         serde_json::to_string(&words).unwrap_or_default()
     }
 
-    /// Whether a line is a greeting, whatever it says.
+    /// Whether a line is a greeting, regardless of its content.
     #[must_use]
     pub fn is_in(line: &ServerLine) -> bool {
         line.event() == EVENT
     }
 
-    /// Reads what [`Greeting::line`] wrote.
+    /// Parses a line of [`Greeting::line`].
     ///
     /// # Errors
     /// [`MirrorError`] if it is not a greeting, is of another version, or if its floor or layout can't be read.
@@ -136,7 +136,7 @@ impl Greeting {
         let words: Read = serde_json::from_str(line)?;
         let floor = schema::parse_floor(&words.floor, "the server's floor")?;
         let layout = read_layout(&words.layout, &floor.geometry)?;
-        // A float becomes the nearest integer of its range.
+        // The cast saturates.
         let now = Instant::from_micros((words.t_s * 1e6).round() as u64);
         Ok(Self {
             floor,
@@ -151,7 +151,7 @@ impl Greeting {
     }
 }
 
-/// How a control is, as a server's lines say it.
+/// The state of a control in the form of a server's lines.
 pub(super) fn spoken(state: &ControlState) -> Option<ServerLine> {
     ServerLine::deserialize(control_json(state)).ok()
 }

@@ -1,4 +1,4 @@
-//! The lines of a server, as much of them as a window keeps: whatever a server sends, each is small.
+//! The lines of a server, limited to the parts that a window stores: each is small, whatever a server sends.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -10,11 +10,11 @@ use serde_json::{Value, json};
 use crate::label::{self, MAX_LABEL};
 use crate::widget::OffReason;
 
-/// Most characters of a reason, such as the problems of a layout.
+/// Maximum length of a reason in characters, such as the problems of a layout.
 const MOST_OF_A_REASON: usize = 4096;
 
-/// A line of a server: what it says of a control or a page, or why it refused a request. Fields that are not here are
-/// left out, and so is what is too long.
+/// A line of a server: a report about a control or a page, or the reason for a refused request. Parsing drops unknown
+/// fields and anything that is too long.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(default)]
 pub struct ServerLine {
@@ -28,7 +28,7 @@ pub struct ServerLine {
     pub(super) label: Said,
     pub(super) indicator: Said,
     pub(super) enabled: Said,
-    /// The reason that it is off.
+    /// The reason why it is off.
     off: Said,
     pub(super) locked: Said,
 }
@@ -37,7 +37,7 @@ impl ServerLine {
     /// Reads a line.
     ///
     /// # Errors
-    /// It is not a JSON object, or has something else than a text where a text belongs.
+    /// An error if the text is not a JSON object, or has another type in the place of a string.
     pub fn read(text: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(text)
     }
@@ -48,25 +48,25 @@ impl ServerLine {
         &self.event.0
     }
 
-    /// The request that was refused; empty in other lines.
+    /// The refused request; empty in other lines.
     #[must_use]
     pub fn request(&self) -> &str {
         &self.request.0
     }
 
-    /// Whether an app has switched the control off; `None` in lines that don't say so.
+    /// Whether an app has switched the control off; `None` in lines without this information.
     pub(super) fn is_disabled(&self) -> Option<bool> {
         self.enabled.flag().map(|_| matches!(&self.off, Said::Text(off) if off == OffReason::Disabled.name()))
     }
 
-    /// Why it was, on one line or several; empty in other lines.
+    /// The reason for the refusal, on one line or several; empty in other lines.
     #[must_use]
     pub fn why(&self) -> &str {
         &self.why.0
     }
 }
 
-/// An id, or another word: as long as a label at most, and of characters that can be seen.
+/// An id, or another word: at most as long as a label, and of visible characters.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Word(pub(super) String);
 
@@ -91,7 +91,7 @@ impl<'de> Deserialize<'de> for Reason {
     }
 }
 
-/// Makes something of a text, of which no copy is kept.
+/// Deserializes a string without storing a copy of it.
 struct Text<F>(F);
 
 impl<T, F: Fn(&str) -> T> Text<F> {
@@ -119,10 +119,10 @@ impl<T: Default, F: Fn(&str) -> T> Visitor<'_> for Text<F> {
     }
 }
 
-/// One property of a control, as a line has it.
+/// One property of a control in a line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) enum Said {
-    /// Nothing, or what no control has.
+    /// Nothing, or a value that no control has.
     #[default]
     Nothing,
     Flag(bool),
@@ -132,12 +132,12 @@ pub(super) enum Said {
 }
 
 impl Said {
-    /// As the arguments of a request; `None` where nothing is said.
+    /// The value as arguments of a request; `None` if the line has no value.
     pub(super) fn arguments(&self) -> Option<Vec<Value>> {
         Some(match self {
             Self::Nothing => return None,
             Self::Flag(on) => vec![json!(on)],
-            // A choice is a whole number in requests.
+            // Requests take a choice as an integer.
             Self::Number(number) if number.fract() == 0.0 => vec![json!(*number as i64)],
             Self::Number(number) => vec![json!(number)],
             Self::Text(text) => vec![json!(text)],
@@ -193,7 +193,7 @@ impl<'de> Visitor<'de> for SaidVisitor {
         Ok(Said::Nothing)
     }
 
-    /// Choices, and both ranges of a pair, are the layout's.
+    /// Lists of choices, and both ranges of a pair, come from the layout.
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Said, A::Error> {
         let mut numbers = [None; 2];
         for number in &mut numbers {
@@ -215,7 +215,7 @@ impl<'de> Visitor<'de> for SaidVisitor {
     }
 }
 
-/// The first `MOST` entries of a list, and how many more there were.
+/// The first `MOST` entries of a list, and the number of further ones.
 #[derive(Clone, Debug)]
 pub(super) struct Few<T, const MOST: usize> {
     pub(super) kept: Vec<T>,

@@ -1,4 +1,4 @@
-//! The connection to a server, made again and again.
+//! The connection to a server, with reconnection.
 
 use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, TcpStream};
@@ -15,43 +15,44 @@ use tungstenite::{Error, Message, WebSocket};
 
 use super::{Greeting, MirrorInput, MirrorSource, ServerLine};
 
-/// How often a server that is not there is tried again.
+/// Interval between attempts to reach an absent server.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// How long a server may take to let somebody in.
+/// Maximum time for connecting to a server.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// How long a server may be silent: it sends something every few milliseconds.
+/// Maximum silence of a server, which sends something every few milliseconds.
 const SILENT: Duration = Duration::from_secs(2);
 
-/// How often it is looked whether something is to be asked.
+/// Interval between two checks for requests to send.
 const LOOK_EVERY: Duration = Duration::from_millis(5);
 
-/// The largest message that is taken: a layout with thousands of controls, on the largest floor with all its
+/// Maximum size of a received message: a layout with thousands of controls, on the largest floor with all its
 /// calibration.
 const LARGEST: usize = 16 << 20;
 
-/// What may wait for whoever joined, and for the server; more of the former holds up the server, more of the latter is
-/// dropped.
+/// Maximum number of waiting messages to the window, and of waiting requests to the server; further messages block
+/// the connection, further requests are dropped.
 const WAITING: usize = 64;
 
-/// Lines that are passed on; whoever senses the same packets knows the rest.
+/// Lines that are passed on; the receiver senses the same packets and so derives the rest.
 const PASSED_ON: [&str; 4] = ["state", "changed", "page", "error"];
 
-/// What comes from a server.
+/// News from a server.
 #[derive(Debug)]
 pub enum MirrorNews {
-    /// It is joined, for the first time or anew: how its floor is, and what its boards send from now on.
+    /// The link has joined the server, for the first time or again: the state of its floor, and the source of its
+    /// packets from now on.
     Joined(Box<Greeting>, MirrorSource),
-    /// It has another layout, or says again how its floor is. Packets go on; the layout comes with them.
+    /// The server has another layout, or repeats the state of its floor. Packets continue; the layout is among them.
     Again(Box<Greeting>),
-    /// What it says of its controls and pages, and why it refused a request.
+    /// A report about the server's controls or pages, or the reason for a refused request.
     Line(Box<ServerLine>),
-    /// It is gone, or can't be joined; why. It is tried again.
+    /// The server is lost or can't be joined, with the reason. The link tries again.
     Lost(String),
 }
 
-/// A connection to a server, on a thread of its own that ends with this.
+/// A connection to a server, on a thread of its own that ends when this is dropped.
 #[derive(Debug)]
 pub struct MirrorLink {
     asks: SyncSender<String>,
@@ -59,10 +60,10 @@ pub struct MirrorLink {
 }
 
 impl MirrorLink {
-    /// Joins the server that serves web pages at `address`, and does so again whenever it is lost.
+    /// Joins the server that serves web pages at `address`, and again whenever the connection is lost.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// An error if the system provides no thread.
     pub fn start(address: SocketAddr) -> io::Result<(Self, Receiver<MirrorNews>)> {
         let ((asks, asked), (news, told)) = (sync_channel(WAITING), sync_channel(WAITING));
         let over = Arc::<AtomicBool>::default();
@@ -71,18 +72,18 @@ impl MirrorLink {
         Ok((Self { asks, over }, told))
     }
 
-    /// Asks the server something, as web pages do: `widget/zoom/set` with `[0.5]`. A refusal comes as a line; while it
-    /// is not there, or takes nothing, nothing is asked.
+    /// Sends a request to the server, as web pages do: `widget/zoom/set` with `[0.5]`. A refusal arrives as a line;
+    /// while the server is absent or accepts no requests, the request is dropped.
     pub fn ask(&self, request: &str, arguments: &[Value]) {
         let line = json!({"request": request, "args": arguments}).to_string();
-        // A link that has failed has said so.
+        // A failed link has reported its failure.
         let _ = self.asks.try_send(line);
     }
 }
 
 impl Drop for MirrorLink {
     fn drop(&mut self) {
-        // Its thread notices within milliseconds; while it connects, within a second.
+        // The thread notices this within milliseconds; while it connects, within a second.
         self.over.store(true, Ordering::Relaxed);
     }
 }
@@ -94,7 +95,7 @@ struct Link {
     over: Arc<AtomicBool>,
 }
 
-/// Nobody wants to hear of the server any more.
+/// The receiver of the news is gone.
 struct Over;
 
 impl Link {
@@ -115,7 +116,7 @@ impl Link {
                 }
                 thread::sleep(LOOK_EVERY);
             }
-            // What was asked of a server that was not there is past.
+            // Drops requests to a server that was absent.
             self.asked.try_iter().for_each(drop);
         }
     }
@@ -149,7 +150,7 @@ impl Link {
         Ok(socket)
     }
 
-    /// Passes on what comes until the server is gone; why it is.
+    /// Passes on messages until the server is gone; returns the reason.
     fn talk(&self, mut socket: WebSocket<TcpStream>) -> Result<String, Over> {
         let (mut input, mut heard) = (None::<MirrorInput>, Instant::now());
         loop {
@@ -163,7 +164,7 @@ impl Link {
                 Ok(Message::Binary(frame)) => {
                     heard = Instant::now();
                     if let Some(input) = &input {
-                        // One that makes no sense is counted with the packets that were refused.
+                        // Invalid frames are counted with the refused packets.
                         let _ = input.put(&frame);
                     }
                 }
@@ -189,7 +190,7 @@ impl Link {
         }
     }
 
-    /// Takes a line; why the server can't be shown.
+    /// Processes a line; the inner error is the reason why the server can't be shown.
     fn hear(&self, text: &str, input: &mut Option<MirrorInput>) -> Result<Result<(), String>, Over> {
         let line = match ServerLine::read(text) {
             Ok(line) => line,

@@ -1,13 +1,13 @@
-//! A floor at work, shown by windows elsewhere: what its server takes from the boards, as a stream, and as a source
+//! Mirrors of a running floor in remote windows: the inputs of its server as a stream, and the stream as a source
 //! again.
 //!
-//! [`MirrorFeed`] taps the source of a server as a recording does, and gives frames of bytes for whoever has joined.
-//! [`MirrorSource`] is fed such frames, and gives the same packets, requests and layouts in the same order: what senses
-//! them sees the same floor. What a window has to know first is a [`Greeting`]; [`Follower`] keeps the values of
-//! controls as the server says they are. `docs/web-app.md` describes the stream.
+//! [`MirrorFeed`] taps the source of a server as a recording does, and gives frames of bytes to all joined windows.
+//! [`MirrorSource`] receives such frames, and returns the same packets, requests and layouts in the same order:
+//! sensing on them sees the same floor. A window first needs a [`Greeting`]; [`Follower`] keeps the values of
+//! controls equal to the server's. `docs/web-app.md` describes the stream.
 //!
-//! Where there are no packets to be had, as of a floor that several computers serve, [`TextMirror`] shows what its JSON
-//! lines tell.
+//! If no packets are available, as from a floor that several computers serve, [`TextMirror`] shows the content of its
+//! JSON lines.
 
 mod feed;
 mod follower;

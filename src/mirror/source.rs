@@ -16,22 +16,22 @@ use crate::source::{SensorSource, SourceError};
 use crate::units::{HostClock, Instant};
 use crate::wire::{Decoder, LinkCounters, Request, SensorPacket};
 
-/// Frames that may wait to be sensed, four seconds of them, and what they may hold: four seconds of a stadium's boards.
-/// Whoever has more waits.
+/// Maximum number of waiting frames, four seconds of them, and maximum size of their content: four seconds of a
+/// stadium's boards. A sender with more blocks.
 const WAITING: usize = 1024;
 const MOST_WAITING_BYTES: usize = 64 << 20;
 
-/// What an entry takes besides a layout's text.
+/// Size of an entry without a layout's text.
 const ENTRY_BYTES: usize = size_of::<(Instant, Entry)>();
 
-/// How often it is looked whether there is room.
+/// Interval between two checks for room.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// How late a frame may be before time goes on without it: less than what makes a board count as lost, and more than
-/// a network of one building holds a frame up.
+/// Maximum delay of a frame before time advances without it: shorter than the time after which a board counts as
+/// lost, and longer than the delays in the network of one building.
 const LATE: Duration = Duration::from_millis(40);
 
-/// Where frames of the stream go in.
+/// Input for frames of the stream.
 #[derive(Debug)]
 pub struct MirrorInput {
     frames: SyncSender<Entries>,
@@ -48,10 +48,10 @@ struct Counters {
 }
 
 impl MirrorInput {
-    /// Takes a frame; waits while four seconds of others do. Frames for a source that is gone are dropped.
+    /// Takes a frame; blocks while four seconds of frames wait. Drops frames for a source that is gone.
     ///
     /// # Errors
-    /// [`BadFrame`] if it makes no sense; that is counted, and nothing of it is taken.
+    /// [`BadFrame`] if the frame is invalid; it is counted, and none of it is used.
     pub fn put(&self, bytes: &[u8]) -> Result<(), BadFrame> {
         let entries = frame::read(bytes, &self.decoder).inspect_err(|_| {
             self.counters.bad.fetch_add(1, Ordering::Relaxed);
@@ -71,7 +71,7 @@ impl MirrorInput {
     }
 }
 
-/// Bytes of frames that wait; `None` once nobody takes them any more.
+/// Bytes of waiting frames; `None` once the source is gone.
 #[derive(Clone, Debug, Default)]
 struct Waiting(Arc<Mutex<Option<usize>>>);
 
@@ -80,7 +80,7 @@ impl Waiting {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether so many more have to wait outside.
+    /// Whether there is no room for `more` bytes.
     fn is_full(&self, more: usize) -> bool {
         self.lock().is_some_and(|bytes| bytes > 0 && bytes + more > MOST_WAITING_BYTES)
     }
@@ -98,40 +98,40 @@ impl Waiting {
     }
 }
 
-/// What these entries take in memory.
+/// Size of these entries in memory.
 fn size_of_all(entries: &Entries) -> usize {
     let text = |(_, entry): &(Instant, Entry)| if let Entry::Layout(text) = entry { text.len() } else { 0 };
     entries.iter().map(|entry| ENTRY_BYTES + text(entry)).sum()
 }
 
 impl MirrorInput {
-    /// Says which layout the server has; the same one again changes nothing.
+    /// Sets the layout of the server; the same one again changes nothing.
     pub(super) fn put_layout(&self, text: String) {
         let at = Instant::from_micros(self.counters.now_us.load(Ordering::Relaxed));
         self.hand(vec![(at, Entry::Layout(text))]);
     }
 }
 
-/// Gives what the server's source gave, in the same order and with the same times.
+/// Returns the results of the server's source, in the same order and with the same times.
 ///
-/// Its time is the server's as of the last frame, and goes on with this machine's while none comes: so silence is
-/// noticed here as it is there, whatever the way between them takes.
+/// Its time is the server's time at the last frame, and advances with this machine's clock while none arrives: a
+/// silence is detected here as it is there, whatever the network delay is.
 #[derive(Debug)]
 pub struct MirrorSource {
     frames: Receiver<Entries>,
     waiting: Waiting,
     ahead: VecDeque<(Instant, Entry)>,
     now: Instant,
-    /// The server's time at the end of the last frame, and when that came.
+    /// The server's time at the end of the last frame, and the time of its arrival here.
     arrived: (Instant, HostInstant),
     geometry: Geometry,
-    /// The text of the layout that is on the floor.
+    /// The text of the current layout.
     layout: String,
     counters: Arc<Counters>,
 }
 
 impl MirrorSource {
-    /// A source for the floor of this greeting, and where its frames go in.
+    /// Returns a source for the floor of this greeting, and the input for its frames.
     #[must_use]
     pub fn new(greeting: &Greeting) -> (MirrorInput, Self) {
         let (now, geometry, layout) = (greeting.now, greeting.floor.geometry, greeting.layout_text.clone());
@@ -150,14 +150,14 @@ impl MirrorSource {
         (input, Self { frames, waiting, ahead: VecDeque::new(), now, arrived, geometry, layout, counters })
     }
 
-    /// The server's clock, as far as it is known here.
+    /// The server's clock, as known here.
     #[must_use]
     pub fn clock(&self) -> HostClock {
         let counters = Arc::clone(&self.counters);
         Arc::new(move || Instant::from_micros(counters.now_us.load(Ordering::Relaxed)))
     }
 
-    /// Counts what the server could not tell, to be looked at from elsewhere.
+    /// Returns a counter of the entries missing from the stream, readable from other threads.
     pub fn left_out(&self) -> impl Fn() -> u64 + Send + 'static {
         let counters = Arc::clone(&self.counters);
         move || counters.left_out.load(Ordering::Relaxed)
@@ -175,7 +175,7 @@ impl MirrorSource {
         Some(entry)
     }
 
-    /// Waits for a frame at most so long; without one, lets time go on.
+    /// Waits for a frame for at most `patience`; without one, advances the time.
     fn wait(&mut self, patience: Duration) {
         match self.frames.recv_timeout(patience) {
             Ok(entries) => {
@@ -199,14 +199,14 @@ impl MirrorSource {
 }
 
 impl Drop for MirrorSource {
-    /// Whoever waits for room waits no longer.
+    /// Unblocks a sender that waits for room.
     fn drop(&mut self) {
         *self.waiting.lock() = None;
     }
 }
 
 impl SensorSource for MirrorSource {
-    /// The next packet, or `None` where none came; never ends by itself, since a server may come back.
+    /// The next packet, or `None` if none arrived; never ends by itself, since a server may come back.
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         if self.ahead.is_empty() {
             self.wait(patience);
@@ -219,7 +219,7 @@ impl SensorSource for MirrorSource {
                     self.counters.left_out.fetch_add(entries, Ordering::Relaxed);
                 }
                 Some(entry @ (Entry::Request(_) | Entry::Layout(_))) => {
-                    // These are taken before the next packet.
+                    // The server takes these before the next packet.
                     self.ahead.push_front((self.now, entry));
                     return Ok(None);
                 }
@@ -234,7 +234,7 @@ impl SensorSource for MirrorSource {
     fn take_request(&mut self) -> Option<Request> {
         self.ahead.front().filter(|(_, entry)| matches!(entry, Entry::Request(_)))?;
         match self.advance()? {
-            // Who asked has been answered there.
+            // The server has answered the sender of the request.
             Entry::Request(request) => Some(Request { sender: None, ..request }),
             _ => None,
         }

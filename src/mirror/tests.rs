@@ -1,4 +1,4 @@
-//! Frames, the source, greetings and the follower.
+//! Tests of frames, the source, greetings and the follower.
 
 use std::time::Duration;
 
@@ -53,7 +53,7 @@ fn everything() -> Entries {
         (at(9_002_000), Entry::Silence),
         (at(9_002_500), Entry::Layout("Layout()".into())),
         (at(9_003_000), Entry::Gap(7)),
-        // Stamped by the system later than it was taken.
+        // The system's stamp is later than the time at which the server took it.
         (at(9_003_500), Entry::Packet(packet(0, 0, 9_003_600))),
         (at(9_004_000), Entry::End),
     ]
@@ -76,7 +76,7 @@ fn frames_that_are_cut_or_of_another_version_are_refused_whole() {
     let whole = framed(&everything());
     let one = framed(&everything()[..1].to_vec()).len();
     for length in 0..whole.len() {
-        // Between two entries nobody can see the cut.
+        // A cut between two entries is not detectable.
         let is_between = frame::read(&whole[..length], &decoder()).is_ok_and(|read| read.len() < 7);
         assert!(is_between || frame::read(&whole[..length], &decoder()) == Err(BadFrame), "{length}");
         assert!(!(10..one).contains(&length) || !is_between, "{length}");
@@ -131,7 +131,7 @@ fn a_frame_that_is_a_little_late_does_not_let_time_pass_and_silence_does() {
     input.put(&framed(&vec![(Instant::from_millis(5000), Entry::Silence)])).unwrap();
     assert_eq!(source.next(Duration::ZERO).unwrap(), None);
     assert_eq!(source.next(Duration::ZERO).unwrap(), None);
-    // However slow this machine is: not before the frame is late, and then by as much as it is.
+    // Time starts to advance only after the frame is late, on a machine of any speed.
     let begun = std::time::Instant::now();
     while source.now() == Instant::from_millis(5000) {
         assert_eq!(source.next(Duration::from_millis(1)).unwrap(), None);
@@ -211,7 +211,7 @@ fn a_frame_of_more_entries_than_boards_send_is_refused() {
     assert_eq!(frame(8193), Err(BadFrame));
 }
 
-/// What waits is bounded by its bytes, and whoever has more waits until there is room or nobody takes it.
+/// The bytes of waiting frames are limited; a sender with more blocks until there is room or the source is gone.
 #[test]
 fn frames_beyond_what_may_wait_are_held_up() {
     let layout = layout("map");
@@ -243,7 +243,7 @@ fn frames_beyond_what_may_wait_are_held_up() {
     sender.join().unwrap();
 }
 
-/// Does what `follower` asks, as a server does.
+/// Executes the requests of `follower`, as a server does.
 fn follow(follower: &mut Follower, engine: &mut Engine, layout: &Layout, now_ms: u64) -> usize {
     let asked = follower.corrections(layout, &seen(engine), Duration::from_millis(now_ms));
     for message in &asked {
@@ -279,7 +279,8 @@ fn controls_become_what_the_server_says_and_then_nothing_more_is_asked() {
     }
     assert_eq!(follow(&mut follower, &mut here, &layout, 1000), 0);
 
-    // A change that this side has not sensed is asked for after a while; what both sense, never.
+    // The follower requests a change that this side has not sensed after a delay, and never one that both sides
+    // sense.
     let changed = said(r#"{"event": "changed", "id": "zoom", "value": 0.5}"#);
     follower.hear(&changed, Duration::from_millis(2000));
     assert_eq!(follow(&mut follower, &mut here, &layout, 2100), 0);

@@ -1,4 +1,4 @@
-//! A floor as its JSON lines tell of it, for windows that get none of its packets.
+//! A floor reconstructed from its JSON lines, for windows without its packets.
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -17,32 +17,32 @@ use crate::units::{Instant, Newtons};
 use crate::widget::{Detail, Direction, EventKind, OffReason, Value, WidgetEvent, WidgetId};
 use crate::wire::LinkState;
 
-/// A line that tells nothing of a floor.
+/// The error for a line that is not an event of a floor.
 #[derive(Debug, Error)]
 #[error("this is no line of a floor's events: {0}")]
 pub struct BadLine(#[from] serde_json::Error);
 
-/// A floor of which only JSON lines are heard: its contacts, what its controls did, and how its areas stand.
+/// A floor known from JSON lines only: its contacts, the events of its controls, and the states of its areas.
 ///
-/// Tiles have no forces here, and a tile is silent while its area does not live. Values are those of the layout until
-/// a line tells of them.
+/// Its tiles have no forces, and a tile is silent while its area is not live. Values are those of the layout until a
+/// line reports them.
 #[derive(Clone, Debug)]
 pub struct TextMirror {
     geometry: Geometry,
     layout: Layout,
     areas: Vec<(Area, AreaNews)>,
-    /// Of each control, who has it pressed.
+    /// For each control, the contact that presses it.
     pressed_by: Vec<Option<ContactId>>,
     snapshot: Snapshot,
 }
 
-/// Most feet that are shown: more than fit into the longest line of a floor.
+/// Maximum number of contacts shown: more than fit into the longest line of a floor.
 const MOST_CONTACTS: usize = 2048;
 
-/// Most held controls of which one line tells: as many as a layout has.
+/// Maximum number of held controls in one line: as many as a layout has.
 const MOST_HELD: usize = 4096;
 
-/// What can stand in a line; see [`crate::sink::JsonSink`].
+/// The possible fields of a line; see [`crate::sink::JsonSink`].
 #[derive(Deserialize)]
 struct Line<'a> {
     t_s: f64,
@@ -89,7 +89,7 @@ struct ContactLine {
 }
 
 impl TextMirror {
-    /// What is known before the first line: an empty floor, all of it silent, with the controls of `layout`.
+    /// The state before the first line: an empty floor with all tiles silent, and the controls of `layout`.
     #[must_use]
     pub fn new(floor: &Floor, layout: Layout) -> Self {
         let waiting = |area: &Area| AreaNews {
@@ -108,7 +108,7 @@ impl TextMirror {
         mirror
     }
 
-    /// Shows the controls of another layout from now on; which [`Snapshot::layout_revision`] that is.
+    /// Replaces the layout; returns its [`Snapshot::layout_revision`].
     pub fn set_layout(&mut self, layout: Layout) -> u64 {
         let Snapshot { at, link, layout_revision, .. } = self.snapshot;
         let tiles = std::mem::take(&mut self.snapshot.tiles);
@@ -122,7 +122,7 @@ impl TextMirror {
         Engine::new(self.geometry, layout.clone(), Method::default())
             .with_floor_file(self.snapshot.floor_file.clone())
             .snapshot(&mut self.snapshot);
-        // Whether a floor is calibrated and who stands on a control, its own computers know.
+        // Only the floor's own computers know its calibration and the feet on a control.
         for widget in &mut self.snapshot.widgets {
             (widget.off, widget.needs_lift) = (None, false);
         }
@@ -130,25 +130,24 @@ impl TextMirror {
         self.layout = layout;
     }
 
-    /// The floor as it is now, by what was told.
+    /// The current state of the floor, according to the lines so far.
     #[must_use]
     pub const fn snapshot(&self) -> &Snapshot {
         &self.snapshot
     }
 
-    /// How each area stands, in the floor file's order; empty for a floor of one computer.
+    /// The state of each area, in the floor file's order; empty for a floor of one computer.
     pub fn areas(&self) -> impl Iterator<Item = &AreaNews> {
         self.areas.iter().map(|(_, news)| news)
     }
 
-    /// Takes one line; gives the event, if it tells of one of a control of this layout.
+    /// Processes one line; returns the event if it is one of a control of this layout.
     ///
-    /// What a line says of controls and areas that are not there is passed over, and so are events that this program
-    /// does not know.
+    /// Ignores controls and areas that do not exist, and unknown events.
     ///
     /// # Errors
-    /// [`BadLine`] if it is not JSON, has no time, or has no numbers where they belong; it is counted as malformed, and
-    /// nothing else is changed.
+    /// [`BadLine`] if it is not JSON, has no time, or has other types in the place of numbers; it is counted as
+    /// malformed, and nothing else changes.
     pub fn take(&mut self, line: &str) -> Result<Option<WidgetEvent>, BadLine> {
         self.snapshot.counters.datagrams += 1;
         let line: Line<'_> =
@@ -158,7 +157,7 @@ impl TextMirror {
         if let Some(held) = line.held {
             let ids = held.kept.iter().map(|id| id.0.as_str());
             let known = ids.filter(|id| self.layout.widget_index(id).is_some()).map(WidgetId::new);
-            // No more than there are, however often a line names them.
+            // At most the number of controls, however often a line names them.
             self.snapshot.held = known.take(self.layout.widgets.len()).collect();
             return Ok(None);
         }
@@ -174,7 +173,7 @@ impl TextMirror {
         Ok(None)
     }
 
-    /// Nothing more is told: what was known of feet, and what they held, is not believed any longer.
+    /// Ends the lines: clears the contacts and the controls that they held.
     pub fn end(&mut self) {
         self.take_contacts(Few::default());
         self.show_link(LinkState::Lost);
@@ -197,7 +196,7 @@ impl TextMirror {
             velocity: Vec2::new(contact.x_velocity_m_s, contact.y_velocity_m_s),
             ..Contact::default()
         }));
-        // Whose feet they are is not told.
+        // The lines do not contain persons or roles.
         let foot = |contact: &Contact| FootState {
             contact: contact.id,
             role: FootRole::Free,
@@ -213,7 +212,7 @@ impl TextMirror {
         }
     }
 
-    /// How hard the foot presses that has this control pressed.
+    /// Shows the force of the foot that presses this control.
     fn show_press(&mut self, index: usize) {
         let by = self.pressed_by.get(index).copied().flatten();
         let contact = self.snapshot.contacts.iter().find(|contact| Some(contact.id) == by);
@@ -240,7 +239,7 @@ impl TextMirror {
         self.show_areas();
     }
 
-    /// Lets the tiles of areas that do not live be silent.
+    /// Marks the tiles of areas that are not live as silent.
     fn show_areas(&mut self) {
         if self.areas.is_empty() {
             return self.show_link(self.snapshot.link);
@@ -271,7 +270,7 @@ impl TextMirror {
         }
     }
 
-    /// The link of a floor of one computer; which boards are silent is not told.
+    /// Sets the link of a floor of one computer; the lines do not name silent boards.
     fn show_link(&mut self, link: LinkState) {
         self.snapshot.link = link;
         let is_sensed = matches!(link, LinkState::Live | LinkState::Partial);
@@ -294,7 +293,7 @@ impl TextMirror {
         let Some(state) = self.snapshot.widgets.get_mut(index) else { return };
         state.value = state.value.map(|known| like(known, &line.value).unwrap_or(known));
         if let Some(enabled) = line.enabled {
-            // A reason that this version has no name for keeps the control off all the same.
+            // A reason that this version does not know also keeps the control off.
             let named = line.off.as_deref().and_then(OffReason::from_name);
             state.off = named.or((!enabled).then_some(OffReason::Disabled));
             state.disabled = state.off == Some(OffReason::Disabled);
@@ -333,7 +332,7 @@ impl TextMirror {
     }
 }
 
-/// What an event says besides its name, of a control that holds such a value as `known`.
+/// The detail of an event besides its name, for a control with a value like `known`.
 fn detail(known: Option<Value>, said: &Said) -> Option<Detail> {
     let is_said = |direction: &Direction| matches!(said, Said::Text(name) if name == direction.name());
     let direction = || Direction::ALL.into_iter().find(is_said);
@@ -341,7 +340,7 @@ fn detail(known: Option<Value>, said: &Said) -> Option<Detail> {
     value.map(Detail::Value).or_else(|| direction().map(Detail::Direction))
 }
 
-/// A value of the same kind as `known`; `None` if it is of another, or not finite.
+/// A value of the same kind as `known`; `None` if the kind differs or the number is not finite.
 fn like(known: Value, said: &Said) -> Option<Value> {
     let single = |number: f64| Some(number as f32).filter(|number| number.is_finite());
     match (known, said) {
@@ -487,7 +486,7 @@ mod tests {
             assert!(hall.take(odd).is_err(), "{odd}");
         }
         assert_eq!(hall.snapshot().counters.malformed, 6);
-        // Whatever the number, time does not stand at its end, and nobody else's control is pressed.
+        // The time stays finite for any number, and a control of this layout is not pressed.
         take(
             &mut hall,
             &[r#"{"t_s":1e300,"event":"pressed","id":"nobody's"}"#, r#"{"t_s":-1,"event":"jumped"}"#],

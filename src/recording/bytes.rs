@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-/// Bytes of a record that are read field by field; `None` wherever they end too early or a string is not UTF-8.
+/// Bytes of a record, read field by field; a read returns `None` if they end too early or a string is not UTF-8.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fields<'b>(pub(super) &'b [u8]);
 
@@ -33,7 +33,7 @@ impl<'b> Fields<'b> {
         std::str::from_utf8(self.bytes(length.into())?).ok()
     }
 
-    /// A map of strings; of a key that is there twice the last value.
+    /// A map of strings; of a repeated key, the last value counts.
     pub(super) fn map(&mut self) -> Option<BTreeMap<&'b str, &'b str>> {
         let length = self.u32()?;
         let mut entries = Self(self.bytes(length.into())?);

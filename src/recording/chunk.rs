@@ -1,4 +1,4 @@
-//! Chunks of an MCAP file: unpacked and checked before anything of them is believed.
+//! Chunks of an MCAP file: decompressed and verified before use.
 
 use std::io::Read;
 
@@ -10,11 +10,11 @@ use super::records::LONGEST_CHUNK;
 pub(super) struct Chunk {
     bytes: Vec<u8>,
     next: usize,
-    /// Whether its end is missing.
+    /// Whether the file ends within the chunk.
     is_cut: bool,
 }
 
-/// Something wrong with a chunk, as the end of a sentence about it.
+/// A fault of a chunk, as the end of a sentence about it.
 pub(super) type Fault = String;
 
 /// The fields before a chunk's records.
@@ -41,7 +41,7 @@ impl<'b> Head<'b> {
 }
 
 impl Chunk {
-    /// Unpacks a chunk's record; of one that is cut, as much as is there.
+    /// Decompresses a chunk's record; of a truncated one, as much as the file contains.
     pub(super) fn unpack(record: &[u8], is_cut: bool) -> Result<Self, Fault> {
         let mut fields = Fields(record);
         let Some(head) = Head::read(&mut fields) else {
@@ -58,7 +58,7 @@ impl Chunk {
             if !is_cut {
                 return Err(format!("{time}claims more bytes than it has"));
             }
-            // Without its end nothing can be checked.
+            // A truncated chunk can't be verified.
             let bytes =
                 decompress(head.compression, fields.0, head.unpacked).unwrap_or_else(|(bytes, _)| bytes);
             return Ok(Self { bytes, next: 0, is_cut });
@@ -72,14 +72,14 @@ impl Chunk {
                 head.unpacked
             ));
         }
-        // 0 stands for none.
+        // 0 means that there is no checksum.
         if head.checksum != 0 && crc32fast::hash(&bytes) != head.checksum {
             return Err(format!("{time}does not fit its checksum"));
         }
         Ok(Self { bytes, next: 0, is_cut })
     }
 
-    /// The next record, its kind and bytes; `None` at the end.
+    /// The next record, as its kind and bytes; `None` at the end.
     pub(super) fn next(&mut self) -> Option<Result<(u8, &[u8]), Fault>> {
         let mut fields = Fields(self.bytes.get(self.next..).filter(|rest| !rest.is_empty())?);
         let record = fields.bytes(1).and_then(|kind| {
@@ -97,7 +97,7 @@ impl Chunk {
     }
 }
 
-/// Up to `most` bytes that `packed` holds; where it makes no sense, the bytes up to there and the fault.
+/// Decompresses up to `most` bytes of `packed`; on invalid data, returns the bytes before it and the fault.
 fn decompress(compression: &str, packed: &[u8], most: u64) -> Result<Vec<u8>, (Vec<u8>, Fault)> {
     let unpack: fn(&mut &[u8], &mut Vec<u8>, u64) -> Result<(), Fault> = match compression {
         "" => return Ok(packed.to_vec()),
@@ -125,7 +125,7 @@ fn decompress(compression: &str, packed: &[u8], most: u64) -> Result<Vec<u8>, (V
     Ok(bytes)
 }
 
-/// The bytes behind a frame that decoders skip, if `bytes` begins with one; zstd and lz4 have the same.
+/// The bytes behind a skippable frame, if `bytes` begins with one; zstd and lz4 use the same format for it.
 fn behind_skippable(bytes: &[u8]) -> Option<&[u8]> {
     let mut fields = Fields(bytes);
     let is_skippable = fields.u32()? & 0xffff_fff0 == 0x184d_2a50;
@@ -133,8 +133,8 @@ fn behind_skippable(bytes: &[u8]) -> Option<&[u8]> {
     Some(fields.bytes(length.into()).map_or(&[][..], |_| fields.0))
 }
 
-/// Unpacks one frame of `packed` and leaves what is behind it. One byte more than `most` is enough to see that it is
-/// larger than it should be.
+/// Decompresses one frame of `packed` and leaves the rest. It reads at most one byte more than `most`, enough to
+/// detect an oversized frame.
 fn zstd_frame(packed: &mut &[u8], bytes: &mut Vec<u8>, most: u64) -> Result<(), Fault> {
     let mut decoder =
         ruzstd::decoding::StreamingDecoder::new(&mut *packed).map_err(|error| error.to_string())?;

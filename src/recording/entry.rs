@@ -1,4 +1,4 @@
-//! One thing that a source gave, as the bytes of a message.
+//! One result of a source, as the bytes of a message.
 
 use std::net::SocketAddr;
 
@@ -10,28 +10,28 @@ use crate::floor::Floor;
 use crate::units::Instant;
 use crate::wire::{Batch, Decoder, Prefix, Readings, Request, SensorPacket};
 
-/// One thing that a source gave, in the order in which the server took it.
+/// One result of a source, in the order in which the server took it.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(
     clippy::large_enum_variant,
     reason = "nearly all are packets, and packets are not allocated one by one"
 )]
 pub(crate) enum Entry {
-    /// A packet.
+    /// A packet arrived.
     Packet(SensorPacket),
-    /// No packet came for as long as the server waited.
+    /// No packet arrived while the server waited.
     Silence,
-    /// An app asked.
+    /// An app sent a request.
     Request(Request),
-    /// The floor got another layout: its text.
+    /// The floor got another layout, in this text.
     Layout(String),
-    /// So many entries could not be kept.
+    /// This many entries were lost.
     Gap(u64),
     /// The source ended.
     End,
 }
 
-/// How readings are marked: converter counts with a bit for each that is there, or newtons.
+/// Marks of the form of readings: converter counts with a bit for each that is present, or newtons.
 const COUNTS: u8 = 0;
 const NEWTONS: u8 = 1;
 
@@ -47,7 +47,7 @@ impl Entry {
         }
     }
 
-    /// When it came, on the floor's clock: of a packet its arrival; `taken` of all others.
+    /// Time on the floor's clock: the arrival of a packet, `taken` for all other entries.
     pub(crate) const fn came(&self, taken: Instant) -> Instant {
         match self {
             Self::Packet(packet) => packet.received,
@@ -66,7 +66,7 @@ impl Entry {
         }
     }
 
-    /// The entry of these bytes, which came at `came`; `None` if it is of no known topic or not whole.
+    /// Parses an entry with the time `came`; `None` if the topic is unknown or the bytes are incomplete.
     pub(crate) fn read(topic: &str, bytes: &[u8], came: Instant, decoder: &Decoder) -> Option<Self> {
         Some(match topic {
             PACKETS => Self::Packet(read_packet(bytes, came)?),
@@ -126,14 +126,14 @@ fn read_packet(bytes: &[u8], received: Instant) -> Option<SensorPacket> {
     Some(SensorPacket { board, sequence, received, readings })
 }
 
-/// The sender with a zero byte behind it, and the request as an OSC message.
+/// Writes the sender with a zero byte behind it, and the request as an OSC message.
 fn write_request(request: &Request, bytes: &mut Vec<u8>) {
     let sender = request.sender.map(|sender| sender.to_string()).unwrap_or_default();
     bytes.extend(sender.as_bytes());
     bytes.push(0);
     let addr = Prefix::default().address(&request.message.path());
     let message = OscPacket::Message(OscMessage { addr, args: request.message.arguments() });
-    // Only a bundle could fail, by its size.
+    // Encoding fails only for an oversized bundle.
     bytes.extend(rosc::encoder::encode(&message).unwrap_or_default());
 }
 
@@ -145,7 +145,7 @@ fn read_request(bytes: &[u8], decoder: &Decoder) -> Option<Request> {
     Some(Request { message: batch.controls.pop()?, sender })
 }
 
-/// What reads requests: they are kept with the shipped prefix, whatever the floor's is.
+/// The decoder for requests: recordings always use the default prefix, whatever the floor's prefix is.
 pub(crate) fn decoder() -> Decoder {
     Decoder::new(&Floor::default())
 }

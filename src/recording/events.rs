@@ -1,4 +1,4 @@
-//! Lines of events on their way into a recording.
+//! Passes lines of events to a recording.
 
 use std::io::{self, Write};
 
@@ -8,14 +8,14 @@ use super::recorder::Recorder;
 use super::writer::Job;
 use crate::units::Instant;
 
-/// Takes JSON lines, each a message of its own.
+/// Receives JSON lines, each as a message of its own.
 #[derive(Debug)]
 pub(super) struct EventLines {
     recorder: Recorder,
     line: Vec<u8>,
 }
 
-/// The one field that every line has.
+/// The one field that all lines have.
 #[derive(Deserialize)]
 struct Timed {
     t_s: f64,
@@ -32,7 +32,7 @@ impl EventLines {
             return Ok(());
         }
         let at = serde_json::from_slice(&line).map_or(Instant::START, |Timed { t_s }| {
-            // A float becomes the nearest integer of its range.
+            // The cast saturates.
             Instant::from_micros((t_s * 1e6).round() as u64)
         });
         if self.recorder.hand_job(Job::Event(at, line)).is_some() {

@@ -15,40 +15,40 @@ use super::{EVENTS, FLOOR, LAYOUT, METADATA, TOPICS};
 use crate::units::Instant;
 use crate::wire::{Decoder, Readings};
 
-/// One after the other, what stands in the file.
+/// The parts of a file in sequence.
 #[expect(
     clippy::large_enum_variant,
     reason = "nearly all are packets, and packets are not allocated one by one"
 )]
 pub(super) enum Part {
-    /// An entry, and when the server took it.
+    /// An entry, with the time at which the server took it.
     Entry(Instant, Entry),
     /// A line of an event.
     Event(Vec<u8>),
     /// The end of the recording.
     Whole,
-    /// The file ends too early, or is damaged from here on: where and why.
+    /// The file is truncated, or damaged from here on: place and reason.
     Broken(String),
 }
 
-/// An entry with its number among those of the same moment.
+/// An entry with its number among those of the same time.
 pub(super) enum Numbered {
     Entry(Instant, u32, Entry),
     Part(Part),
 }
 
-/// The messages of a file.
+/// Reader of the messages of a file.
 pub(super) struct Messages {
     records: Records,
     path: PathBuf,
-    /// Checksums of the attachments and the metadata that were read when the file was opened, by their names.
+    /// Checksums of the attachments and the metadata read on opening the file, by their names.
     opened: HashMap<&'static str, u32>,
     chunk: Option<(u64, Chunk)>,
-    /// Topics of channels by their numbers; of those that are not ours none.
+    /// Topics of channels by their numbers; `None` for topics of other programs.
     topics: HashMap<u16, Option<&'static str>>,
     decoder: Decoder,
     counts: Counts,
-    /// Whether the data section is over, and with it all messages.
+    /// Whether the data section, which contains all messages, is over.
     is_past_data: bool,
     end: Option<End>,
 }
@@ -58,11 +58,11 @@ pub(super) struct Messages {
 struct Counts {
     messages: u64,
     chunks: u32,
-    /// Messages on topics that are not ours.
+    /// Messages on topics of other programs.
     foreign: u64,
 }
 
-/// The end of a file, which is reported again whenever it is asked for.
+/// The end of a file, which every further call reports again.
 #[derive(Clone, Debug)]
 enum End {
     Whole,
@@ -93,7 +93,7 @@ impl Messages {
         self.records
     }
 
-    /// Whether the first packet to come holds newtons; false without one.
+    /// Whether the first packet holds newtons; false if there is no packet.
     pub(super) fn begin_with_newtons(&mut self) -> bool {
         loop {
             match self.next() {
@@ -106,12 +106,12 @@ impl Messages {
         }
     }
 
-    /// Messages of others so far: on topics that are not ours.
+    /// Number of messages so far on topics of other programs.
     pub(super) const fn foreign(&self) -> u64 {
         self.counts.foreign
     }
 
-    /// The next part; after the end or a break, that again.
+    /// The next part; after the end or a fault, the same part again.
     pub(super) fn next(&mut self) -> Numbered {
         loop {
             if let Some(end) = &self.end {
@@ -134,7 +134,7 @@ impl Messages {
         let at = *at;
         match chunk.next() {
             Some(Ok((opcode, record))) => {
-                // Borrowed apart from `self`: the chunk stays where it is.
+                // The fields are borrowed separately, so that the chunk stays in place.
                 let read = read(opcode, record, &mut self.topics, &mut self.counts, &self.decoder);
                 read.map_err(|fault| End::Broken(format!("the chunk at byte {at} has {fault}")))
             }
@@ -185,7 +185,7 @@ impl Messages {
         }
     }
 
-    /// A message that is too long to be ours.
+    /// Counts a message that is too long for our topics.
     fn pass_over_message(&mut self, record: &RawRecord) -> Result<(), End> {
         self.counts.messages += 1;
         match Message::read(self.records.data()).map(|message| self.topics.get(&message.channel)) {
@@ -199,7 +199,7 @@ impl Messages {
         }
     }
 
-    /// Compares an attachment or metadata of ours with those that the file was opened with.
+    /// Compares one of our attachments or metadata records with those read on opening the file.
     fn check_opened(&self, record: &RawRecord) -> Result<(), End> {
         let RawRecord { opcode, at, state, .. } = *record;
         let data = self.records.data();
@@ -228,7 +228,7 @@ impl Messages {
         }
     }
 
-    /// The data section is over: everything in it must fit its checksum, if it has one.
+    /// Ends the data section: verifies it against its checksum, if it has one.
     fn end_data(&mut self, at: u64) -> Result<(), End> {
         self.is_past_data = true;
         let written = super::bytes::Fields(self.records.data()).u32();
@@ -243,7 +243,7 @@ impl Messages {
         }
     }
 
-    /// Compares what was read with the numbers in the summary.
+    /// Compares the counts of messages and chunks with the summary.
     fn check_summary(&self, record: &RawRecord) -> Result<Option<Numbered>, End> {
         if record.state != State::Whole || record.opcode == op::FOOTER {
             return Err(End::Whole);
@@ -261,7 +261,7 @@ impl Messages {
     }
 }
 
-/// Reads one record of the data section; the fault says which part of the file makes no sense.
+/// Reads one record of the data section; the error names the faulty part of the file.
 fn read(
     opcode: u8,
     record: &[u8],

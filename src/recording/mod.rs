@@ -1,8 +1,8 @@
-//! A floor's recording: everything that decides what happens on it, in an MCAP file, and the same again from it.
+//! The recording of a floor in an MCAP file: all inputs that determine the floor's behaviour, and their replay.
 //!
-//! [`Recorder`] keeps what a source gives and when; [`Recording`] gives it back as another source. A server asks its
-//! source for a packet, for requests and for the time, and for nothing else: with the same answers it tells the same
-//! events, to the bit. `docs/recordings.md` describes the file.
+//! [`Recorder`] stores the results of a source with their times; [`Recording`] returns them as another source. A
+//! server asks its source only for packets, requests and the time: with the same answers it reports the same events,
+//! bit for bit. `docs/recordings.md` describes the file.
 
 mod bytes;
 mod chunk;
@@ -42,7 +42,7 @@ pub(crate) use tap::{Entries, EntrySink};
 pub use timeline::{Mark, MarkKind, Timeline};
 pub use transport::Transport;
 
-/// The topics of a recording.
+/// Topics of a recording.
 pub(crate) const PACKETS: &str = "/underfoot/packets";
 pub(crate) const SILENCE: &str = "/underfoot/silence";
 pub(crate) const REQUESTS: &str = "/underfoot/requests";
@@ -53,40 +53,40 @@ const EVENTS: &str = "/underfoot/events";
 
 const TOPICS: [&str; 7] = [PACKETS, SILENCE, REQUESTS, LAYOUTS, GAPS, END, EVENTS];
 
-/// The name of the metadata, and the version of all this.
+/// Name of the metadata record, and version of the recording format.
 const METADATA: &str = "underfoot";
 const VERSION: &str = "1";
 
-/// The key of the metadata that says that the sensors' noise was learnt, and what it says. Recordings of versions that
-/// did not learn it lack it.
+/// Key and value of the metadata that mark recordings of versions that learn the sensors' noise. Recordings of
+/// earlier versions lack them.
 const NOISE: &str = "noise";
 const LEARNT: &str = "learnt";
 
-/// The attachments.
+/// Names of the attachments.
 const FLOOR: &str = "floor.ron";
 const LAYOUT: &str = "layout.ron";
 
-/// Why there can be no recording, or why it can't be read.
+/// Reasons why a recording can't be made or read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
     /// The file can't be written or read.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// The file is not a recording of a floor, or ends before one begins.
+    /// The file is not a recording of a floor, or ends before the recording begins.
     #[error("{}: {why}", path.display())]
     Unreadable {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is missing or wrong.
+        /// The missing or faulty part.
         why: String,
     },
-    /// The floor or the layout can't be kept, or what was kept can't be read.
+    /// The floor or the layout can't be stored, or the stored one can't be read.
     #[error(transparent)]
     Diagnostics(#[from] Diagnostics),
 }

@@ -1,4 +1,4 @@
-//! Entries in the order in which the server took them, wherever a tool that sorts by time has put them.
+//! Entries in the order in which the server took them, even if a tool has sorted the file by time.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -8,18 +8,18 @@ use super::entry::Entry;
 use super::messages::{Messages, Numbered, Part};
 use crate::units::Instant;
 
-/// Greatest number of entries of one moment that are put in order: a second of a floor of 65 boards.
+/// Maximum number of entries of one time that are sorted: a second of a floor of 65 boards.
 const MOST_AT_ONCE: usize = 1 << 16;
 
-/// The parts of a recording in order: of entries with the same time first those with the lower number.
+/// The parts of a recording in order: entries with the same time are sorted by number.
 ///
 /// The first recordings have no numbers; their entries keep the order of the file.
 pub(super) struct Ordered {
     messages: Messages,
-    /// Entries of one moment, and whether all of them are there and in order.
+    /// Entries of one time, and whether they are complete and sorted.
     waiting: VecDeque<(Instant, u32, Entry)>,
     is_sorted: bool,
-    /// The part behind them.
+    /// The part after them.
     ahead: Option<Numbered>,
     last: Option<(Instant, u32)>,
 }
@@ -34,12 +34,12 @@ impl Ordered {
         self.messages.path()
     }
 
-    /// Messages of others so far.
+    /// Number of messages so far on topics of other programs.
     pub(super) const fn foreign(&self) -> u64 {
         self.messages.foreign()
     }
 
-    /// The next part; after the end or a break, that again.
+    /// The next part; after the end or a fault, the same part again.
     pub(super) fn next_part(&mut self) -> Part {
         loop {
             if self.is_sorted {
@@ -56,7 +56,7 @@ impl Ordered {
         }
     }
 
-    /// Reads the entries of the next moment; `None` when all of them are there, otherwise a part that is none.
+    /// Collects the entries of the next time; returns `None` once they are complete, or a part that is not an entry.
     fn fill(&mut self) -> Option<Part> {
         loop {
             let next = self.ahead.take().unwrap_or_else(|| self.messages.next());
@@ -70,7 +70,7 @@ impl Ordered {
                     }
                     self.waiting.push_back((taken, number, entry));
                 }
-                // Lines of events come from another thread: they have no place among entries.
+                // Lines of events come from another thread, so their order among entries is undefined.
                 Numbered::Part(Part::Event(line)) => return Some(Part::Event(line)),
                 Numbered::Part(part) if self.waiting.is_empty() => return Some(part),
                 behind => {
@@ -82,7 +82,7 @@ impl Ordered {
     }
 
     fn sort(&mut self) {
-        // Numbers wrap: they count from the last one that was given.
+        // Numbers wrap: they are sorted relative to the last returned one.
         let base = self.last.map_or(0, |(_, number)| number);
         self.waiting.make_contiguous().sort_by_key(|(_, number, _)| number.wrapping_sub(base));
         self.is_sorted = true;

@@ -1,4 +1,4 @@
-//! Packets for whoever checks a floor while it is at work.
+//! Packets of a running floor, for checks of it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -11,11 +11,11 @@ use crate::floor::Geometry;
 use crate::source::SensorSource;
 use crate::wire::SensorPacket;
 
-/// How much of the floor's time is handed on at once, and how much may wait: two seconds.
+/// Span of the floor's time in one batch, and maximum number of waiting batches: two seconds.
 const BATCH: Duration = Duration::from_millis(8);
 const WAITING: usize = 256;
 
-/// The packets of a floor at work, while somebody wants them.
+/// The packets of a running floor, copied on demand.
 #[derive(Debug)]
 pub struct TappedPackets {
     wanted: Arc<AtomicBool>,
@@ -32,7 +32,7 @@ pub struct PacketTap {
 }
 
 impl TappedPackets {
-    /// The packets, and the tap that copies them; nothing is copied until it is wanted.
+    /// Returns the packets, and the tap that copies them; the tap copies nothing before [`Self::want`].
     #[must_use]
     pub fn new() -> (PacketTap, Self) {
         let (wanted, lost) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
@@ -41,12 +41,12 @@ impl TappedPackets {
         (tap, Self { wanted, batches, lost })
     }
 
-    /// Whether packets are wanted from now on.
+    /// Switches the copying of packets on or off.
     pub fn want(&self, wanted: bool) {
         self.wanted.store(wanted, Ordering::Relaxed);
     }
 
-    /// Gives all that have come since the last call, in their order.
+    /// Calls `packet` for all packets since the last call, in their order.
     pub fn take(&self, mut packet: impl FnMut(&SensorPacket)) {
         for (_, entry) in self.batches.try_iter().flatten() {
             if let Entry::Packet(one) = &entry {
@@ -55,7 +55,7 @@ impl TappedPackets {
         }
     }
 
-    /// Packets that were not taken in time.
+    /// Number of packets lost because the reader did not take them in time.
     #[must_use]
     pub fn lost(&self) -> u64 {
         self.lost.load(Ordering::Relaxed)
@@ -63,7 +63,7 @@ impl TappedPackets {
 }
 
 impl PacketTap {
-    /// `inner`, on a floor of this geometry, with its packets copied.
+    /// Wraps `inner`, on a floor of this geometry, so that its packets are copied.
     #[must_use]
     pub fn source(&self, inner: Box<dyn SensorSource>, geometry: Geometry) -> TappedSource {
         TappedSource::new(inner, Box::new(self.clone()), geometry)

@@ -1,10 +1,10 @@
-//! Attachments, metadata and other records that a recording consists of, read from their bytes.
+//! Parsers for the attachments, metadata and other records of a recording.
 
 use std::collections::BTreeMap;
 
 use super::bytes::Fields;
 
-/// An attachment's bytes, and whether they fit its checksum.
+/// An attachment's bytes, and whether they match its checksum.
 pub(super) struct Attachment<'b> {
     pub(super) data: &'b [u8],
     pub(super) is_sound: bool,
@@ -18,13 +18,13 @@ impl<'b> Attachment<'b> {
         let length = fields.u64()?;
         let data = fields.bytes(length)?;
         let checked = record.get(..record.len() - fields.0.len())?;
-        // 0 stands for none.
+        // 0 means that there is no checksum.
         let checksum = fields.u32()?;
         let is_sound = checksum == 0 || checksum == crc32fast::hash(checked);
         Some(Self { data, is_sound })
     }
 
-    /// The name alone, which the first bytes of the record are enough for.
+    /// The name alone, for which the first bytes of the record suffice.
     pub(super) fn name(record: &'b [u8]) -> Option<&'b str> {
         let mut fields = Fields(record);
         // The times of creation and logging.
@@ -65,7 +65,7 @@ impl<'b> Message<'b> {
     }
 }
 
-/// Numbers of messages and of chunks that the file's summary claims.
+/// Numbers of messages and of chunks according to the file's summary.
 pub(super) fn statistics(record: &[u8]) -> Option<(u64, u32)> {
     let mut fields = Fields(record);
     let messages = fields.u64()?;

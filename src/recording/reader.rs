@@ -1,4 +1,4 @@
-//! A recording that is opened: its floor, its layout, and then its messages.
+//! Opens a recording: its floor, its layout, and then its messages.
 
 use std::collections::HashMap;
 use std::io;
@@ -19,7 +19,7 @@ use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
 
-/// A recording that is about to be played again.
+/// A recording that is open for replay.
 #[derive(Debug)]
 pub struct Recording {
     floor: Floor,
@@ -28,22 +28,22 @@ pub struct Recording {
     parts: Ordered,
 }
 
-/// Attachments and metadata of a recording, wherever in the file they stand.
+/// Attachments and metadata of a recording, at any place in the file.
 #[derive(Default)]
 pub(super) struct Opening {
     floor: Option<String>,
     layout: Option<String>,
     method: Option<Method>,
-    /// Whether the sensors' noise was learnt when it was made; earlier versions took newtons as they came.
+    /// Whether the recording program learnt the sensors' noise; earlier versions used newtons unprocessed.
     learnt: bool,
-    /// Whether repetitions in its readings say nothing.
+    /// Whether repeated readings are normal.
     noiseless: bool,
-    /// Checksums by name, so that others of the same name are noticed later.
+    /// Checksums by name, to detect later ones of the same name that differ.
     checksums: HashMap<&'static str, u32>,
 }
 
 impl Recording {
-    /// Whether the file at `path` begins as a recording does; false if it can't be read, or is a device or a pipe.
+    /// Whether the file at `path` begins like a recording; false if it can't be read, or is a device or a pipe.
     #[must_use]
     pub fn is_at(path: &Path) -> bool {
         open_ordinary(path)
@@ -51,20 +51,20 @@ impl Recording {
             .is_ok_and(|records| records.is_some())
     }
 
-    /// Opens the recording at `path` and reads the floor and the layout that it was made with.
+    /// Opens the recording at `path` and reads its floor and its layout.
     ///
     /// # Errors
-    /// [`RecordingError`] if the file can't be read, is not an ordinary file or not a recording of a floor, or was cut
-    /// off before one begins.
+    /// [`RecordingError`] if the file can't be read, is not an ordinary file or not a recording of a floor, or is
+    /// truncated before the recording begins.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let failed = |source| RecordingError::File { path: path.into(), source };
         Self::read(Box::new(open_ordinary(path).map_err(failed)?), path)
     }
 
-    /// As [`Self::open`], of bytes from anywhere; `name` is the name that messages call them by.
+    /// As [`Self::open`], for bytes from any origin; messages call them `name`.
     ///
     /// # Errors
-    /// Those of [`Self::open`].
+    /// As for [`Self::open`].
     pub fn read(bytes: Box<dyn RecordingBytes>, name: &Path) -> Result<Self, RecordingError> {
         let (opening, parts) = Opening::read(bytes, name)?;
         let floor = schema::parse_floor(&opening.floor.unwrap_or_default(), FLOOR)?;
@@ -75,19 +75,19 @@ impl Recording {
         Ok(Self { floor, layout, method, parts })
     }
 
-    /// The floor.
+    /// The recorded floor.
     #[must_use]
     pub const fn floor(&self) -> &Floor {
         &self.floor
     }
 
-    /// The layout that was on the floor at the beginning.
+    /// The layout on the floor at the beginning.
     #[must_use]
     pub const fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// How feet were told apart.
+    /// The method that made contacts from tile forces.
     #[must_use]
     pub const fn method(&self) -> Method {
         self.method
@@ -97,13 +97,14 @@ impl Recording {
         self.parts
     }
 
-    /// What was recorded, as a source.
+    /// Returns the recording as a source.
     #[must_use]
     pub fn source(self, speed: Speed) -> ReplaySource {
         ReplaySource::new(self.parts, self.floor.geometry, speed)
     }
 
-    /// The lines of the events that were recorded; then, where the file is cut or damaged, where and why.
+    /// Iterates over the recorded event lines; if the file is truncated or damaged, an error with place and reason
+    /// follows.
     pub fn events(self) -> impl Iterator<Item = Result<Vec<u8>, String>> {
         let (mut parts, mut is_over) = (self.parts, false);
         std::iter::from_fn(move || {
@@ -124,7 +125,7 @@ impl Recording {
 }
 
 impl Opening {
-    /// The attachments and the metadata of a file, and its messages from the beginning.
+    /// Reads the attachments and the metadata of a file, and returns its messages from the beginning.
     pub(super) fn read(
         bytes: Box<dyn RecordingBytes>,
         name: &Path,
@@ -146,7 +147,7 @@ impl Opening {
         Ok((opening, Ordered::new(messages)))
     }
 
-    /// Finds the attachments and the metadata of a recording. The second error says why there are none.
+    /// Finds the attachments and the metadata of a recording. The inner error has the reason why they are missing.
     fn find(records: &mut Records) -> io::Result<Result<Self, String>> {
         let mut found = Self::default();
         while !found.is_whole() {
@@ -177,7 +178,7 @@ impl Opening {
         format!("no recording of a floor begins there: it lacks {} ({hint})", missing.join(", "))
     }
 
-    /// Takes a record if it is one of those; the error says why it cannot be.
+    /// Stores a record that belongs to the opening; the error has the reason why it is invalid.
     fn take(&mut self, record: &RawRecord, data: &[u8]) -> Result<(), String> {
         let RawRecord { opcode, at, state, .. } = *record;
         match opcode {
@@ -222,7 +223,7 @@ impl Opening {
     }
 }
 
-/// The name of a method in the metadata.
+/// Name of a method in the metadata.
 pub(super) const fn known_as(method: Method) -> &'static str {
     match method {
         Method::Eq4 => "eq4",

@@ -1,4 +1,4 @@
-//! A recording that is being made.
+//! Makes a recording.
 
 use std::fs::File;
 use std::path::Path;
@@ -17,17 +17,17 @@ use crate::sense::Method;
 use crate::sink::{JsonSink, SinkError, Worker};
 use crate::source::SensorSource;
 
-/// What happens when the disk takes less than comes.
+/// Behaviour when the disk is slower than the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WhenBehind {
-    /// What does not fit is left out and counted: for floors at work.
+    /// Drops and counts the entries that do not fit: for running floors.
     #[default]
     LeaveOut,
-    /// Whoever has more waits: for simulated floors that run as fast as they can.
+    /// Blocks the sender: for simulated floors that run at full speed.
     Wait,
 }
 
-/// A recording that is being made, on a thread of its own; it ends when this and all that it gave are dropped.
+/// A recording in progress, on a thread of its own; it ends when this value and everything made from it are dropped.
 #[derive(Clone, Debug)]
 pub struct Recorder {
     worker: Arc<Worker<Job>>,
@@ -35,28 +35,28 @@ pub struct Recorder {
     behind: WhenBehind,
 }
 
-/// A floor whose source is recorded, or as it was given.
+/// A floor whose source is recorded, or which is unchanged.
 pub struct Recorded {
-    /// What records it, if anything does.
+    /// The recorder, if the floor is recorded.
     pub recorder: Option<Recorder>,
-    /// The source to go on with.
+    /// The source to use from now on.
     pub source: Box<dyn SensorSource>,
-    /// The floor as the recording has it.
+    /// The floor as stored in the recording.
     pub floor: Floor,
-    /// The layout as the recording has it.
+    /// The layout as stored in the recording.
     pub layout: Layout,
 }
 
 impl Recorder {
-    /// Records all that `source` gives into a new file at `path`, in place of what was there. Without a `path` nothing
-    /// is recorded or changed.
+    /// Records all results of `source` into a file at `path` and replaces an existing one. Without a `path`, records
+    /// and changes nothing.
     ///
-    /// Floor and layout are kept as text, and what is read back from it is what the floor must work with: its numbers
-    /// may differ by a rounding from what was given. The source's time stands still from one packet to the next, so
-    /// that a replay can tell the same time whenever it is asked.
+    /// Floor and layout are stored as text, and the floor must work with the values read back from it: the numbers
+    /// may differ from the given ones by a rounding. The source's time stands still between packets, so that a replay
+    /// returns the same time at every query.
     ///
     /// # Errors
-    /// [`RecordingError`] if the file can't be written, or if the floor or the layout can't be kept.
+    /// [`RecordingError`] if the file can't be written, or if the floor or the layout can't be stored.
     pub fn around(
         path: Option<&Path>,
         source: Box<dyn SensorSource>,
@@ -82,21 +82,21 @@ impl Recorder {
         Ok(Recorded { recorder: Some(recorder), source, floor, layout })
     }
 
-    /// Records events: the lines of [`JsonSink`].
+    /// Records events: as the lines of [`JsonSink`].
     ///
     /// # Errors
-    /// [`SinkError::Output`] if the system gives no thread.
+    /// [`SinkError::Output`] if the system provides no thread.
     pub fn events(&self) -> Result<JsonSink, SinkError> {
         JsonSink::new(EventLines::new(self.clone()))
     }
 
-    /// Counts what could not be recorded.
+    /// The counter of lost entries and event lines.
     #[must_use]
     pub fn lost(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.lost)
     }
 
-    /// Hands `job` on; gives it back if it does not fit.
+    /// Queues `job`; returns it if it does not fit.
     pub(super) fn hand_job(&self, job: Job) -> Option<Job> {
         let mut job = self.worker.hand(job)?;
         if self.behind == WhenBehind::LeaveOut {
@@ -113,7 +113,7 @@ impl Recorder {
     }
 }
 
-/// How much of the floor's time is handed to the writing thread at once: its queue has room for 20 s of it.
+/// Span of the floor's time in one batch; the writing thread's queue holds 20 s of it.
 const BATCH: Duration = Duration::from_millis(20);
 
 impl EntrySink for Recorder {
@@ -141,7 +141,7 @@ impl EntrySink for Recorder {
     }
 }
 
-/// The text of `layout`, and the layout that it is read as.
+/// The text of `layout`, and the layout that results from parsing it.
 pub(super) fn as_kept(layout: &Layout, geometry: &Geometry) -> Result<(String, Layout), Diagnostics> {
     let text = schema::write_layout(layout);
     let layout = read_layout(&text, geometry)?;

@@ -1,4 +1,4 @@
-//! The records of an MCAP file, one after the other, each with its place.
+//! The records of an MCAP file in sequence, each with its offset.
 //!
 //! # Source
 //! The MCAP format specification, "File structure" and "Records".
@@ -7,27 +7,27 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use mcap::records::op;
 
-/// Bytes of a file that can be read from any place: an ordinary file, or a buffer.
+/// Bytes of a seekable file: an ordinary file, or a buffer.
 pub trait RecordingBytes: Read + Seek + Send {}
 
 impl<T: Read + Seek + Send> RecordingBytes for T {}
 
-/// Longest chunk that is read, in bytes, compressed or not. Tools write chunks of 1 to 4 MB; one of 256 MB is held in
+/// Maximum length of a chunk in bytes, compressed or not. Tools write chunks of 1 to 4 MB; one of 256 MB is held in
 /// memory whole.
 pub(super) const LONGEST_CHUNK: u64 = 256 << 20;
 
-/// Longest other record that is held in memory, in bytes: a layout with thousands of controls.
+/// Maximum length of any other record held in memory, in bytes: a layout with thousands of controls.
 const LONGEST: u64 = 64 << 20;
 
-/// Begins every record: its kind, and the length of what follows.
+/// Length of the head of a record: its kind, and the length of its content.
 const HEAD: u64 = 9;
 
 /// The records of a file.
 pub(super) struct Records {
     reader: BufReader<Box<dyn RecordingBytes>>,
-    /// Place of the next record.
+    /// Offset of the next record.
     at: u64,
-    /// Checksum of everything up to there; after the data section of nothing.
+    /// Checksum of all bytes up to there; `None` after the data section.
     checksum: Option<crc32fast::Hasher>,
     data: Vec<u8>,
 }
@@ -36,26 +36,26 @@ pub(super) struct Records {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RawRecord {
     pub(super) opcode: u8,
-    /// Place of its first byte in the file.
+    /// Offset of its first byte in the file.
     pub(super) at: u64,
-    /// Length that it claims.
+    /// The length in its head.
     pub(super) length: u64,
-    /// How much of it was read.
+    /// How far it was read.
     pub(super) state: State,
 }
 
-/// How much of a record was read.
+/// How far a record was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum State {
     Whole,
     /// The file ends within it.
     Cut,
-    /// It is longer than [`LONGEST`]: only its first bytes are kept.
+    /// It is longer than its maximum: only its first bytes are kept.
     Long,
 }
 
 impl Records {
-    /// The records of `bytes`, or why it holds none: it does not begin as an MCAP file.
+    /// The records of `bytes`; `None` if they do not begin as an MCAP file.
     pub(super) fn new(bytes: Box<dyn RecordingBytes>) -> io::Result<Option<Self>> {
         let mut records = Self {
             reader: BufReader::with_capacity(1 << 16, bytes),
@@ -76,12 +76,12 @@ impl Records {
         Ok(self.data == mcap::MAGIC)
     }
 
-    /// Bytes of the current record behind its kind and length.
+    /// Content of the current record, without its kind and length.
     pub(super) fn data(&self) -> &[u8] {
         &self.data
     }
 
-    /// The next record; `None` at the end of the file, or within the kind and length of a record.
+    /// The next record; `None` at the end of the file, or if it ends within the head of a record.
     pub(super) fn next(&mut self) -> io::Result<Option<RawRecord>> {
         let Some((opcode, length, head)) = self.next_head()? else { return Ok(None) };
         let at = self.at;
@@ -89,7 +89,7 @@ impl Records {
         let mut record = RawRecord { opcode, at, length, state: State::Whole };
         let kept = if length > most { length.min(FIRST_BYTES) } else { length };
         let mut read = self.read(kept)?;
-        // The record that has the checksum is not part of it.
+        // The checksum does not cover the record that contains it.
         if let Some(checksum) = self.checksum.as_mut().filter(|_| opcode != op::DATA_END) {
             checksum.update(&head);
             checksum.update(&self.data);
@@ -105,7 +105,7 @@ impl Records {
         Ok(Some(record))
     }
 
-    /// The next record without its bytes if it is a chunk or a message; for those who look for others.
+    /// The next record that is neither a chunk nor a message; skips those without reading them.
     pub(super) fn next_other(&mut self) -> io::Result<Option<RawRecord>> {
         loop {
             let at = self.at;
@@ -114,19 +114,19 @@ impl Records {
                 self.reader.seek_relative(-(HEAD as i64))?;
                 return self.next();
             }
-            // A length that no file has ends the search as the end of the file does.
+            // An impossible length ends the search, as the end of the file does.
             let Ok(skip) = i64::try_from(length) else { return Ok(None) };
             self.reader.seek_relative(skip)?;
             self.at = at.saturating_add(HEAD).saturating_add(length);
         }
     }
 
-    /// Checksum of all bytes before the end of the data section, which was read last; afterwards none is kept.
+    /// Checksum of all bytes before the end of the data section, the record just read; stops the computation.
     pub(super) fn end_checksum(&mut self) -> Option<u32> {
         self.checksum.take().map(crc32fast::Hasher::finalize)
     }
 
-    /// Place of the next record.
+    /// Offset of the next record.
     pub(super) const fn at(&self) -> u64 {
         self.at
     }
@@ -146,7 +146,7 @@ impl Records {
         Ok(Some((opcode, u64::from_le_bytes(length), head)))
     }
 
-    /// Reads up to `count` bytes into `data`; memory grows with what is there, not with `count`.
+    /// Reads up to `count` bytes into `data`; the allocation grows with the bytes present, not with `count`.
     fn read(&mut self, count: u64) -> io::Result<u64> {
         self.data.clear();
         (&mut self.reader).take(count).read_to_end(&mut self.data).map(|read| read as u64)
@@ -173,5 +173,5 @@ impl Records {
     }
 }
 
-/// Bytes that are kept of a record that is too long: enough for the channel of a message, and the name of an attachment.
+/// Bytes kept of a record that is too long: enough for the channel of a message, and the name of an attachment.
 const FIRST_BYTES: u64 = 1 << 10;

@@ -1,4 +1,4 @@
-//! A recording as a source.
+//! Replays a recording as a source.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,22 +16,22 @@ use crate::source::{SensorSource, SourceError};
 use crate::units::{HostClock, Instant};
 use crate::wire::{Request, SensorPacket};
 
-/// The longest wait for what comes next: where a recording has a gap, nobody waits for hours.
+/// Maximum wait for the next entry: a replay skips long gaps.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
-/// The longest wait at one stretch: whoever leads the replay is heard in between.
+/// Maximum length of one sleep: the transport is checked in between.
 const A_WHILE: Duration = Duration::from_millis(10);
 
-/// How fast a recording is played.
+/// Speed of a replay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Speed {
-    /// So many seconds a second; what is not above 0 counts as [`Speed::Max`].
+    /// Seconds of the recording per second; a value that is not above 0 counts as [`Speed::Max`].
     Times(f64),
-    /// As fast as can be.
+    /// As fast as possible.
     Max,
 }
 
-/// How far a replay has come.
+/// Progress of a replay.
 #[derive(Debug, Default)]
 pub struct Progress {
     now_us: AtomicU64,
@@ -43,44 +43,44 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The recording's time.
+    /// The current time of the recording.
     #[must_use]
     pub fn now(&self) -> Instant {
         Instant::from_micros(self.now_us.load(Ordering::Relaxed))
     }
 
-    /// Packets played.
+    /// Number of packets replayed.
     #[must_use]
     pub fn packets(&self) -> u64 {
         self.packets.load(Ordering::Relaxed)
     }
 
-    /// What was left out of the recording so far; events after it may be others than at the time.
+    /// Number of entries missing from the recording so far; events after a gap may differ from the original ones.
     #[must_use]
     pub fn left_out(&self) -> u64 {
         self.gaps.load(Ordering::Relaxed)
     }
 
-    /// Messages so far on topics of other programs, which are passed over.
+    /// Number of messages so far on topics of other programs, which the replay ignores.
     #[must_use]
     pub fn foreign(&self) -> u64 {
         self.foreign.load(Ordering::Relaxed)
     }
 
-    /// Whether everything there is has been played.
+    /// Whether the replay is complete.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::Relaxed)
     }
 
-    /// Where and why the recording breaks off or is damaged, if that has been reached.
+    /// Place and reason of the first break or damage in the recording, once the replay has reached it.
     #[must_use]
     pub fn broken(&self) -> Option<String> {
         self.broken.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
 
-/// Gives what a [`super::TappedSource`] gave, with the same times.
+/// Returns the recorded results of a [`super::TappedSource`], with the same times.
 #[derive(Debug)]
 pub struct ReplaySource {
     parts: Ordered,
@@ -88,7 +88,7 @@ pub struct ReplaySource {
     ahead: Option<(Instant, Entry)>,
     now: Instant,
     transport: Arc<Transport>,
-    /// What was asked of the transport, and the recording's time and the host's since then.
+    /// The transport's change count, and the recording's time and the host's time since then.
     begun: Option<(u64, Instant, HostInstant)>,
     progress: Arc<Progress>,
 }
@@ -103,13 +103,13 @@ impl ReplaySource {
         source
     }
 
-    /// How far it has come, to look at from elsewhere.
+    /// Progress of the replay, readable from other threads.
     #[must_use]
     pub fn progress(&self) -> Arc<Progress> {
         Arc::clone(&self.progress)
     }
 
-    /// What leads it, to be worked from elsewhere.
+    /// The transport of the replay, for control from other threads.
     #[must_use]
     pub fn transport(&self) -> Arc<Transport> {
         Arc::clone(&self.transport)
@@ -122,7 +122,7 @@ impl ReplaySource {
         Arc::new(move || progress.now())
     }
 
-    /// Gives the next entry and reads the one after it.
+    /// Returns the next entry and reads the one after it.
     fn advance(&mut self) -> Option<(Instant, Entry)> {
         let next = self.ahead.take();
         if let Some((taken, _)) = &next {
@@ -148,7 +148,7 @@ impl ReplaySource {
         next
     }
 
-    /// Waits until it is time for what is ahead, or for a while; whether it is time.
+    /// Waits until the next entry is due, at most for [`A_WHILE`]; returns whether it is due.
     fn wait(&mut self) -> bool {
         let Some((taken, entry)) = &self.ahead else { return !self.rests_at_the_end() };
         let taken = *taken;
@@ -167,14 +167,14 @@ impl ReplaySource {
         let Speed::Times(speed) = self.transport.speed() else { return true };
         let changes = self.transport.changes();
         let begun = self.begun.filter(|(of, ..)| *of == changes);
-        // What was ahead at a change is waited for as long as was left of it.
+        // After a change, the wait for the next entry begins again at the time of the last one.
         let (_, first, host) = *self.begun.insert(begun.unwrap_or((changes, self.now, HostInstant::now())));
         let Ok(due) = Duration::try_from_secs_f64(taken.since(first).as_secs_f64() / speed) else {
             return true;
         };
         let wait = due.saturating_sub(host.elapsed());
         if wait > LONGEST_WAIT {
-            // A gap: it goes on a second later.
+            // A gap: the replay continues after a second.
             let left_out = (wait - LONGEST_WAIT).mul_f64(speed);
             self.begun = Some((changes, first + left_out, host));
         }
@@ -182,7 +182,7 @@ impl ReplaySource {
         wait <= A_WHILE
     }
 
-    /// Stands still for a while where the recording ends, if it is to stay there.
+    /// At the end of the recording, sleeps for [`A_WHILE`] if the replay is to stay there; returns whether it is.
     fn rests_at_the_end(&self) -> bool {
         let stays = self.transport.stays();
         if stays {
@@ -194,11 +194,11 @@ impl ReplaySource {
 }
 
 impl SensorSource for ReplaySource {
-    /// The next packet, or `None` where none came at the time, or where it is not time for what comes next; waits as
-    /// its speed says, whatever `patience` is.
+    /// The next packet, or `None` if none was recorded or the next entry is not due yet; waits according to the speed
+    /// and ignores `patience`.
     ///
     /// # Errors
-    /// [`SourceError::Ended`] at the end of the recording or where it breaks off, and ever after.
+    /// [`SourceError::Ended`] at the end of the recording or at a break, and in every call after.
     fn next(&mut self, _patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         loop {
             if !self.wait() {
@@ -211,7 +211,7 @@ impl SensorSource for ReplaySource {
                 }
                 Some((_, Entry::Silence)) => return Ok(None),
                 Some((_, Entry::End)) | None => return Err(SourceError::Ended),
-                // Nobody took them.
+                // Entries that the server did not take.
                 Some((_, Entry::Request(_) | Entry::Layout(_) | Entry::Gap(_))) => {}
             }
         }

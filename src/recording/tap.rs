@@ -1,4 +1,4 @@
-//! A tap: what a source gives is handed on to somebody else as well.
+//! A tap: passes the results of a source on to a second receiver.
 
 use std::fmt;
 use std::net::SocketAddr;
@@ -12,36 +12,36 @@ use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
 use crate::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
-/// Entries, each with the moment at which the server took it.
+/// Entries, each with the time at which the server took it.
 pub(crate) type Entries = Vec<(Instant, Entry)>;
 
-/// Takes what a source gives: a recording, or windows elsewhere that show the same floor.
+/// Receives the results of a source: a recording, or remote windows that show the same floor.
 pub(crate) trait EntrySink: Send {
-    /// Whether anybody wants it now; without, nothing is put together.
+    /// Whether a receiver wants entries now; if not, none are collected.
     fn is_wanted(&self) -> bool;
 
-    /// How much of the floor's time is handed on at once.
+    /// Span of the floor's time in one batch.
     fn batch(&self) -> Duration;
 
-    /// Whether all of it must be told again to the bit: the source's time then stands still from one packet to the
-    /// next, so that it is the same whenever it is asked, and the floor gets each layout as it is kept.
+    /// Whether the replay must be identical bit for bit: the source's time then stands still between packets, so that
+    /// every query returns the same time, and the floor gets each layout as it is stored.
     fn is_exact(&self) -> bool;
 
-    /// Takes `entries` on; gives them back if there is no room.
+    /// Passes `entries` on; returns them if there is no room.
     fn hand(&self, entries: Entries) -> Option<Entries>;
 
-    /// Counts entries that could not be handed on.
+    /// Counts entries that could not be passed on.
     fn count_lost(&self, entries: u64);
 }
 
-/// A source, with all that it gives handed on as well.
+/// A source whose results are also passed on.
 pub struct TappedSource {
     inner: Box<dyn SensorSource>,
     entries_to: Box<dyn EntrySink>,
     geometry: Geometry,
     now: Instant,
     batch: Entries,
-    /// Entries that did not fit since the last that did.
+    /// Number of entries dropped since the last ones that fitted.
     left_out: u64,
 }
 
@@ -110,7 +110,7 @@ impl SensorSource for TappedSource {
 
     fn take_layout(&mut self) -> Option<Layout> {
         let layout = self.inner.take_layout()?;
-        // It was read from what a recording or another server keeps: it can be kept again.
+        // The layout was read from text of a recording or another server, so it can be written again.
         self.put(|| Entry::Layout(crate::schema::write_layout(&layout)));
         Some(layout)
     }

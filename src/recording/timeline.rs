@@ -1,4 +1,4 @@
-//! What happened when in a recording, at a glance.
+//! An overview of a recording: its span and its important events.
 
 use serde::Deserialize;
 
@@ -7,27 +7,27 @@ use super::messages::Part;
 use super::reader::Recording;
 use crate::units::Instant;
 
-/// What happened when in a recording.
+/// An overview of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Timeline {
-    /// The recording's first and last moment so far.
+    /// First and last time of the recording so far.
     pub span: Option<(Instant, Instant)>,
-    /// What people look for in it, in the order of time.
+    /// The important events, in the order of time.
     pub marks: Vec<Mark>,
-    /// Why it breaks off, if it does.
+    /// Reason for a break in the recording, if any.
     pub broken: Option<String>,
 }
 
-/// A moment that people look for.
+/// An important event.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mark {
-    /// When.
+    /// Time of the event.
     pub at: Instant,
-    /// What.
+    /// Kind of the event.
     pub kind: MarkKind,
 }
 
-/// What people look for in a recording.
+/// Kind of an important event.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MarkKind {
     /// A press of the control with this id begins.
@@ -38,12 +38,12 @@ pub enum MarkKind {
     LinkLost,
 }
 
-/// Entries and lines between two calls of whoever wants to know how far it is: some seconds of a recording.
+/// Number of entries and lines between two progress reports: some seconds of a recording.
 const ROUND: usize = 50_000;
 
 impl Recording {
-    /// Reads all of it. `tell` is called with what has been found now and then and at the end, and stops the reading by
-    /// `false`.
+    /// Reads the whole recording. Calls `tell` from time to time and at the end with the results so far; `false` from
+    /// it stops the reading.
     pub fn read_timeline(self, mut tell: impl FnMut(&Timeline) -> bool) {
         let (mut parts, mut timeline) = (self.into_parts(), Timeline::default());
         for round in 1_usize.. {
@@ -68,7 +68,7 @@ impl Recording {
     }
 }
 
-/// What a line of events says of interest.
+/// The fields of an event line that matter here.
 #[derive(Deserialize)]
 struct Line {
     t_s: f64,
@@ -88,6 +88,6 @@ fn mark(line: &[u8]) -> Option<Mark> {
         "link" if line.state == "lost" => MarkKind::LinkLost,
         _ => return None,
     };
-    // A float becomes the nearest integer of its range.
+    // The cast saturates.
     Some(Mark { at: Instant::from_micros((line.t_s * 1e6).round() as u64), kind })
 }

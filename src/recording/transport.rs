@@ -1,21 +1,21 @@
-//! How a replay is led while it goes on: pauses, speed, haste.
+//! Control of a running replay: pause, speed, and fast-forward.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::Speed;
 use crate::units::Instant;
 
-/// Leads a replay from elsewhere; shared with its [`super::ReplaySource`].
+/// Controls a replay from other threads; shared with its [`super::ReplaySource`].
 ///
-/// A pause holds the recording's time still. It changes nothing of what follows: the events are the same, to the bit.
+/// A pause stops the recording's time. It does not affect the rest: the events are the same, bit for bit.
 #[derive(Debug)]
 pub struct Transport {
     is_paused: AtomicBool,
-    /// The bits of a number; infinite for as fast as can be.
+    /// The bits of a float; infinite for the maximum speed.
     speed: AtomicU64,
     hurries_to_us: AtomicU64,
     stays: AtomicBool,
-    /// Counts what was asked for.
+    /// Number of changes so far.
     changes: AtomicU64,
 }
 
@@ -32,19 +32,19 @@ impl Transport {
         transport
     }
 
-    /// Holds the replay still, or lets it go on.
+    /// Pauses or resumes the replay.
     pub fn set_paused(&self, is_paused: bool) {
         self.is_paused.store(is_paused, Ordering::Relaxed);
         self.note();
     }
 
-    /// Whether it is held still.
+    /// Whether the replay is paused.
     #[must_use]
     pub fn is_paused(&self) -> bool {
         self.is_paused.load(Ordering::Relaxed)
     }
 
-    /// Plays so fast from now on.
+    /// Sets the speed from now on.
     pub fn set_speed(&self, speed: Speed) {
         let times = match speed {
             Speed::Times(times) if times > 0.0 => times,
@@ -54,21 +54,21 @@ impl Transport {
         self.note();
     }
 
-    /// How fast it is played.
+    /// The current speed.
     #[must_use]
     pub fn speed(&self) -> Speed {
         let times = f64::from_bits(self.speed.load(Ordering::Relaxed));
         if times.is_finite() { Speed::Times(times) } else { Speed::Max }
     }
 
-    /// Goes as fast as can be until the recording's time is `to`, paused or not; a time that is past changes nothing.
+    /// Replays at maximum speed up to the recording's time `to`, paused or not; does nothing if that time is past.
     pub fn hurry_to(&self, to: Instant) {
         self.hurries_to_us.store(to.micros(), Ordering::Relaxed);
         self.note();
     }
 
-    /// Stays at the last moment of the recording, as if it were paused there, instead of ending; for whoever wants to
-    /// look at it for longer.
+    /// Stays at the last moment of the recording, as if it were paused there, instead of ending; for viewers that
+    /// show it for longer.
     pub fn stay_at_the_end(&self) {
         self.stays.store(true, Ordering::Relaxed);
     }
@@ -77,12 +77,12 @@ impl Transport {
         self.stays.load(Ordering::Relaxed)
     }
 
-    /// Whether it must be at `to` without waiting.
+    /// Whether to replay up to `to` without waiting.
     pub(super) fn hurries(&self, to: Instant) -> bool {
         to.micros() < self.hurries_to_us.load(Ordering::Relaxed)
     }
 
-    /// A number that changes whenever somebody asks for something else.
+    /// A number that increases with every change.
     pub(super) fn changes(&self) -> u64 {
         self.changes.load(Ordering::Acquire)
     }

@@ -20,18 +20,18 @@ use crate::sense::Method;
 use crate::sink::Disk;
 use crate::units::Instant;
 
-/// How often everything written so far is handed to the system: what a crash of the program can take.
+/// Interval at which buffered data is written to the file: the maximum loss in a crash of the program.
 const FLUSH_EVERY: Duration = Duration::from_secs(1);
 
-/// What stands in `/underfoot/events`; the fields of each event are on the page about OSC and JSON.
+/// JSON schema of `/underfoot/events`; the page about OSC and JSON describes the fields of each event.
 const EVENT_SCHEMA: &str = r#"{"title":"underfoot.Event","type":"object","properties":{"t_s":{"type":"number"},"event":{"type":"string"},"id":{"type":"string"},"force_n":{"type":["number","null"]},"x_m":{"type":["number","null"]},"y_m":{"type":["number","null"]},"contact":{"type":["integer","null"]},"state":{"type":"string"},"sequence":{"type":"integer"}},"required":["t_s"]}"#;
 
-/// What the thread is given.
+/// Input of the writing thread.
 #[derive(Debug)]
 pub(super) enum Job {
-    /// Entries, each with the moment at which the server took it.
+    /// Entries, each with the time at which the server took it.
     Entries(Vec<(Instant, Entry)>),
-    /// One line of JSON without its end, and when it happened.
+    /// One line of JSON without its line end, and the time of its event.
     Event(Instant, Vec<u8>),
 }
 
@@ -44,7 +44,7 @@ impl Job {
     }
 }
 
-/// A file that is being written.
+/// A recording file, open for writing.
 pub(super) struct RecordingFile {
     writer: Writer<BufWriter<File>>,
     disk: Disk,
@@ -64,7 +64,7 @@ impl RecordingFile {
         method: Method,
     ) -> McapResult<Self> {
         let disk = Disk::of(&file, path)?;
-        // Chunks are put together in memory: the file grows by whole chunks only and is never patched.
+        // Chunks are assembled in memory: the file grows by whole chunks only and is never patched.
         let options = WriteOptions::new()
             .compression(None)
             .disable_seeking(true)
@@ -127,8 +127,8 @@ impl RecordingFile {
         self.writer.write_to_known_channel(&header, &self.bytes)
     }
 
-    /// Writes what comes until nobody has more. A disk that takes no more ends the recording, not sensing: what comes
-    /// then is counted.
+    /// Writes jobs until all senders are dropped. A full or failed disk ends the recording, not sensing: later jobs
+    /// are counted as lost.
     pub(super) fn write_all(mut self, jobs: &Receiver<Job>, lost: &AtomicU64) {
         let mut flushed = HostInstant::now();
         let written = loop {

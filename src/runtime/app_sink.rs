@@ -1,4 +1,4 @@
-//! What the sensing thread hands to the app: events, what is held, and that there is something new.
+//! Output of the sensing thread to the app: events, the held controls and wake-up calls.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -16,25 +16,25 @@ use crate::units::Instant;
 use crate::widget::WidgetId;
 use crate::wire::ControlMessage;
 
-/// What is held, as far as the sensing thread has said.
+/// The held controls, as the sensing thread last reported them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HeldNow {
-    /// When it was said; `None` before the first time.
+    /// Time of the report; `None` before the first one.
     pub(super) said: Option<HostInstant>,
     pub(super) held: Vec<WidgetId>,
 }
 
-/// Calls the app's callback on a thread of its own, where it may take its time and may fail.
+/// Calls the app's callback on a thread of its own, where it may take long and may panic.
 #[derive(Debug)]
 pub(super) struct Waker {
     worker: Worker<()>,
-    /// Whether a call is on its way that has not begun.
+    /// Whether a call is queued that has not begun.
     due: Arc<AtomicBool>,
 }
 
 impl Waker {
-    /// A callback that panics leaves an app that may not notice when a foot lets go: `commands` then cancel what is
-    /// held.
+    /// If the callback panics, the app may miss the end of a press: the waker then sends `CancelAll` through
+    /// `commands`.
     pub(super) fn start(
         mut wake: Box<dyn FnMut() + Send>,
         commands: SyncSender<Command>,
@@ -48,7 +48,7 @@ impl Waker {
                     tracing::warn!(
                         "the app's wake callback panicked: what is held is cancelled, sensing goes on"
                     );
-                    // A floor that has ended holds nothing.
+                    // This fails only after the session has ended, and then nothing is held.
                     let _ = commands.send(Command::Control(ControlMessage::CancelAll));
                 }
             }
@@ -56,7 +56,7 @@ impl Waker {
         Ok(Self { worker, due })
     }
 
-    /// Sees to it that the callback is called once from now on.
+    /// Requests one call of the callback; joins a request that has not begun yet.
     pub(super) fn wake(&self) {
         if !self.due.swap(true, Ordering::AcqRel) && !self.worker.try_offer(()) {
             self.due.store(false, Ordering::Release);
@@ -64,7 +64,7 @@ impl Waker {
     }
 }
 
-/// The app as one that is told what happens.
+/// Event sink that passes reports to the app.
 pub(super) struct AppSink {
     pub(super) events: QueueInput,
     pub(super) held: Input<HeldNow>,
@@ -89,7 +89,7 @@ impl EventSink for AppSink {
                 now.held.clone_from(&report.held);
                 self.held.publish();
             }
-            // In the snapshot.
+            // The snapshot contains these.
             Report::Contacts(..) | Report::Alive(..) => {}
             report => {
                 if let Some(event) = OwnedReport::of(report, &mut self.cracks).and_then(Event::of) {

@@ -1,4 +1,4 @@
-//! What a session is made of.
+//! The builder of a session.
 
 use std::net::ToSocketAddrs;
 #[cfg(feature = "threads")]
@@ -33,10 +33,10 @@ use crate::source::{SensorSource, SourceError, UdpSource};
 use crate::units::{HostClock, Instant};
 use crate::wire::Prefix;
 
-/// Commands that may wait for the sensing thread: a second of a person at a window with a mouse.
+/// Maximum number of commands that wait for the sensing thread: one second of a person at a window with a mouse.
 const COMMANDS_WAITING: usize = 256;
 
-/// What a session is made of, before it starts.
+/// Builds a session: collects its parts before it starts.
 pub struct SessionBuilder {
     feed: Feed,
     floor: Floor,
@@ -58,7 +58,7 @@ pub struct SessionBuilder {
     record: Option<std::path::PathBuf>,
 }
 
-/// Where packets come from.
+/// Origin of the packets.
 enum Feed {
     Listen(String),
     Given(Box<dyn SensorSource>, HostClock),
@@ -70,21 +70,21 @@ enum Feed {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StartError {
-    /// The address is not one of this machine with a port.
+    /// The text is not an address of this machine with a port.
     #[error("can't listen on {address}: write it like 127.0.0.1:9000 ({source})")]
     Address {
-        /// As it was given.
+        /// The text as given.
         address: String,
-        /// What is wrong with it.
+        /// The error of the address lookup.
         source: std::io::Error,
     },
-    /// Packets can't be had.
+    /// The source of packets does not open.
     #[error(transparent)]
     Source(#[from] SourceError),
-    /// The actuators can't be played.
+    /// The actuators do not open.
     #[error(transparent)]
     Sink(#[from] SinkError),
-    /// No layout was given, or it was checked for a floor that was given later.
+    /// The layout is missing, or was checked for a different floor than the final one.
     #[error("name the layout, after the floor that it lies on")]
     NoLayout,
     /// The simulated floor can't be calibrated.
@@ -94,11 +94,11 @@ pub enum StartError {
     #[cfg(feature = "record")]
     #[error(transparent)]
     Recording(#[from] crate::recording::RecordingError),
-    /// The system gives no threads to share a crowd's feet among.
+    /// The system failed to start the threads that share the feet of a crowd.
     #[cfg(feature = "threads")]
     #[error(transparent)]
     ThreadPool(#[from] crate::parallel::ThreadPoolError),
-    /// The system gives no thread.
+    /// The system failed to start the thread.
     #[error("the system gives no thread: {0}")]
     Thread(std::io::Error),
 }
@@ -140,26 +140,26 @@ impl SessionBuilder {
         Self::new(Feed::Simulated(driver))
     }
 
-    /// The floor's hardware; without it, the paper's 6 x 6 tiles. To be given before the layout.
+    /// Sets the floor's hardware; the default is the paper's 6 x 6 tiles. Call it before the layout is set.
     #[must_use]
     pub fn floor(mut self, floor: Floor) -> Self {
         self.floor = floor;
         self
     }
 
-    /// The floor's hardware as a file describes it. To be given before the layout.
+    /// Sets the floor's hardware from a file. Call it before the layout is set.
     ///
     /// # Errors
-    /// Everything wrong with the file.
+    /// Every error in the file.
     pub fn floor_file(self, path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         Ok(self.floor(schema::load_floor(path.as_ref())?))
     }
 
-    /// The page of controls that a file describes, made of the kinds and effects in folders `widgets` and `effects`
-    /// beside it or beside its folder. Warnings are logged.
+    /// Sets the page of controls from a file, with the kinds and effects in the folders `widgets` and `effects`
+    /// beside the file or beside its folder. Logs warnings.
     ///
     /// # Errors
-    /// Everything wrong with the file, its kinds and its effects.
+    /// Every error in the file, its kinds and its effects.
     pub fn layout_file(self, path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let loaded = schema::load_layout(path, &schema::kinds_beside(path)?, &self.floor.geometry)?;
@@ -169,36 +169,37 @@ impl SessionBuilder {
         Ok(self.layout(loaded.layout))
     }
 
-    /// The page of controls, checked for the floor given before.
+    /// Sets the page of controls, which must have been checked for the floor set before.
     #[must_use]
     pub fn layout(mut self, layout: Layout) -> Self {
         self.layout = Some((layout, self.floor.geometry));
         self
     }
 
-    /// How feet are told apart.
+    /// Sets the method that makes contacts from tile forces.
     #[must_use]
     pub fn method(mut self, method: Method) -> Self {
         self.method = method;
         self
     }
 
-    /// What OSC addresses begin with in requests and answers; sinks have prefixes of their own.
+    /// Sets the prefix of OSC addresses in requests and answers; sinks have prefixes of their own.
     #[must_use]
     pub fn prefix(mut self, prefix: Prefix) -> Self {
         self.prefix = prefix;
         self
     }
 
-    /// Also tells `sink`, such as [`crate::sink::OscSink`] or [`crate::sink::JsonSink`]; may be called several times.
+    /// Also sends reports to `sink`, such as [`crate::sink::OscSink`] or [`crate::sink::JsonSink`]; may be called
+    /// several times.
     #[must_use]
     pub fn sink(mut self, sink: impl EventSink + 'static) -> Self {
         self.sinks.push(sink);
         self
     }
 
-    /// Lets what happens be felt. `open` is called on the sensing thread, which keeps the actuators, with the floor,
-    /// the present on its sample clock, and that clock.
+    /// Adds haptic output. The sensing thread calls `open` and keeps the actuators; `open` gets the floor, the
+    /// present on its sample clock, and that clock.
     #[must_use]
     pub fn actuators(
         mut self,
@@ -208,7 +209,8 @@ impl SessionBuilder {
         self
     }
 
-    /// Hands on cues that are felt on tiles of other computers, and plays theirs; without actuators nothing of it.
+    /// Sends cues for tiles of other computers and plays the cues received from them; without actuators it does
+    /// neither.
     #[cfg(feature = "internals")]
     #[must_use]
     pub fn neighbours(mut self, neighbours: impl Neighbours + 'static) -> Self {
@@ -216,7 +218,7 @@ impl SessionBuilder {
         self
     }
 
-    /// Measures in `stages` how long packets take to become cues.
+    /// Measures in `stages` the latency from a packet to its cues.
     #[cfg(feature = "internals")]
     #[must_use]
     pub fn latency(mut self, stages: LatencyStages) -> Self {
@@ -227,25 +229,25 @@ impl SessionBuilder {
     /// Calls `wake` when there are new events, for apps that sleep until something happens, such as
     /// `move || context.request_repaint()`.
     ///
-    /// It is called on a thread of its own; several events may make one call. If it panics, that is logged, what feet
-    /// hold is cancelled, since the app may no longer notice when they let go, and sensing goes on. The end waits for a
-    /// call that is under way, for two seconds at most. It must not own a
-    /// [`Session`], which then would never be dropped.
+    /// The callback runs on a thread of its own; several events may share one call. If it panics, the session logs
+    /// the panic, cancels all presses, since the app may no longer notice their ends, and continues to sense. The end
+    /// of the session waits for a running call, for two seconds at most. The callback must not own a [`Session`],
+    /// which then would never be dropped.
     #[must_use]
     pub fn wake(mut self, wake: impl FnMut() + Send + 'static) -> Self {
         self.wake = Some(Box::new(wake));
         self
     }
 
-    /// Keeps every value that was told while the app took no events; without it, only the latest of each control.
+    /// Keeps every change of a value while the app takes no events; without it, only the latest of each control.
     #[must_use]
     pub fn every_change(mut self) -> Self {
         self.every_change = true;
         self
     }
 
-    /// Records the floor into a file, in place of what was there: see [`crate::recording`]. What a disk does not take
-    /// is left out with a warning; the floor works on.
+    /// Records the floor into a file and replaces an existing one: see [`crate::recording`]. If the disk is too slow,
+    /// the recording has gaps and a warning is logged; the floor continues to work.
     #[cfg(feature = "record")]
     #[must_use]
     pub fn record(mut self, path: impl AsRef<Path>) -> Self {
@@ -253,28 +255,30 @@ impl SessionBuilder {
         self
     }
 
-    /// Says that the source's readings have no noise of their own, as those that an app makes: that they repeat says
-    /// nothing then, and controls with the guard `HoldToRun` work all the same. The same as `noiseless` in the floor
+    /// Declares that the source's readings have no noise, as those that an app generates. Repeated readings are then
+    /// normal, and controls with the guard `HoldToRun` work all the same. Equivalent to `noiseless` in the floor
     /// file.
     ///
-    /// Without it, readings that repeat under a foot end what it holds, and sensors that always do hold no such control.
+    /// Without it, readings that repeat under a foot end its presses, and sensors that always repeat can't hold such
+    /// a control.
     #[must_use]
     pub fn noiseless(mut self) -> Self {
         self.noiseless = true;
         self
     }
 
-    /// Asks the system to let the sensing thread go before others, as `underfoot run` does.
+    /// Requests a raised scheduling priority for the sensing thread, as `underfoot run` does.
     #[must_use]
     pub fn realtime(mut self) -> Self {
         self.realtime = true;
         self
     }
 
-    /// Shares the feet of a crowd among so many threads; without it, one thread does all. What they find is the same.
+    /// Distributes the feet of a crowd over this many threads; without it, one thread does all. The results are the
+    /// same.
     ///
-    /// Threads beyond the first sleep while there are fewer than a hundred feet on the floor, and are busy, not only
-    /// ready, while there are more: give no more than there are cores to spare.
+    /// Threads beyond the first sleep while fewer than a hundred feet are on the floor, and keep a core busy each
+    /// while there are more: give no more than there are cores to spare.
     #[cfg(feature = "threads")]
     #[must_use]
     pub fn sensing_threads(mut self, threads: NonZeroUsize) -> Self {
@@ -282,17 +286,17 @@ impl SessionBuilder {
         self
     }
 
-    /// Also ends when somebody sets `stop`, such as a signal handler.
+    /// Also ends the session when `stop` is set, for example by a signal handler.
     #[must_use]
     pub fn stop_flag(mut self, stop: Arc<AtomicBool>) -> Self {
         self.stop = stop;
         self
     }
 
-    /// Starts the floor; snapshots are there when this returns.
+    /// Starts the floor; snapshots are available when this returns.
     ///
     /// # Errors
-    /// [`StartError`] says what is missing or can't be had; nothing runs then.
+    /// [`StartError`] names the missing or failed part; nothing runs then.
     pub fn start(mut self) -> Result<Session, StartError> {
         let given = self.layout.take().filter(|(_, geometry)| *geometry == self.floor.geometry);
         let (layout, _) = given.ok_or(StartError::NoLayout)?;
@@ -316,7 +320,7 @@ impl SessionBuilder {
         let (commands, received) = sync_channel(COMMANDS_WAITING);
         let waker = self.wake.map(|wake| Waker::start(wake, commands.clone())).transpose();
         let waker = waker.map_err(StartError::Thread)?.map(Arc::new);
-        // The app hears first, also where another sink fails.
+        // The app gets reports first, even if another sink fails.
         let sinks = Fanout::new().with(AppSink {
             events: QueueInput::new(Arc::clone(&queue), self.every_change),
             held: held_input,
@@ -362,7 +366,7 @@ impl SessionBuilder {
             thread,
         });
         match is_ready.recv() {
-            // A thread that panicked before it was ready says so in its last event.
+            // A thread that panicked before it was ready reports the panic in its last event.
             Ok(Ok(())) | Err(_) => Ok(session),
             Ok(Err(error)) => Err(error),
         }
@@ -370,7 +374,8 @@ impl SessionBuilder {
 }
 
 impl Feed {
-    /// The source, the clock that stamps its packets, and the floor as the source makes it.
+    /// Opens the source. Returns it with the clock that stamps its packets, and the floor, calibrated if it is
+    /// simulated.
     fn open(
         self,
         floor: Floor,
@@ -391,7 +396,7 @@ impl Feed {
             Self::Simulated(driver) => {
                 use crate::sim::{SimConfig, SimFloor, calibrated};
                 use crate::source::{Pace, SimulatedSource};
-                /// Which floor of its kind.
+                /// Seed of the simulated floor.
                 const SEED: u64 = 1;
                 let sim = SimFloor::new(&floor, SimConfig::default(), SEED);
                 let floor = calibrated(&floor, &sim, SEED)

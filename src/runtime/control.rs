@@ -1,4 +1,4 @@
-//! What an app does with one control.
+//! One control of a session, for apps.
 
 use std::ops::RangeInclusive;
 
@@ -8,10 +8,10 @@ use crate::serve::Refusal;
 use crate::widget::{Indicator, Value, WidgetId};
 use crate::wire::ControlMessage;
 
-/// One control of a session, by its id. Whatever changes it is told to all other outputs.
+/// One control of a session, by its id. Every change made here is also reported to all other outputs.
 ///
-/// Each call waits for the sensing thread's answer: less than a millisecond while packets come, 5 ms without.
-/// Called on the sensing thread itself (by a sink), it is refused after 200 ms.
+/// Each call waits for the sensing thread's answer: less than a millisecond while packets arrive, 5 ms without. A
+/// call from the sensing thread itself (in a sink) fails after 200 ms.
 #[derive(Clone, Debug)]
 pub struct Control<'a> {
     session: &'a Session,
@@ -23,54 +23,55 @@ impl<'a> Control<'a> {
         Self { session, id }
     }
 
-    /// Its name.
+    /// The name of the control.
     #[must_use]
     pub fn id(&self) -> &str {
         self.id.as_str()
     }
 
-    /// How it is, with the reason if no foot can press it ([`ControlState::off`]).
+    /// Its state, with the reason if no foot can press it ([`ControlState::off`]).
     ///
     /// # Errors
-    /// [`Refusal::UnknownControl`] if a layout without it has come.
+    /// [`Refusal::UnknownControl`] if the current layout has no such control.
     pub fn state(&self) -> Result<ControlState, Refusal> {
         let snapshot = self.session.snapshot();
         let state = snapshot.control(self.id.as_str());
         state.ok_or_else(|| Refusal::unknown_control(self.id.as_str(), &snapshot.layout))
     }
 
-    /// Gives it a value. A number beyond its range becomes the nearest end of the range, one between two steps the
-    /// nearer step; [`Control::state`] has the value that it took. A number stands for on (not 0) where it is a switch,
-    /// and for a choice, from 0, where it is a selector.
+    /// Sets its value. Clamps a number to the range and rounds it to the nearest step; [`Control::state`] has the
+    /// resulting value. For a switch, a number other than 0 means on; for a selector, a number is the index of a
+    /// choice, from 0.
     ///
     /// # Errors
-    /// [`Refusal::Control`] says why it stays as it was: NaN and infinities, a choice that a selector does not have, a
-    /// value of another type, a control that is locked, in use, or only for feet.
+    /// [`Refusal::Control`] has the reason why the value is unchanged: NaN and infinities, a choice that a selector
+    /// does not have, a value of another type, a control that is locked, in use, or only for feet.
     pub fn set(&self, value: impl Into<Value>) -> Result<(), Refusal> {
         let value = value.into();
         self.ask(|id| ControlMessage::Set { id, value })
     }
 
-    /// Gives a slider, dial or stepper another range, also in layouts that come later; its value is brought into it.
+    /// Sets the range of a slider, dial or stepper, also in later layouts, and clamps its value to the range.
     ///
     /// # Errors
-    /// [`crate::widget::SetError::WrongType`] for other controls, [`crate::widget::SetError::NoRange`] for a range that is empty, not finite,
-    /// beyond a million or narrower than the control's step; otherwise as for [`Control::set`].
+    /// [`crate::widget::SetError::WrongType`] for other controls, [`crate::widget::SetError::NoRange`] for a range
+    /// that is empty, not finite, beyond a million or narrower than the control's step; otherwise as for
+    /// [`Control::set`].
     pub fn set_range<T: Into<f64>>(&self, range: RangeInclusive<T>) -> Result<(), Refusal> {
         let (least, greatest) = range.into_inner();
         let (least, greatest) = (least.into() as f32, greatest.into() as f32);
         self.ask(|id| ControlMessage::SetRange { id, least, greatest })
     }
 
-    /// Writes another label on it; its first 64 characters.
+    /// Sets its label, of which the first 64 characters count.
     ///
     /// # Errors
-    /// [`Refusal`] if the session is over.
+    /// [`Refusal`] if the session has ended.
     pub fn set_label(&self, label: &str) -> Result<(), Refusal> {
         self.ask(|id| ControlMessage::Label { id, text: label.into() })
     }
 
-    /// Switches its lamp.
+    /// Sets its indicator lamp.
     ///
     /// # Errors
     /// As for [`Control::set_label`].
@@ -78,7 +79,7 @@ impl<'a> Control<'a> {
         self.ask(|id| ControlMessage::Indicate { id, indicator })
     }
 
-    /// Lets it react to feet, or no more; a press under way is cancelled.
+    /// Enables or disables it for feet; cancels a press under way.
     ///
     /// # Errors
     /// As for [`Control::set_label`].
@@ -86,7 +87,7 @@ impl<'a> Control<'a> {
         self.ask(|id| if enabled { ControlMessage::Enable { id } } else { ControlMessage::Disable { id } })
     }
 
-    /// Keeps its value whatever feet and apps do, or no more; a press under way is cancelled.
+    /// Locks or unlocks its value against feet and apps; cancels a press under way.
     ///
     /// # Errors
     /// As for [`Control::set_label`].

@@ -1,12 +1,12 @@
-//! A floor whose controls do not act for a while.
+//! A floor whose controls are off for a while.
 
 use super::session::Session;
 use crate::serve::Command;
 use crate::widget::WidgetId;
 use crate::wire::ControlMessage;
 
-/// Keeps the controls of a floor off while it lives, so that people can walk over it to check it; what they held is
-/// cancelled. When this is dropped, those that were on before are switched on again.
+/// Keeps the controls of a floor off as long as this value exists, so that people can walk over the floor to check
+/// it. Cancels presses under way. On drop, switches on the controls that were on before.
 #[derive(Debug)]
 pub struct ControlsOff {
     session: Session,
@@ -14,7 +14,7 @@ pub struct ControlsOff {
 }
 
 impl Session {
-    /// Switches all controls off that are on.
+    /// Switches off all controls that are on.
     #[must_use]
     pub fn controls_off(&self) -> ControlsOff {
         let seen = self.snapshot();

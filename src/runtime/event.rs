@@ -1,4 +1,4 @@
-//! What an app hears.
+//! Events for apps.
 
 use std::fmt;
 
@@ -10,59 +10,61 @@ use crate::units::{Instant, Newtons};
 use crate::widget::{EventKind, WidgetEvent, WidgetId};
 use crate::wire::LinkState;
 
-/// One thing that happened on a floor.
+/// An event on a floor.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Event {
-    /// When, on the floor's sample clock.
+    /// Time of the event on the floor's sample clock.
     pub at: Instant,
-    /// What.
+    /// The kind of event.
     pub kind: Kind,
-    /// The contact that did it; `None` if no foot did.
+    /// The contact that caused it; `None` if no foot did.
     pub contact: Option<ContactId>,
-    /// Force of that contact, last known; 0 without one.
+    /// Last known force of that contact; 0 without one.
     pub force: Newtons,
-    /// Where it happened, in floor metres; the floor's origin where it has no place.
+    /// Position in floor metres; the floor's origin if the event has no position.
     pub position: Vec2,
     id: Option<WidgetId>,
     message: String,
 }
 
-/// What happened. Of states it says that they are others now: [`super::Session::snapshot`] has them within 5 ms.
+/// The kind of an event. Events about states only report a change: [`super::Session::snapshot`] has the new state
+/// within 5 ms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// A foot did something to the control [`Event::id`].
+    /// A foot acted on the control [`Event::id`].
     Control(EventKind),
-    /// The control [`Event::id`] is in another state: an app has changed or asked for it (also this app), or it has the
-    /// guard `HoldToRun` and has gone off or on ([`crate::engine::ControlState::off`]).
+    /// The state of the control [`Event::id`] changed or was requested: by an app (also this app), or because a
+    /// control with the guard `HoldToRun` switched off or on ([`crate::engine::ControlState::off`]).
     State,
     /// The page [`Event::id`] is shown.
     Page,
-    /// Whether sensor packets arrive. [`LinkState::Lost`] has cancelled what was held.
+    /// Whether sensor packets arrive. At [`LinkState::Lost`] all presses have been cancelled.
     Link(LinkState),
-    /// Why something is sent and no frame can be used, or no load was ever seen: [`Event::message`] has its name and a
-    /// sentence, and is empty when it is over; [`crate::engine::Snapshot::link_cause`] has it as a type.
+    /// Why packets arrive without a usable frame, or why no load was ever measured: [`Event::message`] has the name
+    /// of the cause and a sentence, and is empty once the cause is over; [`crate::engine::Snapshot::link_cause`] has
+    /// it as a type.
     LinkCause,
-    /// How the sensors are doing, once a second at most.
+    /// State of the sensors, at most once a second.
     Health,
-    /// How the device that moves the actuators is doing, once a second at most.
+    /// State of the device that drives the actuators, at most once a second.
     Device,
-    /// What is muted.
+    /// The mute state changed or was requested.
     Muted,
-    /// A ground cracked at [`Event::position`]; 200 a second at most are told.
+    /// A ground cracked at [`Event::position`]; at most 200 are reported per second.
     Crack {
         /// The seed of its cracks.
         seed: u32,
-        /// The energy it took, in joules.
+        /// Energy of the crack, in joules.
         energy_j: f32,
     },
-    /// The session is over: nothing is held, and nothing more will come.
+    /// The session has ended: nothing is held, and no more events follow.
     Ended(EndReason),
 }
 
 impl Kind {
-    /// The word for it, as in JSON lines: of a control what happened to it, such as `pressed`.
+    /// Its name, as in JSON lines; for a control, the name of its event, such as `pressed`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -81,7 +83,7 @@ impl Kind {
 }
 
 impl EndReason {
-    /// The word for it in other languages.
+    /// Its name for bindings of other languages.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -93,17 +95,17 @@ impl EndReason {
     }
 }
 
-/// Why a session is over.
+/// Reason why a session ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EndReason {
-    /// It was asked to stop.
+    /// The program requested a stop.
     Stopped,
-    /// The simulated floor's feet, or the recording, have come to their end.
+    /// The simulated feet or the recording came to their end.
     SourceEnded,
-    /// The source failed; [`Event::message`] says what it said.
+    /// The source failed; [`Event::message`] has its error.
     Failed,
-    /// The sensing thread panicked; [`Event::message`] says what it said.
+    /// The sensing thread panicked; [`Event::message`] has the panic message.
     Panicked,
 }
 
@@ -119,19 +121,19 @@ impl fmt::Display for EndReason {
 }
 
 impl Event {
-    /// The control or page it is about; empty where it is about the floor.
+    /// The control or page of the event; empty if the event concerns the whole floor.
     #[must_use]
     pub fn id(&self) -> &str {
         self.id.as_ref().map_or("", WidgetId::as_str)
     }
 
-    /// The reason of an end that is a failure, and the cause of [`Kind::LinkCause`]; empty otherwise.
+    /// The error if the session ended with a failure, or the cause of [`Kind::LinkCause`]; empty otherwise.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// What there is to hear of `told`; `None` for what [`super::Session::held`] and snapshots show.
+    /// The event for a report; `None` for reports that [`super::Session::held`] and snapshots cover.
     pub(super) fn of(told: OwnedReport) -> Option<Self> {
         let at = told.at();
         let (id, kind) = match told {
@@ -154,7 +156,7 @@ impl Event {
                 return Some(Self { position: Vec2::new(news.x_m, news.y_m), ..Self::new(at, None, kind) });
             }
             OwnedReport::Contacts(..) | OwnedReport::Held(_) | OwnedReport::Alive(..) => return None,
-            // A session serves one area at most: a gateway tells of several.
+            // A session serves at most one area: only a gateway reports several.
             OwnedReport::Area(_) => return None,
         };
         Some(Self::new(at, id, kind))
@@ -169,12 +171,12 @@ impl Event {
         Self { at, kind, contact: None, force, position, id, message }
     }
 
-    /// Whether it is the new value of a control.
+    /// Whether it is a new value of a control.
     pub(super) const fn is_change(&self) -> bool {
         matches!(self.kind, Kind::Control(EventKind::Changed(_)))
     }
 
-    /// Whether an app that misses it may believe something that is no longer so: the end of a press, and every state.
+    /// Whether an app that misses it may act on an outdated state: the end of a press, and every change of a state.
     pub(super) const fn must_be_known(&self) -> bool {
         match self.kind {
             Kind::Control(kind) => {
@@ -185,7 +187,7 @@ impl Event {
         }
     }
 
-    /// Whether `later` says all that this one says.
+    /// Whether `later` replaces this event.
     pub(super) fn is_outdated_by(&self, later: &Self) -> bool {
         let kinds = match (&self.kind, &later.kind) {
             (Kind::Control(kind), Kind::Control(later)) => kind.name() == later.name(),

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::event::{Event, Kind};
 use super::session::Session;
 
-/// How long one wait lasts before the next one begins.
+/// Duration of one wait before the next one begins.
 const HOUR: Duration = Duration::from_secs(3600);
 
 /// The events of a session, one after the other; see [`Session::events`].

@@ -1,4 +1,4 @@
-//! Whether a control is held, as far as an app may act on it.
+//! Whether a control is held, confirmed often enough for an app to act on it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,10 +9,10 @@ use triple_buffer::Output;
 use super::app_sink::HeldNow;
 use crate::widget::WidgetId;
 
-/// How long what the sensing thread said is believed; it says so every 20 ms.
+/// Maximum age of a report of the sensing thread, which reports every 20 ms.
 const BELIEVED_FOR: Duration = Duration::from_millis(100);
 
-/// What the sensing thread said last, shared by all who ask.
+/// The last report of the sensing thread, shared by all readers.
 #[derive(Debug)]
 pub(super) struct HeldWatch {
     now: Mutex<Output<HeldNow>>,
@@ -24,7 +24,7 @@ impl HeldWatch {
         Self { now: Mutex::new(now), over: AtomicBool::new(false) }
     }
 
-    /// Nothing is held any more, nor ever again.
+    /// Ends the reports: from now on nothing is held.
     pub(super) fn end(&self) {
         self.over.store(true, Ordering::Release);
     }
@@ -41,7 +41,7 @@ impl HeldWatch {
     }
 }
 
-/// Whether one control is held; goes on to answer when its session is over.
+/// Whether one control is held; still answers after its session has ended.
 #[derive(Clone, Debug)]
 pub struct Held {
     watch: Arc<HeldWatch>,
@@ -53,11 +53,12 @@ impl Held {
         Self { watch, id }
     }
 
-    /// Whether a foot holds the control now, and the floor has said so within the last 100 ms.
+    /// Whether a foot holds the control now, confirmed by the floor within the last 100 ms.
     ///
-    /// False once a layout without the control is on the floor, and as soon as the foot lifts, the press is cancelled, the floor's packets stop
-    /// for 100 ms, the sensing thread stands still for 100 ms or ends in whatever way, the wake callback panics, or the
-    /// last [`super::Session`] is dropped. To be asked at least every 20 ms while something acts: silence says nothing.
+    /// False if the layout on the floor lacks the control, and as soon as the foot lifts, the press is cancelled, the
+    /// floor's packets stop for 100 ms, the sensing thread stands still for 100 ms or ends for any reason, the wake
+    /// callback panics, or the last [`super::Session`] is dropped. Call it at least every 20 ms while something acts:
+    /// a missing event does not confirm anything.
     #[must_use]
     pub fn is_fresh(&self) -> bool {
         self.watch.is_fresh(&self.id, HostInstant::now())

@@ -1,4 +1,4 @@
-//! A floor at work on a thread of its own, with a handle for apps.
+//! A running floor on a thread of its own, with a handle for apps.
 //!
 //! ```no_run
 //! use underfoot::runtime::{Kind, Session};
@@ -16,17 +16,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Session`] is a handle that any number of threads may clone and share. With the last one the floor ends:
-//! what feet hold is cancelled, outputs say goodbye, and the sensing thread has ended when the drop returns.
+//! [`Session`] is a handle that any number of threads may clone and share. Dropping the last handle ends the floor:
+//! presses are cancelled, outputs send their closing messages, and the sensing thread has ended when the drop
+//! returns.
 //!
 //! | an app | with |
 //! |---|---|
-//! | hears what happens | [`Session::events`], which waits; [`Session::next_event`], which never blocks; [`SessionBuilder::wake`] says when to look |
+//! | waits for events | [`Session::events`] |
+//! | polls for events, such as after a call of [`SessionBuilder::wake`] | [`Session::next_event`], never blocks |
 //! | acts while a control is held | [`Session::held`]: false as soon as it can't be confirmed any more |
 //! | shows the floor | [`Session::snapshot`] |
 //! | changes a control | [`Session::control`], [`Session::controls`] |
-//! | plays a floor of the past | `Session::replay` |
-//! | is felt, and tells others | [`SessionBuilder::actuators`], [`SessionBuilder::sink`] |
+//! | replays a recording | `Session::replay` |
+//! | drives actuators, and reports to other programs | [`SessionBuilder::actuators`], [`SessionBuilder::sink`] |
 
 mod app_sink;
 mod builder;

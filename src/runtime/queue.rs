@@ -1,4 +1,4 @@
-//! Events on their way from the sensing thread to the app: bounded, and the sensing thread never waits.
+//! Bounded queue of events from the sensing thread to the app; the sensing thread never blocks on it.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -6,21 +6,21 @@ use std::time::Duration;
 
 use super::event::Event;
 
-/// Events that may wait for the app, but for those that it must know: some seconds of every foot of a crowd.
+/// Maximum number of waiting events, not counting those that the app must know: some seconds of every foot of a
+/// crowd.
 const WAITING: usize = 1024;
 
 /// Events that wait for the app.
 #[derive(Debug, Default)]
 struct Waiting {
     events: VecDeque<Event>,
-    /// Whether each change of a value is kept.
+    /// Whether every change of a value is kept.
     every_change: bool,
     dropped: u64,
 }
 
 impl Waiting {
-    /// Adds `event`; a new value takes the place of one that still waits, unless something else happened to that
-    /// control in between.
+    /// Adds `event`; a new value replaces one that still waits, unless another event of that control came in between.
     fn put(&mut self, event: Event) {
         if event.is_change() && !self.every_change {
             let last = self.events.iter().rposition(|other| other.id() == event.id());
@@ -34,7 +34,7 @@ impl Waiting {
         self.events.push_back(event);
     }
 
-    /// Drops the oldest event that need not be known, or of which a later one says all; none where all must be known.
+    /// Drops the oldest event that the app need not know or that a later one replaces; none if the app must know all.
     fn make_room(&mut self, next: &Event) {
         let events = &self.events;
         let is_outdated = |(at, event): &(usize, &Event)| {
@@ -49,7 +49,7 @@ impl Waiting {
     }
 }
 
-/// The app's end.
+/// The app's end of the queue.
 #[derive(Debug, Default)]
 pub(super) struct Queue {
     state: Mutex<State>,
@@ -69,12 +69,12 @@ impl Queue {
         queue
     }
 
-    /// The next event, without waiting.
+    /// The next event, if any; never waits.
     pub(super) fn next(&self) -> Option<Event> {
         self.lock().waiting.events.pop_front()
     }
 
-    /// The next event, if one comes within `patience`; nothing comes after the end.
+    /// The next event, if one arrives within `patience`; none arrives after the end.
     pub(super) fn next_timeout(&self, patience: Duration) -> Option<Event> {
         let is_empty = |state: &mut State| state.waiting.events.is_empty() && !state.ended;
         let waited = self.arrived.wait_timeout_while(self.lock(), patience, is_empty);
@@ -88,12 +88,12 @@ impl Queue {
         state.ended && state.waiting.events.is_empty()
     }
 
-    /// Events that were dropped since nobody took them.
+    /// Number of events dropped because the app did not take them.
     pub(super) fn dropped(&self) -> u64 {
         self.lock().waiting.dropped
     }
 
-    /// The last event; waits for the app's threads, since nobody's feet wait any more.
+    /// Adds the last event. May block on the app's threads: nothing is held any more.
     pub(super) fn end(&self, event: Event) {
         let mut state = self.lock();
         state.waiting.put(event);
@@ -107,11 +107,11 @@ impl Queue {
     }
 }
 
-/// The sensing thread's end.
+/// The sensing thread's end of the queue.
 #[derive(Debug)]
 pub(super) struct QueueInput {
     queue: Arc<Queue>,
-    /// What came while the app was just taking events.
+    /// Events that arrived while the app had the queue locked.
     held_up: Waiting,
 }
 
@@ -120,13 +120,13 @@ impl QueueInput {
         Self { queue, held_up: Waiting { every_change, ..Waiting::default() } }
     }
 
-    /// Passes `event` on, now or with the next call.
+    /// Passes on `event`, now or with the next call.
     pub(super) fn put(&mut self, event: Event) {
         self.held_up.put(event);
         self.flush();
     }
 
-    /// Passes on what was held up.
+    /// Passes on the delayed events.
     pub(super) fn flush(&mut self) {
         if self.held_up.events.is_empty() {
             return;
@@ -149,7 +149,7 @@ impl QueueInput {
 }
 
 impl Drop for QueueInput {
-    /// Nothing more comes, so that waiting for the app harms nobody.
+    /// No more events follow, so this may block on the app.
     fn drop(&mut self) {
         let queue = Arc::clone(&self.queue);
         self.pass_on(queue.lock());
@@ -193,7 +193,7 @@ mod tests {
                 input.put(changed(ms, "pan"));
             }
             input.put(event(5, "zoom", EventKind::Released));
-            // Not across what happened in between.
+            // A value does not replace one before an event in between.
             input.put(changed(6, "zoom"));
             assert_eq!(queue.dropped(), 0);
             let all = taken(&queue);

@@ -1,4 +1,4 @@
-//! The handle.
+//! The handle to a running floor.
 
 use std::fmt;
 use std::net::SocketAddr;
@@ -23,12 +23,12 @@ use crate::units::HostClock;
 use crate::widget::WidgetId;
 use crate::wire::ControlMessage;
 
-/// How long an answer of the sensing thread is waited for.
+/// Maximum time to wait for an answer of the sensing thread.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// A floor at work on a thread of its own; see [the module](super).
+/// A running floor on a thread of its own; see [the module](super).
 ///
-/// Clones are handles on the same floor: events go to whoever takes them first.
+/// Clones are handles to the same floor: each event goes to the first handle that takes it.
 #[derive(Clone)]
 pub struct Session(Arc<Inner>);
 
@@ -37,7 +37,7 @@ pub(super) struct Inner {
     pub(super) held: Arc<HeldWatch>,
     pub(super) shown: Arc<Shown>,
     pub(super) commands: SyncSender<Command>,
-    /// Where the source listens.
+    /// Address on which the source listens.
     pub(super) local_addr: Option<SocketAddr>,
     pub(super) geometry: Geometry,
     pub(super) stop: Arc<AtomicBool>,
@@ -51,7 +51,7 @@ impl Drop for Inner {
         let thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take();
         // A sink that holds the last handle is dropped by the sensing thread, which can't wait for itself.
         if let Some(thread) = thread.filter(|thread| thread.thread().id() != std::thread::current().id()) {
-            // How it ended has been said in the last event.
+            // The last event has reported how it ended.
             let _ = thread.join();
         }
     }
@@ -70,19 +70,19 @@ impl Session {
         SessionBuilder::listening(address.into())
     }
 
-    /// A session fed by any source. `clock` is the one that stamps its packets; actuators keep time by it.
+    /// A session fed by any source. `clock` stamps its packets and is the time base of the actuators.
     #[must_use]
     pub fn source(source: Box<dyn SensorSource>, clock: HostClock) -> SessionBuilder {
         SessionBuilder::fed_by(source, clock)
     }
 
-    /// A session on a floor that was recorded, with the floor, the layout and the way feet were told apart of then:
-    /// `Session::replay("visit.mcap", Speed::Times(1.0))?.start()?`. It ends with the recording, also where that breaks
-    /// off. Why it ended is told by the [progress](crate::recording::ReplaySource::progress) of the recording's source, for apps that open it
-    /// themselves.
+    /// A session that replays a recording with its floor, its layout and its method of making contacts:
+    /// `Session::replay("visit.mcap", Speed::Times(1.0))?.start()?`. It ends with the recording, even if the
+    /// recording is incomplete. The [progress](crate::recording::ReplaySource::progress) of the recording's source
+    /// has the reason for the end, for apps that open the source themselves.
     ///
     /// # Errors
-    /// [`crate::recording::RecordingError`] if there is no recording to be read.
+    /// [`crate::recording::RecordingError`] if the recording is not readable.
     #[cfg(feature = "record")]
     pub fn replay(
         path: impl AsRef<std::path::Path>,
@@ -96,7 +96,7 @@ impl Session {
         Ok(Self::source(Box::new(source), clock).floor(floor).layout(layout).method(method))
     }
 
-    /// A session on a simulated floor that was calibrated in the lab, with the feet that `driver` moves.
+    /// A session on a simulated floor, calibrated as in the lab, with the feet that `driver` moves.
     #[cfg(feature = "sim")]
     #[must_use]
     pub fn simulated(driver: Box<dyn crate::sim::FootDriver>) -> SessionBuilder {
@@ -107,25 +107,25 @@ impl Session {
         Self(Arc::new(inner))
     }
 
-    /// The next event, if there is one; never waits for one.
+    /// The next event, if any; never waits.
     ///
-    /// The last event is [`super::Kind::Ended`], whatever the end was, also a panic of the sensing thread.
-    /// A value that waits to be taken makes room for a newer one of the same control
-    /// ([`SessionBuilder::every_change`]). Beyond 1024 events the oldest that need not be known are dropped
-    /// and counted ([`Session::dropped`]), never the last end of a press.
+    /// The last event is [`super::Kind::Ended`] for every kind of end, also after a panic of the sensing thread. A
+    /// newer value of a control replaces one that still waits ([`SessionBuilder::every_change`]). Beyond 1024 waiting
+    /// events, the queue drops and counts ([`Session::dropped`]) the oldest that the app need not know, never the
+    /// last end of a press.
     #[must_use]
     pub fn next_event(&self) -> Option<Event> {
         self.0.queue.next()
     }
 
-    /// The next event, if there is one within `patience`; `None` at once when there will be no more.
+    /// The next event, if one arrives within `patience`; `None` at once after the last event.
     #[must_use]
     pub fn next_event_timeout(&self, patience: Duration) -> Option<Event> {
         self.0.queue.next_timeout(patience)
     }
 
-    /// All events to come, waiting for each; ends after [`super::Kind::Ended`]. A loop `for event in &floor` does the
-    /// same.
+    /// Iterates over all events to come and waits for each; ends after [`super::Kind::Ended`]. A loop `for event in
+    /// &floor` does the same.
     #[must_use]
     pub fn events(&self) -> Events<'_> {
         Events::new(self)
@@ -135,26 +135,26 @@ impl Session {
         self.0.queue.is_drained()
     }
 
-    /// The address that boards send to, with the port that the system chose for port 0; `None` where nothing comes over
-    /// the network, as in a simulation or a recording.
+    /// The address that boards send to, with the port that the system chose for port 0; `None` for a source without a
+    /// network, such as a simulation or a recording.
     #[must_use]
     pub fn local_addr(&self) -> Option<SocketAddr> {
         self.0.local_addr
     }
 
-    /// Where the floor's tiles and sensors are.
+    /// Positions of the floor's tiles and sensors.
     #[must_use]
     pub fn geometry(&self) -> &Geometry {
         &self.0.geometry
     }
 
-    /// Events that were dropped because nobody took them; values that newer ones replaced are not counted.
+    /// Number of events dropped because the app did not take them; values that newer ones replaced do not count.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         self.0.queue.dropped()
     }
 
-    /// Whether the control named `id` is held, to be asked again and again; see [`Held::is_fresh`].
+    /// A handle for polling whether the control named `id` is held; see [`Held::is_fresh`].
     ///
     /// # Errors
     /// [`Refusal::UnknownControl`] if the layout has no such control: a misspelt name would never be held.
@@ -162,14 +162,14 @@ impl Session {
         Ok(Held::new(Arc::clone(&self.0.held), self.known(id)?))
     }
 
-    /// How the floor is: from the first moment on as the layout says, later as of the last 5 ms.
+    /// The state of the floor: at first as in the layout, later at most 5 ms old.
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
         self.0.shown.read()
     }
 
-    /// The end of the buffer that [`Session::snapshot`] reads, for one reader that looks all the time; afterwards
-    /// that method gives what was taken last.
+    /// Takes the end of the buffer that [`Session::snapshot`] reads, for one reader that polls continuously; from
+    /// then on that method returns the last snapshot before this call.
     #[cfg(feature = "internals")]
     #[must_use]
     pub fn take_snapshots(&self) -> triple_buffer::Output<crate::engine::Snapshot> {
@@ -197,7 +197,7 @@ impl Session {
         widget.map(|widget| widget.id.clone()).ok_or_else(|| Refusal::unknown_control(id, &layout))
     }
 
-    /// Shows another page, as soon as no foot is engaged; an event tells when.
+    /// Shows another page as soon as no foot is engaged; an event reports it.
     ///
     /// # Errors
     /// [`Refusal::UnknownPage`] names the pages if the layout has no such page.
@@ -205,29 +205,29 @@ impl Session {
         self.ask(ControlMessage::ShowPage { page: WidgetId::new(id) })
     }
 
-    /// Gives the floor another layout, which must have been checked for its geometry; values stay.
+    /// Replaces the layout of the floor by one that has been checked for its geometry; values stay.
     ///
-    /// With a foot on a control it waits until the foot has let go. Gives the
-    /// [`crate::engine::Snapshot::layout_revision`] from which on snapshots belong to it.
+    /// With a foot on a control, the change waits until the foot lets go. Returns the
+    /// [`crate::engine::Snapshot::layout_revision`] of the first snapshot with this layout.
     pub fn set_layout(&self, layout: Layout) -> u64 {
         self.0.shown.give(layout, |layout| {
             self.insist(Command::SetLayout(Box::new(layout)));
         })
     }
 
-    /// Asks for anything else, without an answer; never waits. False if the floor has ended, or if 256 commands wait
-    /// for it already: then nothing is done.
+    /// Sends any other command, without an answer; never waits. Returns false and does nothing if the floor has
+    /// ended, or if 256 commands already wait.
     pub fn send(&self, command: Command) -> bool {
         self.0.commands.try_send(command).is_ok()
     }
 
-    /// Asks for something that must be done, and waits for room: the sensing thread takes commands every 5 ms.
+    /// Sends a command that must be executed, and waits for room: the sensing thread takes commands every 5 ms.
     pub(super) fn insist(&self, command: Command) {
-        // A floor that has ended does nothing any more.
+        // A floor that has ended executes nothing.
         let _ = self.0.commands.send(command);
     }
 
-    /// Ends the floor: what is held is cancelled, and [`super::Kind::Ended`] follows. Does not wait for it.
+    /// Ends the floor: it cancels all presses, and [`super::Kind::Ended`] follows. Does not wait for the end.
     pub fn stop(&self) {
         self.0.stop.store(true, Ordering::Relaxed);
     }
@@ -238,10 +238,10 @@ impl Session {
         self.0.held.has_ended()
     }
 
-    /// Asks for what an app may ask over the wire, and waits for the answer as a [`Control`] does. What is muted is
-    /// asked for by [`Session::send`].
+    /// Sends a request that apps may also send over the wire, and waits for the answer as a [`Control`] does. Mute
+    /// requests go through [`Session::send`].
     ///
-    /// # Errors
+    /// [`Refusal`] has the reason why nothing has changed.
     /// [`Refusal`] says why nothing has changed.
     pub fn ask(&self, message: ControlMessage) -> Result<(), Refusal> {
         let (answer, answered) = sync_channel(1);

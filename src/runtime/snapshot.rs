@@ -1,4 +1,4 @@
-//! How a floor is at one instant, by the names of its controls.
+//! State of a floor at one instant, by the names of its controls.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,29 +9,29 @@ use crate::engine::{self, ControlState};
 use crate::layout::Layout;
 use crate::widget::Value;
 
-/// How a floor is at one instant, by the names of its controls; renewed every 5 ms.
+/// State of a floor at one instant, by the names of its controls; updated every 5 ms.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Snapshot {
     /// The layout that is on the floor.
     pub layout: Arc<Layout>,
-    /// All that there is to see, in the order of the layout.
+    /// State of the floor, in the order of the layout.
     pub floor: engine::Snapshot,
 }
 
 impl Snapshot {
-    /// How the control named `id` is; `None` for an unknown name.
+    /// State of the control named `id`; `None` for an unknown name.
     #[must_use]
     pub fn control(&self, id: &str) -> Option<ControlState> {
         ControlState::of(&self.layout, self.layout.widget_index(id)?, &self.floor)
     }
 
-    /// How all controls are, in the order of the layout.
+    /// States of all controls, in the order of the layout.
     pub fn controls(&self) -> impl Iterator<Item = ControlState> + '_ {
         (0..self.layout.widgets.len()).filter_map(|index| ControlState::of(&self.layout, index, &self.floor))
     }
 
-    /// What the control named `id` holds; `None` for a button or an unknown name.
+    /// Value of the control named `id`; `None` for a button or an unknown name.
     #[must_use]
     pub fn value(&self, id: &str) -> Option<Value> {
         self.floor.widgets.get(self.layout.widget_index(id)?)?.value
@@ -53,9 +53,9 @@ struct State {
     latest: Output<engine::Snapshot>,
     /// The layout that is shown.
     layout: Arc<Layout>,
-    /// Those that were given later, with their revisions.
+    /// Layouts given later, with their revisions.
     later: VecDeque<(u64, Arc<Layout>)>,
-    /// How many were given.
+    /// Number of layouts given.
     given: u64,
 }
 
@@ -64,10 +64,10 @@ impl Shown {
         Self(Mutex::new(State { latest, layout: Arc::new(layout), later: VecDeque::new(), given: 0 }))
     }
 
-    /// Notes a layout and gives it to the engine by `give`, so that both number layouts alike.
+    /// Stores a layout and passes it to the engine by `give`, so that both number layouts alike.
     pub(super) fn give(&self, layout: Layout, give: impl FnOnce(Layout)) -> u64 {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        // Also where nobody reads.
+        // Discards outdated layouts even if there is no reader.
         state.layout();
         state.given += 1;
         let given = state.given;
@@ -96,7 +96,7 @@ impl Shown {
 }
 
 impl State {
-    /// The layout that the latest state belongs to. Forgets those before it.
+    /// The layout of the latest state. Discards the layouts before it.
     fn layout(&mut self) -> Arc<Layout> {
         let revision = self.latest.read().layout_revision;
         while let Some((_, next)) = self.later.pop_front_if(|(given, _)| *given <= revision) {

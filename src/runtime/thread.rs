@@ -1,4 +1,4 @@
-//! The sensing thread: makes the server, runs it, and says how it ended, whatever happened.
+//! The sensing thread: creates the server, runs it, and reports its end in every case.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -24,16 +24,16 @@ use crate::source::SensorSource;
 use crate::units::{HostClock, Instant};
 use crate::wire::Prefix;
 
-/// Cues in, samples out: what a session's feet feel.
+/// Haptic output of a session: cues in, samples out.
 pub struct Actuators {
-    /// Takes cues to the renderer.
+    /// Sends cues to the renderer.
     pub feel: CueSender,
-    /// Plays what the renderer makes of them.
+    /// Plays the samples of the renderer.
     pub sink: Box<dyn ActuatorSink>,
 }
 
-/// Opens the actuators on the sensing thread, which they stay on: not every system lets a stream change threads. It is
-/// given the floor, the present, and the clock that stamps packets.
+/// Opens the actuators on the sensing thread, where they stay: not every system can move a stream to another thread.
+/// Gets the floor, the present, and the clock that stamps packets.
 pub(super) type OpenActuators =
     Box<dyn FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send>;
 
@@ -50,7 +50,7 @@ pub(super) struct Plan {
     pub(super) neighbours: Option<Box<dyn Neighbours>>,
     pub(super) latency: Option<LatencyStages>,
     pub(super) realtime: bool,
-    /// Shares the feet of a crowd; `None` if the sensing thread works alone.
+    /// Distributes the feet of a crowd; `None` if the sensing thread works alone.
     #[cfg(feature = "threads")]
     pub(super) pool: Option<ThreadPool>,
     pub(super) commands: Receiver<Command>,
@@ -58,15 +58,15 @@ pub(super) struct Plan {
     pub(super) stop: Arc<AtomicBool>,
 }
 
-/// Whom the end is told.
+/// Receivers of the end of a session.
 pub(super) struct Told {
     pub(super) queue: Arc<Queue>,
     pub(super) held: Arc<HeldWatch>,
     pub(super) waker: Option<Arc<Waker>>,
 }
 
-/// Serves until the end, on this thread or on one of the pool; `ready` hears when the first snapshot is there, or why
-/// it can't begin.
+/// Serves until the end, on this thread or on one of the pool; sends to `ready` once the first snapshot exists, or
+/// the error that prevents the start.
 #[cfg_attr(not(feature = "threads"), expect(unused_mut, reason = "no pool to take from it"))]
 pub(super) fn run(mut plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) {
     #[cfg(feature = "threads")]
@@ -81,7 +81,7 @@ pub(super) fn run(mut plan: Plan, told: &Told, ready: &SyncSender<Result<(), Sta
 
 fn run_here(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) {
     let clock = Arc::clone(&plan.clock);
-    // What a panic leaves half done is only looked at to cancel what is held.
+    // After a panic, inconsistent state is only read to cancel presses.
     let served = catch_unwind(AssertUnwindSafe(|| serve(plan, told, ready)));
     told.held.end();
     let (reason, message) = served.unwrap_or_else(|panic| (EndReason::Panicked, text(panic.as_ref())));
@@ -97,7 +97,7 @@ fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) ->
     let mut server = match server(plan) {
         Ok(server) => server,
         Err(error) => {
-            // Whoever started this waits for the answer.
+            // The thread that called `start` waits for the answer.
             let _ = ready.send(Err(error.into()));
             return (EndReason::Stopped, String::new());
         }
@@ -105,11 +105,11 @@ fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) ->
     server.show_now();
     let _ = ready.send(Ok(()));
     if realtime {
-        // Last, since threads inherit it.
+        // Last, since new threads inherit the priority.
         claim_priority(Rank::Sensing);
     }
     let served = catch_unwind(AssertUnwindSafe(|| server.run(&stop)));
-    // Also while the outputs say goodbye, which may take a while.
+    // Before the outputs close, which may take a while.
     told.held.end();
     drop(server);
     match served {
@@ -141,7 +141,7 @@ fn server(plan: Plan) -> Result<Server, SinkError> {
     Ok(server)
 }
 
-/// What a panic said.
+/// The message of a panic.
 fn text(panic: &(dyn Any + Send)) -> String {
     let words = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     words.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a word".into())

@@ -283,7 +283,7 @@ mod tests {
 
     /// The controls that the visit affects, on a floor with ideal sensors.
     fn used(layout: &Layout, visit: &Visit) -> BTreeSet<WidgetId> {
-        let floor = Floor::default();
+        let floor = Floor { noiseless: true, ..Floor::default() };
         let mut sim = SimFloor::new(&floor, SimConfig::ideal(), 1);
         let mut assembler = Assembler::new(&floor);
         let mut engine = Engine::new(floor.geometry, layout.clone(), Method::default());

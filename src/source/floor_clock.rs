@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use crate::units::{HostClock, Instant};
 
-/// How much of a delay is caught up; of a longer one the rest never was, for the floor. It is well within the
-/// 100 ms after which a silent board counts as lost, and a twentieth of a second later no press feels late.
+/// Maximum delay that the floor catches up; the rest of a longer delay does not pass on the floor. It is well within
+/// the 100 ms after which a silent board counts as lost, and a press that is 50 ms late does not feel late.
 pub(super) const CATCH_UP: Duration = Duration::from_millis(50);
 
-/// The host, as far as a simulated floor needs it: how long it has been running, and a way to wait.
+/// The host of a simulated floor: its elapsed time, and a way to wait.
 pub(crate) trait Host: Send + Sync {
     /// Time since some fixed moment; never goes back.
     fn elapsed(&self) -> Duration;
@@ -34,11 +34,11 @@ impl Host for Machine {
     }
 }
 
-/// A clock that runs with the host's, and stands still while nobody simulates.
+/// A clock that runs with the host's clock and stands still while the simulation does.
 ///
-/// It is never more than [`CATCH_UP`] ahead of the last simulated millisecond: a thread that the machine leaves
-/// without a processor for a second does not make the floor silent for a second, since no time passes on the floor.
-/// Clones are the same clock. Reading it takes no lock.
+/// It is never more than [`CATCH_UP`] ahead of the last simulated millisecond: a thread that gets no processor for a
+/// second does not make the floor silent for a second, since no time passes on the floor. Clones share the same
+/// clock. Reading it takes no lock.
 #[derive(Clone)]
 pub(super) struct FloorClock {
     host: Arc<dyn Host>,
@@ -47,9 +47,9 @@ pub(super) struct FloorClock {
 
 #[derive(Debug, Default)]
 struct State {
-    /// The host's microseconds in which the floor's time stood still; before the first packet, all of them.
+    /// The host's microseconds in which the floor's time stood still; before the first packet, the maximum.
     paused_us: AtomicU64,
-    /// The floor's time up to which it was simulated, in microseconds.
+    /// The floor's time at the end of the simulation so far, in microseconds.
     simulated_us: AtomicU64,
 }
 
@@ -59,7 +59,7 @@ impl FloorClock {
         Self { host, state: Arc::new(state) }
     }
 
-    /// Starts it, if it stands still because nobody has asked for a packet yet.
+    /// Starts the clock at the first request for a packet.
     pub(super) fn start(&self) {
         let now = micros(self.host.elapsed());
         let _ = self.state.paused_us.compare_exchange(u64::MAX, now, Ordering::Release, Ordering::Relaxed);
@@ -67,14 +67,15 @@ impl FloorClock {
 
     /// The present moment of the floor.
     pub(super) fn now(&self) -> Instant {
-        // In this order: whoever reads the later of two simulated moments also reads the pause before it.
+        // In this order: a reader that sees the later of two simulated moments also sees the pause before it.
         let simulated = self.state.simulated_us.load(Ordering::Acquire);
         let paused = self.state.paused_us.load(Ordering::Acquire);
         let running = micros(self.host.elapsed()).saturating_sub(paused);
         Instant::from_micros(running.min(simulated.saturating_add(micros(CATCH_UP))))
     }
 
-    /// Says that the floor is simulated up to `at`; what the host is further ahead than can be caught up is a pause.
+    /// Records that the floor is simulated up to `at`; the part of the host's lead beyond [`CATCH_UP`] becomes a
+    /// pause.
     pub(super) fn simulated(&self, at: Instant) {
         let paused = self.state.paused_us.load(Ordering::Relaxed);
         let ahead = micros(self.host.elapsed()).saturating_sub(paused);
@@ -87,7 +88,7 @@ impl FloorClock {
         self.host.sleep(length);
     }
 
-    /// The same clock for whoever else needs it.
+    /// A handle to the same clock, for other threads.
     pub(super) fn shared(&self) -> HostClock {
         let clock = self.clone();
         Arc::new(move || clock.now())
@@ -104,7 +105,7 @@ pub(crate) mod tests {
 
     use super::*;
 
-    /// A host whose time is set by hand; who sleeps on it moves it on.
+    /// A host whose time tests set; `sleep` advances it.
     #[derive(Clone, Debug, Default)]
     pub(crate) struct ByHand(Arc<Mutex<Duration>>);
 

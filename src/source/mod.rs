@@ -1,4 +1,4 @@
-//! Where sensor packets come from: a socket, a simulated floor, a recording.
+//! Sources of sensor packets: a socket, a simulated floor, a recording.
 
 #[cfg(any(feature = "internals", test))]
 mod fault;
@@ -27,68 +27,68 @@ use crate::layout::Layout;
 use crate::units::Instant;
 use crate::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
-/// A floor's stream of sensor packets, with the clock they are stamped by.
+/// A floor's stream of sensor packets, with the clock that stamps them.
 pub trait SensorSource: Send {
-    /// The next packet, waiting for it at most `patience`; `None` if none came.
+    /// The next packet; waits for it at most `patience` and returns `None` if none arrived.
     ///
     /// A free-running source (a simulation, a recording) advances its own
     /// clock instead of waiting.
     ///
     /// # Errors
-    /// [`SourceError`] says whether trying again can help.
+    /// [`SourceError`] tells whether another call can help.
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError>;
 
-    /// The present moment on the clock that stamps [`SensorPacket::received`].
+    /// The present on the clock that stamps [`SensorPacket::received`].
     fn now(&self) -> Instant;
 
-    /// What an app asked over the same wire, oldest first; `None` once all is taken.
+    /// The next request of an app over the same wire, oldest first; `None` once all are taken.
     fn take_request(&mut self) -> Option<Request> {
         None
     }
 
-    /// A layout that the floor got at this moment, where a recording has one; it comes in the order of the requests.
+    /// A layout that the floor gets at this moment, for a recording that contains one; in the order of the requests.
     fn take_layout(&mut self) -> Option<Layout> {
         None
     }
 
-    /// Hears what the program's own app asks, so that a recording has that as well.
+    /// Notes a request of the program's own app, so that a recording contains it.
     fn note_request(&mut self, _request: &Request) {}
 
-    /// Hears of a layout that the floor is about to get; a recording puts in its place what it keeps of it.
+    /// Notes a layout that the floor is about to get; a recording replaces it by the form that it stores.
     fn note_layout(&mut self, _layout: &mut Layout) {}
 
-    /// The address that packets come to; `None` where they do not come over a network.
+    /// The address that receives packets; `None` for a source without a network.
     fn local_addr(&self) -> Option<SocketAddr> {
         None
     }
 
-    /// Sends `datagram` to somebody who asked; where there is no wire, nobody hears it.
+    /// Sends `datagram` to the sender of a request; does nothing for a source without a wire.
     fn answer(&mut self, _to: SocketAddr, _datagram: &[u8]) {}
 
-    /// What the source itself received and refused so far; zero where it can refuse nothing.
+    /// Numbers of datagrams that the source itself received and refused; zero for a source that refuses nothing.
     fn counters(&self) -> LinkCounters {
         LinkCounters::default()
     }
 
-    /// The cause for which something from boards was refused last, or [`LinkCause::Unknown`] with the reason where it
-    /// was something else; `None` where nothing was refused so far.
+    /// The cause of the last refusal of something from boards, or [`LinkCause::Unknown`] with the reason if it was
+    /// something else; `None` before the first refusal.
     fn last_refused(&self) -> Option<LinkCause> {
         None
     }
 }
 
-/// Why a source gives no packets.
+/// Reasons why a source gives no packets.
 #[derive(Debug, Error)]
 pub enum SourceError {
-    /// The stream has ended: the scenario is over, the recording is played. Not a failure.
+    /// The stream has ended: the scenario or the recording is over. Not a failure.
     #[error("the source has ended")]
     Ended,
-    /// The socket cannot be had or failed; `message` says what to do.
+    /// The socket does not open or failed; `message` gives the remedy.
     #[error("{message}")]
     Socket {
-        /// One sentence for the person who started the program.
+        /// One sentence for the user of the program.
         message: String,
-        /// What the system said.
+        /// The error of the operating system.
         #[source]
         source: std::io::Error,
     },

@@ -10,19 +10,19 @@ use crate::sim::{Foot, FootDriver, SimFloor};
 use crate::units::{HostClock, Instant};
 use crate::wire::SensorPacket;
 
-/// How fast a simulated floor's time passes.
+/// Speed of a simulated floor's time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// As fast as packets are asked for; the clock shows the floor's own time and nothing ever sleeps.
+    /// As fast as packets are requested; the clock shows the floor's own time, and the source never sleeps.
     FreeRunning,
-    /// A millisecond per millisecond of the host's monotonic clock, from the first packet asked for.
-    /// Whoever asks up to 50 ms late gets what is due at once. When nobody asks for longer, the floor's time
-    /// stands still meanwhile: a busy machine makes the floor slow, but never silent. No millisecond is left out.
+    /// A millisecond per millisecond of the host's monotonic clock, from the first request on. A request that is up
+    /// to 50 ms late gets all due packets at once. Without a request for longer, the floor's time stands still
+    /// meanwhile: a busy machine makes the floor slow, but never silent. No millisecond is left out.
     RealTime,
 }
 
-/// How long an empty floor rests between bursts of milliseconds: waking up for each costs more than to simulate it.
-/// The first touch is felt so much later at most, a third of a frame of the window.
+/// Pause of an empty floor between bursts of milliseconds: a wake-up for each millisecond costs more than its
+/// simulation. The pause delays the first touch by 4 ms at most, a third of a frame of the window.
 const REST: Duration = Duration::from_millis(4);
 
 /// Milliseconds without feet after which a floor counts as empty.
@@ -35,13 +35,13 @@ pub struct SimulatedSource {
     driver: Box<dyn FootDriver>,
     clock: Clock,
     feet: Vec<Foot>,
-    /// Milliseconds simulated so far; the last one's packets are being handed out.
+    /// Milliseconds simulated so far; the source is handing out the packets of the last one.
     ticks: u64,
-    /// The last of them with a foot on the floor or above it.
+    /// The last millisecond with a foot on the floor or above it.
     visited: u64,
     /// The next board of this millisecond.
     board: usize,
-    /// When this millisecond's packets came into being.
+    /// Time stamp of this millisecond's packets.
     received: Instant,
     over: bool,
 }
@@ -58,7 +58,7 @@ impl SimulatedSource {
         Self::on(floor, driver, pace, Arc::new(Machine(std::time::Instant::now())))
     }
 
-    /// As [`SimulatedSource::new`], on another host than this machine.
+    /// As [`SimulatedSource::new`], on a given host.
     pub(crate) fn on(floor: SimFloor, driver: Box<dyn FootDriver>, pace: Pace, host: Arc<dyn Host>) -> Self {
         let clock = match pace {
             Pace::FreeRunning => Clock::Virtual,
@@ -78,8 +78,8 @@ impl SimulatedSource {
         }
     }
 
-    /// The clock that stamps the packets of a floor at [`Pace::RealTime`], for other threads; a free-running
-    /// floor's is the moment of the packet in hand, which others see as the start.
+    /// The clock that stamps the packets of a floor at [`Pace::RealTime`], for other threads; a free-running floor's
+    /// clock is the time of the current packet, and this method returns a clock fixed at the start.
     #[must_use]
     pub fn clock(&self) -> HostClock {
         match &self.clock {
@@ -88,7 +88,7 @@ impl SimulatedSource {
         }
     }
 
-    /// The feet that made the packets of this millisecond: the truth, for comparing.
+    /// The feet that made the packets of this millisecond: the ground truth for comparisons.
     #[must_use]
     pub fn feet(&self) -> &[Foot] {
         &self.feet
@@ -99,7 +99,7 @@ impl SimulatedSource {
         &mut self.floor
     }
 
-    /// Waits until the next millisecond is due; false if that is after `patience` has run out.
+    /// Waits until the next millisecond is due; false if `patience` runs out before.
     fn wait(&mut self, due: Instant, patience: Duration) -> bool {
         let Clock::Host(clock) = &self.clock else { return true };
         clock.start();
@@ -118,7 +118,7 @@ impl SensorSource for SimulatedSource {
     /// The next packet: in board order within a millisecond, then the next millisecond.
     ///
     /// # Errors
-    /// [`SourceError::Ended`] once the feet's performance is over, and ever after.
+    /// [`SourceError::Ended`] once the feet's script is over, and in every call after.
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         if self.board >= self.floor.readings().len() {
             if self.over {
@@ -138,7 +138,7 @@ impl SensorSource for SimulatedSource {
                 self.visited = self.ticks;
             }
             self.board = 0;
-            // Stamped with its own millisecond also when that is caught up: nothing was late on the way.
+            // The time stamp is the millisecond itself, even when catching up: no packet was late on the way.
             self.received = due;
             if let Clock::Host(clock) = &self.clock {
                 clock.simulated(due);
@@ -182,7 +182,7 @@ mod tests {
     use crate::sim::SimConfig;
     use crate::units::Newtons;
 
-    /// One foot that slides east, for so many milliseconds.
+    /// One foot that slides east for this many milliseconds.
     struct Slide(u64);
 
     impl FootDriver for Slide {
@@ -264,7 +264,7 @@ mod tests {
         for _ in 0..3 {
             assert!(source.next(Duration::ZERO).unwrap().is_some());
         }
-        // The next millisecond may or may not have come; a second ahead it has not.
+        // The next millisecond may be due already; 200 of them can't be.
         let early = std::iter::from_fn(|| source.next(Duration::ZERO).ok().flatten()).take(600).count();
         assert!(early < 600, "200 ms of packets at once");
     }
@@ -293,7 +293,7 @@ mod tests {
         }
     }
 
-    /// Nobody, for so many milliseconds, and then one foot.
+    /// An empty floor for this many milliseconds, and then one foot.
     struct Late(u64);
 
     impl FootDriver for Late {

@@ -13,34 +13,34 @@ use crate::cli::failure::Failure;
 use crate::cli::floor_args::{FloorArgs, FloorOut, saved_json};
 use crate::cli::table;
 
-/// What `underfoot calibrate curves` is asked to do.
+/// Options of `underfoot calibrate curves`.
 ///
 /// Four laws are fitted to each sensor, v in volts and f in newtons: exponential f = a exp(b v), power f = a v^b,
-/// divider f = a v / (s - v), linear f = a (v - z). The sensor gets the one that an information criterion chooses; the
-/// exponential law stays where no other is clearly better. Three loads are needed, five to compare laws, and ten or
-/// more from light to heavy to tell them apart.
+/// divider f = a v / (s - v), linear f = a (v - z). An information criterion chooses the law of the sensor; the
+/// exponential law stays if no other is clearly better. A fit needs three loads, a comparison of laws five, and a
+/// reliable comparison ten or more from light to heavy.
 ///
-/// A residual up to 8 % of full scale is `good`, up to 15 % `poor`; beyond, or where no law
-/// of a force sensor fits, the part is to be `replace`d, keeps the nominal law, and the exit status is 1.
-/// Sensors that are not in the table keep what the floor file has. A line that cannot be read is left out and named;
-/// the others count, and the exit status is 1.
+/// A residual up to 8 % of full scale is `good`, up to 15 % `poor`; above, or if no law of a force sensor fits, the
+/// verdict is `replace`: the part keeps the nominal law, and the exit status is 1. Sensors that are not in the table
+/// keep the values in the floor file. A line that cannot be read is skipped and reported; the others count, and the
+/// exit status is 1.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// CSV with the columns `col,row,corner,volts,newtons` or `col,row,corner,counts,newtons`.
     table: PathBuf,
     #[command(flatten)]
     floor: FloorArgs,
-    /// Where to keep the calibrated floor; without it, in the file given with --floor.
+    /// Output file for the calibrated floor; without it, the file given with --floor.
     #[arg(long, value_name = "FLOOR.ron")]
     out: Option<PathBuf>,
     /// Also draw measurements and curves, tile by tile: PNG, or SVG if the name ends in .svg.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Also print a line for each sensor: its law, what that leaves over, the verdict.
+    /// Also print a line for each sensor: its law, the residual, the verdict.
     #[arg(long)]
     sensors: bool,
-    /// As --sensors, and also print how every law follows each sensor: what it leaves over, by how much its information
-    /// criterion exceeds the least one, or why it doesn't fit.
+    /// As --sensors, and also print the fit of every law to each sensor: its residual, the excess of its information
+    /// criterion over the least one, or the reason why it doesn't fit.
     #[arg(long)]
     laws: bool,
     /// Print the result as JSON on standard output.
@@ -51,7 +51,7 @@ pub(crate) struct Args {
 /// Width of the plot, in pixels.
 const PLOT_PX: u32 = 1800;
 
-/// Fits, reports, keeps.
+/// Fits the laws, reports them, and saves the floor.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = args.out.as_deref().or(args.floor.floor.as_deref()).map(FloorOut::new);
     let mut floor = args.floor.load()?;
@@ -100,7 +100,7 @@ fn maps(floor: &Floor) -> usize {
     floor.position_maps.iter().flatten().count()
 }
 
-/// Takes the new laws into the floor.
+/// Stores the new laws in the floor.
 fn keep(floor: &mut Floor, judged: &[(&SensorLoads, Judgement)]) {
     let day = today();
     for (loads, judgement) in judged {
@@ -117,7 +117,7 @@ fn keep(floor: &mut Floor, judged: &[(&SensorLoads, Judgement)]) {
     }
 }
 
-/// How many parts there are of each verdict.
+/// Numbers of parts with each verdict.
 fn summary(judged: &[(&SensorLoads, Judgement)]) -> String {
     let number =
         |verdict: Verdict| judged.iter().filter(|(_, judgement)| judgement.verdict == verdict).count();
@@ -162,7 +162,7 @@ fn say_saturated(judged: &[(&SensorLoads, Judgement)]) {
     }
 }
 
-/// How one law follows a sensor, below the sensor's own line.
+/// Prints the fit of one law to a sensor, below the sensor's own line.
 fn print_law(candidate: &Candidate, wide: usize) {
     let law = candidate.kind.name();
     match candidate.fit {
@@ -183,13 +183,13 @@ fn residual(fit: &Result<Fit, FitError>) -> String {
     fit.map_or("-".to_owned(), |fit| percent(fit.residual))
 }
 
-/// As many digits as a share of the greatest force deserves.
+/// A share of full scale in percent, with one decimal below 10 %.
 fn percent(share: f32) -> String {
     let percent = 100.0 * share;
     if percent < 9.95 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
-/// The verdict; for a part that follows another law than the paper's, which one, and what the paper's would miss it by.
+/// The verdict; for a part with another law than the paper's, also that law and the error of the paper's law.
 fn verdict(judgement: &Judgement) -> String {
     let verdict = judgement.verdict.name();
     match judgement.laws.chosen {
@@ -234,7 +234,7 @@ fn law_as_json(candidate: &Candidate) -> Value {
     law
 }
 
-/// Adds a law's numbers under the names that they have in floor files.
+/// Adds a law's numbers under their names in floor files.
 fn add_numbers(value: &mut Value, fit: Option<Fit>) {
     let (Some(fit), Some(fields)) = (fit, value.as_object_mut()) else { return };
     let law = fit.calibration;
@@ -243,7 +243,7 @@ fn add_numbers(value: &mut Value, fit: Option<Fit>) {
     }
 }
 
-/// The sensors with which the work is not done.
+/// Messages about the sensors that remain uncalibrated.
 fn failures(judged: &[(&SensorLoads, Judgement)]) -> impl Iterator<Item = String> {
     judged.iter().filter_map(|(loads, judgement)| {
         let advice = match judgement.verdict {

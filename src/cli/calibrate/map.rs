@@ -1,4 +1,4 @@
-//! `underfoot calibrate map`: position maps from known points pressed.
+//! `underfoot calibrate map`: position maps from presses at known points.
 
 use std::path::PathBuf;
 
@@ -11,13 +11,13 @@ use crate::cli::failure::Failure;
 use crate::cli::floor_args::{FloorArgs, FloorOut, saved_json};
 use crate::cli::table;
 
-/// What `underfoot calibrate map` is asked to do.
+/// Options of `underfoot calibrate map`.
 ///
 /// Press at least 16 known points on a tile, up to its edges, each with several forces from a light foot's to a
-/// person's weight. `underfoot measure --json` gives what the sensors read meanwhile. Press with weights that you
-/// know, or a tool with a load cell: what a tile weighs as a whole decides where a foot is found that stands on two.
-/// Errors with the map are those of points that it was not made from. A line that cannot be read is left out and
-/// named; the others count, and the exit status is 1.
+/// person's weight. `underfoot measure --json` prints the sensors' readings meanwhile. Press with known weights, or
+/// with a tool with a load cell: the total force on a tile determines the position of a foot that stands on two.
+/// Errors with the map are those of points that were not used for it. A line that cannot be read is skipped and
+/// reported; the others count, and the exit status is 1.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// CSV with the columns `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if it is known),
@@ -25,7 +25,7 @@ pub(crate) struct Args {
     table: PathBuf,
     #[command(flatten)]
     floor: FloorArgs,
-    /// Where to keep the floor with its maps; without it, in the file given with --floor.
+    /// Output file for the floor with its maps; without it, the file given with --floor.
     #[arg(long, value_name = "FLOOR.ron")]
     out: Option<PathBuf>,
     /// Print the result as JSON on standard output.
@@ -33,7 +33,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Fits, reports, keeps.
+/// Fits the maps, reports them, and saves the floor.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = args.out.as_deref().or(args.floor.floor.as_deref()).map(FloorOut::new);
     let mut floor = args.floor.load()?;
@@ -70,7 +70,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 
 type Fits = [(TileId, Result<MapFit, MapError>)];
 
-/// Takes the maps into the floor.
+/// Stores the maps in the floor.
 fn keep(floor: &mut Floor, fits: &Fits) {
     let day = today();
     for (tile, fit) in fits {
@@ -117,7 +117,7 @@ fn as_json(tile: TileId, fit: &Result<MapFit, MapError>) -> serde_json::Value {
 /// The tiles that must be pressed again.
 fn failures(fits: &Fits) -> impl Iterator<Item = String> {
     fits.iter().filter_map(|(tile, fit)| match fit {
-        // A tile that is as good as it gets is not a failure.
+        // A tile that a map can't improve is not a failure.
         Ok(_) | Err(MapError::NoBetter { .. }) => None,
         Err(error) => Some(format!("tile {tile}: {error}; it keeps what it had")),
     })

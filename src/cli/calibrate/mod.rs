@@ -1,4 +1,4 @@
-//! `underfoot calibrate`: sensor curves, tare and position maps, kept in the floor file.
+//! `underfoot calibrate`: sensor curves, tare and position maps, stored in the floor file.
 
 mod curves;
 mod map;
@@ -12,7 +12,7 @@ use underfoot::floor::Day;
 
 use super::failure::Failure;
 
-/// What `underfoot calibrate` is asked to do.
+/// Options of `underfoot calibrate`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     #[command(subcommand)]
@@ -23,13 +23,13 @@ pub(crate) struct Args {
 enum What {
     /// Find each sensor's law, exponential or another, from load-cell measurements.
     Curves(curves::Args),
-    /// Measure what the sensors read on the empty floor.
+    /// Measure the sensors' readings on the empty floor.
     Tare(tare::Args),
-    /// Learn from known points pressed how each tile distorts positions.
+    /// Learn each tile's distortion of positions from presses at known points.
     Map(map::Args),
 }
 
-/// Calibrates.
+/// Runs the chosen calibration.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.what {
         What::Curves(args) => curves::run(args),
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The largest table that is read: an hour of one sensor at 1 kHz.
+/// Maximum size of a table in bytes: an hour of one sensor at 1 kHz.
 const MOST_BYTES: u64 = 256 << 20;
 
 /// Today, in UTC.
@@ -52,7 +52,7 @@ fn count(number: usize, what: &str) -> String {
     if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }
 
-/// As many decimals as a residual deserves in a file.
+/// Rounds a residual to four decimals, for a file.
 fn rounded(residual: f32) -> f32 {
     (f64::from(residual * 1e4).round() / 1e4) as f32
 }

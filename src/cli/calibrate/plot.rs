@@ -6,19 +6,19 @@ use underfoot::layout::Colour;
 use underfoot::scene::{Anchor, Ink, Lettering, Paint, Scene, Stroke, Theme};
 use underfoot::sense::{Judgement, SensorLoads, Verdict};
 
-/// A panel's plotting area and the room around it, in metres of the drawing.
+/// Size of a panel's plotting area and of the space around it, in metres of the drawing.
 const PANEL: Vec2 = Vec2::new(0.20, 0.15);
 const GAP: Vec2 = Vec2::new(0.05, 0.055);
 const EDGE_M: f32 = 0.045;
 const HEADER_M: f32 = 0.05;
 const LEGEND_M: f32 = 0.36;
-/// Room for each formula after the first.
+/// Space for each formula after the first.
 const LAW_M: f32 = 0.08;
 
-/// Most points drawn of one sensor; more would only cover each other.
+/// Maximum number of points drawn per sensor; more would only overlap.
 const MOST_POINTS: usize = 160;
 
-/// One colour per corner, told apart in print and by the colour-blind.
+/// One colour per corner, distinguishable in print and with colour blindness.
 const COLOURS: [Colour; 4] = [
     Colour::rgb(0x1f, 0x5f, 0xa8),
     Colour::rgb(0xc7, 0x5b, 0x12),
@@ -28,7 +28,7 @@ const COLOURS: [Colour; 4] = [
 
 const THEME: Theme = Theme::LIGHT;
 
-/// The axes all panels share.
+/// The axes of all panels.
 struct Axes {
     most_n: f32,
     step_n: f32,
@@ -39,7 +39,7 @@ pub(super) fn draw(judged: &[(&SensorLoads, Judgement)]) -> Scene {
     let mut tiles: Vec<TileId> = judged.iter().map(|(loads, _)| loads.sensor.tile).collect();
     tiles.sort_by_key(|tile| (std::cmp::Reverse(tile.row), tile.column));
     tiles.dedup();
-    // As on the floor where whole rows were measured, otherwise about as wide as high.
+    // As on the floor if whole rows were measured, otherwise about as wide as high.
     let mut columns: Vec<u16> = tiles.iter().map(|tile| tile.column).collect();
     columns.sort_unstable();
     columns.dedup();
@@ -74,7 +74,7 @@ fn text(scene: &mut Scene, at: Vec2, anchor: Anchor, size_m: f32, colour: Colour
     scene.add_text(lettering, format_args!("{text}"))
 }
 
-/// The formulas of the laws that the sensors follow; the paper's where none was found.
+/// Formulas of the sensors' laws; the paper's if no law was found.
 fn formulas(judged: &[(&SensorLoads, Judgement)]) -> Vec<&'static str> {
     let is_followed =
         |kind: &LawKind| judged.iter().any(|(_, judgement)| judgement.laws.chosen == Some(*kind));
@@ -152,7 +152,7 @@ impl Axes {
     }
 }
 
-/// What is not good about the sensors of a tile, in words.
+/// Writes the sensors of a tile that are not good, with their verdicts.
 fn complaints(scene: &mut Scene, area: Rect, judged: &[(&SensorLoads, Judgement)], tile: TileId) {
     let mut at = area.min + Vec2::new(0.007, PANEL.y - 0.015);
     let of_tile = judged.iter().filter(|(loads, _)| loads.sensor.tile == tile);

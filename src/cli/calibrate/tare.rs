@@ -1,4 +1,4 @@
-//! `underfoot calibrate tare`: what sensors read on the empty floor.
+//! `underfoot calibrate tare`: the sensors' readings on the empty floor.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -15,14 +15,13 @@ use crate::cli::floor_args::{FloorOut, saved_json};
 use crate::cli::number::patience;
 use crate::cli::senders::BoardArgs;
 
-/// What `underfoot calibrate tare` is asked to do.
+/// Options of `underfoot calibrate tare`.
 ///
-/// Nobody and nothing may be on the floor: the tare is only taken if every sensor is quiet (0.5 N of
-/// scatter over half a second), carries no more than a plate weighs (60 N), and no tile weighs otherwise than
-/// at the last tare.
+/// The floor must be empty: the tare is only taken if every sensor is quiet (0.5 N of scatter over half a second),
+/// carries no more than the weight of a plate (60 N), and the weight of each tile is that at the last tare.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Floor file, into which the tare is written.
+    /// Floor file to which the tare is written.
     #[arg(long, value_name = "FILE")]
     floor: PathBuf,
     /// Where the boards' packets arrive.
@@ -33,7 +32,7 @@ pub(crate) struct Args {
     /// How long to wait for the floor to be quiet.
     #[arg(long, value_name = "S", default_value = "5", value_parser = patience)]
     seconds: Duration,
-    /// Take the tare although a tile weighs otherwise than at the last one, because the floor was changed.
+    /// Take the tare although the weight of a tile differs from the last one, because the floor was changed.
     #[arg(long)]
     accept_change: bool,
     /// Print the result as JSON on standard output.
@@ -41,7 +40,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Takes the tare and keeps it, or says why not.
+/// Takes and saves the tare, or reports why it can't.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = FloorOut::new(&args.floor);
     let mut floor = schema::load_floor(&args.floor)?;

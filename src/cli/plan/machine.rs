@@ -10,10 +10,10 @@ use underfoot::schema;
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
 
-/// More than any file of constants has.
+/// Maximum size of a file of constants in bytes, larger than any real one.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// Reads constants as `underfoot plan --json` prints them: all of it, or what stands under `machine`.
+/// Reads constants as `underfoot plan --json` prints them: the whole file, or the part under `machine`.
 pub(super) fn read(path: &Path) -> Result<Machine, Failure> {
     let wrong = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", path.display()));
     let text =

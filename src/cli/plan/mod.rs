@@ -1,4 +1,4 @@
-//! `underfoot plan`: how many computers a floor takes.
+//! `underfoot plan`: the number of computers that a floor needs.
 
 mod machine;
 mod table;
@@ -15,41 +15,41 @@ use underfoot::wire::SensorFormat;
 use super::failure::Failure;
 use super::number::{number, patience};
 
-/// What `underfoot plan` is asked to do.
+/// Options of `underfoot plan`.
 ///
-/// Says how many computers, links, packets, megabits and cores a floor and its people take, into which areas it is best
-/// cut, and what runs out first. What one computer does is measured on this one, which takes some twenty seconds, or
-/// read from a file. Without a floor, plans the paper's 6 x 6 tiles.
+/// Reports the number of computers, links, packets, megabits and cores that a floor and its people need, the best
+/// division into areas, and the first limit. The performance of one computer is measured on this one, which takes
+/// some twenty seconds, or read from a file. Without a floor, plans the paper's 6 x 6 tiles.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct Args {
     /// Floor file: its boards, its actuators, and its areas if it names any.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["tiles", "no_actuators"])]
     floor: Option<PathBuf>,
-    /// A floor of so many of the paper's tiles (columns x rows), at most 4096 to a side.
+    /// A floor of this many of the paper's tiles (columns x rows), at most 4096 to a side.
     #[arg(long, value_name = "CxR", default_value = "6x6", value_parser = tiles)]
     tiles: (u32, u32),
     /// A floor of that size without actuators.
     #[arg(long)]
     no_actuators: bool,
-    /// How many people are on it.
+    /// Number of people on it.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_PEOPLE)))]
     people: u32,
-    /// How many times denser than on average people stand in the fullest area.
+    /// Density of people in the fullest area, as a multiple of the average.
     #[arg(long, value_name = "TIMES", default_value = "2", value_parser = |text: &str| number(text, &(1.0..=1000.0), "times"))]
     crowding: f64,
-    /// How boards send what they read.
+    /// Format of the boards' readings.
     #[arg(long, value_enum, default_value = "counts")]
     format: Format,
-    /// Which share of processors and links may be used; the rest is for everything else.
+    /// Share of processors and links that may be used; the rest is for everything else.
     #[arg(long, value_name = "SHARE", default_value = "0.5", value_parser = |text: &str| number(text, &(0.01..=1.0), "of the whole"))]
     usable: f64,
-    /// Constants of a computer, as `--json` prints them under `machine`; without, this one's are measured.
+    /// Constants of a computer, as `--json` prints them under `machine`; without it, this computer is measured.
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
-    /// Channels of a computer's sound card, in place of what the constants say (64 where they are measured).
+    /// Channels of a computer's sound card, in place of the constant (64 if the constants are measured).
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_535))]
     channels: Option<u32>,
-    /// Megabits per second of a computer's network card, in place of what the constants say (1000 where they are
+    /// Megabits per second of a computer's network card, in place of the constant (1000 if the constants are
     /// measured).
     #[arg(long, value_name = "MBIT", value_parser = |text: &str| number(text, &(1.0..=1e7), "megabits per second"))]
     link: Option<f64>,
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn made(args: &Args) -> Result<Plan, Failure> {
-    // A file with mistakes is told before anything is measured.
+    // Errors in a file are reported before anything is measured.
     let floor = args.floor.as_ref().map(|path| schema::load_floor(path)).transpose()?;
     let mut machine = match &args.machine {
         Some(path) => machine::read(path)?,
@@ -117,7 +117,7 @@ fn made(args: &Args) -> Result<Plan, Failure> {
     })
 }
 
-/// Reads `100x100`.
+/// Parses `100x100`.
 fn tiles(text: &str) -> Result<(u32, u32), String> {
     let expected = || "write it like 100x100: columns x rows, 1 to 4096 each".to_owned();
     let (columns, rows) = text.split_once(['x', 'X']).ok_or_else(expected)?;

@@ -2,7 +2,7 @@
 
 use underfoot::plan::{Limit, Machine, Plan, Resource, Split};
 
-/// Prints `plan` for people.
+/// Prints `plan` as a table.
 pub(super) fn print(plan: &Plan) {
     for line in lines(plan) {
         outln!("{line}");
@@ -101,7 +101,7 @@ fn verdict(plan: &Plan) -> String {
     format!("It does not fit: {listed}. What runs out first: {name}.")
 }
 
-/// A number with as many digits as help.
+/// A number with no more digits than a reader needs.
 fn count(number: f64) -> String {
     match number {
         _ if number >= 100.0 => {

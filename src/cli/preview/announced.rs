@@ -1,4 +1,4 @@
-//! A source that tells the window of layouts that come with the packets.
+//! A source that reports layouts among the packets to the window.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
 use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
-/// A recording or a server's floor, that tells the window of layouts that came later.
+/// A recording or a server's floor that reports later layouts to the window.
 pub(super) struct AnnouncingSource<S> {
     source: S,
     layouts: SyncSender<LayoutNews>,
@@ -26,15 +26,15 @@ impl<S> AnnouncingSource<S> {
         Self { source, layouts, cause, given: 0, late: None }
     }
 
-    /// Tells the window, now or with the next packet: the sensing thread never waits for it.
+    /// Reports to the window, now or with the next packet: the sensing thread never waits for it.
     fn tell(&mut self, news: LayoutNews) {
-        // A window that is closed need not know.
+        // A closed window needs no report.
         if let Err(TrySendError::Full(news)) = self.layouts.try_send(news) {
             self.late = Some(news);
         }
     }
 
-    /// What to say about a layout.
+    /// The name of a layout in reports.
     fn name(&self, layout: &Layout) -> String {
         match self.cause {
             LayoutCause::Recorded => "recorded change".into(),

@@ -1,4 +1,4 @@
-//! What the person at the window wants: layouts opened and tried, effects saved, controls set.
+//! Commands of the window: layouts opened and tried, effects saved, controls set.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use super::super::failure::Failure;
 use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::super::watch::Watch;
 
-/// Gives layouts to the floor and tells the window which.
+/// Gives layouts to the floor and reports them to the window.
 #[derive(Clone)]
 pub(super) struct Desk {
     pub(super) session: Session,
@@ -26,7 +26,7 @@ pub(super) struct Desk {
 }
 
 impl Desk {
-    /// Puts what was read on the floor, or tells why that can't be.
+    /// Puts the layout on the floor, or reports why it can't be read.
     fn take(&self, name: &str, cause: LayoutCause, read: Result<(Layout, Diagnostics), String>) {
         match read {
             Ok((layout, warnings)) => self.put(name, cause, layout, Warnings::from(&warnings)),
@@ -43,30 +43,30 @@ impl Desk {
         let _ = self.layouts.send(LayoutNews::Loaded { layout: loaded, revision, name, cause, warnings });
     }
 
-    /// Tells the window, which has the text, of each change of the files.
+    /// Reports each change of the files to the window, which has the text.
     pub(super) fn watch(&self, files: &LayoutArgs) -> Result<Option<Watch>, Failure> {
         let layouts = self.layouts.clone();
         Watch::on_change(files, move || {
-            // Where so much waits that there is no room, changes are among it.
+            // If the queue is full, it already contains changes.
             let _ = layouts.try_send(LayoutNews::Changed);
         })
     }
 }
 
-/// Does what the person at the window wants, with what that needs.
+/// Executes the commands of the window, with the data needed for that.
 pub(super) struct CommandHandler {
     pub(super) files: LayoutArgs,
-    /// Ends with the next one.
+    /// Dropped when the next one starts.
     pub(super) watch: Option<Watch>,
     pub(super) choices: Vec<String>,
     pub(super) floor: Floor,
     pub(super) desk: Desk,
-    /// While the floor is checked.
+    /// Present during a check of the floor.
     pub(super) controls_off: Option<ControlsOff>,
 }
 
 impl CommandHandler {
-    /// Does what the person at the window wants, on a thread that ends with the window.
+    /// Executes the commands of the window, on a thread that ends with the window.
     pub(super) fn process_commands(
         mut self,
         commands: Receiver<PreviewCommand>,
@@ -100,7 +100,7 @@ impl CommandHandler {
                         continue;
                     }
                     PreviewCommand::SaveEffect { name, text } => {
-                        // A window that is closed already need not know.
+                        // The window may be closed already.
                         let _ = notices.send(self.save(&name, &text));
                         continue;
                     }
@@ -134,7 +134,8 @@ impl CommandHandler {
         self.desk.take(&name, LayoutCause::Opened, read);
     }
 
-    /// Keeps an effect where layouts find it, and shows the layout with it; the answer is what to say.
+    /// Saves an effect in the folder that layouts read, and shows the layout with it; returns the message for the
+    /// window.
     fn save(&self, name: &str, text: &str) -> String {
         let folder = self.files.effects_folder().unwrap_or_else(|| {
             let beside = self.files.path().and_then(Path::parent);
@@ -144,7 +145,7 @@ impl CommandHandler {
         if let Err(error) = std::fs::create_dir_all(&folder) {
             return format!("{} can't be made: {error}", folder.display());
         }
-        // What somebody has written beside the numbers stays.
+        // Text that a person has added beside the numbers stays.
         let old = std::fs::read_to_string(&path).unwrap_or_default();
         let text = edit::refit(&old, text);
         match schema::save_text(&text, &path) {
@@ -157,7 +158,7 @@ impl CommandHandler {
     }
 }
 
-/// Keeps a floor that was checked; the answer is what to say.
+/// Saves a checked floor; returns the message for the window.
 pub(super) fn keep_floor(floor: &Floor, path: &Path) -> String {
     match schema::save_floor(floor, path) {
         Ok(Saved::New) => format!("Written to {}.", path.display()),

@@ -1,4 +1,4 @@
-//! What goes to and fro between the window and its floor: events, feet, what the actuators did.
+//! Data between the window and its floor: events, feet, signals of the actuators.
 
 use std::sync::mpsc::{SyncSender, TrySendError};
 use std::thread;
@@ -31,7 +31,7 @@ impl EventSink for ToWindow {
     }
 }
 
-/// Ends a floor, and with it what is told of it.
+/// Stops a floor and waits until it has ended, so that no more reports come from it.
 pub(super) fn stop_and_wait(session: &Session) {
     session.stop();
     while !session.has_ended() {
@@ -52,7 +52,7 @@ impl FootSink for Mouse {
     }
 }
 
-/// A centimetre of shoe around the foot's length.
+/// Margin of the shoe around the foot's length: a centimetre.
 const SHOE_M: f32 = 0.01;
 
 fn foot(shoe: &PreviewFoot) -> Foot {
@@ -71,7 +71,7 @@ pub(super) fn shoe(foot: &Foot) -> PreviewFoot {
     PreviewFoot { length_m: foot.length_m + SHOE_M, ..PreviewFoot::from(foot) }
 }
 
-/// What the actuators did, as the window draws it.
+/// Signals of the actuators, as the window draws them.
 pub(super) struct Scopes {
     reader: ScopeReader,
     points: Vec<(f32, f32)>,

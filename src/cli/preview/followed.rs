@@ -1,4 +1,4 @@
-//! A floor behind the window of which JSON lines tell: that of several computers, whose packets go nowhere together.
+//! A floor known from JSON lines, behind the window: one of several computers, which has no common stream of packets.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -25,27 +25,27 @@ use super::LOOK;
 use super::commands::keep_floor;
 use super::feeds::ToWindow;
 
-/// Lines that may wait: who writes them is held up then, and counts what it drops.
+/// Maximum number of waiting lines: beyond, their writer blocks, and counts the lines that it drops.
 const WAITING: usize = 64;
 
-/// Layouts that may wait; the watcher of files waits then.
+/// Maximum number of waiting layouts; beyond, the watcher of files blocks.
 const CHANGES_WAITING: usize = 16;
 
-/// The longest line that is taken, in bytes: a thousand contacts.
+/// Maximum length of a line in bytes: a thousand contacts.
 const LONGEST: u64 = 1 << 18;
 
-/// A floor that is being followed; ends when the window hangs up.
+/// A floor that is followed; ends when the window closes its channels.
 pub(super) struct Followed {
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
-    /// What the window says of who tells.
+    /// Reports the state of the server to the window.
     pub(super) feed: ServerFeed,
-    /// Whose lines they are.
+    /// Name of the origin of the lines.
     pub(super) name: String,
 }
 
 impl Followed {
-    /// Follows the lines in the file at `path`, `-` for standard input, on a floor with this layout; `files` are the
-    /// layout's.
+    /// Follows the lines in the file at `path`, or on standard input for `-`, on a floor with this layout; `files`
+    /// belong to the layout.
     pub(super) fn start(
         path: &Path,
         window: ProgramChannels,
@@ -73,7 +73,7 @@ impl Followed {
         let shared = Arc::new(Mutex::new(state));
         let told = Arc::clone(&shared);
         let (changed, changes) = sync_channel(CHANGES_WAITING);
-        // A window that is closed need not know.
+        // The window may be closed.
         let watch = Watch::start(files, floor.geometry, move |layout| drop(changed.send(layout)))?;
         let floor = FollowedFloor {
             lines: read,
@@ -93,8 +93,7 @@ impl Followed {
     }
 }
 
-/// Passes lines on until there are no more of them, or nobody wants them; those that are too long to the end of what
-/// is taken.
+/// Passes lines on until their end, or until the receiver is gone; splits those that exceed the maximum length.
 fn pass_on(lines: Box<dyn Read + Send>, to: &SyncSender<io::Result<Vec<u8>>>) {
     let mut lines = BufReader::new(lines);
     loop {
@@ -121,7 +120,7 @@ struct FollowedFloor {
 }
 
 impl FollowedFloor {
-    /// Shows the floor until the window hangs up.
+    /// Shows the floor until the window closes its channels.
     fn run(mut self) {
         loop {
             self.hear();
@@ -146,7 +145,7 @@ impl FollowedFloor {
         }
     }
 
-    /// Takes what has been told, for as long as the window need not know.
+    /// Processes lines until the next update of the window is due.
     fn hear(&mut self) {
         let until = HostInstant::now() + LOOK;
         if self.ended {
@@ -205,7 +204,7 @@ impl FollowedFloor {
     }
 
     fn say(&self, notice: impl Into<String>) {
-        // Nor a window that is closed, nor one that draws nothing, waits for sentences.
+        // Messages never wait for a window that is closed or does not draw.
         let _ = self.window.notices.try_send(notice.into());
     }
 }

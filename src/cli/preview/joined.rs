@@ -1,4 +1,5 @@
-//! A server's floor behind the window: sensed here again from what its boards send there. Nothing is put out from here.
+//! A server's floor behind the window: sensed again here from the packets of its boards. This program has no outputs
+//! then.
 
 use std::net::SocketAddr;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
@@ -27,27 +28,27 @@ use super::announced::AnnouncingSource;
 use super::commands::keep_floor;
 use super::feeds::{ToWindow, stop_and_wait};
 
-/// How often controls are compared with what the server says of them.
+/// Interval between comparisons of the controls with the server's.
 const COMPARE_EVERY: Duration = Duration::from_millis(100);
 
-/// How often a layout is sent: a server checks one a second.
+/// Minimum interval between two sent layouts: a server checks one a second.
 const LAYOUTS_EVERY: Duration = Duration::from_millis(1100);
 
-/// How long the server may take to greet before there is no window.
+/// Maximum time for the server's greeting; without it, the window does not open.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// A server's floor that is being shown; ends when the window hangs up.
+/// A server's floor that is shown; ends when the window closes its channels.
 pub(super) struct Joined {
     pub(super) floor: Floor,
     pub(super) layout: Arc<Layout>,
     pub(super) layout_text: String,
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
-    /// What the boards send.
+    /// The packets of the boards.
     pub(super) packets: TappedPackets,
     shared: Shared,
 }
 
-/// What the window says of the server.
+/// State of the server, for the window.
 #[derive(Clone)]
 struct Shared(Arc<Mutex<ServerState>>);
 
@@ -58,7 +59,7 @@ impl Shared {
 }
 
 impl Joined {
-    /// Joins the server that serves web pages at `address`; `files` are those of the layout that is designed here.
+    /// Joins the server that serves web pages at `address`; `files` belong to the layout that is designed here.
     pub(super) fn start(
         address: SocketAddr,
         window: ProgramChannels,
@@ -106,7 +107,7 @@ impl Joined {
         Ok(Self { floor, layout, layout_text, snapshots, packets, shared })
     }
 
-    /// What the window says of the server.
+    /// Reports the state of the server to the window.
     pub(super) fn feed(&self) -> ServerFeed {
         let shared = self.shared.clone();
         Box::new(move || shared.state().clone())
@@ -131,7 +132,7 @@ fn first(news: &Receiver<MirrorNews>, address: SocketAddr) -> Result<(Box<Greeti
     }
 }
 
-/// One time with the server, from its greeting until it is gone.
+/// One connection to the server, from its greeting until it is lost.
 struct Run {
     session: Session,
     snapshots: triple_buffer::Output<Snapshot>,
@@ -167,27 +168,27 @@ struct ServedFloor {
     window: ProgramChannels,
     /// The floor that the window shows.
     floor: Floor,
-    /// The layout that the server has, as text.
+    /// The text of the server's layout.
     served: String,
-    /// The name of the layout that was last sent to it.
+    /// The name of the last layout sent to it.
     tried: Option<String>,
-    /// Name and text of the latest one that is to be sent, and when the last one was.
+    /// Name and text of the latest layout to send, and the time of the last one sent.
     waiting: Option<(String, String)>,
     sent: Option<HostInstant>,
-    /// Whether its controls are to be off while the floor is checked.
+    /// Whether its controls must be off during a check of the floor.
     controls_off: bool,
     snapshots: triple_buffer::Input<Snapshot>,
     follower: Follower,
     begun: HostInstant,
     compared: HostInstant,
     shared: Shared,
-    /// Ends with the next one.
+    /// Dropped when the next one starts.
     watch: Option<Watch>,
     files: LayoutArgs,
 }
 
 impl ServedFloor {
-    /// Shows the floor until the window hangs up.
+    /// Shows the floor until the window closes its channels.
     fn run(mut self) {
         loop {
             match self.news.recv_timeout(LOOK) {
@@ -207,7 +208,7 @@ impl ServedFloor {
     }
 
     fn say(&self, notice: impl Into<String>) {
-        // Nor a window that is closed, nor one that draws nothing, waits for sentences.
+        // Messages never wait for a window that is closed or does not draw.
         let _ = self.window.notices.try_send(notice.into());
     }
 
@@ -220,7 +221,7 @@ impl ServedFloor {
         }
     }
 
-    /// Takes the floor up again, from its beginning: nothing of before is believed.
+    /// Starts again from a new greeting: all earlier state is discarded.
     fn join_again(&mut self, greeting: &Greeting, source: MirrorSource) {
         if !is_same(&greeting.floor, &self.floor) {
             let why = "the server has another floor now: open the window anew to see it";
@@ -241,7 +242,7 @@ impl ServedFloor {
         }
     }
 
-    /// What the server has, by its own word.
+    /// Stores the server's state as its greeting reports it.
     fn take(&mut self, greeting: &Greeting) {
         self.served.clone_from(&greeting.layout_text);
         self.shared.state().takes_layouts = greeting.takes_layouts;
@@ -259,7 +260,7 @@ impl ServedFloor {
         }
     }
 
-    /// Passes on what is to be seen, and lets controls be as the server says.
+    /// Passes on the latest snapshot, and sets controls to the server's state.
     fn look(&mut self) {
         self.send_layout();
         if self.run.snapshots.update() {
@@ -272,7 +273,7 @@ impl ServedFloor {
         self.compared = HostInstant::now();
         self.shared.state().left_out = (self.run.left_out)();
         let (layout, here) = (self.run.session.snapshot().layout, self.run.snapshots.output_buffer());
-        // Between two layouts, names and places may not belong together.
+        // Between two layouts, names and places may not match.
         if here.widgets.len() == layout.widgets.len() {
             for message in self.follower.corrections(&layout, here, self.begun.elapsed()) {
                 self.run.session.send(Command::Control(message));
@@ -280,7 +281,7 @@ impl ServedFloor {
         }
     }
 
-    /// Asks of the server what the person at the window wants of the floor.
+    /// Translates a command of the window into a request to the server.
     fn apply(&mut self, command: PreviewCommand) {
         match command {
             PreviewCommand::Enable { id, enabled } => {
@@ -313,7 +314,7 @@ impl ServedFloor {
         }
     }
 
-    /// Sends the server a layout, if it takes any.
+    /// Sends the server a layout, if it accepts layouts.
     fn try_layout(&mut self, layout: &Layout, name: String) {
         let text = schema::write_layout(layout);
         if text == self.served {
@@ -325,7 +326,7 @@ impl ServedFloor {
         self.waiting = Some((name, text));
     }
 
-    /// Sends the latest layout that was tried, as often as a server takes one.
+    /// Sends the latest layout that the window tried, at the rate that a server accepts.
     fn send_layout(&mut self) {
         if self.sent.is_some_and(|sent| sent.elapsed() < LAYOUTS_EVERY) {
             return;
@@ -337,11 +338,11 @@ impl ServedFloor {
         }
     }
 
-    /// Tells the window of each change of the layout's files.
+    /// Reports each change of the layout's files to the window.
     fn watch(&self) -> Option<Watch> {
         let news = self.window.layouts.clone();
         let watch = Watch::on_change(&self.files, move || {
-            // Where so much waits that there is no room, changes are among it.
+            // If the queue is full, it already contains changes.
             let _ = news.try_send(LayoutNews::Changed);
         });
         watch.inspect_err(|failure| self.say(failure.to_string())).ok().flatten()
@@ -354,11 +355,11 @@ const LAYOUT: &str = "layout";
 /// The request that keeps controls off while this window checks the floor.
 const CONTROLS_OFF: &str = "controls_off";
 
-/// What is said to who designs a layout for a server that takes none.
+/// Message to a user who designs a layout for a server that accepts none.
 const KEEPS: &str = "What is designed stays in this window: the server keeps its layout, and would take another if it were \
                      started with --web-layouts.";
 
-/// Whether the window that shows `shown` can show `now`: whatever was measured on it may be new.
+/// Whether the window that shows `shown` can show `now`: measured values may differ.
 fn is_same(now: &Floor, shown: &Floor) -> bool {
     now.geometry == shown.geometry && now.boards == shown.boards
 }

@@ -49,7 +49,7 @@ use super::run::end;
 use super::senders::{BoardArgs, CommandArgs};
 use super::stop::stop_flag;
 
-/// What `underfoot preview` is asked to do.
+/// Options of `underfoot preview`.
 #[derive(clap::Args, Debug, Default)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -59,13 +59,13 @@ pub(crate) struct Args {
     /// Show a real floor, whose packets arrive here.
     #[arg(long, value_name = "ADDR", value_parser = read_address, conflicts_with_all = ["scenario", "session"])]
     listen: Option<SocketAddr>,
-    /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. Nothing is put out from
-    /// here.
+    /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. The window then sends
+    /// nothing to outputs or actuators.
     #[arg(long, value_name = "ADDR", value_parser = read_address, conflicts_with_all = SERVED_HERE, conflicts_with_all = ["floor", "grid"])]
     join: Option<SocketAddr>,
-    /// Show the floor of which the JSON lines in this file tell, `-` for standard input: what
-    /// `underfoot-cluster gateway --json --json-contacts` or `underfoot run --json --json-contacts` prints, with the
-    /// same layout and floor. Nothing is put out from here.
+    /// Show a floor from the JSON lines in this file, `-` for standard input: the output of `underfoot-cluster
+    /// gateway --json --json-contacts` or `underfoot run --json --json-contacts`, with the same layout and floor. The
+    /// window then sends nothing to outputs or actuators.
     #[arg(long, value_name = "FILE", conflicts_with_all = SERVED_HERE, conflicts_with = "join")]
     follow: Option<PathBuf>,
     #[command(flatten)]
@@ -78,7 +78,7 @@ pub(crate) struct Args {
     /// Show the built-in session played on the simulated floor.
     #[arg(long, conflicts_with = "scenario")]
     session: bool,
-    /// Record the floor into this file, in place of what was there; `underfoot preview FILE` shows it again.
+    /// Record the floor into this file and replace an existing one; `underfoot preview FILE` shows it again.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Open the window for a projector at once, over the whole screen: the controls alone, laid onto the floor.
@@ -101,7 +101,7 @@ pub(crate) struct Args {
     eq4: bool,
 }
 
-/// Options of a floor that is served and felt here; one of elsewhere is only shown.
+/// Options of a floor that is served and felt here; a floor served elsewhere is only shown.
 const SERVED_HERE: [&str; 27] = [
     "listen",
     "allow",
@@ -132,19 +132,19 @@ const SERVED_HERE: [&str; 27] = [
     "eq4",
 ];
 
-/// Time between two looks at a floor that is shown as it comes: half of a picture's.
+/// Interval between two updates of the window's data: half of a frame.
 const LOOK: Duration = Duration::from_millis(8);
 
-/// Whether a window can be hoped for.
+/// Whether a window can probably be opened.
 pub(crate) fn has_display() -> bool {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
-/// Which packets the faults of a scenario hit.
+/// Seed that determines the packets affected by the faults of a scenario.
 const FAULT_SEED: u64 = 1;
 
-/// How long the floor stays empty before what is played begins anew.
+/// Time for which the floor stays empty before the scenario starts again.
 const PAUSE: Duration = Duration::from_secs(3);
 
 /// Opens the window and serves its floor on a thread of its own until the window is closed.
@@ -168,11 +168,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (window, ProgramChannels { events, layouts, notices, commands }) = channels();
     let (scope_sender, scopes) = mpsc::channel();
 
-    // Of several sound cards that are tried, the last one plays.
+    // If several sound cards are tried, the last one plays.
     let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
     let latency = LatencyStages::default();
     let told = notices.clone();
-    // A window that is closed need not know.
+    // The window may be closed.
     let notice = move |text| drop(told.try_send(text));
     let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
     let (tap, packets) = TappedPackets::new();
@@ -222,7 +222,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         design: args.design()?,
         ..PreviewInput::new(floor, layout, stage.name, session.take_snapshots(), window)
     };
-    // Also when the window fails, the floor ends in order first.
+    // The floor ends in order, even after a failure of the window.
     let options = args.window();
     let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &options)));
     session.stop();
@@ -240,15 +240,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Lets the floor end in order, its recording with it, where a signal ends the program: the window draws nothing while
-/// another covers it, and could not.
+/// Ends the floor and its recording in order when a signal ends the program: the window itself could not, since it
+/// does not draw while another covers it.
 struct SignalWatch {
     is_over: Arc<AtomicBool>,
 }
 
 impl SignalWatch {
     fn start(session: &Session) -> Result<Self, Failure> {
-        /// Time between two looks at the flag.
+        /// Interval between two checks of the flag.
         const EVERY: Duration = Duration::from_millis(50);
         let (stop, session, is_over) = (stop_flag()?, session.clone(), Arc::<AtomicBool>::default());
         let watch = Self { is_over: Arc::clone(&is_over) };
@@ -272,7 +272,7 @@ impl Drop for SignalWatch {
     }
 }
 
-/// Shows a recording; nobody else is told of what happens in it.
+/// Shows a recording; its events go to no other program.
 fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
     let (window, program) = channels();
     let (player, floor, layout, snapshots) = Player::start(path, program)?;
@@ -303,7 +303,7 @@ fn joined(args: &Args, address: SocketAddr) -> Result<(), Failure> {
     preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
 }
 
-/// Shows a floor of which lines tell.
+/// Shows a floor from JSON lines.
 fn followed(args: &Args, path: &Path) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let (layout, warnings) = args.layout.reviewed(&floor)?;
@@ -317,7 +317,7 @@ fn followed(args: &Args, path: &Path) -> Result<(), Failure> {
     preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
 }
 
-/// Where packets come from, and what is known of them.
+/// The source of packets, with its description.
 struct Stage {
     floor: Floor,
     source: Box<dyn SensorSource>,
@@ -330,12 +330,12 @@ struct Stage {
 }
 
 impl Args {
-    /// The recording that is named in place of a layout.
+    /// The recording, if one is given in place of a layout.
     fn recording(&self) -> Option<&Path> {
         self.layout.path().filter(|path| Recording::is_at(path))
     }
 
-    /// How the window looks at first.
+    /// Initial options of the window.
     fn window(&self) -> PreviewOptions {
         let projection = ProjectionOptions {
             open: self.project,
@@ -396,7 +396,7 @@ impl Args {
         })
     }
 
-    /// The layout as text, to be designed.
+    /// The text of the layout, for the designer.
     fn design(&self) -> Result<Option<DesignInput>, Failure> {
         let path = self.layout.path().map(std::path::Path::to_path_buf);
         let name = self.layout.layout.as_deref().and_then(std::path::Path::to_str).unwrap_or(DEFAULT_LAYOUT);
@@ -408,7 +408,7 @@ impl Args {
         Ok(text.map(|text| self.design_of(name, text, path)))
     }
 
-    /// A layout of this name, text and file, to be designed.
+    /// A layout with this name, text and file, for the designer.
     fn design_of(&self, name: &str, text: String, path: Option<PathBuf>) -> DesignInput {
         let files = self.layout.clone();
         let kinds_of = Box::new(move |path: Option<&std::path::Path>| {
@@ -432,9 +432,11 @@ mod tests {
 
     use super::{Args, SERVED_HERE};
 
-    /// Options of what is shown and how, whoever serves it.
-    const SHOWN: [&str; 11] =
-        ["_option", "layout", "widgets", "effects", "floor", "grid", "join", "follow", "project", "monitor", "corners"];
+    /// Options of the view, for a floor served here or elsewhere, and the hidden one that explains where a layout stands.
+    const SHOWN: [&str; 11] = [
+        "_option", "layout", "widgets", "effects", "floor", "grid", "join", "follow", "project", "monitor",
+        "corners",
+    ];
 
     #[test]
     fn every_option_is_of_a_floor_served_here_or_of_any() {

@@ -1,4 +1,4 @@
-//! A recording behind the window: sensed again, as fast and as often as somebody wants to see it.
+//! A recording behind the window: sensed again, at any speed and any number of times.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,17 +23,17 @@ use super::LOOK;
 use super::announced::AnnouncingSource;
 use super::feeds::{ToWindow, stop_and_wait};
 
-/// A recording that is being shown; ends with this.
+/// A recording that is shown; ends when this is dropped.
 pub(super) struct Player {
     orders: Option<SyncSender<PlaybackOrder>>,
     shown: Arc<Shown>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Orders that may wait for the player: seconds of a mouse that drags the time line.
+/// Maximum number of orders that wait for the player: seconds of a mouse that drags the time line.
 const ORDERS_WAITING: usize = 256;
 
-/// What the player's threads tell the window.
+/// State from the player's threads for the window.
 struct Shown {
     state: Mutex<PlaybackState>,
     is_over: AtomicBool,
@@ -46,7 +46,7 @@ impl Shown {
 }
 
 impl Player {
-    /// Plays the recording at `path` from its beginning; gives its floor, its first layout and what is to be seen.
+    /// Plays the recording at `path` from its beginning; returns its floor, its first layout and its snapshots.
     pub(super) fn start(
         path: &Path,
         window: ProgramChannels,
@@ -80,7 +80,7 @@ impl Playback for Player {
 
     fn lead(&mut self, order: PlaybackOrder) {
         if let Some(orders) = &self.orders {
-            // A player that failed has said so; one that is so far behind has newer orders soon.
+            // A failed player has reported its failure; one that is this far behind gets newer orders soon.
             let _ = orders.try_send(order);
         }
     }
@@ -96,7 +96,7 @@ impl Drop for Player {
     }
 }
 
-/// Reads all of the recording for its length and its marks, on a thread of its own.
+/// Reads the whole recording for its length and its marks, on a thread of its own.
 fn read_marks(path: &Path, first: Instant, shown: Arc<Shown>) -> Result<(), Failure> {
     let recording = Recording::open(path)?;
     let tell = move |timeline: &Timeline| {
@@ -124,7 +124,7 @@ fn told(mark: &Mark, first: Instant) -> PlaybackMark {
     PlaybackMark { at_s: mark.at.since(first).as_secs_f64(), what, weight }
 }
 
-/// One way through the recording, from its first moment.
+/// One pass through the recording, from its first moment.
 struct Run {
     session: Session,
     floor: Floor,
@@ -160,20 +160,20 @@ impl Run {
     }
 }
 
-/// The recording and how it is to be played.
+/// The recording and the state of its playback.
 struct Playing {
     path: PathBuf,
     run: Run,
     window: ProgramChannels,
     snapshots: triple_buffer::Input<Snapshot>,
-    /// What was shown before the way to another moment began.
+    /// The last snapshot before a jump to another moment.
     last: Snapshot,
     orders: Receiver<PlaybackOrder>,
     shown: Arc<Shown>,
 }
 
 impl Playing {
-    /// Plays until the window hangs up.
+    /// Plays until the window closes its channels.
     fn play(mut self) {
         loop {
             match self.orders.recv_timeout(LOOK) {
@@ -189,7 +189,7 @@ impl Playing {
         let speed_of = |times: f64| if times.is_finite() { Speed::Times(times) } else { Speed::Max };
         match order {
             PlaybackOrder::Pause(is_paused) => {
-                // At the end there is nothing to go on with but the beginning.
+                // At the end, playing can only continue from the beginning.
                 if !is_paused && self.run.progress.is_over() {
                     self.go_to(0.0);
                 }
@@ -211,10 +211,10 @@ impl Playing {
         }
     }
 
-    /// Senses the floor again up to this moment; what is past is only reached from the beginning.
+    /// Senses the floor again up to this moment; an earlier moment is only reachable from the beginning.
     fn go_to(&mut self, at_s: f64) {
         let length_s = self.shown.state().length_s;
-        // NaN is the first moment.
+        // NaN stands for the first moment.
         let at_s = at_s.max(0.0).min(length_s);
         if at_s < self.run.at_s() {
             let speed = self.run.transport.speed();
@@ -233,7 +233,7 @@ impl Playing {
         self.run.transport.hurry_to(self.run.first + Duration::from_secs_f64(at_s));
     }
 
-    /// Passes on what is to be seen.
+    /// Passes on the latest snapshot.
     fn look(&mut self) {
         let at_s = self.run.at_s();
         let is_fresh = self.run.snapshots.update();
@@ -245,7 +245,7 @@ impl Playing {
                 self.last.clone_from(self.run.snapshots.output_buffer());
             }
         }
-        // On the way what was shown before stays.
+        // During a jump, the snapshot from before stays visible.
         self.snapshots.input_buffer_mut().clone_from(&self.last);
         self.snapshots.publish();
         let (is_paused, repeats) = (state.is_paused, state.repeats);
@@ -259,7 +259,7 @@ impl Playing {
     }
 }
 
-/// How near to a moment the last packet before it may be, in seconds: boards send a thousand a second.
+/// Maximum time from the last packet to the target moment, in seconds: boards send a thousand a second.
 const ARRIVED_S: f64 = 0.005;
 
 #[cfg(test)]
@@ -277,7 +277,7 @@ mod tests {
         session: session::Args,
     }
 
-    /// Waits for it, however slow the machine.
+    /// Waits until `what` holds, on a machine of any speed.
     fn until(player: &mut Player, what: impl Fn(&PlaybackState) -> bool) -> PlaybackState {
         let begun = HostInstant::now();
         loop {
@@ -310,7 +310,7 @@ mod tests {
         let first: Vec<EventNews> = told.try_iter().collect();
         assert!(first.len() > 10);
 
-        // Back to after the first press, and it stays there.
+        // Jumps back to a moment after the first press, and stays there.
         player.lead(PlaybackOrder::GoTo(5.0));
         let back = until(&mut player, |state| state.goes_to_s.is_none() && state.at_s < 6.0);
         assert!((back.at_s - 5.0).abs() < 0.02 && back.is_paused, "{back:?}");
@@ -321,7 +321,7 @@ mod tests {
         assert!(!again.is_empty() && again == &first[..again.len()], "{again:?}");
         assert!(shown < Instant::from_millis(6000), "{shown:?}");
 
-        // On again, over and over.
+        // Plays again, in a loop.
         player.lead(PlaybackOrder::Repeat(Some((4.0, 4.5))));
         player.lead(PlaybackOrder::Pause(false));
         let restarts = || told.try_iter().filter(|news| matches!(news, EventNews::Restarted(_))).count();

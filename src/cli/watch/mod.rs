@@ -1,9 +1,9 @@
 //! Live reload: a saved layout, kind or effect is on the floor at once.
 //!
-//! The files are looked at some times a second, through all links: whatever an editor, a container platform or a network
-//! file system does to them, their state tells. Notices of the operating system would come a little earlier, and not at
-//! all from network folders, for a file behind a link, or for a link that is put in place of another; and they come for
-//! every other file of the folder as well, such as the program's own log.
+//! The program checks the files some times a second, through all links: their state shows every change by an editor,
+//! a container platform or a network file system. Notifications of the operating system would arrive a little
+//! earlier, but not at all from network folders, for a file behind a link, or for a link that replaces another; and
+//! they would also arrive for every other file of the folder, such as the program's own log.
 
 mod stamps;
 #[cfg(test)]
@@ -23,32 +23,32 @@ use super::failure::Failure;
 use super::layout_args::LayoutArgs;
 use stamps::Stamps;
 
-/// How often the files are looked at, and how long they must stay the same before they are read: editors write in several
-/// steps, which follow each other within some milliseconds.
+/// Interval between checks of the files, and time for which they must stay the same before they are read: editors
+/// write in several steps, some milliseconds apart.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// Greatest share of the time that looking takes: a folder that answers slowly is looked at less often.
+/// Reciprocal of the maximum share of the time spent on checks: a folder that answers slowly is checked less often.
 const SHARE: u32 = 50;
 
-/// How long a file may be gone before that is reported: editors and container platforms put another in its place.
+/// Time for which a file may be missing before that is reported: editors and container platforms replace files.
 const GONE: Duration = Duration::from_millis(500);
 
-/// How long after a change, or after the beginning, contents are compared too: longer than the coarsest clock of file
-/// systems, of 2 s.
+/// Time after a change, or after the start, in which contents are compared too: longer than the coarsest clock of
+/// file systems, of 2 s.
 const COMPARED: Duration = Duration::from_secs(3);
 
-/// Watches files for as long as it lives.
+/// Watches files until it is dropped.
 pub(crate) struct Watch {
-    /// `None` only while being dropped.
+    /// `None` only during the drop.
     end: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Watch {
-    /// Calls `tell` with the layout, or with everything wrong with it, each time its file or a kind's or an effect's file
-    /// is saved.
+    /// Calls `tell` with the layout, or with all its errors, each time its file or a kind's or an effect's file is
+    /// saved.
     ///
-    /// Gives `None` for a built-in layout, which has no file.
+    /// Returns `None` for a built-in layout, which has no file.
     pub(crate) fn start(
         files: &LayoutArgs,
         geometry: Geometry,
@@ -61,7 +61,7 @@ impl Watch {
 
     /// Calls `tell` each time the layout's file or a kind's or an effect's file is saved.
     ///
-    /// Gives `None` for a built-in layout, which has no file.
+    /// Returns `None` for a built-in layout, which has no file.
     pub(crate) fn on_change(
         files: &LayoutArgs,
         tell: impl Fn() + Send + 'static,
@@ -93,16 +93,16 @@ impl Watch {
 impl Drop for Watch {
     fn drop(&mut self) {
         self.end = None;
-        // It is reading at most; a panic in it has been reported.
+        // The thread is at most reading; a panic in it has been reported.
         let _ = self.thread.take().map(JoinHandle::join);
     }
 }
 
-/// Finds out when files that change have come to rest.
+/// Detects when changed files are stable.
 struct Lookout {
-    /// States that were reported.
+    /// The reported states.
     reported: Stamps,
-    /// States since then, and since when they are so.
+    /// The states since then, and the time since which they are the same.
     changed: Option<(Stamps, Instant)>,
     compared_until: Instant,
 }
@@ -116,7 +116,7 @@ impl Lookout {
         now < self.compared_until
     }
 
-    /// Whether files have changed since the last report and rest; `now_so` is their state `now`.
+    /// Whether files have changed since the last report and are stable; `now_so` is their state at `now`.
     fn look(&mut self, now_so: Stamps, now: Instant) -> bool {
         if now_so.is_same(&self.reported) {
             (self.reported, self.changed) = (now_so, None);

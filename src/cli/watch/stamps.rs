@@ -1,4 +1,4 @@
-//! States of the files that a layout is read from, without their contents.
+//! States of the files of a layout, without their contents.
 
 use std::collections::BTreeMap;
 use std::fs::Metadata;
@@ -10,17 +10,17 @@ use underfoot::schema::read_bounded;
 
 use super::super::layout_args::LayoutArgs;
 
-/// Greatest number of files that are watched: as many as are read, several times over.
+/// Maximum number of watched files: several times as many as are read.
 const MOST_FILES: usize = 10_000;
 
-/// Largest file whose contents are compared, in bytes; as large as any layout.
+/// Maximum size of a file for the comparison of contents, in bytes; as large as any layout.
 const MOST_BYTES: u64 = 16 << 20;
 
 /// States of all files of a layout: its own, and those of its kinds and effects.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stamps(BTreeMap<PathBuf, Stamp>);
 
-/// State of one file, behind all links.
+/// State of one file, after all links.
 #[derive(Clone, Debug)]
 enum Stamp {
     Missing,
@@ -28,16 +28,17 @@ enum Stamp {
         length: u64,
         modified: Option<SystemTime>,
         identity: Identity,
-        /// Hash of its contents, where they are compared.
+        /// Hash of its contents, if they are compared.
         contents: Option<u64>,
     },
 }
 
-/// Device and number of a file, or its time of creation where there are none: a file put in place of another differs.
+/// Device and number of a file, or its time of creation on systems without them: a file that replaces another
+/// differs.
 type Identity = (u64, u64, Option<SystemTime>);
 
 impl Stamps {
-    /// The files' states now. With `contents`, what is in them is compared as well: two saves may follow each other
+    /// The current states of the files. With `contents`, includes their contents: two saves may follow each other
     /// within one step of a file system's clock, which is up to 2 s.
     pub(super) fn of(files: &LayoutArgs, contents: bool) -> Self {
         let mut stamps = BTreeMap::new();
@@ -66,7 +67,7 @@ impl Stamps {
                 .all(|((path, stamp), (other_path, other))| path == other_path && stamp.is_same(other))
     }
 
-    /// Whether a file of `before` is not there now.
+    /// Whether a file of `before` is missing now.
     pub(super) fn lacks_any_of(&self, before: &Self) -> bool {
         let is_there = |stamp: Option<&Stamp>| matches!(stamp, Some(Stamp::There { .. }));
         before.0.iter().any(|(path, stamp)| is_there(Some(stamp)) && !is_there(self.0.get(path)))

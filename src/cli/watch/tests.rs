@@ -1,11 +1,11 @@
-//! Files that editors and platforms save in their own ways. Time is handed in.
+//! Files saved in the ways of editors and platforms. The tests set the time.
 
 use std::fs;
 use std::path::Path;
 
 use super::*;
 
-/// A layout that is watched, and the time so far.
+/// A watched layout, and the time so far.
 struct Site {
     files: LayoutArgs,
     lookout: Lookout,
@@ -20,7 +20,7 @@ impl Site {
         Self { files, lookout, now }
     }
 
-    /// Number of reports while the files rest for so long.
+    /// Number of reports while the files are unchanged for this many seconds.
     fn reports_in(&mut self, seconds: f32) -> usize {
         let looks = (seconds / EVERY.as_secs_f32()) as usize;
         (0..looks)

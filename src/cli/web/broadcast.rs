@@ -1,4 +1,4 @@
-//! One stream of lines to many clients, and of frames to windows that have joined; none of them holds up another.
+//! One stream of lines to many clients, and of frames to joined windows; no client delays another.
 
 use std::io::{self, Write};
 use std::net::SocketAddr;
@@ -9,17 +9,17 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tracing::warn;
 use tungstenite::{Bytes, Message};
 
-/// Lines that may wait for one client: two seconds of contacts.
+/// Maximum number of lines that wait for one client: two seconds of contacts.
 const WAITING: usize = 256;
 
-/// Lines and frames that may wait for one window: two seconds of both.
+/// Maximum number of lines and frames that wait for one window: two seconds of both.
 const WAITING_FRAMES: usize = 1024;
 
-/// Everybody who is told.
+/// All connected clients.
 #[derive(Debug, Default)]
 pub(super) struct Clients {
     state: Mutex<State>,
-    /// How many windows have joined.
+    /// Number of joined windows.
     windows: Arc<AtomicUsize>,
 }
 
@@ -28,9 +28,9 @@ struct State {
     there: Vec<Client>,
     served: u64,
     dropped: u64,
-    /// Web pages that were not let in.
+    /// Number of refused web pages.
     refused: u64,
-    /// Whether the floor has ended: nothing comes any more.
+    /// Whether the floor has ended: no more messages follow.
     ended: bool,
 }
 
@@ -38,15 +38,15 @@ struct State {
 struct Client {
     peer: SocketAddr,
     lines: SyncSender<Message>,
-    /// Whether it is a window, which is told frames as well.
+    /// Whether it is a window, which also gets frames.
     joins: bool,
     dropped: Arc<AtomicBool>,
 }
 
-/// What one client is told.
+/// The messages to one client.
 pub(super) struct Lines {
     pub(super) queue: Receiver<Message>,
-    /// Whether too much waits for it: nothing more will come, and what waits is old.
+    /// Whether too many messages wait for it: no more follow, and the waiting ones are old.
     pub(super) dropped: Arc<AtomicBool>,
 }
 
@@ -55,12 +55,13 @@ impl Clients {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Counts the windows that have joined.
+    /// The counter of joined windows.
     pub(super) fn windows(&self) -> Arc<AtomicUsize> {
         Arc::clone(&self.windows)
     }
 
-    /// One more, who hears what happens from now on; `joins` if it is a window, which also gets what the boards send.
+    /// Adds a client, which gets messages from now on; `joins` if it is a window, which also gets the boards'
+    /// packets.
     pub(super) fn join(&self, peer: SocketAddr, joins: bool) -> Lines {
         let (lines, queue) = sync_channel(if joins { WAITING_FRAMES } else { WAITING });
         let dropped = Arc::<AtomicBool>::default();
@@ -74,7 +75,7 @@ impl Clients {
         Lines { queue, dropped }
     }
 
-    /// One less; `slow` if it does not read.
+    /// Removes a client; `slow` if it does not read.
     pub(super) fn leave(&self, peer: SocketAddr, slow: bool) {
         let mut state = self.lock();
         let place = state.there.iter().position(|client| client.peer == peer);
@@ -93,14 +94,15 @@ impl Clients {
         self.windows.store(joined, Ordering::Relaxed);
     }
 
-    /// Tells all windows what the boards sent.
+    /// Sends a frame of the boards' packets to all windows.
     pub(super) fn tell_frame(&self, frame: Vec<u8>) {
         let mut state = self.lock();
         state.send(&Message::Binary(Bytes::from(frame)), |client| client.joins);
         self.count_windows(&state);
     }
 
-    /// Notes a web page that is not let in. Told ever more seldom: a page may try for as long as it is open.
+    /// Counts a refused web page. Logs it only when the count is a power of two: a page may retry as long as it is
+    /// open.
     pub(super) fn refuse(&self, origin: &str) {
         let mut state = self.lock();
         state.refused += 1;
@@ -110,7 +112,7 @@ impl Clients {
         }
     }
 
-    /// How many were served, and how many of them were dropped.
+    /// Numbers of clients that were served and dropped.
     pub(super) fn counts(&self) -> (u64, u64) {
         let state = self.lock();
         (state.served, state.dropped)
@@ -143,14 +145,14 @@ impl State {
         }
     }
 
-    /// Tells all how many there are.
+    /// Sends the numbers of clients to all of them.
     fn tell_counts(&mut self) {
         let (connected, dropped) = (self.there.len(), self.dropped);
         self.tell(&format!(r#"{{"event":"clients","connected":{connected},"dropped":{dropped}}}"#));
     }
 }
 
-/// What is written to it is told line by line.
+/// A writer that sends its input to all clients line by line.
 pub(super) struct Broadcast {
     clients: Arc<Clients>,
     line: Vec<u8>,
@@ -186,7 +188,7 @@ impl Drop for Broadcast {
     fn drop(&mut self) {
         let mut state = self.clients.lock();
         state.ended = true;
-        // Their threads send what waits, and end.
+        // The clients' threads send the waiting messages, and end.
         state.there.clear();
     }
 }

@@ -1,8 +1,8 @@
-//! How much one client may send.
+//! The rate limit on the input of one client.
 
 use std::time::Instant;
 
-/// Bytes that are read of one client, so many at once and in each second; what is beyond waits in its connection.
+/// A token bucket of bytes read from one client; bytes beyond it wait in the connection.
 #[derive(Debug)]
 pub(super) struct Budget {
     most: f64,
@@ -11,13 +11,13 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// `most` bytes at once, and in each second.
+    /// `most` bytes at once, and per second.
     pub(super) fn new(most: usize, now: Instant) -> Self {
         let most = most as f64;
         Self { most, left: most, at: now }
     }
 
-    /// Whether another message is read at `now`.
+    /// Whether another message may be read at `now`.
     pub(super) fn allows(&mut self, now: Instant) -> bool {
         let passed = now.duration_since(self.at).as_secs_f64();
         self.at = now;
@@ -25,7 +25,7 @@ impl Budget {
         self.left > 0.0
     }
 
-    /// Notes a message that was read; the last one may be larger than what was left.
+    /// Subtracts a message that was read; the last one may exceed the remainder.
     pub(super) fn spend(&mut self, bytes: usize) {
         self.left -= bytes as f64;
     }

@@ -1,5 +1,5 @@
-//! Layouts from elsewhere, checked one at a time on a thread that goes after all others: a flood of them takes no time
-//! from sensing.
+//! Layouts from clients, checked one at a time on a thread of low priority: a flood of them takes no time from
+//! sensing.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::Builder;
@@ -13,36 +13,36 @@ use underfoot::widget::Guard;
 
 use super::MOST;
 
-/// Most problems of one layout that are told.
+/// Maximum number of reported problems of one layout.
 const MOST_PROBLEMS: usize = 8;
 
-/// Most bytes of that.
+/// Maximum length of that report, in bytes.
 const MOST_BYTES: usize = 4096;
 
-/// Done, or the reason why not.
+/// Success, or the reason for the refusal.
 pub(super) type Checked = Result<(), String>;
 
-/// A layout, and whoever waits for the result.
+/// A layout, and the channel for the result.
 struct Job {
     text: String,
     answer: SyncSender<Checked>,
 }
 
-/// Takes layouts; ends its thread when dropped.
+/// Queue of layouts to check; ends its thread when dropped.
 pub(super) struct Checks(SyncSender<Job>);
 
 impl Checks {
-    /// Checks layouts for a floor of this geometry, and puts those that are good on the floor of `session`.
+    /// Checks layouts for a floor of this geometry, and puts the valid ones on the floor of `session`.
     ///
     /// # Errors
-    /// The system gives no thread.
+    /// An error if the system provides no thread.
     pub(super) fn start(session: Session, geometry: Geometry) -> std::io::Result<Self> {
-        // Each client has one at most.
+        // Each client has at most one layout in the queue.
         let (jobs, asked) = sync_channel::<Job>(MOST);
         let work = move || {
             step_back();
             for Job { text, answer } in asked {
-                // A client that has left need not know.
+                // The client may have left.
                 let _ = answer.try_send(put(&text, &session, &geometry));
             }
         };
@@ -50,7 +50,7 @@ impl Checks {
         Ok(Self(jobs))
     }
 
-    /// Checks a layout when its turn has come; the result comes through what is given back.
+    /// Queues a layout for a check; the result arrives in the returned channel.
     pub(super) fn ask(&self, text: String) -> Result<Receiver<Checked>, String> {
         let (answer, answered) = sync_channel(1);
         let busy = |_| "so many layouts wait to be checked: send it again".to_owned();
@@ -63,7 +63,7 @@ impl Checks {
 fn put(text: &str, session: &Session, geometry: &Geometry) -> Checked {
     let read = schema::parse_layout(text, "the layout", &Kinds::builtin(), geometry);
     let layout = read.map_err(|problems| first_of(&problems))?.layout;
-    // Controls that act while they are held are not brought, moved or taken away from elsewhere.
+    // Clients may not add, move or remove controls that act while they are held.
     for (layout, whose) in [(&*session.snapshot().layout, "on the floor"), (&layout, "sent")] {
         if let Some(id) = held_to_run(layout) {
             return Err(format!(
@@ -77,7 +77,7 @@ fn put(text: &str, session: &Session, geometry: &Geometry) -> Checked {
     Ok(())
 }
 
-/// The first few problems, and how many there are.
+/// The first few problems, and the number of all.
 fn first_of(problems: &Diagnostics) -> String {
     let mut told: String =
         problems.iter().take(MOST_PROBLEMS).map(|problem| format!("{problem}\n")).collect();

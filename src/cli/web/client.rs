@@ -1,4 +1,4 @@
-//! One web client: lines and frames out, requests in, on one thread that never waits for it.
+//! One web client: lines and frames out, requests in, on one thread that never blocks on it.
 
 use std::io::ErrorKind;
 use std::net::{SocketAddr, TcpStream};
@@ -21,39 +21,39 @@ use super::origin::may_connect;
 use super::request::{Standing, process};
 use super::{MOST_BYTES, Shared};
 
-/// How often it is looked whether the client asks something.
+/// Interval between two checks for requests of the client.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
-/// Requests that are taken in one look: a thousand a second, as over OSC.
+/// Maximum number of requests in one check: a thousand a second, as over OSC.
 const MOST_REQUESTS: usize = 10;
 
-/// Bytes of requests that are read in a second: a thousand of usual length.
+/// Maximum number of bytes of requests in a second: a thousand requests of usual length.
 const BYTES_A_SECOND: usize = 256 * 1024;
 
-/// What the system keeps for a client that does not read, in bytes: little, since what waits there grows old.
+/// Send buffer of the system for a client that does not read, in bytes: small, since waiting data becomes outdated.
 const WAITING_BYTES: usize = 64 * 1024;
 
-/// How long what is written may wait for the client. It should not act on what is older, and may come again.
+/// Maximum time for which output may wait for the client. It should not act on older data, and may connect again.
 const STALLED: Duration = Duration::from_secs(1);
 
-/// How often the client is asked whether it lives, and how long it may be silent.
+/// Interval between pings of the client, and maximum time of its silence.
 const PING_EVERY: Duration = Duration::from_secs(1);
 const SILENT: Duration = Duration::from_secs(5);
 
-/// How it ended.
+/// The reason for the end of a connection.
 #[derive(Clone, Copy, PartialEq)]
 enum End {
-    /// It went, or the floor has ended.
+    /// The client left, or the floor has ended.
     Gone,
-    /// It does not read.
+    /// The client does not read.
     Slow,
 }
 
-/// Serves one client until it goes.
+/// Serves one client until it leaves.
 #[allow(clippy::result_large_err, reason = "what refuses a client is as tungstenite has it")]
 pub(super) fn serve(stream: TcpStream, peer: SocketAddr, shared: &Shared, joins: bool) {
     let Ok(own) = stream.local_addr() else { return };
-    // With more room at the system's a client is only dropped later.
+    // With a larger buffer, a slow client would only be dropped later.
     let _ = SockRef::from(&stream).set_send_buffer_size(WAITING_BYTES);
     let check = |request: &Request, response: Response| -> Result<Response, ErrorResponse> {
         let origin = request.headers().get(header::ORIGIN).map(|origin| origin.to_str().unwrap_or("null"));
@@ -102,9 +102,9 @@ struct Client<'a> {
     joins: bool,
     standing: Standing,
     budget: Budget,
-    /// Since when something written waits for the client to read.
+    /// Time since which output waits for the client.
     waits_since: Option<Instant>,
-    /// When something came from it.
+    /// Time of the last input from it.
     heard: Instant,
 }
 
@@ -124,7 +124,7 @@ impl Client<'_> {
                 let greeting = if self.joins { mirror_greeting } else { greeting };
                 self.send(Message::text(greeting(&seen_layout, self.shared)))?;
             }
-            // Until the next look at the layout.
+            // Until the next check of the layout.
             let look = Instant::now() + PING_EVERY;
             while Instant::now() < look {
                 let is_over = self.pass_on(lines)?;
@@ -146,7 +146,7 @@ impl Client<'_> {
         }
     }
 
-    /// Sends what waits, or waits for it a little; whether nothing more will come.
+    /// Sends the waiting messages, or waits for one briefly; returns whether no more follow.
     fn pass_on(&mut self, lines: &Lines) -> Result<bool, End> {
         if self.waits_since.is_some() {
             std::thread::sleep(LOOK_EVERY / 2);
@@ -177,7 +177,7 @@ impl Client<'_> {
         if since.elapsed() > STALLED { Err(End::Slow) } else { Ok(()) }
     }
 
-    /// Whether it was done, and not left for later.
+    /// Whether the operation is complete, not postponed.
     fn judge(&self, done: tungstenite::Result<()>) -> Result<bool, End> {
         match done {
             Ok(()) => Ok(true),
@@ -190,7 +190,7 @@ impl Client<'_> {
         }
     }
 
-    /// Does what it asks.
+    /// Processes the requests of the client.
     fn hear(&mut self) -> Result<(), End> {
         if let Some(refusal) = self.standing.refusal() {
             self.send(Message::text(refusal))?;
@@ -219,7 +219,7 @@ impl Client<'_> {
     }
 
     fn say_goodbye(&mut self) -> End {
-        // Who no longer listens need not know.
+        // The client may be gone.
         let _ = self.socket.close(None);
         let _ = self.socket.flush();
         End::Gone

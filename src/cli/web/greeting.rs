@@ -1,4 +1,4 @@
-//! What a web client is told first: where the controls are, and how they are; and a window, all of it.
+//! First messages: for a web client, the places and states of the controls; for a window, the whole floor.
 
 use std::sync::mpsc::sync_channel;
 use std::time::Duration;
@@ -11,10 +11,10 @@ use underfoot::sink::control_json;
 
 use super::Shared;
 
-/// How long the tare is waited for; without it, whoever joins measures its own.
+/// Maximum time to wait for the tare; without it, a joined window measures its own.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// What a window is told that joins: the floor as it is measured now, the layout, and how its controls are.
+/// The greeting of a joined window: the floor with its current tare, the layout, and the states of its controls.
 pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
     let mut floor = shared.floor.clone();
     let (answer, answered) = sync_channel(1);
@@ -26,7 +26,7 @@ pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
     Greeting::line(&floor, &seen.layout, &seen.floor, shared.method, shared.checks.is_some())
 }
 
-/// The floor and its controls as a line: of each control where it is, and all that a line about its state has.
+/// The floor and its controls as a line: for each control its place, and all fields of a line about its state.
 pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
     let geometry = &shared.floor.geometry;
     let controls: Vec<Value> = seen
@@ -41,7 +41,7 @@ pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
             });
             let state = seen.control(widget.id.as_str()).map(|state| control_json(&state));
             if let (Some(control), Some(Value::Object(state))) = (control.as_object_mut(), state) {
-                // Those two say that it is a line of its own.
+                // These two fields mark a separate line.
                 control.extend(state.into_iter().filter(|(field, _)| field != "event" && field != "t_s"));
             }
             control

@@ -1,4 +1,4 @@
-//! The request of a client to put another layout on the floor: one a second, of which one is checked at a time.
+//! The request of a client to replace the layout: one a second, of which one is checked at a time.
 
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
@@ -11,10 +11,10 @@ use super::checks::Checked;
 /// The request: its argument is the layout as text, made of shipped kinds.
 pub(super) const REQUEST: &str = "layout";
 
-/// Most bytes of a request with a layout: far more than the largest shipped one takes.
+/// Maximum size of a request with a layout in bytes: far more than the largest shipped layout.
 pub(super) const MOST_BYTES: usize = 1 << 20;
 
-/// How often one client's layouts are checked.
+/// Minimum interval between two checks for one client.
 const EVERY: Duration = Duration::from_secs(1);
 
 const TOO_OFTEN: &str = "one layout a second is checked: send it again";
@@ -27,13 +27,13 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    /// Why none is taken now, if that is so; to be asked before anything is read.
+    /// The reason why no layout is accepted now, if any; call it before anything is read.
     pub(super) fn why_not(&self, now: Instant) -> Option<&'static str> {
         let is_soon = self.asked.is_some_and(|asked| now.duration_since(asked) < EVERY);
         (self.checking.is_some() || is_soon).then_some(TOO_OFTEN)
     }
 
-    /// Lets the layout in `arguments` be checked and put on the floor; the result comes later, from
+    /// Queues the layout in `arguments` for a check and for the floor; the result comes later, from
     /// [`Layouts::checked`].
     pub(super) fn put(&mut self, arguments: Vec<Value>, shared: &Shared, now: Instant) -> Checked {
         let Some(checks) = &shared.checks else {
@@ -52,7 +52,7 @@ impl Layouts {
         Ok(())
     }
 
-    /// The result of the check that was under way, once it is there.
+    /// The result of the current check, as soon as it is available.
     pub(super) fn checked(&mut self) -> Option<Checked> {
         let checked = match self.checking.as_ref()?.try_recv() {
             Err(TryRecvError::Empty) => return None,

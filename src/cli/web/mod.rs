@@ -32,39 +32,39 @@ use checks::Checks;
 use origin::Origin;
 use rooms::{Refusals, Rooms};
 
-/// Where web pages find the floor.
+/// Options of the server for web pages.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct WebArgs {
-    /// Show the floor as a web page at this address, such as 127.0.0.1:9002, and tell its events over WebSocket.
+    /// Show the floor as a web page at this address, such as 127.0.0.1:9002, and send its events over WebSocket.
     #[arg(long, value_name = "ADDR", value_parser = read_address)]
     web: Option<SocketAddr>,
-    /// Let pages from here connect as well, such as https://app.example.org; several may be given. Without it, pages
-    /// of this machine only.
+    /// Also let pages of this origin connect, such as https://app.example.org; several may be given. Without it,
+    /// pages of this machine only.
     #[arg(long, value_name = "ORIGIN", requires = "web")]
     web_origin: Vec<Origin>,
-    /// Let windows that have joined put other layouts on the floor, from where requests are taken.
+    /// Let joined windows put other layouts on the floor, from the addresses that may send requests.
     #[arg(long, requires = "web")]
     web_layouts: bool,
 }
 
-/// Connections at once; each is a thread.
+/// Maximum number of connections; each has a thread.
 const MOST: usize = 16;
 
-/// Most bytes of a request, unless it has a layout.
+/// Maximum size of a request without a layout, in bytes.
 const MOST_BYTES: usize = 4096;
 
-/// How long a client may take for the head of its request.
+/// Maximum time for the head of a client's request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Most bytes of that head.
+/// Maximum size of that head, in bytes.
 const MOST_HEAD: usize = 8192;
 
-/// How often it is looked whether somebody comes.
+/// Interval between two checks for new connections.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 const PAGE: &str = include_str!("page.html");
 
-/// The server before the floor is there: bound, and nobody is let in yet.
+/// The server before the floor exists: its port is open, but it accepts no clients yet.
 pub(crate) struct WebListener {
     listener: TcpListener,
     origins: Vec<Origin>,
@@ -73,21 +73,21 @@ pub(crate) struct WebListener {
     feed: MirrorFeed,
 }
 
-/// What every connection knows.
+/// Data of all connections.
 struct Shared {
     session: Session,
     floor: Floor,
     method: Method,
-    /// Where layouts from elsewhere are checked, if they are taken.
+    /// The checks of clients' layouts, if the server accepts layouts.
     checks: Option<Checks>,
     origins: Vec<Origin>,
-    /// Whose requests are taken.
+    /// Networks from which requests are accepted.
     apps: Vec<Network>,
     clients: Arc<Clients>,
     over: AtomicBool,
 }
 
-/// The server at work; ends when dropped.
+/// The running server; ends when dropped.
 pub(crate) struct WebServer {
     shared: Arc<Shared>,
     feed: MirrorFeed,
@@ -95,7 +95,7 @@ pub(crate) struct WebServer {
 }
 
 impl WebArgs {
-    /// Takes the address, if web pages are to be served.
+    /// Opens the port, if an address is given.
     pub(crate) fn open(&self) -> Result<Option<WebListener>, Failure> {
         let Some(address) = self.web else { return Ok(None) };
         let failed = |error| Failure::Other(format!("can't listen on {address} for web pages: {error}"));
@@ -110,17 +110,17 @@ impl WebArgs {
 }
 
 impl WebListener {
-    /// What tells the clients.
+    /// The sink that sends events to the clients.
     pub(crate) fn sink(&self) -> Result<impl EventSink + 'static, Failure> {
         Ok(JsonSink::new(Broadcast::new(Arc::clone(&self.clients)))?.with_contacts())
     }
 
-    /// `source`, with all that it gives shown to windows that join.
+    /// Wraps `source`, so that joined windows get its results.
     pub(crate) fn source(&self, source: Box<dyn SensorSource>, geometry: Geometry) -> Box<dyn SensorSource> {
         Box::new(self.feed.source(source, geometry))
     }
 
-    /// Lets clients in.
+    /// Starts to accept clients.
     pub(crate) fn serve(
         self,
         session: Session,
@@ -152,7 +152,7 @@ impl WebListener {
 impl Drop for WebServer {
     fn drop(&mut self) {
         self.shared.over.store(true, Ordering::Relaxed);
-        // What panicked in it has been said.
+        // A panic of the thread has been reported.
         let _ = self.thread.take().map(JoinHandle::join);
         let (served, dropped) = self.shared.clients.counts();
         errln!("Web: clients served {served}, dropped because they did not read {dropped}.");
@@ -162,7 +162,7 @@ impl Drop for WebServer {
     }
 }
 
-/// Lets clients in until the server ends, and waits for those that are in.
+/// Accepts clients until the server ends, and waits for the connected ones.
 fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     let (mut rooms, refusals) = (Rooms::default(), Refusals::start());
     while !shared.over.load(Ordering::Relaxed) {
@@ -190,7 +190,7 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     rooms.wait();
 }
 
-/// Answers one connection: a page, or events for as long as it lasts.
+/// Answers one connection: with a page, or with events for as long as it lasts.
 fn receive(stream: TcpStream, peer: SocketAddr, shared: &Shared) {
     // A client that has left meanwhile is not an error.
     let Some(head) = wait_for(&stream, PATIENCE).ok().and_then(|()| head(&stream)) else { return };
@@ -203,7 +203,7 @@ fn receive(stream: TcpStream, peer: SocketAddr, shared: &Shared) {
     }
 }
 
-/// Lets `stream` wait for its client, and no longer than that.
+/// Makes `stream` block on its client, up to this time-out.
 fn wait_for(stream: &TcpStream, patience: Duration) -> std::io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_read_timeout(Some(patience))?;
@@ -211,7 +211,7 @@ fn wait_for(stream: &TcpStream, patience: Duration) -> std::io::Result<()> {
     stream.set_nodelay(true)
 }
 
-/// The head of the request, which stays to be read.
+/// The head of the request, which remains in the stream.
 fn head(stream: &TcpStream) -> Option<String> {
     let begun = Instant::now();
     let mut bytes = [0; MOST_HEAD];
@@ -230,7 +230,7 @@ fn head(stream: &TcpStream) -> Option<String> {
 }
 
 fn show_page(stream: TcpStream) {
-    // Nothing from elsewhere is loaded, and no other page may frame this one.
+    // The page loads nothing from elsewhere, and no other page may frame it.
     const HEAD: &str = "Content-Type: text/html; charset=utf-8\r\nCache-Control: no-cache\r\n\
         Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
         connect-src 'self' ws:; frame-ancestors 'none'\r\nX-Content-Type-Options: nosniff\r\n";
@@ -243,12 +243,12 @@ fn turn_away(stream: TcpStream, status: &str, why: &str) {
 
 fn answer(mut stream: TcpStream, status: &str, head: &str, body: &str) {
     let length = body.len();
-    // Who does not wait for the answer does without.
+    // The client may not wait for the answer.
     let _ = write!(
         stream,
         "HTTP/1.1 {status}\r\n{head}Content-Length: {length}\r\nConnection: close\r\n\r\n{body}"
     );
-    // What was asked is read, so that the system does not cut the answer off.
+    // Reads the request, so that the system does not cut the answer off.
     let _ = stream.set_read_timeout(Some(LOOK_EVERY));
     let _ = stream.read(&mut [0; MOST_HEAD]);
 }

@@ -1,4 +1,4 @@
-//! Which web pages may connect: browsers say where a page comes from, and cannot be told otherwise by it.
+//! Web pages that may connect: browsers report the origin of a page, which the page can't change.
 
 use std::convert::Infallible;
 use std::net::{IpAddr, SocketAddr};
@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use underfoot::floor::{canonical, read_address};
 
-/// What a browser calls the place a page comes from: scheme, host and port.
+/// The origin of a page, as browsers report it: scheme, host and port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Origin(String);
 
@@ -18,9 +18,9 @@ impl FromStr for Origin {
     }
 }
 
-/// Whether a page from `origin` may connect to `own`: if it was allowed, if it comes from this machine, or if it comes
-/// from the very address it connects to, in figures. A name counts only if it was allowed, since anybody's name may
-/// lead to this machine (DNS rebinding). A client without an origin is not a web page.
+/// Whether a page from `origin` may connect to `own`: if it is allowed, comes from this machine, or comes from the
+/// very numeric address to which it connects. A host name counts only if it is allowed, since any name may resolve to
+/// this machine (DNS rebinding). A client without an origin is not a web page.
 pub(super) fn may_connect(origin: Option<&str>, own: SocketAddr, allowed: &[Origin]) -> bool {
     let Some(origin) = origin else { return true };
     let origin = origin.to_ascii_lowercase();

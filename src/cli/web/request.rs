@@ -1,4 +1,4 @@
-//! What a web client asks: one JSON object, answered where it is refused.
+//! Requests of a web client: one JSON object each, answered only if they are refused.
 
 use std::net::SocketAddr;
 use std::sync::mpsc::sync_channel;
@@ -13,7 +13,7 @@ use underfoot::wire::{ControlMessage, read_json};
 use super::layout::{self, Layouts};
 use super::{MOST_BYTES, Shared};
 
-/// How long an answer of the floor is waited for.
+/// Maximum time to wait for an answer of the floor.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// `{"request":"widget/zoom/set","args":[0.5]}`
@@ -25,41 +25,41 @@ struct Asked {
     args: Vec<Value>,
 }
 
-/// Keeps controls off for as long as whoever asks for it is there, such as a window that checks the floor.
+/// Keeps controls off as long as the requesting client is connected, such as a window that checks the floor.
 const CONTROLS_OFF: &str = "controls_off";
 
-/// What a client has asked that goes on.
+/// Requests of a client that stay in effect.
 #[derive(Default)]
 pub(super) struct Standing {
-    /// While it keeps the controls off, and when that last began.
+    /// Present while it keeps the controls off, and the time of the last start.
     off: Option<ControlsOff>,
     off_since: Option<Instant>,
     layouts: Layouts,
 }
 
 impl Standing {
-    /// The line that says why a layout was refused, once that is known.
+    /// The line with the reason for the refusal of a layout, as soon as it is known.
     pub(super) fn refusal(&mut self) -> Option<String> {
         self.layouts.checked()?.err().map(|why| refused(layout::REQUEST, &why))
     }
 }
 
-/// The line that says why a request was refused.
+/// The line with the reason for the refusal of a request.
 fn refused(request: &str, why: &str) -> String {
     json!({"event": "error", "request": request, "why": why}).to_string()
 }
 
-/// How often one client may switch all controls off.
+/// Minimum interval between two requests of one client to switch all controls off.
 const CONTROLS_OFF_EVERY: Duration = Duration::from_secs(1);
 
-/// Does what `text` asks; the line that says why not.
+/// Executes the request in `text`; the error is a line with the reason for the refusal.
 pub(super) fn process(
     text: &str,
     peer: SocketAddr,
     shared: &Shared,
     standing: &mut Standing,
 ) -> Result<(), String> {
-    // Only a layout is so large: what is refused anyway is not read first.
+    // Only a layout is this large: if it will be refused anyway, it is not parsed.
     if text.len() > MOST_BYTES
         && let Some(why) = standing.layouts.why_not(Instant::now())
     {

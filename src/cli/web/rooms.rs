@@ -1,4 +1,4 @@
-//! Places for clients: how many at once, how many of one address, and one for this machine.
+//! Limits on clients: in all, per address, and one place for this machine.
 
 use std::collections::VecDeque;
 use std::net::{IpAddr, Ipv6Addr, TcpStream};
@@ -10,39 +10,39 @@ use tracing::warn;
 
 use super::{MOST, turn_away, wait_for};
 
-/// Most clients of one other machine: a wall of screens, each with a page.
+/// Maximum number of clients of one other machine: a wall of screens, each with a page.
 const MOST_OF_ONE: usize = 6;
 
-/// Places that only this machine gets, so that an operator here can always look.
+/// Number of places reserved for this machine, so that an operator here can always connect.
 const KEPT_FOR_THIS_MACHINE: usize = 1;
 
-/// Clients that wait to be turned away; of more, connections are closed without a word.
+/// Maximum number of clients that wait for a refusal; further connections are closed without a message.
 const WAITING: usize = 16;
 
-/// How long one that is turned away may take to read why.
+/// Maximum time for a refused client to read the reason.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// Most clients that come in a second, of one address and in all: each is told the whole floor first, which takes some
-/// milliseconds.
+/// Maximum number of new clients per second, of one address and in all: each first gets the whole floor, which takes
+/// some milliseconds.
 const MOST_A_SECOND: usize = 32;
 const MOST_OF_ALL_A_SECOND: usize = 64;
 const SECOND: Duration = Duration::from_secs(1);
 
-/// The clients that are in.
+/// The connected clients.
 #[derive(Default)]
 pub(super) struct Rooms {
     taken: Vec<(IpAddr, JoinHandle<()>)>,
-    /// Those that were let in within the last second, and when.
+    /// Addresses and times of the clients accepted within the last second.
     came: VecDeque<(IpAddr, Instant)>,
 }
 
 impl Rooms {
-    /// Why a client from `ip` is not let in at `now`, if that is so.
+    /// The reason to refuse a client from `ip` at `now`, if any.
     pub(super) fn why_not(&mut self, ip: IpAddr, now: Instant) -> Option<&'static str> {
         self.taken.retain(|(_, room)| !room.is_finished());
         while self.came.pop_front_if(|(_, came)| now.duration_since(*came) >= SECOND).is_some() {}
         let of_this = self.came.iter().filter(|(other, _)| network(*other) == network(ip)).count();
-        // Others take none of what this machine may.
+        // Clients of other machines do not count against this machine.
         let is_crowd = self.came.len() >= MOST_OF_ALL_A_SECOND && !ip.to_canonical().is_loopback();
         if of_this >= MOST_A_SECOND || is_crowd {
             return Some("too many clients at once: come again in a second");
@@ -51,20 +51,20 @@ impl Rooms {
         why_not(ip, &taken)
     }
 
-    /// Lets a client in that came at `now`, and is served by `room`.
+    /// Registers a client that arrived at `now` and is served by the thread `room`.
     pub(super) fn take(&mut self, ip: IpAddr, room: JoinHandle<()>, now: Instant) {
         self.taken.push((ip, room));
         self.came.push_back((ip, now));
     }
 
-    /// Waits until all have gone.
+    /// Waits until all clients have left.
     pub(super) fn wait(self) {
-        // A thread that panicked has said so.
+        // A panic of the thread has been reported.
         self.taken.into_iter().for_each(|(_, room)| drop(room.join()));
     }
 }
 
-/// Why a client from `ip` is not let in beside those from `taken`, if that is so.
+/// The reason to refuse a client from `ip` beside those from `taken`, if any.
 fn why_not(ip: IpAddr, taken: &[IpAddr]) -> Option<&'static str> {
     let is_here = ip.to_canonical().is_loopback();
     let of_this = taken.iter().filter(|other| network(**other) == network(ip)).count();
@@ -78,7 +78,7 @@ fn why_not(ip: IpAddr, taken: &[IpAddr]) -> Option<&'static str> {
     }
 }
 
-/// The part of an address that one machine cannot easily change: in IPv6 the network of 64 bits.
+/// The part of an address that one machine can't easily change: for IPv6, the network of 64 bits.
 fn network(ip: IpAddr) -> IpAddr {
     match ip.to_canonical() {
         IpAddr::V6(ip) if !ip.is_loopback() => {
@@ -89,7 +89,7 @@ fn network(ip: IpAddr) -> IpAddr {
     }
 }
 
-/// Turns clients away on a thread of its own: one that reads slowly holds up nobody else.
+/// Refuses clients on a thread of its own: one that reads slowly delays no other.
 pub(super) struct Refusals(Option<SyncSender<(TcpStream, &'static str)>>);
 
 impl Refusals {
@@ -108,7 +108,7 @@ impl Refusals {
         Self(failed.is_ok().then_some(refuse))
     }
 
-    /// Says why to whoever is at the other end, or closes the connection where too many wait for that.
+    /// Sends the reason to the client, or closes the connection if too many wait.
     pub(super) fn refuse(&self, stream: TcpStream, why: &'static str) {
         if let Some(refuse) = &self.0 {
             let _ = refuse.try_send((stream, why));
@@ -157,7 +157,7 @@ mod tests {
         let taken: Vec<IpAddr> = (0..15).map(elsewhere).collect();
         assert_eq!(why_not(elsewhere(99), &taken), Some("too many clients"));
         assert_eq!(why_not(HERE, &taken), None);
-        // Also where this machine's own clients have taken the others.
+        // Also if this machine's own clients have taken the other places.
         assert_eq!(why_not(elsewhere(99), &[HERE; 15]), Some("too many clients"));
         assert_eq!(why_not(HERE, &[HERE; 16]), Some("too many clients"));
     }

@@ -1,4 +1,4 @@
-//! MCAP files byte by byte, as tools of others write them.
+//! Builds MCAP files byte by byte, as other programs write them.
 
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -14,30 +14,30 @@ use crate::schema::{self, Kinds};
 use crate::units::Instant;
 use crate::wire::{Readings, SensorPacket};
 
-/// Entries with their moments, and the numbers that the file gives them.
+/// Entries with their times, and their numbers in the file.
 pub(super) type Taken = Vec<(Instant, u32, Entry)>;
 
-/// How a tool writes a file.
+/// The way in which a tool writes a file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tool {
-    /// Compression of chunks; without, messages stand in the file itself.
+    /// Compression of chunks; without it, messages are in the file itself.
     pub(super) chunks: Option<&'static str>,
-    /// Messages of one chunk.
+    /// Number of messages in one chunk.
     pub(super) chunk_of: usize,
     pub(super) chunk_checksums: bool,
     pub(super) data_checksum: bool,
     pub(super) attachments_last: bool,
     pub(super) indexes: bool,
     pub(super) summary: bool,
-    /// Channels again in each chunk.
+    /// Whether each chunk repeats the channels.
     pub(super) repeats_channels: bool,
-    /// Messages, schemas, attachments and metadata of other programs in between.
+    /// Whether messages, schemas, attachments and metadata of other programs are in between.
     pub(super) strangers: bool,
-    /// First number of our channels.
+    /// Number of our first channel.
     pub(super) first_channel: u16,
 }
 
-/// As our own recorder does it.
+/// The way of our own recorder.
 pub(super) const OURS: Tool = Tool {
     chunks: Some(""),
     chunk_of: 40,
@@ -51,7 +51,7 @@ pub(super) const OURS: Tool = Tool {
     first_channel: 0,
 };
 
-/// A floor of one tile, so that tests are quick.
+/// A floor of one tile, to keep tests fast.
 pub(super) fn floor() -> Floor {
     Floor::of(Geometry::of_paper_tiles(1, 1).unwrap())
 }
@@ -60,7 +60,7 @@ pub(super) fn floor() -> Floor {
 pub(super) const PAGE: &str = "Layout(version: 1, regions: [(id: \"page\", at: (0, 0), size: (1, 1))], widgets: [\
      (id: \"home\", kind: \"button\", at: (0.1, 0.1), size: (0.8, 0.8))])";
 
-/// Some entries of each kind, several of them at one moment.
+/// Some entries of each kind, several of them at the same time.
 pub(super) fn entries(packets: u32) -> Taken {
     let mut entries = Vec::new();
     for number in 0..packets {
@@ -114,7 +114,7 @@ pub(super) fn message(channel: u16, sequence: u32, log_ns: u64, publish_ns: u64,
     record(op::MESSAGE, &[head, times, data.to_vec()].concat())
 }
 
-/// A chunk of these records.
+/// A chunk with these records.
 pub(super) fn chunk(compression: &str, with_checksum: bool, records: &[u8]) -> Vec<u8> {
     let packed = match compression {
         "zstd" => ruzstd::encoding::compress_to_vec(records, ruzstd::encoding::CompressionLevel::Fastest),
@@ -158,7 +158,7 @@ fn strangers(number: u64) -> [Vec<u8>; 3] {
 }
 
 impl Tool {
-    /// The file of these entries.
+    /// Writes a file with these entries.
     pub(super) fn write(&self, entries: &Taken) -> Vec<u8> {
         let channels: Vec<u8> =
             (self.first_channel..).zip(TOPICS).flat_map(|(number, topic)| channel(number, topic)).collect();
@@ -229,17 +229,17 @@ impl Tool {
     }
 }
 
-/// Everything that a file gives.
+/// The content of a file as read.
 #[derive(Debug, PartialEq)]
 pub(super) struct Given {
     pub(super) entries: Vec<(Instant, Entry)>,
     pub(super) events: usize,
     pub(super) foreign: u64,
-    /// Where it is cut or damaged.
+    /// Place and reason of a truncation or damage.
     pub(super) broken: Option<String>,
 }
 
-/// Reads all of a file but the texts of its floor and its layout, so that it takes no time.
+/// Reads all of a file except the texts of its floor and its layout, to keep tests fast.
 pub(super) fn read(file: Vec<u8>) -> Result<Given, RecordingError> {
     let (_, mut parts) = Opening::read(Box::new(Cursor::new(file)), Path::new("visit.mcap"))?;
     let mut given = Given { entries: Vec::new(), events: 0, foreign: 0, broken: None };
@@ -258,7 +258,7 @@ pub(super) fn read(file: Vec<u8>) -> Result<Given, RecordingError> {
     Ok(given)
 }
 
-/// Entries without the numbers that the file gives them.
+/// Entries without their numbers in the file.
 pub(super) fn plain(entries: &Taken) -> Vec<(Instant, Entry)> {
     entries.iter().map(|(at, _, entry)| (*at, entry.clone())).collect()
 }

@@ -1,4 +1,4 @@
-//! Recordings as they are, as tools of others write them anew, cut and damaged.
+//! Recordings: intact, rewritten by other tools, truncated and damaged.
 
 use mcap::records::op;
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ use super::build::{
     OURS, Taken, Tool, attachment, channel, chunk, entries, message, opening, plain, read, record,
 };
 
-/// Files as tools write them.
+/// The ways in which tools write files.
 fn tools() -> Vec<Tool> {
     let mut tools = vec![
         OURS,
@@ -21,7 +21,7 @@ fn tools() -> Vec<Tool> {
         Tool { summary: false, indexes: false, ..OURS },
         Tool { repeats_channels: true, first_channel: 300, ..OURS },
         Tool { strangers: true, first_channel: 5, ..OURS },
-        // One message in a chunk, and all in one.
+        // One message per chunk, and all in one chunk.
         Tool { chunk_of: 1, ..OURS },
         Tool { chunk_of: usize::MAX, ..OURS },
         // Without chunks and checksums.
@@ -53,7 +53,7 @@ fn whichever_tool_wrote_the_file_its_entries_are_the_same() {
     }
 }
 
-/// A tool that sorts by time may put entries of one moment in any order.
+/// A tool that sorts by time may put entries with the same time in any order.
 #[test]
 fn entries_of_one_moment_are_put_in_order_again() {
     let taken = entries(300);
@@ -91,7 +91,7 @@ fn a_file_out_of_order_is_named_and_not_played_on() {
     assert!(given.entries.len() < 100);
 }
 
-/// The entries of a cut or damaged file are those of the whole one up to some place.
+/// The entries of a truncated or damaged file are a prefix of the original ones.
 fn check_beginning(given: &[(crate::units::Instant, super::Entry)], taken: &Taken, case: &str) {
     let whole = plain(taken);
     assert!(given.len() <= whole.len() && *given == whole[..given.len()], "{case}: other entries");
@@ -105,7 +105,7 @@ fn a_file_that_is_cut_anywhere_gives_its_beginning() {
         let data_end = file.len() - OURS.write(&Vec::new()).len().min(file.len());
         let mut most = 0;
         for cut in (0..file.len()).step_by(37) {
-            // Nothing else tells where the floor is: it is behind everything.
+            // Some tools write the floor last: a truncated file then has none.
             let Ok(given) = read(file[..cut].to_vec()) else { continue };
             let case = format!("{tool:?} cut at {cut} of {}", file.len());
             check_beginning(&given.entries, &taken, &case);
@@ -118,7 +118,7 @@ fn a_file_that_is_cut_anywhere_gives_its_beginning() {
     }
 }
 
-/// Of a chunk that is cut, the messages before the cut are read.
+/// Of a truncated chunk, the messages before the cut are read.
 #[test]
 fn the_last_chunk_is_read_up_to_where_it_is_cut() {
     let taken = entries(2000);
@@ -127,14 +127,14 @@ fn the_last_chunk_is_read_up_to_where_it_is_cut() {
         let given = read(file[..file.len() * 9 / 10].to_vec()).unwrap();
         let why = given.broken.unwrap();
         assert!(why.contains("it ends at byte"), "{compression}: {why}");
-        // A packed chunk is read block by block, of up to 128 kB.
+        // A compressed chunk is read block by block, of up to 128 kB.
         let least = if compression.is_empty() { taken.len() / 2 } else { 0 };
         assert!(given.entries.len() >= least, "{compression}: {} entries", given.entries.len());
         check_beginning(&given.entries, &taken, compression);
     }
 }
 
-/// One bit of a file differs: the same entries, or a damage that is named.
+/// Flips one bit of a file: the entries must stay the same, or the reader must report a damage.
 fn flip(file: &[u8], bit: usize, taken: &Taken, is_checked: bool, case: &str) {
     let mut damaged = file.to_vec();
     damaged[bit / 8] ^= 1 << (bit % 8);
@@ -146,11 +146,11 @@ fn flip(file: &[u8], bit: usize, taken: &Taken, is_checked: bool, case: &str) {
 
 #[test]
 fn no_bit_of_a_checked_file_changes_entries_without_a_word() {
-    // Few entries: each bit is tried.
+    // Only a few entries, since every bit is flipped.
     let taken = entries(12);
     for compression in ["", "zstd"] {
         let file = Tool { chunks: Some(compression), chunk_of: 5, ..OURS }.write(&taken);
-        // The texts are those of the same file.
+        // The file is a complete recording.
         assert!(
             Recording::read(Box::new(std::io::Cursor::new(file.clone())), std::path::Path::new("x")).is_ok()
         );
@@ -177,7 +177,7 @@ fn bits_of_any_file_may_differ_without_a_panic() {
 fn damage_is_named_with_its_place() {
     let taken = entries(300);
     let file = OURS.write(&taken);
-    // In the middle of the data, which chunks are.
+    // In the middle of the data, where the chunks are.
     let place = file.len() / 2;
     let mut damaged = file.clone();
     damaged[place] ^= 1;
@@ -185,7 +185,7 @@ fn damage_is_named_with_its_place() {
     assert!(why.contains("the chunk at byte") && why.contains("does not fit its checksum"), "{why}");
     let at: usize = why.split("at byte ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!(at < place && place < at + 4000, "{why}: damaged at {place}");
-    // Between chunks.
+    // Between two chunks.
     let index = file.windows(15).rposition(|bytes| bytes == record(op::MESSAGE_INDEX, &[0; 6])).unwrap();
     let mut damaged = file;
     damaged[index + 10] ^= 1;
@@ -193,7 +193,7 @@ fn damage_is_named_with_its_place() {
     assert!(why.contains("what lies between chunks is damaged"), "{why}");
 }
 
-/// A file with these records behind its floor and layout.
+/// A file with these records after its floor and layout.
 fn with(records: &[u8]) -> Vec<u8> {
     let head = record(op::HEADER, &[0; 8]);
     let end = [record(op::DATA_END, &[0; 4]), record(op::FOOTER, &[0; 20]), mcap::MAGIC.to_vec()].concat();
@@ -228,7 +228,7 @@ fn what_makes_no_sense_is_named() {
 fn no_claim_of_a_length_takes_memory() {
     for compression in ["", "zstd", "lz4"] {
         for claim in [10_u64 << 30, LONGEST_CHUNK + 1, u64::MAX] {
-            // As the number of unpacked bytes, as that of packed ones, as the length of the record.
+            // As the decompressed size, as the compressed size, and as the length of the record.
             for place in [9 + 16, 9 + 28 + 4 + compression.len(), 1] {
                 let mut file = chunk(compression, true, &channel(1, PACKETS));
                 file[place..place + 8].copy_from_slice(&claim.to_le_bytes());
@@ -242,7 +242,7 @@ fn no_claim_of_a_length_takes_memory() {
         let claim = [&[opcode][..], &u64::MAX.to_le_bytes(), b"abc"].concat();
         assert!(complaint(&claim).contains("it ends in the middle of the record"), "{opcode}");
     }
-    // A bomb: 20 MB of zeros in some kB that claim to be less.
+    // A decompression bomb: 20 MB of zeros in some kB that claim to be less.
     for compression in ["zstd", "lz4"] {
         let mut bomb = chunk(compression, true, &vec![0; 20 << 20]);
         assert!(bomb.len() < 1 << 20);

@@ -1,4 +1,4 @@
-//! Entries are read as they were written, and no bytes make the reader panic.
+//! Entries survive writing and reading, and arbitrary bytes do not make the reader panic.
 
 mod build;
 mod files;

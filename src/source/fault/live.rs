@@ -1,4 +1,4 @@
-//! Faults that somebody switches on and off while a simulated floor runs.
+//! Faults that can be switched on and off while a simulated floor runs.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
@@ -10,10 +10,10 @@ use crate::sim::SensorFault;
 use crate::units::Instant;
 use crate::wire::{LinkCause, LinkCounters, SensorPacket};
 
-/// Changes that may wait for the simulated floor, which takes them each millisecond.
+/// Maximum number of waiting changes; the simulated floor takes them each millisecond.
 const CHANGES_WAITING: usize = 256;
 
-/// Switches the faults of a [`RehearsalSource`] from elsewhere.
+/// Switches the faults of a [`RehearsalSource`] from another thread.
 #[derive(Clone, Debug)]
 pub struct FaultSwitch(SyncSender<Change>);
 
@@ -24,33 +24,33 @@ enum Change {
 }
 
 impl FaultSwitch {
-    /// Lets these faults happen on the way of the packets from now on, in place of those of the last call; false if the
-    /// floor has ended, or stands still.
+    /// Replaces the packet faults of the last call by these from now on; false if the floor has ended or stands
+    /// still.
     #[must_use]
     pub fn set_packets(&self, faults: Faults) -> bool {
         self.0.try_send(Change::Packets(faults)).is_ok()
     }
 
-    /// Breaks a sensor, or mends it with `None`; false if the floor has ended, or stands still. A sensor that the floor lacks is left
-    /// alone.
+    /// Breaks a sensor, or repairs it with `None`; false if the floor has ended or stands still. Ignores a sensor
+    /// that the floor lacks.
     #[must_use]
     pub fn set_sensor(&self, sensor: SensorId, fault: Option<SensorFault>) -> bool {
         self.0.try_send(Change::Sensor(sensor, fault)).is_ok()
     }
 }
 
-/// A simulated floor with faults that are switched on and off while it runs, beside those it begins with.
+/// A simulated floor with faults that can be switched on and off while it runs, in addition to its initial ones.
 #[derive(Debug)]
 pub struct RehearsalSource {
     injector: FaultInjector<SimulatedSource>,
-    /// Those it began with.
+    /// The initial faults.
     planned: Faults,
     changes: Receiver<Change>,
 }
 
 impl RehearsalSource {
-    /// `inner` with the faults of `planned`, which stay whatever is switched; which packets are hit follows from
-    /// `seed`.
+    /// `inner` with the faults of `planned`, which stay regardless of the switch; `seed` determines the affected
+    /// packets.
     #[must_use]
     pub fn new(inner: SimulatedSource, planned: Faults, seed: u64) -> (Self, FaultSwitch) {
         let (sender, changes) = sync_channel(CHANGES_WAITING);
@@ -115,7 +115,7 @@ mod tests {
         assert!(switch.set_packets(Faults::default()));
         assert!(from_three(&heard(&mut source)) > 10);
 
-        // An open line reads nothing, while its plate and the part's own weight press on all that work.
+        // An open line reads nothing; the plate and the part's own weight press on all working sensors.
         let zeros = |packets: &[SensorPacket]| {
             let last = packets.iter().rfind(|packet| packet.board == 0).unwrap();
             match &last.readings {

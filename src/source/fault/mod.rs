@@ -1,4 +1,4 @@
-//! Faults on the way of packets: losses, repetitions, delays, damage, outages.
+//! Faults between the boards and the floor program: lost, duplicated, delayed and damaged packets, and outages.
 
 #[cfg(feature = "sim")]
 mod live;
@@ -23,66 +23,65 @@ use crate::wire::{LinkCause, LinkCounters, Readings, Request, SensorPacket};
 pub use self::live::{FaultSwitch, RehearsalSource};
 pub use self::spec::BadFault;
 
-/// What goes wrong on the way from the boards; the default is nothing.
+/// Faults on the way from the boards; by default none.
 ///
-/// Shares are between 0 (never) and 1 (always); what lies outside counts as
-/// the nearer of the two, NaN as 0.
+/// Shares are between 0 (never) and 1 (always); values outside are clamped, and NaN counts as 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faults {
-    /// Share of packets lost, each by itself.
+    /// Share of packets lost, independently of each other.
     pub loss: f64,
-    /// Times at which all packets are lost, over and over.
+    /// Repeated intervals in which all packets are lost.
     pub bursts: Option<Bursts>,
-    /// Share of packets that come a second time, at once.
+    /// Share of packets that arrive twice, without delay.
     pub duplicate: f64,
-    /// Share of packets that take longer, and so are overtaken by others.
+    /// Share of packets that are delayed, so that others overtake them.
     pub delay: f64,
-    /// The most that a delayed packet takes longer.
+    /// Maximum extra delay of a delayed packet.
     pub delay_up_to: Duration,
     /// Share of packets with one damaged number: a bit of the sequence or one reading.
     pub damage: f64,
-    /// Times at which boards are unplugged.
+    /// Intervals in which boards are unplugged.
     pub outages: Vec<Outage>,
-    /// Times at which boards send the same readings over and over.
+    /// Intervals in which boards repeat the same readings.
     pub frozen: Vec<Outage>,
-    /// When the thread that takes packets panics, as by a mistake of ours.
+    /// Time at which the receiving thread panics, as by a bug.
     pub panic_at: Option<Instant>,
-    /// Pairs of boards that send under each other's address.
+    /// Pairs of boards that use each other's address.
     pub swapped: Vec<(u16, u16)>,
-    /// Times at which nothing arrives, to come all at once at the end.
+    /// Intervals in which nothing arrives; the held-back packets arrive together at the end.
     pub stalls: Vec<Stall>,
 }
 
-/// Losses that come in bursts: one of `length` at the start of every `every`, but not of the first.
+/// Losses in bursts: one of `length` at the start of every period `every`, except the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bursts {
-    /// From one burst to the next.
+    /// Period of the bursts.
     pub every: Duration,
-    /// How long each lasts.
+    /// Duration of each burst.
     pub length: Duration,
 }
 
-/// A time during which something is wrong with one board, or with the whole floor.
+/// An interval with a fault of one board or of the whole floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outage {
-    /// Which board; `None` for all.
+    /// The board; `None` for all.
     pub board: Option<u16>,
-    /// From when.
+    /// Start of the interval.
     pub from: Instant,
-    /// Until when, not included.
+    /// End of the interval, exclusive.
     pub until: Instant,
 }
 
-/// A time during which packets are held back.
+/// An interval in which packets are held back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stall {
-    /// From when.
+    /// Start of the interval.
     pub from: Instant,
-    /// When all that was held back arrives.
+    /// Time at which all held-back packets arrive.
     pub until: Instant,
 }
 
-/// A source whose packets get lost, doubled, delayed or damaged on the way; the same seed does the same.
+/// A source whose packets get lost, duplicated, delayed or damaged; the same seed gives the same faults.
 #[derive(Debug)]
 pub struct FaultInjector<S> {
     inner: S,
@@ -90,7 +89,7 @@ pub struct FaultInjector<S> {
     rng: Pcg64Mcg,
     /// Packets on the way, the next to arrive first.
     on_the_way: BinaryHeap<Reverse<OnTheWay>>,
-    /// What each frozen board goes on sending.
+    /// The repeated readings of each frozen board.
     stuck: Vec<(u16, Readings)>,
     admitted: u64,
     now: Instant,
@@ -112,7 +111,7 @@ impl<S: SensorSource> FaultInjector<S> {
         }
     }
 
-    /// Lets these faults happen from now on, in place of the others; what is on its way arrives as it would have.
+    /// Replaces the faults from now on; packets on the way arrive as already decided.
     #[cfg(feature = "sim")]
     fn set_faults(&mut self, faults: Faults) {
         self.faults = faults;
@@ -124,11 +123,11 @@ impl<S: SensorSource> FaultInjector<S> {
     }
 
     fn chance(&mut self, share: f64) -> bool {
-        // Drawn even for a share of 0, so that one fault's share does not change what the others do.
+        // Draws a number even for a share of 0, so that the share of one fault does not change the others.
         self.rng.random::<f64>() < share
     }
 
-    /// Decides what becomes of a packet.
+    /// Applies the faults to a packet: drops, damages, delays or duplicates it.
     fn admit(&mut self, mut packet: SensorPacket) {
         let at = packet.received;
         let lost = self.chance(self.faults.loss);
@@ -178,7 +177,7 @@ impl<S: SensorSource> FaultInjector<S> {
         }
     }
 
-    /// Gives a board that stands still what it read when that began.
+    /// Gives the packet of a frozen board the readings from the start of the freeze.
     fn freeze(&mut self, packet: &mut SensorPacket) {
         let (board, at) = (packet.board, packet.received);
         let known = self.stuck.iter().position(|(stuck, _)| *stuck == board);
@@ -216,9 +215,8 @@ impl<S: SensorSource> FaultInjector<S> {
 }
 
 impl<S: SensorSource> SensorSource for FaultInjector<S> {
-    /// Gives `None` when `patience` has passed on the inner source's clock without a packet getting
-    /// through, or when that source gives `None`. What is still on its way when the inner source
-    /// ends arrives before the end.
+    /// Returns `None` when `patience` has passed on the inner source's clock without a packet, or when the inner
+    /// source returns `None`. Packets on the way when the inner source ends arrive before the end.
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         let begun = self.now();
         self.panic_if_due(begun);
@@ -276,7 +274,7 @@ impl<S: SensorSource> SensorSource for FaultInjector<S> {
 }
 
 impl Outage {
-    /// Whether it concerns what `board` sends at `at`.
+    /// Whether the outage affects a packet that `board` sends at `at`.
     fn hits(&self, board: u16, at: Instant) -> bool {
         self.board.is_none_or(|concerned| concerned == board) && self.from <= at && at < self.until
     }

@@ -1,4 +1,4 @@
-//! Faults put together at random.
+//! Random combinations of faults.
 
 use std::time::Duration;
 
@@ -8,16 +8,17 @@ use rand_pcg::Pcg64Mcg;
 use super::{Bursts, Faults, Outage, Stall};
 use crate::units::Instant;
 
-/// From one event to the next, on average.
+/// Average time between two events.
 const EVERY: Duration = Duration::from_secs(4);
 
-/// The longest event: floors are lost after 0.1 s and believed again after 1 s, so both sides of these are met.
+/// Maximum duration of an event: a floor counts as lost after 0.1 s and as back after 1 s, so events fall on both
+/// sides of these limits.
 const LONGEST: Duration = Duration::from_secs(2);
 
 impl Faults {
-    /// Losses, repetitions, delays and damage of random shares all the time, and every few seconds of `length` an
-    /// outage, a board that stands still or a stall, on a floor of `boards` boards (none is a floor without events of
-    /// single boards). The same seed gives the same faults.
+    /// Losses, duplicates, delays and damage with random shares all the time, and every few seconds of `length` an
+    /// outage, a frozen board or a stall, on a floor of `boards` boards (with 0, no event affects a single board).
+    /// The same seed gives the same faults.
     #[must_use]
     pub fn nemesis(seed: u64, length: Duration, boards: u16) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);

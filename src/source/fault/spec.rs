@@ -1,4 +1,4 @@
-//! Faults as people write them on a command line and in scenarios.
+//! The text form of faults, for command lines and scenarios.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::{Bursts, Faults, Outage, Stall};
 use crate::units::Instant;
 
-/// Why a text is not a fault: what was written, and how one is written.
+/// The error for a text that is not a fault: the text, the reason, and the correct forms.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "`{written}` is not a fault ({why}): write loss=5%, duplicate=10%, delay=10%:20ms, damage=1%, bursts=1s:50ms, \
@@ -19,30 +19,30 @@ pub struct BadFault {
     why: &'static str,
 }
 
-/// The longest time that is taken: a day.
+/// Maximum time in a fault: a day.
 const LONGEST_S: f64 = 86_400.0;
 
 impl FromStr for Faults {
     type Err = BadFault;
 
-    /// One fault:
+    /// Parses one fault:
     ///
-    /// | text | what goes wrong |
+    /// | text | fault |
     /// |---|---|
-    /// | `loss=5%` | packets are lost, each by itself |
-    /// | `duplicate=10%` | packets come twice |
-    /// | `delay=10%:20ms` | packets take up to that much longer |
+    /// | `loss=5%` | packets are lost independently |
+    /// | `duplicate=10%` | packets arrive twice |
+    /// | `delay=10%:20ms` | packets are delayed by up to this time |
     /// | `damage=1%` | packets have one damaged number |
     /// | `bursts=1s:50ms` | in every second all packets of 50 ms are lost |
     /// | `silent=10s..12s` | the whole floor is unplugged |
     /// | `board=3:10s..12s` | board 3 is unplugged |
     /// | `frozen=3:10s..12s` | board 3 sends the same readings over and over |
-    /// | `stall=10s..10.2s` | packets are held back and come all at once |
-    /// | `panic=20s` | the thread that takes the packets panics |
-    /// | `swapped=0:1` | two boards send under each other's address |
+    /// | `stall=10s..10.2s` | packets are held back and arrive all at once |
+    /// | `panic=20s` | the thread that receives the packets panics |
+    /// | `swapped=0:1` | two boards use each other's address |
     /// | `nemesis=7:60s:6` | most of these, chosen by seed 7, for a minute, on a floor of six boards |
     ///
-    /// Times are those of the source, 0 at its start. Several are put together with [`Faults::and`].
+    /// Times are on the source's clock, 0 at its start. Use [`Faults::and`] to combine several.
     fn from_str(text: &str) -> Result<Self, BadFault> {
         let bad = |why| BadFault { written: text.escape_debug().to_string(), why };
         let (name, value) = text.split_once('=').ok_or_else(|| bad("it has no `=`"))?;
@@ -92,7 +92,8 @@ impl FromStr for Faults {
 }
 
 impl Faults {
-    /// Both; of what there can be only one of, the greater share, and the bursts of `other` if it has some.
+    /// Combines two sets of faults: the greater of each share and delay; bursts and panic of `other` replace those of
+    /// `self`.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
         self.loss = self.loss.max(other.loss);
@@ -118,14 +119,14 @@ fn number(text: &str) -> Result<u16, &'static str> {
     text.parse().map_err(|_| "boards are numbered from 0")
 }
 
-/// `5%` or `0.05`, 0 to 1.
+/// Parses `5%` or `0.05`; 0 to 1.
 fn share(text: &str) -> Result<f64, &'static str> {
     let (digits, unit) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 0.01));
     let share = digits.parse::<f64>().map_err(|_| "a share is written 5% or 0.05")? * unit;
     if (0.0..=1.0).contains(&share) { Ok(share) } else { Err("a share lies between 0 and 100 %") }
 }
 
-/// `20ms`, `1.5s` or `1.5`, which are seconds; up to a day.
+/// Parses `20ms`, `1.5s` or `1.5` (seconds); up to a day.
 fn span(text: &str) -> Result<Duration, &'static str> {
     let (digits, unit) = match (text.strip_suffix("ms"), text.strip_suffix('s')) {
         (Some(digits), _) => (digits, 1e-3),
@@ -140,14 +141,14 @@ fn span(text: &str) -> Result<Duration, &'static str> {
     }
 }
 
-/// `10s..12s`.
+/// Parses `10s..12s`.
 fn outage(board: Option<u16>, text: &str) -> Result<Outage, &'static str> {
     let (from, until) = text.split_once("..").ok_or("a stretch of time is written 10s..12s")?;
     let (from, until) = (Instant::START + span(from)?, Instant::START + span(until)?);
     if from < until { Ok(Outage { board, from, until }) } else { Err("it ends before it begins") }
 }
 
-/// `3:10s..12s`.
+/// Parses `3:10s..12s`.
 fn of_board(text: &str) -> Result<Outage, &'static str> {
     let (board, when) = pair(text)?;
     outage(Some(number(board)?), when)

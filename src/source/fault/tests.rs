@@ -1,8 +1,8 @@
-//! What gets through, and what does not.
+//! Tests of the packets that the injected faults let through.
 
 use super::*;
 
-/// Two boards, a packet each per millisecond, for a second.
+/// Two boards that each send one packet per millisecond, for a second.
 struct Boards(std::vec::IntoIter<SensorPacket>, Instant);
 
 fn boards() -> Boards {
@@ -27,7 +27,7 @@ impl SensorSource for Boards {
     }
 }
 
-/// All packets that get through, and how often the source found none within 10 ms.
+/// All packets that get through, and the number of calls that found none within 10 ms.
 fn through(faults: Faults, seed: u64) -> (Vec<SensorPacket>, usize) {
     let mut source = FaultInjector::new(boards(), faults, seed);
     let (mut packets, mut silences) = (Vec::new(), 0);
@@ -117,7 +117,7 @@ fn a_frozen_board_repeats_what_it_read_and_goes_on_as_it_is() {
     }
 }
 
-/// As [`boards`], with the time as reading.
+/// As [`boards`], with the sequence number as reading.
 fn counting() -> Boards {
     let Boards(packets, now) = boards();
     let counted = packets.map(|mut packet| {

@@ -1,4 +1,4 @@
-//! Who may send what: networks, limits for each sender, boards that stay where they first were.
+//! Admission of datagrams: allowed networks, limits for each sender, and boards pinned to their first address.
 
 use std::fmt;
 use std::net::{IpAddr, SocketAddr};
@@ -14,15 +14,15 @@ use crate::wire::{Batch, LinkCounters};
 /// Frames that a board sends in a second.
 const FRAMES_PER_SECOND: u32 = 1000;
 
-/// Requests of one app that are taken in a second, and at once: ten controls at the rate of a screen, and the state of
-/// every control of a large layout.
+/// Rate and burst of requests of one app: ten controls at the rate of a screen, and the state of every control of a
+/// large layout at once.
 const REQUEST_EVERY: Duration = Duration::from_millis(1);
 const REQUEST_BURST: u32 = 2000;
 
-/// The way on which OSC has come.
+/// The way in which OSC arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
-    /// On the sensors' port, as boards send it.
+    /// On the sensors' port, directly from boards or apps.
     Plain,
     /// On the sensors' port, sealed by another computer of the floor.
     Sealed,
@@ -30,18 +30,18 @@ pub(super) enum Way {
     OwnPort,
 }
 
-/// Why a datagram of a known form is not taken.
+/// Reasons to refuse a datagram of a known form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refusal {
-    /// Nothing is taken from there.
+    /// The sender is in no allowed network.
     Foreign,
-    /// Sensor packets are not taken from there.
+    /// The sender may not send sensor packets.
     Packets,
-    /// Requests are not taken from there, or not on this port.
+    /// The sender may not send requests, or not on this port.
     Requests,
-    /// The board was first heard from this other address.
+    /// The board's first packet came from this other address.
     Elsewhere(u16, IpAddr),
-    /// More than a sender may send.
+    /// The sender exceeded its rate limit.
     TooMany,
 }
 
@@ -72,26 +72,26 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// The rules of one source.
+/// The admission rules of one source.
 #[derive(Debug)]
 pub(super) struct Admission {
     boards: Vec<Network>,
-    /// Who may ask something; on the sensors' port unless requests have one of their own.
+    /// Networks of apps; on the sensors' port unless requests have their own port.
     apps: Vec<Network>,
     has_own_port: bool,
-    /// Other computers of the floor, from which sealed datagrams come.
+    /// Other computers of the floor, which send sealed datagrams.
     computers: Vec<IpAddr>,
     datagrams: Senders,
     requests: Senders,
-    /// Where each board was first heard, if boards are held to that.
+    /// First address of each board, if boards are pinned.
     homes: Option<Vec<Option<IpAddr>>>,
 }
 
 impl Admission {
-    /// Boards as the floor says, or on this machine; apps on this machine.
+    /// Allows boards from the floor's networks, or from this machine if it lists none; apps from this machine.
     pub(super) fn new(floor: &Floor) -> Self {
         let boards = u32::try_from(floor.boards.len()).unwrap_or(u32::MAX).max(1);
-        // Twice what boards send, from each sender: one computer may send for all of them.
+        // Twice the rate of the boards, for each sender: one computer may send for all of them.
         let every = Duration::from_micros((500_u64 / u64::from(boards)).max(1));
         let burst = boards.saturating_mul(FRAMES_PER_SECOND);
         Self {
@@ -109,28 +109,28 @@ impl Admission {
         self.boards = boards;
     }
 
-    /// Boards' packets come from these as well.
+    /// Also allows board packets from these networks.
     pub(super) fn add_boards(&mut self, boards: impl Iterator<Item = Network>) {
         self.boards.extend(boards);
     }
 
-    /// Sealed datagrams come from these.
+    /// Allows sealed datagrams from these computers.
     pub(super) fn set_computers(&mut self, computers: Vec<IpAddr>) {
         self.computers = computers;
     }
 
-    /// Requests come from these, on the sensors' port.
+    /// Allows requests from these networks on the sensors' port.
     pub(super) fn set_apps_here(&mut self, apps: Vec<Network>) {
         self.apps = apps;
     }
 
-    /// Requests come on a port of their own, from `apps`.
+    /// Allows requests from `apps`, on a port of their own only.
     pub(super) fn set_apps(&mut self, apps: Vec<Network>) {
         self.apps = apps;
         self.has_own_port = true;
     }
 
-    /// Holds `boards` boards to where they are first heard.
+    /// Pins `boards` boards to the addresses of their first packets.
     pub(super) fn pin(&mut self, boards: usize) {
         self.homes = Some(vec![None; boards]);
     }
@@ -147,12 +147,12 @@ impl Admission {
         self.computers.iter().any(|computer| computer.to_canonical() == ip.to_canonical())
     }
 
-    /// Whether a sealed datagram may come from `sender`.
+    /// Accepts a sealed datagram from the floor's computers only.
     pub(super) fn sealed(&self, sender: SocketAddr, on_own_port: bool) -> Result<(), Refusal> {
         (!on_own_port && self.is_computer(sender.ip())).then_some(()).ok_or(Refusal::Foreign)
     }
 
-    /// Whether a datagram from `sender` is looked into at all.
+    /// Whether to examine a datagram from `sender` at all.
     pub(super) fn datagram(
         &mut self,
         sender: SocketAddr,
@@ -170,7 +170,7 @@ impl Admission {
         }
     }
 
-    /// Removes from `batch`, which came from `sender`, what may not come from there; gives each reason once.
+    /// Removes from `batch` everything that `sender` may not send; returns each reason once.
     pub(super) fn batch(
         &mut self,
         sender: SocketAddr,
@@ -212,12 +212,12 @@ impl Admission {
         refusals
     }
 
-    /// Whether `sender` may ask one thing more; what it asked wrongly counts, too.
+    /// Counts one more request of `sender`, also an invalid one; an error if it exceeds the limit.
     pub(super) fn request(&mut self, sender: SocketAddr, now: Instant) -> Result<(), Refusal> {
         self.requests.take(sender, now).then_some(()).ok_or(Refusal::TooMany)
     }
 
-    /// Whether `sender` may send requests on that way, and gets answers.
+    /// Whether `sender` may send requests that way and gets answers.
     pub(super) fn is_answered(&self, sender: SocketAddr, way: Way) -> bool {
         let is_port = way == if self.has_own_port { Way::OwnPort } else { Way::Plain };
         is_port && self.is_app(sender.ip())

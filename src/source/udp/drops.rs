@@ -1,4 +1,4 @@
-//! Datagrams that the kernel drops since nobody reads them in time.
+//! Datagrams that the kernel drops because the program does not read them in time.
 
 use std::net::UdpSocket;
 use std::time::Duration;
@@ -9,13 +9,13 @@ use super::proc_net;
 use crate::rate_limit::RateLimit;
 use crate::units::Instant;
 
-/// Time between two looks at the kernel's count, which reads a file.
+/// Interval between two reads of the kernel's counter, which is in a file.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
-/// Time between two notices.
+/// Minimum time between two log messages.
 const TELL_EVERY: Duration = Duration::from_secs(60);
 
-/// The kernel's own count of what it dropped on a socket.
+/// The kernel's counter of datagrams dropped on a socket.
 #[derive(Debug)]
 pub(super) struct KernelDrops {
     looked: Instant,
@@ -30,8 +30,8 @@ impl Default for KernelDrops {
 }
 
 impl KernelDrops {
-    /// How many datagrams were dropped on `socket` since the last look: 0 if that was a moment ago, or where the kernel
-    /// does not say. Logs it once a minute, with the setting that helps.
+    /// Number of datagrams dropped on `socket` since the last read: 0 if that was less than a second ago, or if the
+    /// kernel does not report it. Logs drops once a minute, with the setting that helps.
     pub(super) fn look(&mut self, socket: &UdpSocket, now: Instant) -> u64 {
         if now.since(self.looked) < LOOK_EVERY {
             return 0;

@@ -1,8 +1,9 @@
 //! Packets of boards near the border of an area, forwarded to the computers of other areas that sense them.
 //!
-//! They go as they came, message by message and sealed where there is a seal, and at once: the neighbour takes a forwarded packet as one of the board
-//! itself, a little later. What has lain here for too long is not forwarded, or the neighbour could take an old state
-//! of the floor for a new one; it sees by the boards' numbers that something is missing.
+//! The program forwards each message at once and unchanged, sealed if there is a seal: the neighbour treats it as a
+//! packet of the board itself that is a little late. A packet that has waited here for too long is dropped, because
+//! the neighbour could mistake an old state of the floor for a new one; gaps in the boards' sequence numbers show the
+//! loss.
 
 use std::collections::HashMap;
 use std::io;
@@ -15,11 +16,11 @@ use super::seal::Seal;
 use crate::floor::Forwarding;
 use crate::wire::each_message;
 
-/// How long a packet may have waited here and still be forwarded: frames of a neighbour wait for it no longer than six
-/// milliseconds, and the way takes its part of them.
+/// Maximum waiting time of a packet that is still forwarded: a neighbour's frame waits at most six milliseconds for
+/// it, including the time on the network.
 const WITHIN: Duration = Duration::from_millis(5);
 
-/// What was forwarded, and what was not; counted since the start.
+/// Counts of forwarded and dropped packets since the start.
 #[derive(Debug, Default)]
 pub struct ForwardCounters {
     sent: AtomicU64,
@@ -28,19 +29,19 @@ pub struct ForwardCounters {
 }
 
 impl ForwardCounters {
-    /// Packets forwarded, each once for each computer that it went to.
+    /// Packets forwarded, counted once per destination.
     #[must_use]
     pub fn sent(&self) -> u64 {
         self.sent.load(Ordering::Relaxed)
     }
 
-    /// Packets that had waited here for more than 5 ms and were not forwarded.
+    /// Packets not forwarded because they had waited here for more than 5 ms.
     #[must_use]
     pub fn late(&self) -> u64 {
         self.late.load(Ordering::Relaxed)
     }
 
-    /// Packets that the system did not take: its buffer was full, or there is no way.
+    /// Packets that the system rejected: its buffer was full, or there is no route.
     #[must_use]
     pub fn unsent(&self) -> u64 {
         self.unsent.load(Ordering::Relaxed)
@@ -51,7 +52,7 @@ impl ForwardCounters {
 #[derive(Debug)]
 pub(super) struct Forwarder {
     socket: UdpSocket,
-    /// By the boards' addresses.
+    /// Destinations by the boards' addresses.
     to: HashMap<Box<[u8]>, Vec<SocketAddr>>,
     counters: Arc<ForwardCounters>,
 }
@@ -69,7 +70,7 @@ impl Forwarder {
         Arc::clone(&self.counters)
     }
 
-    /// Forwards what others need of `datagram`, which has been decoded and has `waited` here.
+    /// Forwards those messages of `datagram` that others need; it has been decoded and has `waited` here.
     pub(super) fn forward(
         &self,
         datagram: &[u8],
@@ -94,7 +95,7 @@ impl Forwarder {
     fn reaches(&self, message: &[u8], to: SocketAddr) -> bool {
         match self.socket.send_to(message, to) {
             Ok(_) => true,
-            // The echo of an earlier packet to a neighbour that is not there; this one has not been sent.
+            // The error belongs to an earlier packet to an absent neighbour; this packet has not been sent yet.
             Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {
                 self.socket.send_to(message, to).is_ok()
             }

@@ -8,14 +8,14 @@ use crate::rate_limit::RateLimit;
 use crate::units::Instant;
 use crate::wire::WireError;
 
-/// How often one kind of refusal, or one sender, is written about.
+/// Minimum time between two messages about one kind of refusal, or about one sender.
 const QUIET: Duration = Duration::from_secs(60);
 
-/// Senders that are named each for itself.
+/// Maximum number of senders that get messages of their own.
 const NAMED: usize = 16;
 
 /// Warnings about refused datagrams: the first of each kind, then one a minute with the number in between. Senders
-/// that may not send are named one by one, as far as there are few.
+/// that may not send get a warning each, up to a limit.
 #[derive(Debug)]
 pub(super) struct RefusalLog {
     malformed: RateLimit,
@@ -57,7 +57,7 @@ impl RefusalLog {
         }
     }
 
-    /// Notes a message for another receiver in a bundle of which the rest is used.
+    /// Logs a message for another receiver, in a bundle whose remaining messages are used.
     pub(super) fn skipped(&mut self, now: Instant, sender: SocketAddr, address: &str) {
         if let Some(others) = self.skipped.take(now) {
             tracing::info!(

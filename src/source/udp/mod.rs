@@ -1,4 +1,4 @@
-//! Packets and requests from a UDP socket.
+//! Sensor packets and requests from a UDP socket.
 
 mod admission;
 mod drops;
@@ -37,34 +37,34 @@ use crate::wire::{
     Batch, Decoder, Limits, LinkCause, LinkCounters, Prefix, Request, SensorPacket, WireError, guess_format,
 };
 
-/// Most control messages kept until they are taken; more are dropped and counted as overflowed.
+/// Maximum number of queued control messages; further ones are dropped and counted as overflowed.
 const MAX_CONTROLS: usize = 1024;
 
-/// Most datagrams examined in one call without patience, so that a flood of rubbish cannot hold it.
+/// Maximum number of datagrams examined in one call without patience, so that a flood of invalid ones can't block it.
 const MAX_UNWAITED: usize = 64;
 
-/// How often requests on their own port are looked for, and most that are examined then.
+/// Interval between two reads of the requests' own port, and maximum number of datagrams per read.
 const REQUESTS_EVERY: Duration = Duration::from_millis(1);
 const MAX_REQUESTS: usize = 32;
 
-/// How long the last refusal of something from boards is kept although requests are refused.
+/// Time for which a refusal of something from boards takes precedence over refused requests.
 const KEPT_REFUSAL: Duration = Duration::from_secs(1);
 
 /// Sensor packets and control messages from a UDP socket.
 ///
-/// Packets are taken from where the floor says ([`Floor::allow`]), else from this machine only; requests from this
-/// machine only, on the same port, unless [`UdpSource::with_commands`] opens one for them.
+/// It accepts packets from the floor's networks ([`Floor::allow`]), by default from this machine only, and requests
+/// from this machine only, on the same port, unless [`UdpSource::with_commands`] opens one for them.
 ///
-/// Its clock starts at zero when the socket is bound. On Linux packets are
-/// stamped with the moment the kernel received them; elsewhere when the program
-/// takes them, so that the stamp includes the time the thread needed to wake up.
+/// Its clock starts at zero when the socket is bound. On Linux the stamp of a packet is the time at which the kernel
+/// received it; elsewhere it is the time at which the program reads it, which includes the wake-up time of the
+/// thread.
 #[derive(Debug)]
 pub struct UdpSource {
     socket: UdpSocket,
-    /// Where requests come, if they have a port of their own, and when that was last looked at.
+    /// The requests' own port, if any, and the time of its last read.
     commands: Option<(UdpSocket, Instant)>,
     stamped: Stamped,
-    /// When the last datagram came.
+    /// Arrival time of the last datagram.
     received: Instant,
     granted: usize,
     started: HostInstant,
@@ -74,7 +74,7 @@ pub struct UdpSource {
     batch: Batch,
     packets: VecDeque<SensorPacket>,
     requests: VecDeque<Request>,
-    /// Requests whose time tag has not come.
+    /// Requests that wait for the time of their time tag.
     timed: Timed,
     answer: Vec<u8>,
     admission: Admission,
@@ -85,16 +85,16 @@ pub struct UdpSource {
     counters: LinkCounters,
     kernel_drops: KernelDrops,
     log: RefusalLog,
-    /// The last refusal by its cause, and when it was noted.
+    /// Cause and time of the last refusal.
     last_refused: Option<(LinkCause, Instant)>,
 }
 
 impl UdpSource {
-    /// Listens on `address` for the boards of `floor`; port 0 takes any free one.
+    /// Listens on `address` for the boards of `floor`; port 0 takes a free one.
     ///
     /// # Errors
-    /// [`SourceError::Socket`] if the port is taken or the address is not this
-    /// machine's; its message says what to do.
+    /// [`SourceError::Socket`] if the port is in use or the address is not this machine's; its message gives the
+    /// remedy.
     pub fn bind(address: SocketAddr, floor: &Floor) -> Result<Self, SourceError> {
         let (socket, granted) = open(canonical(address))?;
         if granted < BUFFER_BYTES {
@@ -113,7 +113,7 @@ impl UdpSource {
             granted,
             started: HostInstant::now(),
             patience: None,
-            // One byte more than may come tells what was cut off from what just fits.
+            // One byte more than the maximum distinguishes a truncated datagram from one that just fits.
             buffer: vec![0; Limits::SENSORS.bytes + 1],
             decoder,
             batch: Batch::default(),
@@ -132,7 +132,7 @@ impl UdpSource {
         })
     }
 
-    /// Listens on `address` for requests alone, from these networks; port 0 takes any free one.
+    /// Listens on `address` for requests alone, from these networks; port 0 takes a free one.
     ///
     /// # Errors
     /// [`SourceError::Socket`] as for [`UdpSource::bind`].
@@ -140,31 +140,31 @@ impl UdpSource {
         address: SocketAddr,
         networks: impl IntoIterator<Item = Network>,
     ) -> Result<Self, SourceError> {
-        // No packet fits a floor without boards.
+        // A floor without boards accepts no packets.
         let mut source = Self::bind(address, &Floor { boards: Vec::new(), ..Floor::default() })?;
         source.admission.set_boards(Vec::new());
         source.admission.set_apps_here(networks.into_iter().collect());
         Ok(source)
     }
 
-    /// Takes sensor packets from these networks only, whatever the floor says; from nobody if there are none.
+    /// Accepts sensor packets from these networks only, instead of the floor's; with an empty list, from no sender.
     #[must_use]
     pub fn allowing(mut self, networks: impl IntoIterator<Item = Network>) -> Self {
         self.admission.set_boards(networks.into_iter().collect());
         self
     }
 
-    /// Takes sensor packets from these computers as well, which forward them.
+    /// Also accepts sensor packets from these computers, which forward them.
     #[must_use]
     pub fn also_allowing(mut self, computers: impl IntoIterator<Item = IpAddr>) -> Self {
         self.admission.add_boards(computers.into_iter().map(Network::from));
         self
     }
 
-    /// Forwards packets of some boards to other computers, from a port of its own; gives what will be counted.
+    /// Forwards packets of some boards to other computers, from a port of its own; also returns the counters.
     ///
     /// # Errors
-    /// [`SourceError::Socket`] if the system gives no port.
+    /// [`SourceError::Socket`] if the system provides no port.
     pub fn forwarding(
         mut self,
         forwardings: &[Forwarding],
@@ -176,8 +176,8 @@ impl UdpSource {
         Ok((self, counters))
     }
 
-    /// Seals forwarded packets, and takes sealed ones from these `computers`, also where it takes no other packets from
-    /// them.
+    /// Seals forwarded packets and accepts sealed ones from these `computers`, even if it accepts no other packets
+    /// from them.
     #[must_use]
     pub fn sealed_by(mut self, seal: Box<dyn Seal>, computers: impl IntoIterator<Item = IpAddr>) -> Self {
         self.admission.set_computers(computers.into_iter().collect());
@@ -185,14 +185,14 @@ impl UdpSource {
         self
     }
 
-    /// Holds each board to the address from which it is first heard, until the program ends.
+    /// Pins each board to the address of its first packet until the program ends.
     #[must_use]
     pub fn pinned(mut self) -> Self {
         self.admission.pin(self.boards);
         self
     }
 
-    /// Takes requests on a port of their own, from these networks only, and none any more beside the packets.
+    /// Accepts requests on a port of their own, from these networks only, and no longer on the sensors' port.
     ///
     /// # Errors
     /// [`SourceError::Socket`] as for [`UdpSource::bind`].
@@ -208,36 +208,36 @@ impl UdpSource {
         Ok(self)
     }
 
-    /// Takes requests whose addresses begin with `prefix`.
+    /// Accepts requests whose addresses begin with `prefix`.
     #[must_use]
     pub fn with_prefix(mut self, prefix: Prefix) -> Self {
         self.decoder = self.decoder.with_prefix(prefix);
         self
     }
 
-    /// Where it listens, with the port the system chose if 0 was asked for.
+    /// The listening address, with the port that the system chose for port 0.
     ///
     /// # Errors
-    /// What the system says; it should not happen on a bound socket.
+    /// The error of the system; it should not happen on a bound socket.
     pub fn local_addr(&self) -> std::io::Result<SocketAddr> {
         self.socket.local_addr()
     }
 
-    /// The receive buffer granted, in bytes as the system counts them (Linux
-    /// reports twice the size asked for, its bookkeeping included); 0 if it does not say.
+    /// The granted receive buffer, in bytes as the system counts them (Linux reports twice the requested size, which
+    /// includes its bookkeeping); 0 if the system does not report it.
     #[must_use]
     pub const fn granted_buffer(&self) -> usize {
         self.granted
     }
 
-    /// The clock that stamps packets, for measuring how long what follows takes.
+    /// The clock that stamps packets, for latency measurements of later stages.
     #[must_use]
     pub fn clock(&self) -> HostClock {
         let started = self.started;
         Arc::new(move || Instant::START + started.elapsed())
     }
 
-    /// Receives one datagram and sorts what it holds; false if none came.
+    /// Receives one datagram and sorts its content; false if none arrived.
     fn receive(&mut self, patience: Duration) -> Result<bool, SourceError> {
         self.set_patience(patience).map_err(failed)?;
         let Received { length, sender, waited } = match self.stamped.receive(&self.socket, &mut self.buffer) {
@@ -246,13 +246,13 @@ impl UdpSource {
             Err(error) => return Err(failed(error)),
         };
         let now = self.now();
-        // The wall clock that the kernel stamps by may be slewed; time still never goes back.
+        // The kernel stamps by the wall clock, which may be slewed; this keeps time monotonic.
         self.received = self.received.max(now.before(waited));
         self.sort(sender, length, false, now);
         Ok(true)
     }
 
-    /// Takes what came on the requests' own port.
+    /// Receives datagrams on the requests' own port.
     fn receive_commands(&mut self) -> Result<(), SourceError> {
         for _ in 0..MAX_REQUESTS {
             let now = self.now();
@@ -272,19 +272,19 @@ impl UdpSource {
         Ok(())
     }
 
-    /// Sorts what the datagram in the buffer holds: packets, requests, or a reason to refuse it.
+    /// Sorts the content of the datagram in the buffer: packets, requests, or a reason to refuse it.
     fn sort(&mut self, sender: SocketAddr, length: usize, on_own_port: bool, now: Instant) {
         self.counters.datagrams += 1;
         if let Err(refusal) = self.admission.datagram(sender, on_own_port, now) {
             return self.turn_away(sender, refusal, now);
         }
         let datagram = self.buffer.get(..length).unwrap_or_default();
-        // OSC begins with a slash or a hash.
+        // An OSC datagram begins with a slash or a hash.
         let is_osc = datagram.first().is_none_or(|first| b"/#".contains(first));
         match self.seal.as_mut().filter(|_| !is_osc) {
             Some(seal) => match self.admission.sealed(sender, on_own_port).map(|()| seal.open(datagram)) {
                 Ok(Sealed::Forwarded(range)) => self.sort_osc((sender, Way::Sealed), range, now),
-                // The owner of the seal counts both.
+                // The owner of the seal counts these two.
                 Ok(Sealed::Taken | Sealed::Refused) => {}
                 Err(refusal) => self.turn_away(sender, refusal, now),
             },
@@ -295,7 +295,7 @@ impl UdpSource {
         }
     }
 
-    /// Sorts the OSC at these bytes of the buffer.
+    /// Sorts the OSC datagram in these bytes of the buffer.
     fn sort_osc(&mut self, from: (SocketAddr, Way), bytes: Range<usize>, now: Instant) {
         let (sender, way) = from;
         let datagram = self.buffer.get(bytes.clone()).unwrap_or_default();
@@ -307,14 +307,14 @@ impl UdpSource {
             return self.refuse(from, &error, now);
         }
         let wait = self.wait().unwrap_or_else(|error| {
-            // Only requests wait: the packets beside them are used.
+            // Only requests wait: the packets of the same bundle are used.
             self.batch.controls.clear();
             self.batch.refused.push(error);
             Duration::ZERO
         });
         self.refuse_parts(from, now);
         let refusals = self.admission.batch(sender, way, &mut self.batch, now);
-        // A packet is forwarded once.
+        // A packet is forwarded only once.
         let is_forwarded = refusals.is_empty() && !self.batch.packets.is_empty() && way != Way::Sealed;
         refusals.into_iter().for_each(|refusal| self.turn_away(sender, refusal, now));
         if let Some(forwarder) = self.forwarder.as_ref().filter(|_| is_forwarded) {
@@ -334,7 +334,7 @@ impl UdpSource {
         }
     }
 
-    /// Counts and logs what may not come from `sender`.
+    /// Counts and logs a refused datagram of `sender`.
     fn turn_away(&mut self, sender: SocketAddr, refusal: Refusal, now: Instant) {
         refusal.count(&mut self.counters);
         self.log.not_admitted(now, sender, refusal);
@@ -349,7 +349,7 @@ impl UdpSource {
         }
     }
 
-    /// Counts and logs a refused datagram or message, and answers its sender if that asked something of this floor.
+    /// Counts and logs a refused datagram or message, and answers its sender if it was a request to this floor.
     fn refuse(&mut self, (sender, way): (SocketAddr, Way), error: &WireError, now: Instant) {
         error.count(&mut self.counters);
         if let Some(cause) = self.decoder.cause_of(error) {
@@ -359,8 +359,7 @@ impl UdpSource {
         self.answer_refusal(sender, way, error, now);
     }
 
-    /// Refuses the messages of the batch that are not used. Those for other receivers are skipped where the rest of
-    /// their bundle is used.
+    /// Refuses the unused messages of the batch. Skips those for other receivers if the rest of their bundle is used.
     fn refuse_parts(&mut self, from: (SocketAddr, Way), now: Instant) {
         let mut refused = std::mem::take(&mut self.batch.refused);
         let is_used = self.batch.is_used();
@@ -375,11 +374,12 @@ impl UdpSource {
                 _ => self.refuse(from, &error, now),
             }
         }
-        // Kept for its room.
+        // Put back to reuse its allocation.
         self.batch.refused = refused;
     }
 
-    /// Keeps the cause of a refusal. Those of requests don't take the place of what was refused of boards lately.
+    /// Stores the cause of a refusal. The cause of a refused request does not replace a recent one of refused board
+    /// data.
     fn note_refused(&mut self, cause: LinkCause, now: Instant) {
         let is_of_boards = |cause: &LinkCause| !matches!(cause, LinkCause::Unknown { .. });
         let keeps = self.last_refused.as_ref().is_some_and(|(last, at)| {
@@ -390,14 +390,14 @@ impl UdpSource {
         }
     }
 
-    /// How long the requests of the batch are to wait.
+    /// Waiting time of the requests of the batch.
     fn wait(&self) -> Result<Duration, WireError> {
         let Some(due) = self.batch.due else { return Ok(Duration::ZERO) };
-        // Without a wall clock nothing can be waited for.
+        // Without a wall clock, requests do not wait.
         OscTime::try_from(SystemTime::now()).map_or(Ok(Duration::ZERO), |clock| delay(due, clock))
     }
 
-    /// Tells `sender` why its request was refused, if it may ask at all and does not ask too much.
+    /// Reports to `sender` why its request was refused, if it may send requests and is within its rate limit.
     fn answer_refusal(&mut self, sender: SocketAddr, way: Way, error: &WireError, now: Instant) {
         let Some(address) = self.decoder.is_answered(error) else { return };
         if !self.admission.is_answered(sender, way) {
@@ -413,7 +413,7 @@ impl UdpSource {
         self.answer = answer;
     }
 
-    /// Sets how long the socket waits; zero means not at all. A system call only if it changes.
+    /// Sets the time-out of the socket; zero means non-blocking. Makes a system call only if it changes.
     fn set_patience(&mut self, patience: Duration) -> std::io::Result<()> {
         if self.patience == Some(patience) {
             return Ok(());
@@ -428,8 +428,8 @@ impl UdpSource {
 }
 
 impl SensorSource for UdpSource {
-    /// A datagram with several packets gives them one by one. Returns after
-    /// twice `patience` at most, even while datagrams arrive that hold no sensor packet.
+    /// Returns the packets of one datagram one by one. Returns after twice `patience` at most, even while datagrams
+    /// without sensor packets arrive.
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         let begun = self.now();
         self.counters.overflowed += self.kernel_drops.look(&self.socket, begun);
@@ -465,9 +465,9 @@ impl SensorSource for UdpSource {
         self.socket.local_addr().ok()
     }
 
-    /// Whoever asked and went away hears nothing; that is not an error of this end.
+    /// Logs an answer that does not reach its receiver; that is not an error of this end.
     fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
-        // From the port on which it was asked.
+        // From the port that received the request.
         let socket = self.commands.as_ref().map_or(&self.socket, |(socket, _)| socket);
         if let Err(error) = socket.send_to(datagram, to) {
             let now = Instant::START + self.started.elapsed();
@@ -484,8 +484,8 @@ impl SensorSource for UdpSource {
     }
 }
 
-/// Errors after which the next datagram may well come: nothing there, a signal,
-/// or the echo of something sent to a port that is closed.
+/// Errors after which the next datagram may well arrive: no datagram, a signal, or the response to something sent to
+/// a closed port.
 fn is_passing(kind: ErrorKind) -> bool {
     matches!(
         kind,

@@ -1,4 +1,4 @@
-//! Opening a socket, and what to do where that fails.
+//! Opens sockets, and advises on failures.
 
 use std::io::ErrorKind;
 use std::net::{SocketAddr, UdpSocket};
@@ -8,14 +8,14 @@ use socket2::{Domain, Protocol, Socket, Type};
 use super::proc_net;
 use crate::source::SourceError;
 
-/// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
+/// Requested receive buffer: it covers half a second of a stalled reader on a large floor.
 pub(super) const BUFFER_BYTES: usize = 8 << 20;
 
-/// A socket on `address` and its receive buffer in bytes.
+/// Opens a socket on `address`; also returns its receive buffer in bytes.
 pub(super) fn open(address: SocketAddr) -> Result<(UdpSocket, usize), SourceError> {
     let opened = || {
         let socket = Socket::new(Domain::for_address(address), Type::DGRAM, Some(Protocol::UDP))?;
-        // A smaller buffer than asked for works too; the granted size is reported.
+        // A smaller buffer than requested works too; the granted size is reported.
         let _ = socket.set_recv_buffer_size(BUFFER_BYTES);
         socket.bind(&address.into())?;
         let granted = socket.recv_buffer_size().unwrap_or(0);
@@ -24,7 +24,7 @@ pub(super) fn open(address: SocketAddr) -> Result<(UdpSocket, usize), SourceErro
     opened().map_err(|source| SourceError::Socket { message: advice(address, &source), source })
 }
 
-/// One sentence for somebody whose floor program does not start.
+/// One sentence of advice for a user whose floor program does not start.
 fn advice(address: SocketAddr, error: &std::io::Error) -> String {
     let port = address.port();
     match error.kind() {

@@ -1,8 +1,9 @@
-//! What Linux tells about UDP sockets in `/proc`; nothing elsewhere.
+//! Linux's data on UDP sockets in `/proc`; none on other systems.
 
 use std::net::{SocketAddr, UdpSocket};
 
-/// Datagrams that the kernel dropped on `socket` because its buffer was full; `None` if it does not say.
+/// Number of datagrams that the kernel dropped on `socket` because its buffer was full; `None` if it does not report
+/// it.
 #[cfg(target_os = "linux")]
 pub(super) fn drops(socket: &UdpSocket) -> Option<u64> {
     use std::os::fd::AsRawFd;
@@ -13,13 +14,13 @@ pub(super) fn drops(socket: &UdpSocket) -> Option<u64> {
     rows(&table).find(|row| row.inode == inode).map(|row| row.drops)
 }
 
-/// Elsewhere the kernel does not say.
+/// Other systems do not report drops.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn drops(_: &UdpSocket) -> Option<u64> {
     None
 }
 
-/// Who listens on the port of `address`, as far as this program may see: `name (process 123)`.
+/// Process that listens on the port of `address`, if this program may see it: `name (process 123)`.
 #[cfg(target_os = "linux")]
 pub(super) fn owner(address: SocketAddr) -> Option<String> {
     let inode = ["/proc/net/udp", "/proc/net/udp6"].into_iter().find_map(|file| {
@@ -36,7 +37,7 @@ pub(super) fn owner(address: SocketAddr) -> Option<String> {
     })
 }
 
-/// Elsewhere nobody tells.
+/// Other systems do not report it.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn owner(_: SocketAddr) -> Option<String> {
     None

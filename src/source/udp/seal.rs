@@ -5,9 +5,9 @@ use std::ops::Range;
 
 /// Authenticates datagrams to and from other computers of the floor.
 ///
-/// Sealed datagrams begin neither with a slash nor with a hash, as OSC does.
+/// A sealed datagram begins neither with a slash nor with a hash: those mark OSC.
 pub trait Seal: fmt::Debug + Send {
-    /// `message` in sealed form, to be sent at once.
+    /// `message` in sealed form, ready to send.
     fn seal(&mut self, message: &[u8]) -> &[u8];
 
     /// Opens a datagram that is not OSC and has just arrived.
@@ -17,9 +17,9 @@ pub trait Seal: fmt::Debug + Send {
 /// The content of a sealed datagram.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sealed {
-    /// A forwarded packet of a board: OSC at these bytes of the datagram.
+    /// A forwarded packet of a board: OSC in these bytes of the datagram.
     Forwarded(Range<usize>),
-    /// A message to the owner of the seal, which has taken it.
+    /// A message to the owner of the seal, which has processed it.
     Taken,
     /// Rejected; the owner of the seal counts it by its reason.
     Refused,

@@ -1,4 +1,4 @@
-//! A token bucket for each sender, and one for all those that there is no room for.
+//! A token bucket for each sender, and a shared one for senders beyond the maximum.
 
 use std::collections::HashMap;
 use std::net::SocketAddr;
@@ -7,32 +7,32 @@ use std::time::Duration;
 use crate::rate_limit::RateLimit;
 use crate::units::Instant;
 
-/// Most senders that have a bucket of their own.
+/// Maximum number of senders with a bucket of their own.
 const MOST: usize = 1024;
 
-/// How long a silent sender keeps its bucket.
+/// Time for which a silent sender keeps its bucket.
 const KEPT: Duration = Duration::from_secs(5);
 
-/// Limits of senders, each told by address and port: two programs on one machine don't take from each other.
+/// Rate limits of senders, identified by address and port: two programs on one machine do not share a limit.
 ///
-/// Whoever sends from many ports at once shares one bucket with all others that came too late for their own.
+/// A sender that uses many ports at once shares one bucket with all other senders beyond the maximum.
 #[derive(Debug)]
 pub(super) struct Senders {
     limit: RateLimit,
     known: HashMap<SocketAddr, (RateLimit, Instant)>,
     others: RateLimit,
-    /// When silent senders are looked for again.
+    /// Time of the next search for silent senders.
     next_look: Instant,
 }
 
 impl Senders {
-    /// `burst` at once and one each `every` for each sender.
+    /// A bucket per sender: `burst` at once and one more each `every`.
     pub(super) fn new(burst: u32, every: Duration) -> Self {
         let limit = RateLimit::new(burst, every);
         Self { limit, known: HashMap::new(), others: limit, next_look: Instant::START }
     }
 
-    /// Whether `sender` may send one more.
+    /// Takes one token of `sender`; false if none is left.
     pub(super) fn take(&mut self, sender: SocketAddr, now: Instant) -> bool {
         if let Some((limit, seen)) = self.known.get_mut(&sender) {
             *seen = now;
@@ -76,7 +76,7 @@ mod tests {
         let passed = (0..50_000).filter(|&port| senders.take(sender(port), now)).count();
         assert_eq!(passed, MOST + 2);
         assert_eq!(senders.known.len(), MOST);
-        // Those that are silent make room.
+        // Silent senders free their buckets.
         assert!(senders.take(sender(60_000), now + KEPT));
         assert_eq!(senders.known.len(), 1);
     }

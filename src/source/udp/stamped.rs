@@ -1,29 +1,29 @@
-//! Datagrams with the time they waited in the kernel: where the kernel stamps them, which is on Linux.
+//! Datagrams with their waiting time in the kernel, on systems whose kernel stamps them (Linux).
 
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::time::Duration;
 
-/// A datagram as it came.
+/// A received datagram.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Received {
     pub(super) length: usize,
     pub(super) sender: SocketAddr,
-    /// How long it had been there when it was taken; zero where the kernel does not say.
+    /// Time between arrival and reading; zero if the kernel does not report it.
     pub(super) waited: Duration,
 }
 
-/// Takes datagrams from a socket.
+/// Receives datagrams from a socket.
 #[cfg(target_os = "linux")]
 #[derive(Debug)]
 pub(super) struct Stamped {
-    /// Where the kernel writes its stamp; empty if it gives none.
+    /// Buffer for the kernel's stamp; empty if it gives none.
     space: Vec<u8>,
 }
 
 #[cfg(target_os = "linux")]
 impl Stamped {
-    /// Asks for stamps on `socket`.
+    /// Requests stamps on `socket`.
     pub(super) fn on(socket: &UdpSocket) -> Self {
         use nix::sys::socket::{setsockopt, sockopt::ReceiveTimestampns};
         let stamped = setsockopt(socket, ReceiveTimestampns, &true).is_ok();
@@ -31,7 +31,7 @@ impl Stamped {
         Self { space }
     }
 
-    /// Takes one datagram, waiting as long as the socket is set to.
+    /// Receives one datagram; waits for the time-out of the socket.
     pub(super) fn receive(&mut self, socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Received> {
         use std::os::fd::AsRawFd;
 
@@ -56,11 +56,11 @@ impl Stamped {
     }
 }
 
-/// Longest wait that is believed: the kernel stamps by the wall clock, which may be set in between.
+/// Maximum plausible waiting time: the kernel stamps by the wall clock, which may be set in between.
 #[cfg(target_os = "linux")]
 const LONGEST: Duration = Duration::from_secs(1);
 
-/// How long ago `stamp` was on the wall clock.
+/// Time since `stamp` on the wall clock; zero if it exceeds the maximum.
 #[cfg(target_os = "linux")]
 fn waited_since(stamp: Duration) -> Duration {
     let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
@@ -68,19 +68,19 @@ fn waited_since(stamp: Duration) -> Duration {
     if waited > LONGEST { Duration::ZERO } else { waited }
 }
 
-/// Takes datagrams from a socket.
+/// Receives datagrams from a socket.
 #[cfg(not(target_os = "linux"))]
 #[derive(Debug)]
 pub(super) struct Stamped;
 
 #[cfg(not(target_os = "linux"))]
 impl Stamped {
-    /// Elsewhere there are no stamps to ask for.
+    /// Other systems have no stamps.
     pub(super) fn on(_: &UdpSocket) -> Self {
         Self
     }
 
-    /// Takes one datagram, waiting as long as the socket is set to.
+    /// Receives one datagram; waits for the time-out of the socket.
     pub(super) fn receive(&mut self, socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Received> {
         plainly(socket, buffer)
     }
@@ -102,7 +102,7 @@ mod tests {
             let sender = UdpSocket::bind(local).unwrap();
             let mut stamped = Stamped::on(&socket);
             let mut buffer = [0; 16];
-            // The kernel begins to stamp a moment after it was asked to: until then it says that nothing waited.
+            // The kernel begins to stamp a moment after the request: until then it reports a waiting time of zero.
             let seen = (0..50).any(|_| {
                 sender.send_to(b"step", socket.local_addr().unwrap()).unwrap();
                 std::thread::sleep(Duration::from_millis(10));

@@ -1,4 +1,4 @@
-//! Requests in bundles with a time tag wait until then.
+//! Requests in bundles with a time tag, which wait until then.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use rosc::OscTime;
 use crate::units::Instant;
 use crate::wire::{Request, WireError};
 
-/// Longest time that a request may wait: what apps add against an uneven network, and no more.
+/// Maximum waiting time of a request: the margin that apps add against network jitter.
 const LONGEST: Duration = Duration::from_secs(1);
 
 /// Requests that wait, in the order in which they are due.
@@ -21,24 +21,23 @@ impl Timed {
         self.waiting.len()
     }
 
-    /// Lets a request wait until `due`, behind those of the same time.
+    /// Adds a request that waits until `due`, behind those of the same time.
     pub(super) fn push(&mut self, due: Instant, request: Request) {
         let place = self.waiting.partition_point(|(other, _)| *other <= due);
         self.waiting.insert(place, (due, request));
     }
 
-    /// The next request whose time has come.
+    /// The next request that is due.
     pub(super) fn take(&mut self, now: Instant) -> Option<Request> {
         let is_due = self.waiting.first().is_some_and(|(due, _)| *due <= now);
         is_due.then(|| self.waiting.remove(0).1)
     }
 }
 
-/// How long after `clock`, the wall clock, something with the time tag `due` is to wait; none if it is past or "at
-/// once".
+/// Waiting time from `clock`, the wall clock, to the time tag `due`; zero if it is past or "at once".
 ///
 /// # Errors
-/// [`WireError::TooEarly`] if that is more than a second.
+/// [`WireError::TooEarly`] if the waiting time exceeds a second.
 pub(super) fn delay(due: OscTime, clock: OscTime) -> Result<Duration, WireError> {
     let ticks = |time: OscTime| (u64::from(time.seconds) << 32) | u64::from(time.fractional);
     let ahead = ticks(due).saturating_sub(ticks(clock));
