@@ -295,7 +295,7 @@ record! {
     pub(super) at: Vec2 = "at_m", Pair { each: num(-1000.0..=1000.0), pattern: "(east, north)", parts: ["east", "north"] };
     /// Output channel, from 0.
     pub(super) channel: Written<u16> = "channel", At(CHANNEL);
-    /// Its gain: at 0, a cue of 40 N at full sound is a full-scale sample.
+    /// Its gain: at 0, a cue of 40 N with sound 1 is a full-scale sample.
     gain_db: f32 = "gain_db", num(-60.0..=24.0).explicit() => 0.0;
 }
 
