@@ -61,7 +61,8 @@ pub(crate) fn describe(character: char) -> String {
 
 /// Whether a label may contain `character` after `before`.
 ///
-/// # Source General categories of the Unicode Character Database; property Default_Ignorable_Code_Point for invisible
+/// # Source
+/// General categories of the Unicode Character Database; property Default_Ignorable_Code_Point for invisible
 /// characters; Unicode Standard, 23.2 for joiners, 23.4 for variation selectors; Unicode Technical Standard 51 for
 /// emoji.
 fn is_fit(character: char, before: Option<char>) -> bool {

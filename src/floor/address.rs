@@ -24,7 +24,8 @@ pub struct NotAnAddress;
 /// Reads the address in `text`, such as `127.0.0.1:9000`. An IPv4 address within IPv6, such as
 /// `[::ffff:127.0.0.1]:9000`, becomes the IPv4 address.
 ///
-/// # Errors [`NotAnAddress`] for any other text, including host names.
+/// # Errors
+/// [`NotAnAddress`] for any other text, including host names.
 pub fn read_address(text: &str) -> Result<SocketAddr, NotAnAddress> {
     text.parse().map(canonical).map_err(|_| NotAnAddress)
 }

@@ -155,7 +155,8 @@ impl Geometry {
     /// `tile_m` is the side of one plate, `pitch_m` the distance between the centres of neighbours, `sensor_inset_m`
     /// the distance of the sensors from the plate's edges.
     ///
-    /// # Errors [`GeometryError`] gives the invalid measure and its valid range.
+    /// # Errors
+    /// [`GeometryError`] gives the invalid measure and its valid range.
     pub fn new(
         columns: u16,
         rows: u16,

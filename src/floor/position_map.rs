@@ -59,8 +59,8 @@ impl PositionMap {
     /// Returns the weights of four neighbouring trims at a load of `force` newtons, and the index of the first of
     /// them.
     ///
-    /// # Source Cubic Hermite interpolation; the slope at each load is that of the parabola through it and its two
-    /// neighbours.
+    /// # Source
+    /// Cubic Hermite interpolation; the slope at each load is that of the parabola through it and its two neighbours.
     #[inline]
     pub(crate) fn shares(force: f32) -> (usize, [f32; 4]) {
         let loads = &Self::TRIM_LOADS_N;

@@ -40,7 +40,8 @@ impl Day {
 
     /// Returns the day in UTC, `seconds` after the beginning of 1970; the last day of 9999 for all later ones.
     ///
-    /// # Source Years are counted from March, so that the leap day comes last; 400 years have 146,097 days.
+    /// # Source
+    /// Years are counted from March, so that the leap day comes last; 400 years have 146,097 days.
     #[must_use]
     pub fn of_unix_seconds(seconds: u64) -> Self {
         let days = (seconds / 86_400).min(LAST) + DAYS_FROM_MARCH_OF_YEAR_0;

@@ -17,9 +17,10 @@ pub struct BoundedFile {
 
 /// Opens the file at `path` for reading at most `most` bytes. All readers open files this way.
 ///
-/// # Errors The error of the system; [`ErrorKind::IsADirectory`] for a folder; an error for a device, pipe or socket,
-/// which are not opened at all, since reading them may block or never end; [`ErrorKind::FileTooLarge`] for a file of
-/// more than `most` bytes.
+/// # Errors
+/// The error of the system; [`ErrorKind::IsADirectory`] for a folder; an error for a device, pipe or socket, which
+/// are not opened at all, since reading them may block or never end; [`ErrorKind::FileTooLarge`] for a file of more
+/// than `most` bytes.
 pub fn open_bounded(path: &Path, most: u64) -> io::Result<BoundedFile> {
     let file = open_ordinary(path)?;
     if file.metadata()?.len() > most {
@@ -30,7 +31,8 @@ pub fn open_bounded(path: &Path, most: u64) -> io::Result<BoundedFile> {
 
 /// Opens the file at `path`, of any size, for callers that read it piece by piece.
 ///
-/// # Errors Those of [`open_bounded`] except the one for the size.
+/// # Errors
+/// Those of [`open_bounded`] except the one for the size.
 pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
     // The file type is checked before opening: opening a pipe waits for a writer.
     let metadata = path.metadata()?;

@@ -43,7 +43,8 @@ impl Effects {
     /// The effect may be made of these effects, including the one that it replaces. `name` is the name of the text in
     /// diagnostics, usually a path.
     ///
-    /// # Errors Every problem of the text; these effects are then unchanged.
+    /// # Errors
+    /// Every problem of the text; these effects are then unchanged.
     pub fn add(&mut self, text: &str, name: &str) -> Result<Diagnostics, Diagnostics> {
         let (effect, warnings) = parse_effect(text, name, self)?;
         self.insert(effect);
@@ -54,8 +55,9 @@ impl Effects {
     ///
     /// Effects may be made of these effects, and of those in files that come earlier in alphabetical order.
     ///
-    /// # Errors Every problem of any of the files, two files with an effect of the same name, or a folder that cannot
-    /// be read; these effects are then unchanged.
+    /// # Errors
+    /// Every problem of any of the files, two files with an effect of the same name, or a folder that cannot be read;
+    /// these effects are then unchanged.
     pub fn read_folder(&mut self, folder: &Path) -> Result<Diagnostics, Diagnostics> {
         let mut problems = Diagnostics::default();
         let mut all = self.clone();
@@ -101,7 +103,8 @@ pub fn is_effect_name(name: &str) -> bool {
 ///
 /// `name` is the name of the text in diagnostics, usually a path.
 ///
-/// # Errors Every problem of the text.
+/// # Errors
+/// Every problem of the text.
 pub fn parse_effect(
     text: &str,
     name: &str,

@@ -23,7 +23,8 @@ use crate::format::{Flag, Flat, Opt, Rec, Record, list, record};
 
 /// Reads the floor that the file at `path` describes.
 ///
-/// # Errors Every problem of the file, or that it cannot be read.
+/// # Errors
+/// Every problem of the file, or that it cannot be read.
 pub fn load_floor(path: &Path) -> Result<Floor, Diagnostics> {
     let text = read_text(path)?;
     parse_floor(&text, &path.display().to_string())
@@ -33,7 +34,8 @@ pub fn load_floor(path: &Path) -> Result<Floor, Diagnostics> {
 ///
 /// `name` is the name of the text in diagnostics, usually a path.
 ///
-/// # Errors Every problem of the text.
+/// # Errors
+/// Every problem of the text.
 pub fn parse_floor(text: &str, name: &str) -> Result<Floor, Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = Reader::new(&source, FloorRecord::NAME, Limits::FLOOR);

@@ -137,7 +137,8 @@ fn report_circle(circle: &[usize], nodes: &[Node<'_>]) {
 
 /// Reads the kinds in the files at `paths`, on top of those `below`, and returns warnings.
 ///
-/// # Errors Every problem of any of the files.
+/// # Errors
+/// Every problem of any of the files.
 pub(super) fn read_files<P: AsRef<Path>>(
     paths: &[P],
     below: &Kinds,
@@ -167,7 +168,8 @@ pub(super) fn read_files<P: AsRef<Path>>(
 /// Reads the kinds in `texts`, which come with their names in diagnostics, on top of those `below`, and returns
 /// warnings.
 ///
-/// # Errors Every problem of any of the texts.
+/// # Errors
+/// Every problem of any of the texts.
 pub(super) fn read_texts(
     texts: &[(&str, &str)],
     below: &Kinds,

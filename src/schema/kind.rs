@@ -60,7 +60,8 @@ impl Kinds {
 
     /// Returns the kinds that come with underfoot with the given `effects`, which may replace shipped ones.
     ///
-    /// # Errors An effect that a shipped kind names is missing, or cannot be played there.
+    /// # Errors
+    /// An effect that a shipped kind names is missing, or cannot be played there.
     pub fn shipped(effects: Effects) -> Result<Self, Diagnostics> {
         let mut kinds = Self::knowing(effects);
         for (name, text) in builtin::KINDS {
@@ -80,7 +81,8 @@ impl Kinds {
     /// The kind may be made from any of these kinds, including the one that it replaces. `name` is the name of the
     /// text in diagnostics, usually a path.
     ///
-    /// # Errors Every problem of the text; these kinds are then unchanged.
+    /// # Errors
+    /// Every problem of the text; these kinds are then unchanged.
     pub fn add(&mut self, text: &str, name: &str) -> Result<Diagnostics, Diagnostics> {
         let (kinds, warnings) = inherit::read_texts(&[(name, text)], self)?;
         kinds.into_iter().for_each(|kind| self.insert(kind));
@@ -89,8 +91,9 @@ impl Kinds {
 
     /// Adds the kinds of all files named `*.ron` in `folder`, replacing others of the same name; returns warnings.
     ///
-    /// # Errors Every problem of any of the files, two files with a kind of the same name, or a folder that cannot be
-    /// read; these kinds are then unchanged.
+    /// # Errors
+    /// Every problem of any of the files, two files with a kind of the same name, or a folder that cannot be read;
+    /// these kinds are then unchanged.
     ///
     /// A kind may be made from another one of the folder or from any of these kinds.
     pub fn read_folder(&mut self, folder: &Path) -> Result<Diagnostics, Diagnostics> {

@@ -42,7 +42,8 @@ pub struct Loaded {
 
 /// Reads the layout in the file at `path`, made of `kinds` and placed on a floor of this `geometry`.
 ///
-/// # Errors Every problem of the file, or that it cannot be read. The layout is never partial.
+/// # Errors
+/// Every problem of the file, or that it cannot be read. The layout is never partial.
 pub fn load_layout(path: &Path, kinds: &Kinds, geometry: &Geometry) -> Result<Loaded, Diagnostics> {
     let text = read_text(path)?;
     parse_layout(&text, &path.display().to_string(), kinds, geometry)
@@ -59,7 +60,8 @@ pub fn folder_beside(path: &Path, name: &str) -> Option<PathBuf> {
 /// Returns the shipped kinds and effects, and those in folders `widgets` and `effects` next to the file `path` or
 /// next to its folder.
 ///
-/// # Errors Every problem of the files in these folders, or that a folder cannot be read.
+/// # Errors
+/// Every problem of the files in these folders, or that a folder cannot be read.
 pub fn kinds_beside(path: &Path) -> Result<Kinds, Diagnostics> {
     let mut effects = Effects::builtin();
     if let Some(folder) = folder_beside(path, "effects") {
@@ -76,7 +78,8 @@ pub fn kinds_beside(path: &Path) -> Result<Kinds, Diagnostics> {
 ///
 /// `name` is the name of the text in diagnostics, usually a path.
 ///
-/// # Errors Every problem of the text. The layout is never partial.
+/// # Errors
+/// Every problem of the text. The layout is never partial.
 pub fn parse_layout(
     text: &str,
     name: &str,

@@ -109,7 +109,8 @@ pub fn reference() -> Vec<Chapter> {
 
 /// Writes the reference as Markdown: all of it, or only the chapter or record called `name`.
 ///
-/// # Errors Says that there is no such name, and suggests similar ones.
+/// # Errors
+/// Says that there is no such name, and suggests similar ones.
 pub fn write_reference(name: Option<&str>) -> Result<String, String> {
     let chapters = reference();
     let is_meant = |other: &str| name.is_none_or(|name| name.eq_ignore_ascii_case(other));

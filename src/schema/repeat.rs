@@ -105,7 +105,8 @@ fn words<'r>(node: Node<'r>, entry: &'static str, count: Option<u32>) -> Option<
 
 /// Replaces `{n}`, `{row}`, `{column}` and `{label}` in `pattern`; numbers count from 1.
 ///
-/// # Errors The unknown word in braces, and a suggestion for it.
+/// # Errors
+/// The unknown word in braces, and a suggestion for it.
 pub(super) fn filled(
     pattern: &str,
     cell: Cell,

@@ -50,7 +50,8 @@ pub enum SaveError {
 ///
 /// It saves as [`save_text`] does, with the same guarantees.
 ///
-/// # Errors [`SaveError`]; the old file, if there was one, is then unchanged.
+/// # Errors
+/// [`SaveError`]; the old file, if there was one, is then unchanged.
 pub fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, SaveError> {
     let text = write_floor(floor);
     match parse_floor(&text, &path.display().to_string()) {
@@ -65,7 +66,8 @@ pub fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, SaveError> {
 /// is kept as `name.bak`, or `name.bak2` and so on up to `name.bak10`; after that, the oldest backup except the first
 /// is removed. A symbolic link stays one: the file that it points to is replaced.
 ///
-/// # Errors [`SaveError::File`]; the old file, if there was one, is then unchanged.
+/// # Errors
+/// [`SaveError::File`]; the old file, if there was one, is then unchanged.
 pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
     write(text, path, true)
 }

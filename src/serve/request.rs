@@ -7,7 +7,8 @@ use crate::wire::{ControlMessage, is_pattern, matches};
 
 /// Carries out the request `message` on `engine`.
 ///
-/// # Errors [`Refusal`] if the engine rejects it; nothing has changed then.
+/// # Errors
+/// [`Refusal`] if the engine rejects it; nothing has changed then.
 pub(super) fn apply(engine: &mut Engine, message: &ControlMessage) -> Result<(), Refusal> {
     set(engine, message).map_err(|why| refusal(engine, message, why))
 }

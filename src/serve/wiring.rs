@@ -178,7 +178,8 @@ impl WiringWalk {
 
     /// Returns the result of the walk; `None` before its end. `floor` is the floor of [`WiringWalk::new`].
     ///
-    /// # Errors [`FeltTwice`] if one board read the steps for several boards.
+    /// # Errors
+    /// [`FeltTwice`] if one board read the steps for several boards.
     #[must_use]
     pub fn outcome(&self, floor: &Floor) -> Option<Result<Wiring, FeltTwice>> {
         if self.stage != Stage::Done {

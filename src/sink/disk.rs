@@ -27,7 +27,8 @@ pub(crate) struct Disk {
 impl Disk {
     /// Takes care of `file` at `path`.
     ///
-    /// # Errors The error of the system if it gives no second handle.
+    /// # Errors
+    /// The error of the system if it gives no second handle.
     pub(crate) fn of(file: &File, path: &Path) -> io::Result<Self> {
         let mut disk = Self {
             file: file.try_clone()?,
@@ -41,7 +42,8 @@ impl Disk {
 
     /// Takes care of `file` at `path` from now on, the next file of the recording.
     ///
-    /// # Errors The error of the system if it gives no second handle.
+    /// # Errors
+    /// The error of the system if it gives no second handle.
     #[cfg(feature = "wav")]
     pub(crate) fn go_on(&mut self, file: &File, path: &Path) -> io::Result<()> {
         self.file = file.try_clone()?;
@@ -52,7 +54,8 @@ impl Disk {
 
     /// Syncs and checks the disk if that is due. Called after each flush, from a thread that may block.
     ///
-    /// # Errors The error of the system if the sync fails.
+    /// # Errors
+    /// The error of the system if the sync fails.
     pub(crate) fn tend(&mut self) -> io::Result<()> {
         if self.synced.elapsed() < SYNC_EVERY {
             return Ok(());

@@ -149,8 +149,9 @@ impl Decoder {
     /// [`crate::sense::Assembler`] to check. Messages of a bundle that are for another receiver or have the wrong
     /// shape are dropped and listed in [`Batch::refused`].
     ///
-    /// # Errors [`WireError`] if any part of the datagram is malformed, or if its only message is not used; `batch`
-    /// is then empty.
+    /// # Errors
+    /// [`WireError`] if any part of the datagram is malformed, or if its only message is not used; `batch` is then
+    /// empty.
     pub fn decode(&self, datagram: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
         batch.clear();
         let result = self.fill(datagram, received, batch);

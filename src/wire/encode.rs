@@ -83,8 +83,8 @@ impl SensorEncoder {
     /// If the format is newtons, counts are converted by the floor's calibration (without subtracting the tare). A
     /// missing count is written as -1 by [`SensorFormat::Counts`] and as NaN by [`SensorFormat::Newtons`].
     ///
-    /// # Errors [`EncodeError`] if the packet does not belong to this floor, or the format cannot represent its
-    /// contents.
+    /// # Errors
+    /// [`EncodeError`] if the packet does not belong to this floor, or the format cannot represent its contents.
     pub fn encode(&mut self, packet: &SensorPacket) -> Result<&[u8], EncodeError> {
         let board = self.boards.get(usize::from(packet.board)).ok_or(EncodeError::NoBoard(packet.board))?;
         let (channels, readings) = (board.calibration.len(), packet.readings.len());

@@ -105,7 +105,8 @@ pub enum Malformed {
 /// bytes. A datagram that passes is well-formed throughout: every element, string, blob and argument lies within its
 /// container, no byte is left over, texts are UTF-8 (addresses ASCII), arrays are closed.
 ///
-/// # Errors [`Malformed`] gives the first fault and its place. No part of such a datagram should be used.
+/// # Errors
+/// [`Malformed`] gives the first fault and its place. No part of such a datagram should be used.
 ///
 /// # Source
 /// Open Sound Control 1.0 with the type tags of 1.1, as far as rosc supports them.
@@ -150,7 +151,8 @@ pub(super) enum Form {
 
 /// Returns the readable part of the message `bytes`.
 ///
-/// # Errors [`Malformed`] if it exceeds `limits`, or is not well-formed.
+/// # Errors
+/// [`Malformed`] if it exceeds `limits`, or is not well-formed.
 pub(super) fn form(bytes: &[u8], limits: &Limits) -> Result<Form, Malformed> {
     Scan { bytes, offset: 0, at: 0 }.form(limits)
 }

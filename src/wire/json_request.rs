@@ -10,7 +10,8 @@ use super::prefix::Prefix;
 /// Reads the request at `path` (an address without its prefix, such as `widget/zoom/set`) with JSON's numbers,
 /// booleans and texts as arguments.
 ///
-/// # Errors Says why the request is invalid, in words for its author.
+/// # Errors
+/// Says why the request is invalid, in words for its author.
 pub fn read_json(path: &str, args: &[Value]) -> Result<ControlMessage, String> {
     let prefix = Prefix::default();
     let args: Option<Vec<OscType>> = args.iter().map(argument).collect();

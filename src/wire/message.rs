@@ -9,8 +9,8 @@ use crate::widget::{Indicator, Value, WidgetId};
 
 /// A request of an app, about a control or the floor.
 ///
-/// Only the engine knows whether there is such a control or page, and whether the value fits: it converts a number to
-/// on or off for a switch, and a whole number to a choice for a selector.
+/// Only the engine knows whether there is such a control or page, and whether the value fits: for a switch it converts
+/// 0 to off and other numbers to on, for a selector a whole number to a choice.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControlMessage {
     /// Set the value; its numbers are finite.

@@ -17,7 +17,8 @@ use crate::feel::{Click, Clicks, Effect, EffectKind, Impulse, Manner, Mode, Part
 ///
 /// `name` becomes the file's description.
 ///
-/// # Errors [`AhapError::Driven`] for an effect driven by a foot or a value.
+/// # Errors
+/// [`AhapError::Driven`] for an effect driven by a foot or a value.
 pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), AhapError> {
     let mut lost = Lost::default();
     let parts: Vec<Part> = match &effect.kind {

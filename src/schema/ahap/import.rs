@@ -26,8 +26,8 @@ pub(super) const SHORTEST_S: f32 = 0.001;
 /// Events that begin after 60 s, and those beyond the maximum parts of a sequence, are dropped; control curves with
 /// more points than a tone can hold are simplified or split. Trailing commas and comments are allowed.
 ///
-/// # Errors [`AhapError`]: the text is not a pattern, one of its times is negative or beyond a day, or no event can
-/// be played.
+/// # Errors
+/// [`AhapError`]: the text is not a pattern, one of its times is negative or beyond a day, or no event can be played.
 pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapError> {
     let file = File::parse(text, name)?;
     let mut warnings = Warnings::default();

@@ -238,7 +238,8 @@ impl Server {
     /// Runs until the source ends or fails or `stop` is set, which takes effect within some milliseconds; then
     /// cancels everything held and reports that.
     ///
-    /// # Errors Those of [`Server::turn`].
+    /// # Errors
+    /// Those of [`Server::turn`].
     pub fn run(&mut self, stop: &AtomicBool) -> Result<(), SourceError> {
         self.haptics.update_mute(self.link.is_lost());
         let served = loop {
@@ -257,8 +258,9 @@ impl Server {
 
     /// Takes one packet, or notes that none came, and processes all its consequences.
     ///
-    /// # Errors [`SourceError`] if the source fails. A failing sink is dropped with a warning, so that the controls
-    /// keep working without it.
+    /// # Errors
+    /// [`SourceError`] if the source fails. A failing sink is dropped with a warning, so that the controls keep
+    /// working without it.
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.process_commands();
         let mut is_silent = false;

@@ -32,9 +32,10 @@ const MOST_DRIFT: f64 = 1e-3;
 /// Callbacks are late by a varying time, while blocks follow each other evenly. A delay-locked loop of second order
 /// finds the even period in the uneven calls, and follows the slow drift between the two clocks without lag.
 ///
-/// # Source F. Adriaensen, "Using a DLL to filter time", Linux Audio Conference 2005: with `w = 2 pi B T`, the next
-/// time moves by `sqrt(2) w e` and the period by `w^2 e` of each error `e`. This one begins with a wider band, takes
-/// blocks of any length, and limits large errors.
+/// # Source
+/// F. Adriaensen, "Using a DLL to filter time", Linux Audio Conference 2005: with `w = 2 pi B T`, the next time moves
+/// by `sqrt(2) w e` and the period by `w^2 e` of each error `e`. This one begins with a wider band, takes blocks of
+/// any length, and limits large errors.
 #[derive(Debug, Default)]
 pub(super) struct BlockClock {
     lock: Option<Lock>,

@@ -93,8 +93,8 @@ impl Callback {
 
     /// Fills a block whose first sample sounds after `sounds_in`, which is zero if unknown.
     ///
-    /// # Real-time Asks the system for priority once, soon after the start; otherwise no allocation, lock or system
-    /// call.
+    /// # Real-time
+    /// Asks the system for priority once, soon after the start; otherwise no allocation, lock or system call.
     #[expect(
         clippy::disallowed_methods,
         reason = "the clock is read, without a lock, until priority is settled"

@@ -51,8 +51,9 @@ pub struct OutputDevice {
 impl OutputDevice {
     /// Finds the device that `options` request, and a configuration for `floor`.
     ///
-    /// # Errors [`SinkError::Device`] if there is no such device or it lacks a requested feature; the message gives
-    /// its features and advice.
+    /// # Errors
+    /// [`SinkError::Device`] if there is no such device or it lacks a requested feature; the message gives its
+    /// features and advice.
     pub fn find(floor: &Floor, options: DeviceOptions) -> Result<Self, SinkError> {
         Self::find_among(System::shared(), floor, options)
     }
@@ -111,8 +112,9 @@ impl OutputDevice {
     /// From now on a thread supervises the device: when it is lost or hangs, the thread opens it again as soon as
     /// possible and discards the cues in between.
     ///
-    /// # Errors [`SinkError::Device`] if the renderer was made for another sample rate, or the device is in use,
-    /// missing, or fails to play.
+    /// # Errors
+    /// [`SinkError::Device`] if the renderer was made for another sample rate, or the device is in use, missing, or
+    /// fails to play.
     pub fn play(self, renderer: Renderer) -> Result<DeviceSink, SinkError> {
         DeviceSink::keep(self.supervise(renderer)?)
     }

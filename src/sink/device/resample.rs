@@ -18,7 +18,8 @@ const PASS: f64 = 0.8;
 ///
 /// Windowed-sinc interpolation; the delay is 16 frames of the slower rate. Frames are interleaved.
 ///
-/// # Real-time Allocates all memory at creation.
+/// # Real-time
+/// Allocates all memory at creation.
 #[derive(Debug)]
 pub(super) struct Resampler {
     channels: usize,

@@ -216,8 +216,9 @@ fn open(path: &Path, spec: WavSpec) -> Result<(WavWriter<BufWriter<File>>, File)
 
 /// Sets the sizes in a WAV file's header to those of its whole frames on the disk, and returns the number of frames.
 ///
-/// # Source Multimedia Programming Interface 1.0 (IBM, Microsoft, 1991): the RIFF chunk's size stands at byte 4, and
-/// that of the data chunk in the last four bytes before the samples.
+/// # Source
+/// Multimedia Programming Interface 1.0 (IBM, Microsoft, 1991): the RIFF chunk's size stands at byte 4, and that of
+/// the data chunk in the last four bytes before the samples.
 fn mend(path: &Path, header_bytes: u64, frame_bytes: u64) -> io::Result<u64> {
     let mut file = OpenOptions::new().write(true).open(path)?;
     let samples = file.metadata()?.len().saturating_sub(header_bytes);

@@ -131,8 +131,8 @@ enum Piece {
 impl WavSink {
     /// Begins a recording at `path` and replaces an existing file.
     ///
-    /// # Errors [`SinkError::File`] if the file cannot be created, or a WAV file cannot have that many channels (or
-    /// none).
+    /// # Errors
+    /// [`SinkError::File`] if the file cannot be created, or a WAV file cannot have that many channels (or none).
     pub fn create(
         path: impl Into<PathBuf>,
         renderer: Renderer,
@@ -159,7 +159,8 @@ impl WavSink {
 
     /// Ends the recording and returns its summary.
     ///
-    /// # Errors [`SinkError::File`] if the disk did not accept all of it: the first failure.
+    /// # Errors
+    /// [`SinkError::File`] if the disk did not accept all of it: the first failure.
     pub fn finish(mut self) -> Result<WavSummary, SinkError> {
         self.close()
     }
