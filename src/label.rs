@@ -1,17 +1,17 @@
-//! The characters that labels and names may hold, whichever way they come: from files, over the network, from apps.
+//! Valid characters of labels and names from all sources: files, the network, apps.
 //!
-//! Characters that control a terminal, change the direction of writing, or are not seen are left out, so that no label
-//! passes for another. Those that scripts and emoji need stay: right-to-left letters, joiners between letters that join,
-//! variation selectors, the tags of flags.
+//! Characters that control a terminal, change the direction of writing, or are invisible are removed, so that no
+//! label imitates another. Characters that scripts and emoji need stay: right-to-left letters, joiners between
+//! letters that join, variation selectors, the tags of flags.
 
 use std::borrow::Cow;
 
 use unicode_properties::{GeneralCategory, UnicodeEmoji, UnicodeGeneralCategory};
 
-/// Most characters of a label.
+/// Maximum number of characters of a label.
 pub const MAX_LABEL: usize = 64;
 
-/// A character that no label may hold.
+/// A character that is invalid in a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unfit {
     /// Its place in the text, in bytes.
@@ -20,7 +20,7 @@ pub struct Unfit {
     pub character: char,
 }
 
-/// The first character of `text` that no label may hold; `None` if it may be a label.
+/// Returns the first character of `text` that is invalid in a label; `None` if the text is a valid label.
 #[must_use]
 pub fn first_unfit(text: &str) -> Option<Unfit> {
     let mut before = None;
@@ -31,7 +31,7 @@ pub fn first_unfit(text: &str) -> Option<Unfit> {
     })
 }
 
-/// `text` without the characters that no label may hold, and at most `longest` of the others.
+/// Returns `text` without the characters that are invalid in a label, and at most `longest` of the others.
 #[must_use]
 pub fn cleaned(text: &str, longest: usize) -> Cow<'_, str> {
     if first_unfit(text).is_none() && text.chars().nth(longest).is_none() {
@@ -46,7 +46,7 @@ pub fn cleaned(text: &str, longest: usize) -> Cow<'_, str> {
     fit.take(longest).collect::<String>().into()
 }
 
-/// The kind of an unfit character and its number, as messages name it.
+/// Describes an unfit character for messages: its kind and its number.
 pub(crate) fn describe(character: char) -> String {
     let kind = match character {
         _ if character.is_control() => "a control character",
@@ -59,15 +59,16 @@ pub(crate) fn describe(character: char) -> String {
     format!("{kind} (U+{:04X})", u32::from(character))
 }
 
-/// Whether a label may hold `character` behind `before`.
+/// Whether a label may contain `character` after `before`.
 ///
 /// # Source
-/// General categories of the Unicode Character Database; property Default_Ignorable_Code_Point for what is not seen;
-/// Unicode Standard, 23.2 for joiners, 23.4 for variation selectors; Unicode Technical Standard 51 for emoji.
+/// General categories of the Unicode Character Database; property Default_Ignorable_Code_Point for invisible
+/// characters; Unicode Standard, 23.2 for joiners, 23.4 for variation selectors; Unicode Technical Standard 51 for
+/// emoji.
 fn is_fit(character: char, before: Option<char>) -> bool {
     let follows = |holds: fn(char) -> bool| before.is_some_and(holds);
     match character {
-        // Between Arabic and Indic letters; the second of them also between emoji.
+        // Joiners between Arabic and Indic letters; the second one also between emoji.
         '\u{200c}' => follows(joins),
         '\u{200d}' => follows(joins) || follows(is_pictorial),
         '\u{fe00}'..='\u{fe0f}' => follows(varies),
@@ -81,10 +82,10 @@ fn is_fit(character: char, before: Option<char>) -> bool {
     }
 }
 
-/// Whether `character` is not seen wherever it stands, or changes what is seen of others.
+/// Whether `character` is invisible everywhere, or changes the appearance of others.
 pub(crate) fn is_hidden(character: char) -> bool {
     match character {
-        // Signs that span digits in Arabic, Syriac and Kaithi are seen.
+        // Signs that span digits in Arabic, Syriac and Kaithi are visible.
         '\u{600}'..='\u{605}'
         | '\u{6dd}'
         | '\u{70f}'
@@ -92,7 +93,7 @@ pub(crate) fn is_hidden(character: char) -> bool {
         | '\u{8e2}'
         | '\u{110bd}'
         | '\u{110cd}' => false,
-        // Letters, marks and reserved places that are not seen.
+        // Invisible letters, marks and reserved code points.
         '\u{34f}'
         | '\u{115f}'
         | '\u{1160}'
@@ -120,7 +121,7 @@ fn is_noncharacter(character: char) -> bool {
     matches!(character, '\u{fdd0}'..='\u{fdef}') || u32::from(character) & 0xFFFE == 0xFFFE
 }
 
-/// Whether joiners behind `before` change how letters are drawn: in scripts whose letters join, or that have a virama.
+/// Whether joiners after `before` change the shape of letters: in scripts with joining letters or a virama.
 fn joins(before: char) -> bool {
     matches!(
         before,
@@ -139,12 +140,12 @@ fn joins(before: char) -> bool {
     )
 }
 
-/// Whether `before` can be a part of an emoji that is made of several.
+/// Whether `before` can be a part of a composed emoji.
 fn is_pictorial(before: char) -> bool {
     before == '\u{fe0f}' || (before > '\u{a8}' && before.is_emoji_char())
 }
 
-/// Whether variation selectors behind `before` change how it is drawn.
+/// Whether variation selectors after `before` change its appearance.
 fn varies(before: char) -> bool {
     before.is_emoji_char() || before >= '\u{2190}'
 }
@@ -201,7 +202,7 @@ mod tests {
             ("two\u{2028}lines\u{2029}", "twolines"),
             ("\u{85}\u{9b}31m\u{7f}", "31m"),
             ("st\u{200b}op\u{feff}\u{2060}\u{ad}\u{34f}", "stop"),
-            // Joiners, selectors and tags where nothing needs them.
+            // Joiners, selectors and tags in places where they have no effect.
             ("st\u{200d}o\u{200c}p\u{fe0f}", "stop"),
             ("\u{200d}a", "a"),
             ("ک\u{200c}\u{200c}ا", "ک\u{200c}ا"),

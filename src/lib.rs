@@ -1,8 +1,8 @@
 //! User interfaces on the floor: force-sensing tiles in, foot controls and tactile feedback out.
 //!
-//! A floor is a grid of rigid square tiles, each with four force sensors and an actuator. A layout, written in
-//! RON, places controls on it. Give an [`Engine`](engine::Engine) the layout and one frame of forces per
-//! millisecond, and it tells what happened to the controls:
+//! A floor is a grid of rigid square tiles, each with four force sensors and an actuator. A layout, written in RON,
+//! places controls on it. Give an [`Engine`](engine::Engine) the layout and one frame of forces per millisecond, and
+//! it reports the events of the controls:
 //!
 //! ```
 //! use underfoot::engine::Engine;
@@ -32,31 +32,31 @@
 //! # Ok::<(), schema::Diagnostics>(())
 //! ```
 //!
-//! # Modules, in the order in which an app meets them
+//! # Modules, in the order in which an app needs them
 //!
-//! | module | what is in it |
+//! | module | content |
 //! |---|---|
-//! | [`runtime`] | a floor at work on a thread of its own, with a handle: events, what is held, controls by id |
+//! | [`runtime`] | a running floor on a thread of its own, with a handle: events, held controls, controls by id |
 //! | [`engine`] | a frame of forces in, events, cues and a snapshot out; no clocks, threads or devices |
-//! | [`serve`] | a floor at work in one thread: packets in, events and samples out |
+//! | [`serve`] | a running floor in one thread: packets in, events and samples out |
 //! | [`schema`] | layouts, kinds of controls, effects and floors as RON, with all problems at their places |
-//! | [`widget`] | what controls there are, and the events they give |
+//! | [`widget`] | the controls and their events |
 //! | [`floor`] | tiles, sensors, boards, actuators of one floor |
 //! | [`sense`] | forces, contacts, cursors, the health of sensors |
 //! | [`layout`] | a checked layout: controls, regions, pages |
-//! | [`source`] | where packets come from: a socket, a simulated floor |
-//! | [`sink`] | where events and samples go: OSC, TUIO, JSON lines, sound cards, files |
-//! | `recording` | what decides what happens on a floor, in an MCAP file, and the same again from it (feature `record`) |
+//! | [`source`] | sources of packets: a socket, a simulated floor |
+//! | [`sink`] | outputs for events and samples: OSC, TUIO, JSON lines, sound cards, files |
+//! | `recording` | all inputs of a floor in an MCAP file, and replay from it (feature `record`) |
 //! | [`wire`] | packets, requests and their limits |
-//! | [`feel`], [`ground`] | what is felt: cues, effects, materials, and the renderer of actuator samples |
+//! | [`feel`], [`ground`] | haptics: cues, effects, materials, and the renderer of actuator samples |
 //! | [`units`] | newtons, instants |
 //!
 //! The features `sim` (a simulated floor with people on it), `scene` and `picture` (a floor drawn), `ergonomics`
-//! (whether feet and eyes can use a layout), `edit` (layouts changed in place), `lab` (figures and accuracy tables) and
-//! `preview` (a window) add a module each; an app that leaves the default features out compiles none of them. With
-//! `internals`, which the program needs, names become public that may change in any version.
+//! (whether feet and eyes can use a layout), `edit` (layouts changed in place), `lab` (figures and accuracy tables)
+//! and `preview` (a window) add a module each; an app without the default features compiles none of them. The feature
+//! `internals`, which the program needs, makes names public that may change in any version.
 //!
-//! # A packet's way
+//! # Path of a packet
 //!
 //! ```text
 //! datagram -wire-> SensorPacket (counts, 1 kHz) -sense-> ForceFrame (N)
@@ -69,12 +69,12 @@
 //! corner, x east, y north, in metres ([`glam::Vec2`]). The sensor corners of a
 //! tile are always in the order south-west, south-east, north-west, north-east.
 
-// Without `internals`, what only the program uses is neither public nor used.
+// Without `internals`, items for the program only are neither public nor used.
 #![cfg_attr(not(feature = "internals"), allow(dead_code, unreachable_pub))]
 
 /// Re-exports that are public with the feature `internals`, and the crate's own without it.
 ///
-/// What is re-exported this way may change in any version.
+/// These re-exports may change in any version.
 macro_rules! internal {
     ($(use $module:ident :: { $($name:ident),* $(,)? };)*) => {$(
         #[cfg(feature = "internals")]
@@ -140,20 +140,20 @@ pub mod units;
 pub mod widget;
 pub mod wire;
 
-// Their types stand in public signatures.
+// Public signatures contain types of these crates.
 pub use {arrayvec, glam, smallvec, triple_buffer};
 
-/// Whatever runs in an audio callback during a test is caught allocating.
+/// Detects allocations in audio callbacks during tests.
 #[cfg(test)]
 #[global_allocator]
 static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;
 
-/// The Rust of the page for apps is a doctest.
+/// Tests the Rust code in the page for apps.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/rust-app.md")]
 struct RustApp;
 
-/// The same of the page about the engine.
+/// Tests the Rust code in the page about the engine.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/in-your-app.md")]
 struct InYourApp;

@@ -1,37 +1,39 @@
-//! How often something may happen: repeated notices, what one sender may ask for.
+//! Rate limits for repeated notices and for the requests of one sender.
 
 use std::time::Duration;
 
 use crate::units::Instant;
 
-/// A token bucket: so many at once, then one each so often.
+/// A token bucket: a burst at once, then one token per interval.
 ///
-/// Turner's leaky bucket as a virtual schedule (ITU-T I.371, generic cell rate algorithm): what is stored is
-/// when the bucket would be full again, so that a limiter costs two numbers and no clock.
+/// Turner's leaky bucket as a virtual schedule (ITU-T I.371, generic cell rate algorithm): a request of `n` tokens
+/// passes if `full_at - now <= every * (burst - n)`, and then sets `full_at = max(full_at, now) + every * n`. A
+/// limiter stores two numbers and needs no clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RateLimit {
     every: Duration,
     burst: u32,
-    /// When all tokens are back.
+    /// Time at which the bucket is full again.
     full_at: Instant,
-    /// How many came too soon since the last that did not.
+    /// Number of requests rejected since the last one that passed.
     held_back: u64,
 }
 
 impl RateLimit {
-    /// At most `burst` (0 counts as 1) at once, and one each `every` in the long run.
+    /// At most `burst` (0 counts as 1) at once, and one per `every` in the long run.
     pub(crate) const fn new(burst: u32, every: Duration) -> Self {
         Self { every, burst, full_at: Instant::START, held_back: 0 }
     }
 
-    /// Whether one more may happen at `now`: then how many were held back since the last; `None` holds it back.
+    /// Takes one token at `now`; returns the number of requests rejected since the last success, or `None` for a
+    /// rejection.
     ///
-    /// A clock that goes back gives no tokens.
+    /// A clock that goes back adds no tokens.
     pub(crate) fn take(&mut self, now: Instant) -> Option<u64> {
         self.take_many(now, 1)
     }
 
-    /// The same for something that costs as much as `count` others. More than the burst may happen once that is whole.
+    /// Takes `count` tokens at once. More than the burst may be taken when the bucket is full.
     pub(crate) fn take_many(&mut self, now: Instant, count: u32) -> Option<u64> {
         let spent = self.full_at.since(now);
         if spent > self.every * self.burst.saturating_sub(count) {

@@ -1,4 +1,4 @@
-//! Quantities that travel between modules: force and time.
+//! Quantities used in several modules: force and time.
 //!
 //! Lengths are plain metres in [`glam::Vec2`]; see [`crate::floor`] for the floor's axes.
 
@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 /// A force along the floor's normal, in newtons; positive presses the floor down.
 ///
-/// Any `f32` is representable, NaN included: the places that accept outside
-/// numbers check them with [`Newtons::is_finite`].
+/// Any `f32` is representable, NaN included: code that accepts outside numbers checks them with
+/// [`Newtons::is_finite`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Newtons(pub f32);
@@ -21,19 +21,19 @@ impl Newtons {
     /// No force.
     pub const ZERO: Self = Self(0.0);
 
-    /// Whether this is an ordinary number, neither NaN nor infinite.
+    /// Whether this is neither NaN nor infinite.
     #[must_use]
     pub fn is_finite(self) -> bool {
         self.0.is_finite()
     }
 
-    /// The greater of the two; the other one if either is NaN.
+    /// Returns the greater of the two; the other one if either is NaN.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         Self(self.0.max(other.0))
     }
 
-    /// The force without its sign.
+    /// Returns the absolute value.
     #[must_use]
     pub fn abs(self) -> Self {
         Self(self.0.abs())
@@ -95,9 +95,8 @@ impl Sum for Newtons {
 
 /// A moment on a monotonic clock, in whole microseconds since that clock's start.
 ///
-/// Which clock is up to whoever hands the time in: the host's monotonic clock
-/// on a live floor, the scenario's own clock in a simulation. Wall-clock time
-/// never becomes an `Instant`.
+/// The caller chooses the clock: the host's monotonic clock on a live floor, the scenario's own clock in a
+/// simulation. Wall-clock time never becomes an `Instant`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Instant(u64);
 
@@ -129,13 +128,13 @@ impl Instant {
         self.0 as f64 * 1e-6
     }
 
-    /// The time from `earlier` to `self`; zero if `earlier` is in fact later.
+    /// Returns the time from `earlier` to `self`; zero if `earlier` is later.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Duration {
         Duration::from_micros(self.0.saturating_sub(earlier.0))
     }
 
-    /// The moment `span` before `self`, or the clock's start if that is earlier.
+    /// Returns the moment `span` before `self`, or the clock's start if that is earlier.
     #[must_use]
     pub fn before(self, span: Duration) -> Self {
         Self(self.0.saturating_sub(micros(span)))
@@ -144,7 +143,7 @@ impl Instant {
 
 impl Add<Duration> for Instant {
     type Output = Self;
-    /// The moment `span` later; the clock's end (584,000 years) is never passed.
+    /// Returns the moment `span` later, at most the clock's end (584,000 years).
     fn add(self, span: Duration) -> Self {
         Self(self.0.saturating_add(micros(span)))
     }

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::format::codec::Spelled;
 
-/// An address and a port as files write them.
+/// An address and a port in files.
 pub(crate) const ADDRESS: Spelled<SocketAddr> = Spelled {
     about: "an address and a port in quotes, \"192.168.1.10:9000\"",
     parse: |text| read_address(text).ok().filter(is_definite),
@@ -16,32 +16,32 @@ pub(crate) const ADDRESS: Spelled<SocketAddr> = Spelled {
     stand_in: SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000)),
 };
 
-/// Why a text is not an address.
+/// A text is not an address with a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("write an address and a port, like 127.0.0.1:9000 or [::1]:9000")]
 pub struct NotAnAddress;
 
-/// The address in `text`, such as `127.0.0.1:9000`. An IPv4 address within IPv6, such as `[::ffff:127.0.0.1]:9000`, is
-/// the IPv4 address.
+/// Reads the address in `text`, such as `127.0.0.1:9000`. An IPv4 address within IPv6, such as
+/// `[::ffff:127.0.0.1]:9000`, becomes the IPv4 address.
 ///
 /// # Errors
-/// [`NotAnAddress`] for everything else, also for names.
+/// [`NotAnAddress`] for any other text, including host names.
 pub fn read_address(text: &str) -> Result<SocketAddr, NotAnAddress> {
     text.parse().map(canonical).map_err(|_| NotAnAddress)
 }
 
-/// `address`, as IPv4 if it is an IPv4 address within IPv6 (RFC 4291, 2.5.5.2): the system's sockets take both for the
-/// same, and rules about addresses must as well.
+/// Converts an IPv4 address within IPv6 to IPv4 (RFC 4291, 2.5.5.2) and returns others unchanged: the system's
+/// sockets treat both forms as the same address, so rules about addresses must do so too.
 #[must_use]
 pub fn canonical(address: SocketAddr) -> SocketAddr {
     match address.ip().to_canonical() {
-        // An address that stays IPv6 keeps its scope.
+        // An IPv6 address keeps its scope.
         ip if ip.is_ipv4() => SocketAddr::new(ip, address.port()),
         _ => address,
     }
 }
 
-/// Whether others can send there: `0.0.0.0` is each computer to itself, and nothing can be sent to port 0.
+/// Whether other computers can send there: `0.0.0.0` means each computer itself, and port 0 cannot receive.
 fn is_definite(address: &SocketAddr) -> bool {
     !address.ip().is_unspecified() && address.port() != 0
 }

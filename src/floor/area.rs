@@ -6,40 +6,40 @@ use glam::Vec2;
 
 use super::{Actuator, Board, Floor, Geometry, Rect, SensorId, TileBlock, TileId};
 
-/// The tiles of a floor that one computer serves: it senses them, decides on their controls and moves their actuators.
+/// The tiles of a floor that one computer serves: it senses them, runs their controls and drives their actuators.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Area {
-    /// Unique on the floor.
+    /// Its id, unique on the floor.
     pub id: String,
-    /// Its tiles; no other area has them.
+    /// Its tiles; areas do not overlap.
     pub tiles: TileBlock,
-    /// Where its computer takes packets: those of its boards, and what its neighbours forward to it; `None` where that
-    /// is not known, and nothing is forwarded.
+    /// Address on which its computer receives packets: those of its boards, and those that its neighbours forward;
+    /// `None` if the address is unknown, so that nothing is forwarded.
     pub listen: Option<SocketAddr>,
 }
 
-/// How far beyond its area a computer senses, in metres: as far as anybody steps (1.1 m) and the half of a foot, so that
-/// whoever may put a foot into the area is seen with the other one.
+/// Distance beyond its area that a computer senses, in metres: the longest step (1.1 m) and half a foot, so that it
+/// also senses the other foot of a person who steps into the area.
 pub const SENSED_BEYOND_M: f32 = 1.2;
 
 impl Area {
-    /// The area called `id` of these `tiles`, whose computer may be anywhere.
+    /// The area called `id` with these `tiles`, without an address.
     #[must_use]
     pub fn new(id: &str, tiles: TileBlock) -> Self {
         Self { id: id.to_owned(), tiles, listen: None }
     }
 
-    /// The tiles that its computer senses: its own and those within [`SENSED_BEYOND_M`] of them.
+    /// Returns the tiles that its computer senses: its own and those within [`SENSED_BEYOND_M`] of them.
     #[must_use]
     pub fn sensed(&self, geometry: &Geometry) -> TileBlock {
         let margin = (SENSED_BEYOND_M / geometry.pitch_m()).ceil() as u16;
         self.tiles.grown(margin).common(&geometry.block())
     }
 
-    /// Whether `point` of the floor is in this area; a point beyond the floor counts to the tile nearest to it, and one
-    /// that is not a number to the first.
+    /// Whether `point` of the floor is in this area; a point beyond the floor counts as part of the nearest tile, and
+    /// NaN as part of the first.
     ///
-    /// Of a floor's areas, exactly one holds a point.
+    /// Exactly one of a floor's areas holds a point.
     #[must_use]
     pub fn holds(&self, geometry: &Geometry, point: Vec2) -> bool {
         self.tiles.contains(nearest_tile(geometry, point))
@@ -47,14 +47,14 @@ impl Area {
 }
 
 impl Floor {
-    /// The area called `id`; `None` if there is none.
+    /// Returns the area called `id`; `None` if there is none.
     #[must_use]
     pub fn area(&self, id: &str) -> Option<&Area> {
         self.areas.iter().find(|area| area.id == id)
     }
 
-    /// The same floor in areas, of which each has actuators on the channels of a device of its own: channel by channel
-    /// in the order of its tiles.
+    /// Divides the floor into areas. The actuators of each area use the channels of its own device, in the order of
+    /// its tiles.
     #[must_use]
     pub fn with_areas(mut self, areas: Vec<Area>) -> Self {
         let mut next = vec![0; areas.len()];
@@ -67,12 +67,12 @@ impl Floor {
         Self { areas, ..self }
     }
 
-    /// The part of this floor that the computer of `area` serves: what it senses, and the actuators and loudspeakers
-    /// that are its own.
+    /// Returns the part of this floor that the computer of `area` serves: the tiles that it senses, and its own
+    /// actuators and loudspeakers.
     ///
-    /// Tiles keep their names and points their places. Boards that measure nothing there are left out, and so is what
-    /// the others measure elsewhere; they keep their addresses. A loudspeaker belongs to the area nearest to it.
-    /// `None` if the floor has no tile there.
+    /// Tiles keep their ids and points their coordinates. Boards without sensors there are omitted; the other boards
+    /// keep their addresses and lose the sensors elsewhere. A loudspeaker belongs to the nearest area. `None` if the
+    /// floor has no tile there.
     #[must_use]
     pub fn part(&self, area: &Area) -> Option<Self> {
         let geometry = self.geometry.part(&area.sensed(&self.geometry))?;
@@ -114,14 +114,14 @@ impl Floor {
     }
 }
 
-/// The entries of `indices`; `None` if there is none for one of them.
+/// Returns the entries at `indices`; `None` if one of them does not exist.
 fn of<T: Clone>(all: &[T], indices: &[usize]) -> Option<Vec<T>> {
     indices.iter().map(|&index| all.get(index).cloned()).collect()
 }
 
 fn nearest_tile(geometry: &Geometry, point: Vec2) -> TileId {
     let Rect { min, max } = geometry.bounds();
-    // The far edges belong to no tile's cell, and NaN to none at all.
+    // The far edges belong to no tile's cell, and NaN lies in no cell.
     let inside = point.clamp(min, max - 0.5 * geometry.pitch_m());
     let nearest = [point, inside].into_iter().find_map(|point| geometry.tile_under(point));
     nearest.unwrap_or(geometry.first())
@@ -151,7 +151,7 @@ mod tests {
             let is_own = tile.column >= 6 && tile.row >= 6;
             assert_eq!(part.actuators[index], floor.actuators[whole].filter(|_| is_own), "{tile}");
         }
-        // Each computer's device has the channels of its own tiles.
+        // The device of each computer has the channels of its own tiles.
         assert_eq!(part.channel_count(), 36);
     }
 

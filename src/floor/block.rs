@@ -5,50 +5,50 @@ use std::ops::Range;
 
 use super::TileId;
 
-/// Tiles that lie side by side: a whole floor, or a part of one.
+/// A rectangle of adjacent tiles: a whole floor, or a part of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TileBlock {
     /// The tile in the south-west corner.
     pub first: TileId,
-    /// Number of columns; a block of none has no tile.
+    /// Number of columns; a block without columns has no tile.
     pub columns: u16,
-    /// Number of rows; a block of none has no tile.
+    /// Number of rows; a block without rows has no tile.
     pub rows: u16,
 }
 
 impl TileBlock {
-    /// The columns, from west to east; those past 65,535 are left out.
+    /// Returns the columns, from west to east, up to 65,535.
     #[must_use]
     pub const fn column_range(&self) -> Range<u16> {
         self.first.column..self.first.column.saturating_add(self.columns)
     }
 
-    /// The rows, from south to north; those past 65,535 are left out.
+    /// Returns the rows, from south to north, up to 65,535.
     #[must_use]
     pub const fn row_range(&self) -> Range<u16> {
         self.first.row..self.first.row.saturating_add(self.rows)
     }
 
-    /// Whether `tile` is one of them.
+    /// Whether the block contains `tile`.
     #[must_use]
     pub fn contains(&self, tile: TileId) -> bool {
         self.column_range().contains(&tile.column) && self.row_range().contains(&tile.row)
     }
 
-    /// All tiles, row by row from the south-west.
+    /// Returns all tiles, row by row from the south-west.
     pub fn tiles(&self) -> impl Iterator<Item = TileId> + use<> {
         let columns = self.column_range();
         self.row_range().flat_map(move |row| columns.clone().map(move |column| TileId::new(column, row)))
     }
 
-    /// The same block with `tiles` more on each side, as far as there are numbers for them.
+    /// Returns the block with `tiles` more on each side, within the range of tile numbers.
     #[must_use]
     pub fn grown(&self, tiles: u16) -> Self {
         let wider = |range: Range<u16>| range.start.saturating_sub(tiles)..range.end.saturating_add(tiles);
         Self::of_ranges(&wider(self.column_range()), &wider(self.row_range()))
     }
 
-    /// The tiles that are in both; a block of none if there is no such tile.
+    /// Returns the tiles that are in both; an empty block if there are none.
     #[must_use]
     pub fn common(&self, other: &Self) -> Self {
         let both = |one: Range<u16>, other: Range<u16>| one.start.max(other.start)..one.end.min(other.end);
@@ -58,7 +58,7 @@ impl TileBlock {
         )
     }
 
-    /// Whether there is no tile in it.
+    /// Whether the block has no tile.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.columns == 0 || self.rows == 0
@@ -74,7 +74,7 @@ impl TileBlock {
 }
 
 impl fmt::Display for TileBlock {
-    /// Where it begins is said unless that is a floor's corner.
+    /// The text gives the first tile, except for a block in the floor's corner.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { first, columns, rows } = self;
         write!(f, "{columns} x {rows} tiles")?;

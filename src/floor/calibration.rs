@@ -1,4 +1,4 @@
-//! How a sensor's counts become newtons.
+//! Conversion of a sensor's counts to newtons.
 
 use std::fmt;
 
@@ -20,7 +20,7 @@ choices! {
     Linear(Linear),
 }
 
-/// Which law it is, without its numbers.
+/// The kind of a law, without its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LawKind {
     /// `f = a exp(b v)`.
@@ -34,13 +34,13 @@ pub enum LawKind {
 }
 
 impl Calibration {
-    /// The part underfoot assumes where nothing was measured: exponential, 0.5 N at 0 V, 406 N at 5 V (our choice).
+    /// The part that underfoot assumes without a measurement: exponential, 0.5 N at 0 V, 406 N at 5 V (our choice).
     pub const NOMINAL: Self = Self::Exponential(Exponential::NOMINAL);
 
     /// Voltage at the converter's full scale.
     pub const FULL_SCALE_VOLTS: f32 = 5.0;
 
-    /// Counts from which on every sensor is near the end of its range (98 %) and reads "at least".
+    /// Counts above which every sensor is near the end of its range (98 %) and its reading is a lower bound.
     pub(crate) const SATURATED: u16 = 64_225;
 
     /// The exponential law with these numbers.
@@ -60,7 +60,7 @@ impl Calibration {
         }
     }
 
-    /// Which law it is.
+    /// Returns the kind of the law.
     #[must_use]
     pub const fn kind(&self) -> LawKind {
         match self {
@@ -71,7 +71,7 @@ impl Calibration {
         }
     }
 
-    /// Its two numbers, in the order of [`LawKind::number_names`].
+    /// Returns its two numbers, in the order of [`LawKind::number_names`].
     #[must_use]
     pub const fn numbers(&self) -> [f32; 2] {
         match *self {
@@ -82,8 +82,8 @@ impl Calibration {
         }
     }
 
-    /// Whether a force sensor can have it: both numbers within the ranges of floor files, and a finite force at the
-    /// converter's full scale.
+    /// Whether a force sensor can have this law: both numbers within the ranges of floor files, and a finite force at
+    /// the converter's full scale.
     #[must_use]
     pub(crate) fn is_plausible(&self) -> bool {
         let ranges = match self {
@@ -96,22 +96,22 @@ impl Calibration {
             && self.force(u16::MAX).is_finite()
     }
 
-    /// The voltage behind a raw 16-bit reading: 0 to 5 V.
+    /// Returns the voltage of a raw 16-bit reading: 0 to 5 V.
     #[must_use]
     pub fn volts(counts: u16) -> f32 {
         f32::from(counts) * (Self::FULL_SCALE_VOLTS / f32::from(u16::MAX))
     }
 
-    /// The force that a raw 16-bit reading stands for, tare not yet taken off.
+    /// Returns the force of a raw 16-bit reading, without subtracting the tare.
     #[must_use]
     #[inline]
     pub fn force(&self, counts: u16) -> Newtons {
         self.force_at(Self::volts(counts))
     }
 
-    /// The force that a voltage stands for, tare not yet taken off.
+    /// Returns the force at a voltage, without subtracting the tare.
     ///
-    /// Negative only below a linear part's zero. A law that runs out of single precision gives an infinite force.
+    /// It is negative only below a linear part's zero. A force beyond single precision becomes infinite.
     #[must_use]
     #[inline]
     pub fn force_at(&self, volts: f32) -> Newtons {
@@ -123,7 +123,8 @@ impl Calibration {
         })
     }
 
-    /// The voltage at which it gives `force`, which may lie outside of the converter's range; NaN where none does.
+    /// Returns the voltage at which the law gives `force`, possibly outside of the converter's range; NaN if there is
+    /// none.
     #[must_use]
     pub fn volts_at(&self, force: Newtons) -> f32 {
         match self {
@@ -134,14 +135,14 @@ impl Calibration {
         }
     }
 
-    /// Counts from which on this sensor is near the end of its range and reads "at least":
-    /// 64,225, or the end of a divider whose supply is less than the converter's full scale.
+    /// Returns the counts above which this sensor is near the end of its range and its reading is a lower bound:
+    /// 64,225, or the end of a divider with a supply below the converter's full scale.
     #[must_use]
     pub fn saturated(&self) -> u16 {
         match self {
             Self::Divider(Divider { supply_v, .. }) => {
                 let end = Divider::END * supply_v / Self::FULL_SCALE_VOLTS * f32::from(u16::MAX);
-                // A cast of a number past the ends gives the end.
+                // The cast saturates at the ends of the range.
                 (end as u16).min(Self::SATURATED)
             }
             Self::Exponential(_) | Self::Power(_) | Self::Linear(_) => Self::SATURATED,
@@ -155,7 +156,7 @@ impl From<Exponential> for Calibration {
     }
 }
 
-/// The law as people write it, with its numbers to four digits: `0.5 exp(1.34 v)`.
+/// The usual notation of the law, with its numbers to four digits: `0.5 exp(1.34 v)`.
 impl fmt::Display for Calibration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [a, b] = self.numbers().map(|number| Significant::new(number, 4));
@@ -172,10 +173,10 @@ impl fmt::Display for Calibration {
 }
 
 impl LawKind {
-    /// All of them, the paper's first.
+    /// All kinds, the paper's first.
     pub const ALL: [Self; 4] = [Self::Exponential, Self::Power, Self::Divider, Self::Linear];
 
-    /// The word for it: `exponential`, `power`, `divider` or `linear`.
+    /// Returns its name: `exponential`, `power`, `divider` or `linear`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -186,7 +187,7 @@ impl LawKind {
         }
     }
 
-    /// The names of its two numbers in floor files, in the order of the formula.
+    /// Returns the names of its two numbers in floor files, in the order of the formula.
     #[must_use]
     pub const fn number_names(self) -> [&'static str; 2] {
         match self {
@@ -197,7 +198,7 @@ impl LawKind {
         }
     }
 
-    /// Its formula: newtons of volts.
+    /// Returns its formula: newtons as a function of volts.
     #[must_use]
     pub const fn formula(self) -> &'static str {
         match self {
@@ -213,7 +214,7 @@ impl LawKind {
 mod tests {
     use super::*;
 
-    /// One part of each law, with figures as parts have them.
+    /// One part of each law, with typical numbers.
     const PARTS: [Calibration; 4] = [
         Calibration::NOMINAL,
         Calibration::Power(Power { a_n: 2.2, exponent: 3.1 }),
@@ -245,7 +246,7 @@ mod tests {
         for part in PARTS {
             let forces: Vec<f32> = (0..=u16::MAX).step_by(257).map(|counts| part.force(counts).0).collect();
             assert!(forces.iter().all(|force| force.is_finite()), "{part}");
-            // A divider of 5 V stands still in the last half percent.
+            // A divider of 5 V is constant in the last half percent.
             let (rising, end) = forces.split_at(253);
             assert!(rising.windows(2).all(|pair| pair[1] > pair[0]), "{part}");
             assert!(end.windows(2).all(|pair| pair[1] >= pair[0]), "{part}");

@@ -1,8 +1,8 @@
-//! The lasting name of a contact.
+//! The permanent id of a contact.
 
 use serde::Serialize;
 
-/// The lasting name of one contact: given when it lands, never used again.
+/// The permanent id of one contact: assigned when it begins, never used again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(transparent)]
 pub struct ContactId(pub u32);

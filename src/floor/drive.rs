@@ -12,12 +12,12 @@ record! {
     pub full_scale_v: f32 = "full_scale_v", num(0.01..=1000.0).explicit() => Drive::default().full_scale_v;
     /// Resistance of an actuator's coil, in ohms; positive.
     pub load_ohm: f32 = "load_ohm", num(0.1..=1000.0).explicit() => Drive::default().load_ohm;
-    /// Power that a coil takes for ever, in watts; positive.
+    /// Continuous power rating of a coil, in watts; positive.
     pub long_term_w: f32 = "long_term_w", num(0.01..=10_000.0).explicit() => Drive::default().long_term_w;
 }
 
 impl Drive {
-    /// Power of a steady full-scale sample, in watts; a full-scale sine has half of it.
+    /// Returns the power of a constant full-scale sample, in watts; a full-scale sine has half of it.
     #[must_use]
     pub fn full_scale_w(&self) -> f32 {
         self.full_scale_v * self.full_scale_v / self.load_ohm
@@ -25,13 +25,14 @@ impl Drive {
 }
 
 impl Default for Drive {
-    /// The paper's actuators, 80 W into 4 ohms, behind amplifiers that could give twice as much (36 V; our choice).
+    /// The paper's actuators, 80 W into 4 ohms, with amplifiers that can deliver about twice as much to a sine (36 V;
+    /// our choice).
     fn default() -> Self {
         Self { full_scale_v: 36.0, load_ohm: 4.0, long_term_w: 80.0 }
     }
 }
 
-/// How strongly an actuator moves its plate at each frequency, as it was measured.
+/// Measured frequency response of an actuator: force at the plate by frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     /// Hertz and decibels, by frequency.
@@ -39,12 +40,12 @@ pub struct Response {
 }
 
 impl Response {
-    /// Most points that one response has.
+    /// Maximum number of points of one response.
     pub const MOST_POINTS: usize = 1024;
 
     /// A response from `points`: hertz, and decibels relative to the actuator's full scale.
     ///
-    /// `None` unless there are 2 to 1024 points, the hertz are positive and rise, and everything is finite.
+    /// `None` unless there are 2 to 1024 points with positive, rising frequencies, and all numbers are finite.
     #[must_use]
     pub fn of(points: Vec<(f32, f32)>) -> Option<Self> {
         let good = (2..=Self::MOST_POINTS).contains(&points.len())
@@ -53,8 +54,8 @@ impl Response {
         good.then_some(Self { points })
     }
 
-    /// A response from `points` of hertz and newtons for a full-scale sine, of an actuator that is meant to give
-    /// `full_scale`.
+    /// A response from `points` of hertz and newtons for a full-scale sine, for an actuator with nominal force
+    /// `full_scale`: `20 log10(newtons / full_scale)` decibels.
     ///
     /// `None` as for [`Response::of`], or if any force is not positive.
     #[must_use]
@@ -65,14 +66,14 @@ impl Response {
         Self::of(points.iter().map(|(hz, newtons)| (*hz, 20.0 * (newtons / full_scale.0).log10())).collect())
     }
 
-    /// The measured points: hertz and decibels, by frequency.
+    /// Returns the measured points: hertz and decibels, by frequency.
     #[must_use]
     pub fn points(&self) -> &[(f32, f32)] {
         &self.points
     }
 
-    /// The gain at `hz`, in decibels: straight lines between the points over the logarithm of the
-    /// frequency, and the outermost points beyond them.
+    /// Returns the gain at `hz`, in decibels: linear between the points over the logarithm of the frequency, constant
+    /// outside of them.
     #[must_use]
     pub fn gain_db(&self, hz: f64) -> f64 {
         let above = self.points.partition_point(|(known, _)| f64::from(*known) < hz);
@@ -85,19 +86,19 @@ impl Response {
     }
 }
 
-/// A loudspeaker beside the floor, which plays the cues of layouts that want to be heard.
+/// A loudspeaker beside the floor, which plays the cues of layouts with sound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loudspeaker {
-    /// Where it stands, in floor metres; also outside of the floor.
+    /// Its place, in floor metres; may be outside of the floor.
     pub at: Vec2,
     /// Output channel of the audio device, from 0.
     pub channel: u16,
-    /// How loud it is, in decibels: at 0, a cue of 40 N that is heard in full is a full-scale sample.
+    /// Its gain, in decibels: at 0, a cue of 40 N with sound 1 is a full-scale sample.
     pub gain_db: f32,
 }
 
 impl Loudspeaker {
-    /// Most loudspeakers of one floor.
+    /// Maximum number of loudspeakers of one floor.
     pub(crate) const MOST: usize = 8;
 }
 

@@ -1,9 +1,9 @@
-//! The exponential function, so simple that several are computed side by side.
+//! An exponential function simple enough for the compiler to vectorise.
 
-/// Parts that a doubling is divided into.
+/// Number of parts of an octave in the table.
 const PARTS: usize = 32;
 
-/// The bits of `2^(n / PARTS)`, less those that the exponent of the result puts back.
+/// The bits of `2^(n / PARTS)`, less those that the exponent of the result adds.
 const ROOTS: [u64; PARTS] = [
     0x3ff0_0000_0000_0000,
     0x3fef_d9b0_d315_8574,
@@ -39,13 +39,14 @@ const ROOTS: [u64; PARTS] = [
     0x3fef_d076_5b6e_4540,
 ];
 
-/// Added to a number and taken off again, it leaves the nearest integer, which then also stands in the lowest bits.
+/// Adding and subtracting this number rounds to the nearest integer; after the addition, the lowest bits hold the
+/// integer.
 const ROUNDING: f64 = 1.5 * (1_u64 << 52) as f64;
 
-/// Beyond this the result has long been infinite or nothing.
+/// Limit of the argument; the result is infinite or zero well before it.
 const FAR: f32 = 200.0;
 
-/// `e^x`, within 0.502 units in the last place: the same to the bit on every machine, alone and beside others.
+/// `e^x`, within 0.502 units in the last place: bit-identical on every machine, in scalar and vector code.
 ///
 /// Infinite from 88.73 on, zero below -103.98, NaN for NaN.
 ///
@@ -76,7 +77,7 @@ mod tests {
 
     #[test]
     fn it_is_within_an_ulp_of_the_truth_everywhere() {
-        // Every 4096th number there is, from the largest negative to the largest positive one.
+        // Every 4096th bit pattern, from the largest negative to the largest positive number.
         for bits in (0..=u32::MAX).step_by(4096) {
             let x = f32::from_bits(bits);
             let (found, truth) = (exp(x), f64::from(x).exp());

@@ -3,13 +3,13 @@
 use std::fmt;
 use std::sync::Arc;
 
-/// Most characters of a name that are kept: its end, which tells files of one folder apart.
+/// Maximum number of characters kept of a name: its end, which distinguishes the files of one folder.
 const LONGEST: usize = 120;
 
-/// The name of the file that a floor was read from, for messages about what that file lacks.
+/// The name of the file that a floor was read from, for messages about missing fields of that file.
 ///
-/// All names are equal: two floors with the same hardware are the same floor, wherever they were read. Without a name
-/// the floor was made in code, as the built-in floor is.
+/// All names are equal: two floors with the same hardware are the same floor, regardless of their files. A floor
+/// without a name was made in code, as the built-in floor is.
 #[derive(Clone, Debug, Default)]
 pub struct FloorFile(Option<Arc<str>>);
 
@@ -17,8 +17,8 @@ impl FloorFile {
     /// A floor that was made in code.
     pub const NONE: Self = Self(None);
 
-    /// The file `name`, as the user wrote it. Of a name longer than 120 characters the end is kept, and characters that
-    /// control a terminal become `\u{fffd}`.
+    /// The file `name`, as the user wrote it. If a name is longer than 120 characters, its end is kept; characters
+    /// that control a terminal become `\u{fffd}`.
     #[must_use]
     pub fn new(name: &str) -> Self {
         let length = name.chars().count();
@@ -30,7 +30,7 @@ impl FloorFile {
         Self(Some(format!("…{end}").into()))
     }
 
-    /// The name; `None` for a floor that was made in code.
+    /// Returns the name; `None` for a floor that was made in code.
     #[must_use]
     pub fn name(&self) -> Option<&str> {
         self.0.as_deref()

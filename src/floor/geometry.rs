@@ -1,4 +1,4 @@
-//! Tiles, corners and sensors, and where they are.
+//! Tiles, corners and sensors, and their places.
 
 use std::fmt;
 
@@ -46,16 +46,16 @@ pub enum Corner {
 }
 
 impl Corner {
-    /// All four, in the order every sensor array of this crate uses: sw, se, nw, ne.
+    /// All four corners, in the order of every sensor array of this crate: sw, se, nw, ne.
     pub const ALL: [Self; 4] = [Self::SouthWest, Self::SouthEast, Self::NorthWest, Self::NorthEast];
 
-    /// Position in [`Corner::ALL`], 0 to 3.
+    /// Returns the index in [`Corner::ALL`], 0 to 3.
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// Which way the corner lies from the tile's centre: -1 or 1 along each axis.
+    /// Returns the direction of the corner from the tile's centre: -1 or 1 along each axis.
     #[must_use]
     pub const fn direction(self) -> Vec2 {
         match self {
@@ -66,7 +66,7 @@ impl Corner {
         }
     }
 
-    /// The short name used in files: `sw`, `se`, `nw` or `ne`.
+    /// Returns the short name in files: `sw`, `se`, `nw` or `ne`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -92,9 +92,9 @@ impl fmt::Display for Corner {
 /// One force sensor: its tile and corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SensorId {
-    /// The tile the sensor supports.
+    /// The tile on the sensor.
     pub tile: TileId,
-    /// The corner it sits under.
+    /// The corner above the sensor.
     pub corner: Corner,
 }
 
@@ -104,37 +104,37 @@ impl fmt::Display for SensorId {
     }
 }
 
-/// Where the tiles of one floor, or of one part of a larger floor, and the sensors under them are.
+/// The places of the tiles of a floor, or of a part of a larger floor, and of the sensors under them.
 ///
 /// Tiles are numbered row by row from the south-west. That number, the *tile index*, orders every per-tile array of
-/// this crate. A part has indices of its own; its tiles keep their columns and rows, and points their place.
+/// this crate. A part has its own indices; its tiles keep their columns and rows, and points keep their coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
     first: TileId,
     columns: u16,
     rows: u16,
-    /// Columns and rows of the whole floor that this is a part of.
+    /// Columns and rows of the whole floor that contains this part.
     whole: (u16, u16),
     tile_m: f32,
     pitch_m: f32,
     sensor_inset_m: f32,
 }
 
-/// Why a floor of these measures cannot exist.
+/// Reason for which measures of a floor are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum GeometryError {
     /// The grid has no tile, or more than [`Geometry::MAX_SIDE`] along a side.
     #[error("a floor has 1 to {max} columns and rows, not {columns} x {rows}", max = Geometry::MAX_SIDE)]
     Grid {
-        /// Columns asked for.
+        /// Requested columns.
         columns: u16,
-        /// Rows asked for.
+        /// Requested rows.
         rows: u16,
     },
     /// A tile's side is not a length between 5 cm and 5 m.
     #[error("tile_m must be between 0.05 and 5 m, not {0}")]
     Tile(f32),
-    /// Tiles overlap, or lie further apart than they are wide.
+    /// Tiles overlap, or their distance exceeds their width.
     #[error("pitch_m must be at least tile_m and at most twice as much, not {0}")]
     Pitch(f32),
     /// The sensors would lie outside the tile or beyond its centre.
@@ -143,21 +143,20 @@ pub enum GeometryError {
 }
 
 impl Geometry {
-    /// Most columns, and most rows, that a floor may have.
+    /// Maximum number of columns, and of rows, of a floor.
     pub const MAX_SIDE: u16 = 256;
 
-    /// The last column, and the last row, at which a part of a larger floor may begin: more than a kilometre of the
-    /// paper's tiles, where a `f32` still tells a tenth of a millimetre.
+    /// Last column, and last row, at which a part of a larger floor may begin: more than a kilometre of the paper's
+    /// tiles, where an `f32` still resolves a tenth of a millimetre.
     pub const FARTHEST: u16 = 4095;
 
     /// A floor of `columns` x `rows` tiles.
     ///
-    /// `tile_m` is the side of one plate, `pitch_m` the distance between the
-    /// centres of neighbours, `sensor_inset_m` how far inside the plate's edges
-    /// the sensors sit.
+    /// `tile_m` is the side of one plate, `pitch_m` the distance between the centres of neighbours, `sensor_inset_m`
+    /// the distance of the sensors from the plate's edges.
     ///
     /// # Errors
-    /// [`GeometryError`] names the measure that cannot be and the range it may have.
+    /// [`GeometryError`] gives the invalid measure and its valid range.
     pub fn new(
         columns: u16,
         rows: u16,
@@ -182,8 +181,8 @@ impl Geometry {
         Ok(Self { first: TileId::new(0, 0), columns, rows, whole, tile_m, pitch_m, sensor_inset_m })
     }
 
-    /// The same grid as a part of a larger floor, in which its south-west corner is `first`; columns and rows past
-    /// [`Geometry::FARTHEST`] count as that. The larger floor ends where this part does: see [`Geometry::within`].
+    /// Returns the same grid as a part of a larger floor with its south-west corner at `first`; columns and rows past
+    /// [`Geometry::FARTHEST`] count as that. The larger floor ends with this part: see [`Geometry::within`].
     #[must_use]
     pub const fn beginning_at(self, first: TileId) -> Self {
         const fn near(at: u16) -> u16 {
@@ -193,7 +192,8 @@ impl Geometry {
         Self { first, ..self }.within((0, 0))
     }
 
-    /// The same part of a floor of so many columns and rows, or as many as the part takes if those are more.
+    /// Returns the same part of a floor with this number of columns and rows, or of the smallest floor that contains
+    /// it.
     #[must_use]
     pub const fn within(self, (columns, rows): (u16, u16)) -> Self {
         const fn most(one: u16, other: u16) -> u16 {
@@ -203,24 +203,24 @@ impl Geometry {
         Self { whole: (most(columns, least.0), most(rows, least.1)), ..self }
     }
 
-    /// Columns and rows of the smallest floor that this can be a part of.
+    /// Returns columns and rows of the smallest floor that contains this part.
     pub(crate) const fn least_whole(&self) -> (u16, u16) {
         (self.first.column + self.columns, self.first.row + self.rows)
     }
 
-    /// Columns and rows of the whole floor: its own, unless this is a part of a larger one.
+    /// Returns columns and rows of the whole floor: its own, unless this is a part of a larger one.
     #[must_use]
     pub const fn whole(&self) -> (u16, u16) {
         self.whole
     }
 
-    /// Whether it is a part of a larger floor.
+    /// Whether this is a part of a larger floor.
     #[must_use]
     pub const fn is_part(&self) -> bool {
         self.columns < self.whole.0 || self.rows < self.whole.1
     }
 
-    /// What of it lies within `block`; `None` if nothing does.
+    /// Returns the part within `block`; `None` if there is no tile.
     #[must_use]
     pub fn part(&self, block: &TileBlock) -> Option<Self> {
         let TileBlock { first, columns, rows } = self.block().common(block);
@@ -235,55 +235,55 @@ impl Geometry {
         Self::new(columns, rows, 0.304, 0.304, 0.02)
     }
 
-    /// The tile in the south-west corner: (0, 0) unless this is a part of a larger floor.
+    /// Returns the tile in the south-west corner: (0, 0) unless this is a part of a larger floor.
     #[must_use]
     pub const fn first(&self) -> TileId {
         self.first
     }
 
-    /// Its tiles.
+    /// Returns its tiles.
     #[must_use]
     pub const fn block(&self) -> TileBlock {
         TileBlock { first: self.first, columns: self.columns, rows: self.rows }
     }
 
-    /// Number of columns, at least 1.
+    /// Returns the number of columns, at least 1.
     #[must_use]
     pub const fn columns(&self) -> u16 {
         self.columns
     }
 
-    /// Number of rows, at least 1.
+    /// Returns the number of rows, at least 1.
     #[must_use]
     pub const fn rows(&self) -> u16 {
         self.rows
     }
 
-    /// Side of one plate, in metres.
+    /// Returns the side of one plate, in metres.
     #[must_use]
     pub const fn tile_m(&self) -> f32 {
         self.tile_m
     }
 
-    /// Distance between the centres of neighbouring tiles, in metres.
+    /// Returns the distance between the centres of neighbouring tiles, in metres.
     #[must_use]
     pub const fn pitch_m(&self) -> f32 {
         self.pitch_m
     }
 
-    /// Distance of the sensors from the plate's edges, in metres.
+    /// Returns the distance of the sensors from the plate's edges, in metres.
     #[must_use]
     pub const fn sensor_inset_m(&self) -> f32 {
         self.sensor_inset_m
     }
 
-    /// Number of tiles, at least 1.
+    /// Returns the number of tiles, at least 1.
     #[must_use]
     pub const fn tile_count(&self) -> usize {
         self.columns as usize * self.rows as usize
     }
 
-    /// All of it.
+    /// Returns the rectangle of the floor or part.
     #[must_use]
     pub fn bounds(&self) -> Rect {
         let corner = |column: u16, row: u16| Vec2::new(f32::from(column), f32::from(row)) * self.pitch_m;
@@ -291,12 +291,12 @@ impl Geometry {
         Rect::new(corner(column, row), corner(column + self.columns, row + self.rows))
     }
 
-    /// All tiles in index order: row by row from the south-west.
+    /// Returns all tiles in index order: row by row from the south-west.
     pub fn tiles(&self) -> impl Iterator<Item = TileId> + use<> {
         self.block().tiles()
     }
 
-    /// The index of `tile`; `None` if it is not on this floor.
+    /// Returns the index of `tile`; `None` if it is not on this floor.
     #[must_use]
     pub fn index(&self, tile: TileId) -> Option<usize> {
         let column = tile.column.checked_sub(self.first.column)?;
@@ -305,14 +305,14 @@ impl Geometry {
             .then(|| usize::from(row) * usize::from(self.columns) + usize::from(column))
     }
 
-    /// The tile at `index`, the inverse of [`Geometry::index`]; meaningless past the last tile.
+    /// Returns the tile at `index`, the inverse of [`Geometry::index`]; meaningless past the last tile.
     #[must_use]
     pub fn tile_at_index(&self, index: usize) -> TileId {
         let columns = usize::from(self.columns);
         TileId::new(self.first.column + (index % columns) as u16, self.first.row + (index / columns) as u16)
     }
 
-    /// The tile whose pitch cell holds `point`; `None` outside the floor or for NaN.
+    /// Returns the tile with `point` in its pitch cell; `None` outside the floor or for NaN.
     #[must_use]
     pub fn tile_under(&self, point: Vec2) -> Option<TileId> {
         self.bounds().contains(point).then(|| {
@@ -325,31 +325,31 @@ impl Geometry {
         })
     }
 
-    /// The centre of `tile`, also for tiles beyond the floor.
+    /// Returns the centre of `tile`, also for tiles beyond the floor.
     #[must_use]
     pub fn centre(&self, tile: TileId) -> Vec2 {
         (Vec2::new(f32::from(tile.column), f32::from(tile.row)) + 0.5) * self.pitch_m
     }
 
-    /// The plate of `tile`.
+    /// Returns the plate of `tile`.
     #[must_use]
     pub fn plate(&self, tile: TileId) -> Rect {
         Rect::from_centre_size(self.centre(tile), Vec2::splat(self.tile_m))
     }
 
-    /// Half the distance between neighbouring sensors of one tile, in metres.
+    /// Returns half the distance between neighbouring sensors of one tile, in metres.
     #[must_use]
     pub fn sensor_reach_m(&self) -> f32 {
         0.5 * self.tile_m - self.sensor_inset_m
     }
 
-    /// Where the sensor under `corner` of `tile` sits.
+    /// Returns the place of the sensor under `corner` of `tile`.
     #[must_use]
     pub fn sensor(&self, tile: TileId, corner: Corner) -> Vec2 {
         self.centre(tile) + corner.direction() * self.sensor_reach_m()
     }
 
-    /// A length or point in tile units (1.0 = one pitch) in metres.
+    /// Converts a length or point from tile units (1.0 = one pitch) to metres.
     #[must_use]
     pub fn metres_from_tiles(&self, tiles: Vec2) -> Vec2 {
         tiles * self.pitch_m

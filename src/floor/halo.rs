@@ -1,37 +1,37 @@
-//! Which boards' packets the computers of a floor forward to each other.
+//! Forwarding of boards' packets between the computers of a floor.
 //!
 //! A computer senses somewhat more than its own area ([`Area::sensed`]). Each board sends to one computer, its home;
-//! where others sense tiles of that board too, its home forwards the packets to them.
+//! if other computers sense tiles of that board too, its home forwards the packets to them.
 
 use std::collections::BTreeSet;
 use std::net::{IpAddr, SocketAddr};
 
 use super::{Area, Board, Floor, SensorId, TileBlock};
 
-/// Who needs the packets of one board besides the board's home.
+/// The computers that need the packets of one board in addition to the board's home.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Forwarding {
     /// The board's OSC address.
     pub address: String,
-    /// Where the others take packets.
+    /// Addresses on which these computers receive packets.
     pub to: Vec<SocketAddr>,
 }
 
 impl Floor {
-    /// The area whose computer `board` sends to: the one that has most of its sensors, of several the one named first.
-    /// `None` for a floor without areas and for a board that measures nothing.
+    /// Returns the area with the computer that `board` sends to: the one with most of its sensors, the first in the
+    /// list among equals. `None` for a floor without areas and for a board without sensors.
     #[must_use]
     pub fn home(&self, board: &Board) -> Option<&Area> {
         let sensors = |area: &&Area| {
             let own = |sensor: &&SensorId| area.tiles.contains(sensor.tile);
             board.channels.iter().flatten().filter(own).count()
         };
-        // Of equals, `max_by_key` gives the last.
+        // Among equals, `max_by_key` returns the last.
         self.areas.iter().rev().filter(|area| sensors(area) > 0).max_by_key(sensors)
     }
 
-    /// What the computer of `area` forwards: the boards whose home it is and of which others sense tiles. Areas that
-    /// do not say where they listen get nothing.
+    /// Returns the packets that the computer of `area` forwards: those of boards with this home and with tiles that
+    /// other computers sense. Areas without an address receive nothing.
     #[must_use]
     pub fn forwardings(&self, area: &Area) -> Vec<Forwarding> {
         let others = self.areas.iter().filter(|other| other.id != area.id);
@@ -48,7 +48,7 @@ impl Floor {
         forwardings.filter(|forwarding| !forwarding.to.is_empty()).collect()
     }
 
-    /// The areas whose computers forward packets to that of `area`; none if it does not say where it listens.
+    /// Returns the areas whose computers forward packets to that of `area`; none if `area` has no address.
     #[must_use]
     pub fn forwarders(&self, area: &Area) -> Vec<&Area> {
         let sensed = area.sensed(&self.geometry);
@@ -59,7 +59,7 @@ impl Floor {
         self.areas.iter().filter(|other| other.id != area.id && homes.contains(other.id.as_str())).collect()
     }
 
-    /// The addresses of the computers that forward packets to that of `area`, as far as they are named.
+    /// Returns the known addresses of the computers that forward packets to that of `area`.
     pub fn forwarding_addresses(&self, area: &Area) -> impl Iterator<Item = IpAddr> {
         self.forwarders(area).into_iter().filter_map(|home| Some(home.listen?.ip()))
     }
@@ -70,7 +70,7 @@ mod tests {
     use super::*;
     use crate::floor::{Geometry, TileId};
 
-    /// Three areas of 8 x 2 tiles in a row, of which the last does not say where it listens.
+    /// Three areas of 8 x 2 tiles in a row; the last has no address.
     fn hall() -> Floor {
         let area = |id: &str, number: u16| Area {
             listen: (number < 2).then(|| ([192, 168, 1, 10 + number as u8], 9000).into()),
@@ -94,12 +94,12 @@ mod tests {
         );
         let from_east = floor.forwardings(&floor.areas[2]);
         assert_eq!(from_east.len(), 2, "{from_east:?}");
-        // Middle is sensed by both, but nobody knows where the east is.
+        // Both neighbours sense the middle, but the east has no address.
         assert!(floor.forwardings(&floor.areas[1]).iter().all(|one| one.to.len() == 1));
         assert_eq!(floor.forwarders(&floor.areas[0]), [&floor.areas[1]]);
         assert_eq!(floor.forwarding_addresses(&floor.areas[0]).collect::<Vec<_>>(), [middle.ip()]);
         assert_eq!(floor.forwarders(&floor.areas[2]), [] as [&Area; 0], "nobody knows where it listens");
-        // Half of a board here, half there: the area named first has it.
+        // Each area has half of a board: the first in the list is its home.
         let both = floor.boards[1].channels[..16].to_vec();
         floor.boards[0].channels.splice(..16, both);
         assert_eq!(home(&floor, 0).as_deref(), Some("west"));

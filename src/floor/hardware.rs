@@ -1,4 +1,4 @@
-//! Everything that is known of one floor.
+//! The hardware of one floor.
 
 use std::net::SocketAddr;
 
@@ -8,56 +8,55 @@ use super::{
 };
 use crate::units::Newtons;
 
-/// Everything underfoot knows of one floor: geometry, boards, calibration, actuators.
+/// The hardware of one floor: geometry, boards, calibration, actuators.
 ///
-/// The per-tile vectors are in tile-index order and as long as
-/// [`Geometry::tile_count`]; [`Floor::of`] makes a consistent one to start from.
+/// The per-tile vectors are in tile-index order and as long as [`Geometry::tile_count`]; [`Floor::of`] makes a
+/// consistent floor to start from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Floor {
-    /// Where tiles and sensors are.
+    /// The places of tiles and sensors.
     pub geometry: Geometry,
     /// The acquisition boards; a board's position in this list is its number.
     pub boards: Vec<Board>,
     /// Calibration of each tile's sensors, in [`Corner::ALL`] order.
     pub calibration: Vec<[Calibration; 4]>,
-    /// Force each sensor reads on the empty floor, taken off every reading.
+    /// Force that each sensor reads on the empty floor; it is subtracted from every reading.
     pub tare: Vec<[Newtons; 4]>,
-    /// The actuator under each tile; `None` where there is none.
+    /// The actuator under each tile; `None` for a tile without one.
     pub actuators: Vec<Option<Actuator>>,
-    /// What drives the actuators.
+    /// The amplifiers that drive the actuators.
     pub drive: Drive,
-    /// The measured response of each tile's actuator, which the rack makes flat; `None` where none was measured.
+    /// The measured response of each tile's actuator, which the rack equalises; `None` without a measurement.
     pub responses: Vec<Option<Response>>,
     /// The loudspeakers beside the floor, at most 8.
     pub loudspeakers: Vec<Loudspeaker>,
-    /// The position map of each tile; `None` where none was measured.
+    /// The position map of each tile; `None` without a measurement.
     pub position_maps: Vec<Option<PositionMap>>,
-    /// When each law in `calibration` was measured and how well it fits; `None` where nobody said.
+    /// Day and error of the fit of each law in `calibration`; `None` if unknown.
     pub calibration_records: Vec<[Option<CalibrationRecord>; 4]>,
-    /// When each of `position_maps` was measured and how well it fits; `None` where nobody said.
+    /// Day and error of the fit of each of `position_maps`; `None` if unknown.
     pub map_records: Vec<Option<MapRecord>>,
-    /// Whether the readings have no noise of their own, as those of an app or of a simulation without noise. Sensors that
-    /// repeat themselves are then not found, and controls with the guard `HoldToRun` work all the same.
+    /// Whether the readings lack noise of their own, as those of an app or of a simulation without noise. Sensors
+    /// that repeat their readings are then not detected, and controls with the guard `HoldToRun` work with them.
     pub noiseless: bool,
-    /// When `tare` was measured; `None` where nobody said.
+    /// The day on which `tare` was measured; `None` if unknown.
     pub tared: Option<Day>,
-    /// Where the boards' packets come from, on the network; nowhere but this machine if it is empty.
+    /// The networks that boards may send from; only this machine if it is empty.
     pub allow: Vec<Network>,
-    /// The parts of the floor that a computer of its own serves; empty where one serves them all.
+    /// The parts of the floor with a computer of their own; empty if one computer serves the whole floor.
     pub areas: Vec<Area>,
-    /// Where the gateway listens for the areas' computers; `None` where that is said elsewhere.
+    /// The address on which the gateway listens for the areas' computers; `None` if it is set elsewhere.
     pub gateway: Option<SocketAddr>,
-    /// Path of the file with the key that the areas' computers share, as in the floor file: relative to its folder, or
-    /// absolute. `None` without one.
+    /// Path of the file with the key that the areas' computers share, as in the floor file: relative to its folder,
+    /// or absolute. `None` without one.
     pub key: Option<String>,
     /// The file that it was read from.
     pub file: FloorFile,
 }
 
 impl Floor {
-    /// A floor of this geometry wired like the paper's: each row of tiles on its
-    /// own boards (up to eight tiles a board, four channels a tile, sw se nw ne),
-    /// nominal calibration, no tare, actuator channel = tile index.
+    /// A floor of this geometry wired like the paper's: each row of tiles has its own boards (up to eight tiles a
+    /// board, four channels a tile, sw se nw ne), nominal calibration, no tare, actuator channel = tile index.
     #[must_use]
     pub fn of(geometry: Geometry) -> Self {
         let tiles = geometry.tile_count();
@@ -83,10 +82,10 @@ impl Floor {
         }
     }
 
-    /// Gives a sensor another law; false if the floor has no such sensor.
+    /// Sets the law of a sensor; false if the floor has no such sensor.
     ///
-    /// What was measured through the old law goes: the tare becomes the force that the new law
-    /// sees in the same voltage, and a position map of the tile is taken away.
+    /// Measurements with the old law are converted or removed: the tare becomes the force of the new law at the same
+    /// voltage, and the position map of the tile is removed.
     pub fn recalibrate(
         &mut self,
         sensor: SensorId,
@@ -118,16 +117,16 @@ impl Floor {
         true
     }
 
-    /// The law of a sensor; the nominal one for a sensor the floor doesn't have.
+    /// Returns the law of a sensor; the nominal one for a sensor that the floor does not have.
     #[must_use]
     pub fn law(&self, sensor: SensorId) -> Calibration {
         let tile = self.geometry.index(sensor.tile).and_then(|tile| self.calibration.get(tile));
         tile.map_or(Calibration::NOMINAL, |laws| laws[sensor.corner.index()])
     }
 
-    /// The sensors whose calibration is the nominal part's, to the digit: nobody has measured them.
+    /// Returns the sensors with exactly the nominal part's calibration, which are unmeasured.
     ///
-    /// On a floor whose boards send newtons that is as it should be.
+    /// This is normal on a floor whose boards send newtons.
     pub fn uncalibrated(&self) -> impl Iterator<Item = SensorId> + '_ {
         self.geometry.tiles().zip(&self.calibration).flat_map(|(tile, laws)| {
             let nominal = |corner: &Corner| laws[corner.index()] == Calibration::NOMINAL;
@@ -135,8 +134,8 @@ impl Floor {
         })
     }
 
-    /// Number of channels a device must have for this floor: the highest channel that any actuator or
-    /// loudspeaker uses plus one.
+    /// Returns the number of channels that a device needs for this floor: the highest channel of any actuator or
+    /// loudspeaker plus one.
     #[must_use]
     pub fn channel_count(&self) -> usize {
         let actuators = self.actuators.iter().flatten().map(|actuator| actuator.channel);
@@ -152,10 +151,10 @@ impl Default for Floor {
     }
 }
 
-/// One acquisition board: where its packets come from and what each argument measures.
+/// One acquisition board: the address of its packets and the sensor of each argument.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Board {
-    /// OSC address of its packets, `/underfoot/board/<number>` unless told otherwise.
+    /// OSC address of its packets, `/underfoot/board/<number>` by default.
     pub address: String,
     /// The sensor on each channel, in argument order; `None` for an unused channel.
     pub channels: Vec<Option<SensorId>>,
@@ -178,7 +177,7 @@ impl Actuator {
     }
 }
 
-/// The most tiles one 32-channel board serves.
+/// Maximum number of tiles of one 32-channel board.
 const TILES_PER_BOARD: u16 = 8;
 
 fn boards_by_row(geometry: &Geometry) -> Vec<Board> {

@@ -1,4 +1,4 @@
-//! The laws that force sensors follow: what a voltage stands for, in newtons.
+//! The laws of force sensors: newtons as a function of the voltage.
 
 use super::exp::exp;
 use crate::format::{Num, num, record};
@@ -16,8 +16,8 @@ record! {
 }
 
 record! {
-    /// `f = a v^b`: a force-sensing resistor whose conductance grows with a power of the force, behind an amplifier
-    /// that measures its current.
+    /// `f = a v^b`: a force-sensing resistor with an amplifier that measures its current; the conductance is a power of
+    /// the force.
     ///
     /// # Source
     /// Resistance over force is close to a straight line on two logarithmic axes (Interlink Electronics, FSR
@@ -31,7 +31,7 @@ record! {
 }
 
 record! {
-    /// `f = a v / (s - v)`: a resistor whose conductance is in proportion to the force, in a voltage divider.
+    /// `f = a v / (s - v)`: a resistor with a conductance proportional to the force, in a voltage divider.
     ///
     /// # Source
     /// `v = s R_m / (R_m + R)` (Interlink Electronics, FSR Integration Guide, voltage divider), with the supply s, the
@@ -44,7 +44,7 @@ record! {
 }
 
 record! {
-    /// `f = a (v - z)`: a load cell behind its amplifier, or any part that is linear already.
+    /// `f = a (v - z)`: a load cell with its amplifier, or any linear part.
     pub struct Linear = "Linear", Copy;
     /// Slope a, in newtons per volt; positive.
     pub a_n_per_volt: f32 = "a_n_per_volt", LINEAR[0];
@@ -52,30 +52,30 @@ record! {
     pub zero_v: f32 = "zero_v", LINEAR[1];
 }
 
-// What a part may have; beyond it no force sensor is known, or single precision ends.
+// Ranges of a part's numbers; beyond them there is no known force sensor, or single precision ends.
 
-/// Parts that are hardly moved at 0 V have a small a and a large b: 10 N at 5 V with b = 14 is 4e-30 N.
+/// Parts with hardly any force at 0 V have a small a and a large b: 10 N at 5 V with b = 14 is 4e-30 N.
 pub(super) const EXPONENTIAL: [Num; 2] = [num(1e-30..=1e3).explicit(), num(1e-3..=20.0).explicit()];
 
 pub(super) const POWER: [Num; 2] = [num(1e-30..=1e6), num(1e-2..=50.0)];
 
-/// A supply far beyond the converter's range leaves a straight line.
+/// With a supply far beyond the converter's range, the law is a straight line.
 pub(super) const DIVIDER: [Num; 2] = [num(1e-3..=1e6), num(0.1..=1e3)];
 
 pub(super) const LINEAR: [Num; 2] = [num(1e-3..=1e6), num(-100.0..=100.0)];
 
 impl Exponential {
-    /// The part underfoot assumes where nothing was measured: 0.5 N at 0 V, 406 N at 5 V (our choice).
+    /// The part that underfoot assumes without a measurement: 0.5 N at 0 V, 406 N at 5 V (our choice).
     pub const NOMINAL: Self = Self { a_n: 0.5, b_per_volt: 1.34 };
 
-    /// The force, in newtons, that `volts` stand for.
+    /// Returns the force in newtons at `volts`.
     #[must_use]
     #[inline]
     pub fn newtons(&self, volts: f32) -> f32 {
         self.a_n * exp(self.b_per_volt * volts)
     }
 
-    /// The voltage at which the law gives `force` newtons; NaN for a negative force.
+    /// Returns the voltage at which the law gives `force` newtons; NaN for a negative force.
     #[must_use]
     pub fn volts(&self, force: f32) -> f32 {
         (force / self.a_n).ln() / self.b_per_volt
@@ -83,14 +83,14 @@ impl Exponential {
 }
 
 impl Power {
-    /// The force, in newtons, that `volts` stand for: none for a negative voltage.
+    /// Returns the force in newtons at `volts`; zero for a negative voltage.
     #[must_use]
     #[inline]
     pub fn newtons(&self, volts: f32) -> f32 {
         self.a_n * volts.max(0.0).powf(self.exponent)
     }
 
-    /// The voltage at which the law gives `force` newtons; NaN for a negative force.
+    /// Returns the voltage at which the law gives `force` newtons; NaN for a negative force.
     #[must_use]
     pub fn volts(&self, force: f32) -> f32 {
         (force / self.a_n).powf(1.0 / self.exponent)
@@ -98,11 +98,11 @@ impl Power {
 }
 
 impl Divider {
-    /// Share of the supply from which on a divider is at the end of its range: another half percent of the supply, and
-    /// its force is without bounds (our choice).
+    /// Share of the supply that counts as the end of a divider's range: within another half percent of the supply,
+    /// its force grows without bounds (our choice).
     pub(crate) const END: f32 = 0.995;
 
-    /// The force, in newtons, that `volts` stand for; from 0.995 of the supply on, the force there.
+    /// Returns the force in newtons at `volts`; constant from 0.995 of the supply on.
     #[must_use]
     #[inline]
     pub fn newtons(&self, volts: f32) -> f32 {
@@ -110,7 +110,7 @@ impl Divider {
         self.a_n * volts / (self.supply_v - volts)
     }
 
-    /// The voltage at which the law gives `force` newtons; less than the supply for every force that is not negative.
+    /// Returns the voltage at which the law gives `force` newtons; below the supply for every force of at least 0.
     #[must_use]
     pub fn volts(&self, force: f32) -> f32 {
         self.supply_v * force / (self.a_n + force)
@@ -118,14 +118,14 @@ impl Divider {
 }
 
 impl Linear {
-    /// The force, in newtons, that `volts` stand for; negative below the zero.
+    /// Returns the force in newtons at `volts`; negative below the zero.
     #[must_use]
     #[inline]
     pub fn newtons(&self, volts: f32) -> f32 {
         self.a_n_per_volt * (volts - self.zero_v)
     }
 
-    /// The voltage at which the law gives `force` newtons.
+    /// Returns the voltage at which the law gives `force` newtons.
     #[must_use]
     pub fn volts(&self, force: f32) -> f32 {
         self.zero_v + force / self.a_n_per_volt

@@ -1,8 +1,7 @@
-//! The floor: its geometry and the hardware that listens and moves under it.
+//! The floor: its geometry, and the sensors and actuators under it.
 //!
-//! Floor space has its origin at the south-west corner of the floor, x east
-//! (right), y north (away from the user), in metres. [`Geometry`] knows where
-//! tiles and sensors are; [`Floor`] adds what is wired to them.
+//! Floor space has its origin at the south-west corner of the floor, x east (right), y north (away from the user), in
+//! metres. [`Geometry`] gives the places of tiles and sensors; [`Floor`] adds the hardware wired to them.
 
 mod address;
 mod area;

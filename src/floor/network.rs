@@ -12,11 +12,11 @@ use crate::format::codec::Spelled;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Network {
     ip: IpAddr,
-    /// How many leading bits count: at most 32, or 128 for IPv6.
+    /// Number of significant leading bits: at most 32, or 128 for IPv6.
     bits: u8,
 }
 
-/// A network as files write it.
+/// A network in files.
 pub(crate) const NETWORK: Spelled<Network> = Spelled {
     about: "an address or a range of them in quotes, \"192.168.1.0/24\"",
     parse: |text| text.parse().ok(),
@@ -26,7 +26,7 @@ pub(crate) const NETWORK: Spelled<Network> = Spelled {
     stand_in: Network::LOOPBACK[0],
 };
 
-/// Why a text is not a network.
+/// Reason for which a text is not a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum NotANetwork {
@@ -47,7 +47,7 @@ impl Network {
         Self { ip: IpAddr::V6(Ipv6Addr::LOCALHOST), bits: 128 },
     ];
 
-    /// Whether `ip` belongs to it; an IPv4 address written as IPv6 counts as IPv4.
+    /// Whether `ip` belongs to the network; an IPv4 address written as IPv6 counts as IPv4.
     #[must_use]
     pub fn contains(&self, ip: IpAddr) -> bool {
         match (self.ip, ip.to_canonical()) {
@@ -65,7 +65,7 @@ impl Network {
 }
 
 impl From<IpAddr> for Network {
-    /// The one address.
+    /// The network of this single address.
     fn from(ip: IpAddr) -> Self {
         let ip = ip.to_canonical();
         Self { ip, bits: if ip.is_ipv4() { 32 } else { 128 } }
@@ -78,8 +78,8 @@ const BITS_BEFORE_IPV4: u8 = 96;
 impl FromStr for Network {
     type Err = NotANetwork;
 
-    /// Reads `192.168.1.20`, `192.168.1.0/24`, `::1` or `fd00::/8`; bits of the address behind the range don't count.
-    /// IPv4 addresses within IPv6 are IPv4: `::ffff:192.168.1.0/120` is `192.168.1.0/24`.
+    /// Reads `192.168.1.20`, `192.168.1.0/24`, `::1` or `fd00::/8`; address bits behind the range are ignored. IPv4
+    /// addresses within IPv6 are IPv4: `::ffff:192.168.1.0/120` is `192.168.1.0/24`.
     fn from_str(text: &str) -> Result<Self, NotANetwork> {
         let (ip, bits) = match text.split_once('/') {
             Some((ip, bits)) => (ip, Some(bits.parse::<u8>().map_err(|_| NotANetwork::Malformed)?)),
@@ -154,7 +154,7 @@ mod tests {
             assert_eq!(beyond.parse::<Network>(), Err(NotANetwork::BeyondIpv4), "{beyond}");
         }
         assert_eq!("::ffff:10.0.0.1/129".parse::<Network>(), Err(NotANetwork::Malformed));
-        // Next to it, and of another kind.
+        // Adjacent, and another kind of address.
         assert!(contains("::fffe:0:0/96", "::fffe:0:1"));
     }
 }

@@ -1,49 +1,49 @@
-//! Corrections of the place of a load on one tile.
+//! Corrections of the position of a load on one tile.
 
 use glam::Vec2;
 
 use super::Geometry;
 
-/// What one tile's sensors and plate were found to do to positions, and how to undo it.
+/// Position errors measured on one tile, and their correction.
 ///
-/// Two corrections, both learnt from known points pressed on the tile. *Trims*
-/// undo what a sensor's exponential law leaves over: its reading times a factor
-/// that follows the load on it. *Bends* move the centroid where the plate
-/// itself distorts, near the edges. All zero corrects nothing.
+/// It has two corrections, both fitted to known points pressed on the tile. *Trims* correct the residual of a
+/// sensor's exponential law: they multiply its reading by a factor that depends on the load on it. *Bends* move the
+/// centroid where the plate itself distorts, near the edges. With all zeros it corrects nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionMap {
-    /// Per sensor ([`super::Corner::ALL`] order), what is added to a factor of one at each of
-    /// [`PositionMap::TRIM_LOADS_N`]; a smooth curve between, constant outside.
+    /// Per sensor ([`super::Corner::ALL`] order), the number added to a factor of one at each of
+    /// [`PositionMap::TRIM_LOADS_N`]; a smooth curve between them, constant outside.
     pub trims: [[f32; PositionMap::TRIMS]; 4],
-    /// For the shift east and north, what each of [`PositionMap::terms`] counts, in half pitches.
+    /// For the shift east and north, the coefficient of each of [`PositionMap::terms`], in half pitches.
     pub bends: [[f32; PositionMap::BENDS]; 2],
-    /// What it leaves: the error that all but 5 % of known points keep to with it, in metres.
+    /// Residual: the position error with the map that 95 % of known points do not exceed, in metres.
     pub residual_m: f32,
 }
 
 impl PositionMap {
-    /// Loads on one sensor, tared, at which its trim is known, in newtons.
+    /// Tared loads on one sensor at which its trim is stored, in newtons.
     ///
-    /// A part strays from its law in waves that are the shorter the lighter its load (our choice, by trying). Below
-    /// zero a load beyond the sensors' square lifts the plate off it, down to the plate's own weight.
+    /// A part deviates from its law in waves that are shorter at lighter loads (our choice, by trial). The loads
+    /// below zero occur when a load beyond the sensors' square lifts the plate off a sensor, down to the plate's own
+    /// weight.
     pub const TRIM_LOADS_N: [f32; Self::TRIMS] = [
         -12.0, -9.0, -6.0, -3.0, 0.0, 5.0, 11.0, 20.0, 32.0, 47.0, 64.0, 82.0, 102.0, 122.0, 145.0, 170.0,
         200.0, 240.0, 290.0, 340.0, 400.0,
     ];
 
-    /// Trims of one sensor.
+    /// Number of trims of one sensor.
     pub const TRIMS: usize = 21;
 
-    /// Terms of the shift along one axis.
+    /// Number of terms of the shift along one axis.
     pub const BENDS: usize = 10;
 
-    /// The greatest trim: a part that misses its law by more should be replaced (our choice).
+    /// Maximum trim: a part that deviates more from its law should be replaced (our choice).
     pub(crate) const MOST_TRIM: f32 = 0.6;
 
-    /// The greatest number of a bend that files may hold.
+    /// Maximum coefficient of a bend in files.
     pub(crate) const MOST_BEND: f32 = 2.0;
 
-    /// The farthest shift, in half pitches: 3.8 cm on the paper's tiles (our choice).
+    /// Maximum shift, in half pitches: 3.8 cm on the paper's tiles (our choice).
     pub(crate) const MOST_SHIFT: f32 = 0.25;
 
     /// The map that corrects nothing.
@@ -53,10 +53,11 @@ impl PositionMap {
         residual_m: Self::SOME_RESIDUAL_M,
     };
 
-    /// What a map leaves of which that is not known, in metres: a little more than most (our choice).
+    /// Residual of a map with an unknown residual, in metres: a little more than most (our choice).
     pub const SOME_RESIDUAL_M: f32 = 0.004;
 
-    /// What each of four neighbouring trims counts at a load of `force` newtons, and the number of the first of them.
+    /// Returns the weights of four neighbouring trims at a load of `force` newtons, and the index of the first of
+    /// them.
     ///
     /// # Source
     /// Cubic Hermite interpolation; the slope at each load is that of the parabola through it and its two neighbours.
@@ -73,14 +74,14 @@ impl PositionMap {
         (first_of(below), std::array::from_fn(share))
     }
 
-    /// The cubic polynomial's terms at `u`, in half pitches from the tile's centre.
+    /// Returns the terms of the cubic polynomial at `u`, in half pitches from the tile's centre.
     #[must_use]
     pub fn terms(u: Vec2) -> [f32; Self::BENDS] {
         let Vec2 { x, y } = u;
         [1.0, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y]
     }
 
-    /// The sensors' forces with their trims, in newtons. A force that is not a number stays so.
+    /// Returns the sensors' forces, each times `max(1 + trim, 0)`, in newtons. NaN stays NaN.
     ///
     /// # Real-time
     /// Some hundred operations; allocates nothing.
@@ -95,9 +96,11 @@ impl PositionMap {
         corners
     }
 
-    /// The place of a load that trimmed forces put at `arm` from the tile's centre, in metres.
+    /// Returns the place of a load, in metres from the tile's centre; `arm` is the place given by the trimmed forces.
+    /// The place is `arm` plus half a pitch times the sum of bends and terms, the latter limited to
+    /// [`PositionMap::MOST_SHIFT`].
     ///
-    /// Stays on the square of one pitch around the tile. A place that is not a number stays so.
+    /// Stays on the square of one pitch around the tile. NaN stays NaN.
     #[must_use]
     pub(crate) fn unbent(&self, arm: Vec2, geometry: &Geometry) -> Vec2 {
         let half = 0.5 * geometry.pitch_m();
@@ -109,7 +112,7 @@ impl PositionMap {
     }
 }
 
-/// The first of the four trims that count between load `below` and the next.
+/// Returns the index of the first of the four trims with a weight between load `below` and the next.
 const fn first_of(below: usize) -> usize {
     match below {
         0 => 0,
@@ -118,8 +121,8 @@ const fn first_of(below: usize) -> usize {
     }
 }
 
-/// For each gap between neighbouring loads and each of the four trims that count there: how much the trim counts, as a
-/// cubic of the way through the gap (0 to 1), lowest power first.
+/// Weight of each of the four trims, for each gap between neighbouring loads, as a cubic of the position in the gap
+/// (0 to 1), lowest power first.
 static CUBICS: [[[f32; 4]; 4]; PositionMap::TRIMS - 1] = {
     let mut cubics = [[[0.0; 4]; 4]; PositionMap::TRIMS - 1];
     let mut below = 0;
@@ -140,12 +143,12 @@ static CUBICS: [[[f32; 4]; 4]; PositionMap::TRIMS - 1] = {
     cubics
 };
 
-/// What each trim counts in the curve's slope at load number `at`, per newton.
+/// Returns the weight of each trim in the curve's slope at load number `at`, per newton.
 const fn slope(at: usize) -> [f32; PositionMap::TRIMS] {
     let loads = &PositionMap::TRIM_LOADS_N;
     let last = PositionMap::TRIMS - 1;
     let mut slope = [0.0; PositionMap::TRIMS];
-    // How much of it is the slope of the chord before, and of the one after.
+    // Weights of the chord before and of the one after.
     let (before, after) = match at {
         0 => (0.0, 1.0),
         at if at == last => (1.0, 0.0),
@@ -191,7 +194,8 @@ mod tests {
     #[test]
     fn trims_hold_at_their_loads_and_are_smooth_between() {
         let mut map = PositionMap::NONE;
-        // A parabola over the load is met everywhere but next to the ends, where there is no third load.
+        // The interpolation is exact for a parabola over the load, except next to the ends, where there is no third
+        // load.
         let trim = |load: f32| 0.1 - 0.001 * load + 2e-6 * load * load;
         map.trims[1] = PositionMap::TRIM_LOADS_N.map(trim);
         let factor = |force: f32| map.trimmed([0.0, force, force, 0.0])[1] / force;

@@ -1,4 +1,4 @@
-//! When and how well a floor was calibrated.
+//! Day and quality of a floor's calibration.
 
 use std::fmt;
 use std::str::FromStr;
@@ -15,7 +15,7 @@ pub struct Day {
     day: u8,
 }
 
-/// A day as files write it.
+/// A day in files.
 pub(crate) const DAY: Spelled<Day> = Spelled {
     about: "a day in quotes, \"2026-11-20\"",
     parse: |text| text.parse().ok(),
@@ -25,23 +25,23 @@ pub(crate) const DAY: Spelled<Day> = Spelled {
     stand_in: Day { year: 1970, month: 1, day: 1 },
 };
 
-/// Something that is not a day.
+/// A text is not a day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("expected a day such as 2026-11-20")]
 pub struct NotADay;
 
 impl Day {
-    /// The day of this date, years 1 to 9999; `None` if the calendar has none.
+    /// The day of this date, years 1 to 9999; `None` if the calendar has no such day.
     #[must_use]
     pub fn new(year: u16, month: u8, day: u8) -> Option<Self> {
         let exists = (1..=9999).contains(&year) && day >= 1 && day <= days_of_month(year, month);
         exists.then_some(Self { year, month, day })
     }
 
-    /// The day in UTC, `seconds` after the beginning of 1970; the last day of 9999 for all later ones.
+    /// Returns the day in UTC, `seconds` after the beginning of 1970; the last day of 9999 for all later ones.
     ///
     /// # Source
-    /// Years are counted from March, so that the day leap years add comes last; 400 years have 146,097 days.
+    /// Years are counted from March, so that the leap day comes last; 400 years have 146,097 days.
     #[must_use]
     pub fn of_unix_seconds(seconds: u64) -> Self {
         let days = (seconds / 86_400).min(LAST) + DAYS_FROM_MARCH_OF_YEAR_0;
@@ -57,7 +57,7 @@ impl Day {
     }
 }
 
-/// From the first of March of the year 0 to the beginning of 1970.
+/// Days from the first of March of the year 0 to the beginning of 1970.
 const DAYS_FROM_MARCH_OF_YEAR_0: u64 = 719_468;
 
 /// The last day of 9999, counted from the beginning of 1970.
@@ -95,7 +95,7 @@ impl FromStr for Day {
     }
 }
 
-/// When a sensor's law was measured, and what it leaves over.
+/// Day of the measurement of a sensor's law, and the residual of the fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationRecord {
     /// The day of the fit.
@@ -104,12 +104,12 @@ pub struct CalibrationRecord {
     pub residual: f32,
 }
 
-/// When a tile's position map was measured, and what it leaves over.
+/// Day of the measurement of a tile's position map, and the residual with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapRecord {
     /// The day of the fit.
     pub day: Day,
-    /// Error that all but 5 % of the points keep to with the map, in metres.
+    /// Position error with the map that 95 % of the points do not exceed, in metres.
     pub residual_m: f32,
 }
 

@@ -4,8 +4,8 @@ use glam::Vec2;
 
 /// An upright rectangle in floor metres.
 ///
-/// It includes its west and south edges and excludes its east and north ones,
-/// so neighbouring rectangles never both claim a point.
+/// It includes its west and south edges and excludes its east and north ones, so that no point belongs to two
+/// neighbouring rectangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rect {
     /// South-west corner.
@@ -21,7 +21,7 @@ impl Rect {
         Self { min, max }
     }
 
-    /// The rectangle whose south-west corner is `min`, `size` metres wide and deep.
+    /// The rectangle with the south-west corner `min`, `size` metres wide and deep.
     #[must_use]
     pub fn from_min_size(min: Vec2, size: Vec2) -> Self {
         Self::new(min, min + size)
@@ -33,13 +33,13 @@ impl Rect {
         Self::from_min_size(centre - size * 0.5, size)
     }
 
-    /// Width (east) and depth (north), in metres.
+    /// Returns width (east) and depth (north), in metres.
     #[must_use]
     pub fn size(self) -> Vec2 {
         self.max - self.min
     }
 
-    /// The middle.
+    /// Returns the centre.
     #[must_use]
     pub fn centre(self) -> Vec2 {
         (self.min + self.max) * 0.5
@@ -51,19 +51,19 @@ impl Rect {
         point.cmpge(self.min).all() && point.cmplt(self.max).all()
     }
 
-    /// Whether the two share an area; touching edges don't count.
+    /// Whether the two share an area; touching edges do not count.
     #[must_use]
     pub fn overlaps(self, other: Self) -> bool {
         self.min.cmplt(other.max).all() && other.min.cmplt(self.max).all()
     }
 
-    /// This rectangle with every edge moved outwards by `by` metres (inwards if negative).
+    /// Returns the rectangle with every edge moved outwards by `by` metres (inwards if negative).
     #[must_use]
     pub fn grown(self, by: f32) -> Self {
         Self::new(self.min - Vec2::splat(by), self.max + Vec2::splat(by))
     }
 
-    /// The distance from `point` to the nearest point of the rectangle; zero inside.
+    /// Returns the distance from `point` to the nearest point of the rectangle; zero inside.
     #[must_use]
     pub fn distance(self, point: Vec2) -> f32 {
         point.distance(point.clamp(self.min, self.max.max(self.min)))

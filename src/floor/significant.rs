@@ -1,8 +1,8 @@
-//! Numbers shown to some significant digits.
+//! Numbers with a limited count of significant digits.
 
 use std::fmt;
 
-/// A number shown to some significant digits, without trailing zeros, so that a small one can be read as well.
+/// A number printed to some significant digits, without trailing zeros, so that small numbers are readable as well.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Significant {
     number: f32,
@@ -16,12 +16,12 @@ impl Significant {
     }
 }
 
-/// Exponents of ten that are written out, as 0.00123 and 123400 are; others get an `e`.
+/// Exponents of ten printed in decimal notation, as 0.00123 and 123400; others get an `e`.
 const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=5;
 
 impl fmt::Display for Significant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Rounding to digits comes first: 0.99996 to four is 1, with another exponent.
+        // Rounding comes first: 0.99996 to four digits is 1, with another exponent.
         let rounded = format!("{:.*e}", self.digits.saturating_sub(1), self.number);
         let Some((mantissa, exponent)) = rounded.split_once('e') else { return f.pad(&rounded) };
         let power = exponent.parse::<i32>().unwrap_or_default();

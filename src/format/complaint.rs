@@ -1,4 +1,4 @@
-//! What the parser complains of, and the character that would mend it.
+//! Errors of the parser in the words of layout authors, and the character that repairs each.
 
 use std::ops::Range;
 
@@ -6,10 +6,10 @@ use ron2::error::ErrorKind;
 
 use super::problem::Problem;
 
-/// What the parser complains of, and how to read on as if it had been written right.
+/// An error of the parser, and the repair after which parsing can go on.
 pub(crate) struct Complaint {
     pub(crate) problem: Problem,
-    /// The character that belongs at a place; `None` if only a person can tell.
+    /// Place and character of the repair; `None` if only a person can decide.
     pub(crate) repair: Option<(usize, u8)>,
 }
 
@@ -19,7 +19,7 @@ impl From<Problem> for Complaint {
     }
 }
 
-/// What the parser complains of at `span` of `text`, in the words of layout authors.
+/// Restates the error of the parser at `span` of `text` in the words of layout authors.
 pub(crate) fn rephrase(text: &str, span: &Range<usize>, kind: &ErrorKind) -> Complaint {
     let start = text.floor_char_boundary(span.start);
     let (before, rest) = text.split_at(start);
@@ -56,7 +56,7 @@ pub(crate) fn rephrase(text: &str, span: &Range<usize>, kind: &ErrorKind) -> Com
     problem.into()
 }
 
-/// Complaints that the character at the place explains better than the parser can.
+/// Errors that the character at the place explains better than the parser does.
 fn by_character(rest: &str, here: &Range<usize>) -> Option<Complaint> {
     let problem = |message: &str| Problem::error(here.clone(), message);
     let (problem, meant) = match rest.chars().next()? {
@@ -79,7 +79,7 @@ fn missing_comma(before: &str, here: Range<usize>) -> Complaint {
     let name = trailing_word(before.trim_end());
     let opening = before.trim_end().trim_end_matches(name).trim_end();
     let is_name = opening.ends_with(['(', ',']) && name.starts_with(|c: char| c.is_ascii_lowercase());
-    // A line break may end a comment, which must not swallow the repair.
+    // A line break may end a comment; the repair must not end up inside that comment.
     let room = before.ends_with([' ', '\t']).then(|| here.start.saturating_sub(1));
     let (problem, meant) = if is_name {
         let problem = Problem::error(here, format!("`{name}` and its value are joined by a colon"));
@@ -90,7 +90,7 @@ fn missing_comma(before: &str, here: Range<usize>) -> Complaint {
     Complaint { problem, repair: room.map(|at| (at, meant)) }
 }
 
-/// The name and colon that end `before`.
+/// Returns the name and colon at the end of `before`.
 fn field_before(before: &str) -> Range<usize> {
     let head = before.trim_end();
     let name = head.trim_end_matches(':').trim_end();

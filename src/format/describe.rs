@@ -1,53 +1,53 @@
-//! What is known of records, for people: the reference of the format, inspectors.
+//! Descriptions of records for people: the reference of the format, inspectors.
 
 use super::number::plain;
 use super::words::unit;
 
-/// What is known of one record.
+/// Description of one record.
 #[derive(Clone, Debug)]
 pub struct Description {
-    /// What files call it.
+    /// Its name in files.
     pub name: &'static str,
-    /// What it is.
+    /// Its meaning.
     pub about: String,
     /// Its fields, in the order in which they are usually written.
     pub fields: Vec<FieldDescription>,
 }
 
-/// What is known of one field of a record.
+/// Description of one field of a record.
 #[derive(Clone, Debug)]
 pub struct FieldDescription {
-    /// What files call it.
+    /// Its name in files.
     pub name: &'static str,
-    /// What it is.
+    /// Its meaning.
     pub about: String,
-    /// What is written for it.
+    /// The form of its value.
     pub shape: FieldType,
-    /// What it is where nothing is written, as it would be written; `None` if it must be written.
+    /// Its default as a file would write it; `None` if the field must be written.
     pub default: Option<String>,
 }
 
-/// What is written for a field.
+/// The form of a field's value.
 #[derive(Clone, Debug)]
 pub enum FieldType {
     /// A number.
     Number {
-        /// The least and the greatest.
+        /// Minimum and maximum.
         range: (f64, f64),
-        /// Whether it has no point.
+        /// Whether only whole numbers are valid.
         whole: bool,
     },
     /// `true` or `false`.
     Flag,
-    /// Text in quotes, and what it must be.
+    /// Text in quotes; describes the valid texts.
     Text(String),
     /// One of these names.
     Names(Vec<&'static str>),
     /// Values in square brackets.
     List {
-        /// The fewest and the most.
+        /// Minimum and maximum number of values.
         count: (usize, usize),
-        /// What is written for each.
+        /// The form of each value.
         each: Box<FieldType>,
     },
     /// Two values in round brackets, such as `(low end, high end)`.
@@ -58,9 +58,9 @@ pub enum FieldType {
     Record(fn() -> Description),
     /// One of several names, with named fields in round brackets.
     Variants(fn() -> Vec<Description>),
-    /// One of several names, whose fields stand beside it.
+    /// One of several names; the fields of the named record stand beside it.
     Beside(fn() -> Vec<Description>),
-    /// What words say best.
+    /// A form described in words.
     Words(&'static str),
 }
 
@@ -70,14 +70,14 @@ impl Description {
     }
 }
 
-/// The lines of a documentation comment up to the first empty one, as one.
+/// Joins the lines of a documentation comment up to the first empty one.
 pub(crate) fn first_paragraph(lines: &[&str]) -> String {
     let lines = lines.iter().map(|line| line.trim()).take_while(|line| !line.is_empty());
     lines.collect::<Vec<_>>().join(" ")
 }
 
 impl FieldType {
-    /// What is written for the field called `name`, in words; records by their names.
+    /// Describes in words the value of the field called `name`; records by their names.
     #[must_use]
     pub fn told(&self, name: &str) -> String {
         match self {
@@ -113,7 +113,7 @@ impl FieldType {
         }
     }
 
-    /// The records that are part of it.
+    /// Returns the records that are part of this form.
     #[must_use]
     pub fn parts(&self) -> Vec<Description> {
         match self {

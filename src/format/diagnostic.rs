@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::excerpt::Excerpt;
 
-/// How bad a problem is.
+/// Severity of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -32,7 +32,7 @@ impl fmt::Display for Severity {
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
-    /// Which ergonomic rule it is about, such as `U101`; `None` for what the format itself forbids.
+    /// The ergonomic rule that the file breaks, such as `U101`; `None` for an error of the format itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub code: Option<&'static str>,
     /// The file, as it was named when it was read.
@@ -45,20 +45,20 @@ pub struct Diagnostic {
     pub span: Range<usize>,
     /// The field, as a path from the file's root such as `widgets[2].press_n`; empty outside of any field.
     pub field: String,
-    /// What is wrong, in one clause.
+    /// The problem, in one clause.
     pub message: String,
-    /// What was expected there, written beside the carets; may be empty.
+    /// The expected text, shown beside the carets; may be empty.
     pub expected: String,
-    /// What to do about it.
+    /// Advice on how to solve the problem.
     pub help: Option<String>,
-    /// The line as shown: tabs are four spaces, a very long line is cut around the place.
+    /// The line as shown: tabs become four spaces; a very long line is cut around the place.
     pub source_line: String,
     #[serde(skip)]
     pub(crate) excerpt: Excerpt,
 }
 
 impl Diagnostic {
-    /// A problem of the file at `path` as a whole, such as its absence.
+    /// A problem of the file at `path` as a whole, for example a missing file.
     pub(crate) fn of_file(path: &str, message: String, help: Option<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -78,7 +78,7 @@ impl Diagnostic {
 }
 
 impl fmt::Display for Diagnostic {
-    /// Several lines: what is wrong, where, the line with carets, and what to do; `{:#}` adds colours for terminals.
+    /// Several lines: message, place, the line with carets, and advice; `{:#}` adds colours for terminals.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let paint = |colour: &'static str| if f.alternate() { (colour, "\x1b[0m") } else { ("", "") };
         let (bold, end) = paint("\x1b[1m");
@@ -107,7 +107,7 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// The problems of one reading, in the order of the text; printed as a person wants to see them.
+/// The problems of one reading, in the order of the text; `Display` prints them for people.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct Diagnostics {
@@ -118,10 +118,10 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Most problems of one file that are kept; what is beyond is counted in the closing line.
+    /// Maximum number of problems kept for one file; the closing line counts the others.
     pub const LIMIT: usize = 500;
 
-    /// `list` in the order of the text, and how bad those are that had no room in it.
+    /// Sorts `list` in the order of the text; `without` holds the severities of the problems that were left out.
     pub(crate) fn new(mut list: Vec<Diagnostic>, without: impl Iterator<Item = Severity>) -> Self {
         list.sort_by_key(|problem| (problem.line, problem.column, problem.severity));
         let mut omitted = [0; 2];
@@ -129,7 +129,7 @@ impl Diagnostics {
         Self { list, omitted }
     }
 
-    /// Whether there is nothing to say.
+    /// Whether there are no problems.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
@@ -158,13 +158,13 @@ impl Diagnostics {
         self.list.iter()
     }
 
-    /// Adds the problems of another reading after these.
+    /// Appends the problems of another reading.
     pub fn append(&mut self, other: Self) {
         self.list.extend(other.list);
         self.omitted.iter_mut().zip(other.omitted).for_each(|(sum, more)| *sum += more);
     }
 
-    /// Adds the problems of the same file in the order of its text.
+    /// Merges the problems of another reading of the same file in the order of its text.
     pub fn merge(&mut self, other: Self) {
         self.append(other);
         self.list.sort_by_key(|problem| (problem.line, problem.column, problem.severity));
@@ -201,7 +201,8 @@ impl<'a> IntoIterator for &'a Diagnostics {
 }
 
 impl fmt::Display for Diagnostics {
-    /// Every problem with its line and carets, then one line that counts them; nothing at all if there are none.
+    /// Prints every problem with its line and carets, then one line that counts them; prints nothing if there are
+    /// none.
     ///
     /// `{:#}` adds colours for terminals.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -254,7 +255,7 @@ mod tests {
         let coloured = format!("{problems:#}");
         assert!(coloured.contains("\x1b[1;31m^ expected text\x1b[0m"));
         let stripped = coloured.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
-        // The first part has no escape before it: it is empty here.
+        // The text before the first escape is empty here.
         assert_eq!(stripped.collect::<String>(), plain);
     }
 

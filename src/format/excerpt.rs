@@ -6,13 +6,13 @@ use unicode_width::UnicodeWidthStr;
 
 use crate::label::is_hidden;
 
-/// Most characters of a line that are shown.
+/// Maximum number of characters of a line that are shown.
 const WIDTH: usize = 160;
 
-/// Characters shown before the place in a line that had to be cut.
+/// Number of characters shown before the place in a line that was cut.
 const LEAD: usize = 60;
 
-/// The part of a line that is shown, and which part of it the carets stand under.
+/// The part of a line that is shown, and the columns of the carets.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Excerpt {
     /// The text shown: tabs as spaces, control characters replaced.
@@ -22,7 +22,7 @@ pub(crate) struct Excerpt {
 }
 
 impl Excerpt {
-    /// What to show of `line` so that its bytes `marked` are seen; places beyond the line mark its end.
+    /// Cuts `line` so that its bytes `marked` are visible; places beyond the line mark its end.
     pub(crate) fn of(line: &str, marked: Range<usize>) -> Self {
         let start = line.floor_char_boundary(marked.start);
         let end = line.floor_char_boundary(marked.end).max(start);
@@ -44,23 +44,23 @@ impl Excerpt {
         Self { text, marked: first..last.max(first + 1) }
     }
 
-    /// The line under `text`: the spaces before the carets, and the carets.
+    /// Returns the spaces and the carets of the line under `text`.
     pub(crate) fn carets(&self) -> (String, String) {
         (" ".repeat(self.marked.start), "^".repeat(self.marked.len()))
     }
 }
 
-/// The place `count` characters before `at`.
+/// Returns the place `count` characters before `at`.
 fn back(line: &str, at: usize, count: usize) -> usize {
     line[..at].char_indices().rev().take(count).last().map_or(at, |(place, _)| place)
 }
 
-/// The place `count` characters after `at`.
+/// Returns the place `count` characters after `at`.
 fn forth(line: &str, at: usize, count: usize) -> usize {
     line[at..].char_indices().nth(count).map_or(line.len(), |(offset, _)| at + offset)
 }
 
-/// Appends `part` with tabs as four spaces and what cannot be shown replaced.
+/// Appends `part` with tabs as four spaces and hidden characters replaced.
 fn show(part: &str, text: &mut String) {
     for character in part.chars() {
         match character {

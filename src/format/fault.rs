@@ -1,24 +1,24 @@
-//! What is wrong between the fields of a record.
+//! Conflicts between the fields of a record.
 
 use super::diagnostic::Severity;
 use super::number::plain;
 
-/// Something wrong between the fields of a record.
+/// A conflict between fields of a record.
 pub(crate) struct Fault {
     pub(crate) severity: Severity,
-    /// The fields that it concerns, the causes first; the first that is written is where it is shown.
+    /// The fields concerned, the cause first. The message points at the first of them that is written.
     pub(crate) fields: &'static [&'static str],
     pub(crate) message: String,
     pub(crate) expected: String,
     pub(crate) help: Option<String>,
 }
 
-/// What is wrong between the fields of a record.
+/// The conflicts found in a record.
 #[derive(Default)]
 pub(crate) struct Faults(pub(crate) Vec<Fault>);
 
 impl Faults {
-    /// Something because of which the record cannot be used; `expected` stands beside the carets.
+    /// Adds a conflict that makes the record unusable; `expected` stands beside the carets.
     pub(crate) fn error(
         &mut self,
         fields: &'static [&'static str],
@@ -29,7 +29,7 @@ impl Faults {
         self.0.push(Fault { severity: Severity::Error, fields, message, expected, help: None });
     }
 
-    /// Something that is probably not meant so.
+    /// Adds a conflict that is probably a mistake.
     pub(crate) fn warning(
         &mut self,
         fields: &'static [&'static str],
@@ -42,14 +42,14 @@ impl Faults {
         }
     }
 
-    /// What to do about the one noted last.
+    /// Adds advice to the conflict noted last.
     pub(crate) fn help(&mut self, help: impl Into<String>) {
         if let Some(last) = self.0.last_mut() {
             last.help = Some(help.into());
         }
     }
 
-    /// Either of two `fields` must be written with the other one; `is` tells which are.
+    /// Two `fields` must be written together; `is` says which of them are written.
     pub(crate) fn together(&mut self, fields: &'static [&'static str; 2], is: [bool; 2]) {
         let (here, lacking) = match is {
             [true, false] => (fields[0], fields[1]),

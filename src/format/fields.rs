@@ -13,27 +13,26 @@ use super::words::example;
 
 /// The named fields of one `Name(...)`, each to be read once.
 ///
-/// Which names are valid follows from which are asked for;
-/// [`Fields::finish`] then reports the others.
+/// Each field that the reader asks for is valid; [`Fields::finish`] then reports the others.
 #[must_use = "unknown and missing fields are only reported by finish()"]
 pub(crate) struct Fields<'r> {
     reader: &'r Reader<'r>,
-    /// What messages call that which has the fields.
+    /// Name of the record in messages.
     noun: String,
-    /// All of it.
+    /// Bytes of the whole record.
     extent: Range<usize>,
-    /// Where to point for what is missing.
+    /// Place that messages about missing fields point at.
     open: Range<usize>,
-    /// The name, if that is all that is written.
+    /// The name, if nothing else is written.
     bare: Option<&'static str>,
     written: Vec<FieldUse<'r>>,
     known: Vec<&'static str>,
     missing: Vec<&'static str>,
-    /// Those that could not be read, or are missing.
+    /// Fields that are missing or cannot be read.
     failed: Vec<&'static str>,
-    /// Those that follow from others.
+    /// Fields that follow from others.
     follow: Vec<&'static str>,
-    /// Whether it cannot be known which other fields are valid.
+    /// Whether the set of valid fields is unknown.
     allows_unknown: bool,
 }
 
@@ -43,7 +42,7 @@ struct FieldUse<'r> {
 }
 
 impl<'r> Fields<'r> {
-    /// The `fields` of `node`, which is a `Name(...)` beginning at `open`.
+    /// Reads the `fields` of `node`, a `Name(...)` that begins at `open`.
     pub(crate) fn new(node: Node<'r>, name: &str, open: Range<usize>, fields: &'r [StructField<'r>]) -> Self {
         let written = fields.iter().map(|field| FieldUse { field, taken: false }).collect();
         Self {
@@ -61,19 +60,19 @@ impl<'r> Fields<'r> {
         }
     }
 
-    /// No fields, behind a `name` that stands alone.
+    /// A `name` that stands alone, without fields.
     pub(crate) fn bare(node: Node<'r>, name: &'static str) -> Self {
         Self { bare: Some(name), ..Self::new(node, name, node.span(), &[]) }
     }
 
-    /// Calls what has the fields `noun` in messages from now on.
+    /// Sets the name of the record in messages.
     pub(crate) fn set_noun(&mut self, noun: String) {
         self.noun = noun;
     }
 
-    /// What `read` makes of the field `name`; `otherwise` if it is not written.
+    /// Reads the field `name` with `read`; returns `otherwise` if it is not written.
     ///
-    /// A field that is neither written nor has an `otherwise` is reported as missing.
+    /// Without an `otherwise`, the field is reported as missing.
     pub(crate) fn read<T>(
         &mut self,
         name: &'static str,
@@ -91,7 +90,7 @@ impl<'r> Fields<'r> {
         }
     }
 
-    /// The value of the field `name` if it is written.
+    /// Returns the value of the field `name` if it is written.
     pub(crate) fn take(&mut self, name: &'static str) -> Option<Node<'r>> {
         self.known.push(name);
         let mut found: Option<&'r StructField<'r>> = None;
@@ -110,44 +109,44 @@ impl<'r> Fields<'r> {
         found.map(|field| Node { reader: self.reader, expr: &field.value, name }.inside())
     }
 
-    /// Takes the field `name` for one that is not written, after what is wrong with it has been reported.
+    /// Treats the field `name` as not written, after its problem has been reported.
     pub(crate) fn refuse(&mut self, name: &str) {
         self.written.retain(|written| written.field.name.name != name);
     }
 
-    /// Notes that the field `name` is missing.
+    /// Marks the field `name` as missing.
     pub(crate) fn lack(&mut self, name: &'static str) {
         self.missing.push(name);
     }
 
-    /// Notes that nothing can be made of the field `name`.
+    /// Marks the field `name` as unreadable.
     pub(crate) fn fail(&mut self, name: &'static str) {
         self.failed.push(name);
     }
 
-    /// Notes that the field `name` is not written and follows from others: no rule is broken by it.
+    /// Marks the field `name` as unwritten and derived from other fields; rules ignore it.
     pub(crate) fn follow(&mut self, name: &'static str) {
         self.follow.push(name);
     }
 
-    /// Whether nothing could be made of one of these fields.
+    /// Whether one of these fields cannot be read.
     pub(crate) fn have_failed(&self, names: &[&str]) -> bool {
         self.failed.iter().any(|failed| names.contains(failed))
     }
 
-    /// Notes that it cannot be known which other fields are valid.
+    /// Marks the set of valid fields as unknown.
     pub(crate) fn allow_unknown(&mut self) {
         self.allows_unknown = true;
     }
 
-    /// Whether something could be made of every field.
+    /// Whether all fields could be read.
     pub(crate) fn are_read(&self) -> bool {
         self.failed.is_empty()
     }
 
-    /// Notes what is wrong between fields, as far as all that it concerns could be read.
+    /// Reports conflicts between fields if all fields concerned could be read.
     ///
-    /// What `is_based` and not written here has been told of where the base is written.
+    /// With `is_based`, it ignores conflicts between unwritten fields: the reading of the base has reported them.
     pub(crate) fn judge(&mut self, faults: Faults, is_based: bool) {
         for Fault { severity, fields, message, expected, help } in faults.0 {
             if fields.iter().any(|field| self.failed.contains(field) || self.follow.contains(field)) {
@@ -162,47 +161,47 @@ impl<'r> Fields<'r> {
         }
     }
 
-    /// What reads the file that they are in.
+    /// Returns the reader of the file.
     pub(crate) fn reader(&self) -> &'r Reader<'r> {
         self.reader
     }
 
-    /// Where the fields begin.
+    /// Returns the place where the fields begin.
     pub(crate) fn start(&self) -> Range<usize> {
         self.open.clone()
     }
 
-    /// Where the value of `name` is written; where the fields begin if it is not.
+    /// Returns the place of the value of `name`, or the start of the fields if it is not written.
     pub(crate) fn span(&self, name: &str) -> Range<usize> {
         self.value_span(name).unwrap_or_else(|| self.start())
     }
 
-    /// Where the value of `name` is written, if it is.
+    /// Returns the place of the value of `name`, if it is written.
     pub(crate) fn value_span(&self, name: &str) -> Option<Range<usize>> {
         let written = self.written.iter().find(|written| written.field.name.name == name)?;
         Some(bytes(written.field.value.span()))
     }
 
-    /// Whether the text is broken somewhere among the fields.
+    /// Whether the text has a syntax error among the fields.
     pub(crate) fn are_broken(&self) -> bool {
         self.reader.is_broken(&self.extent)
     }
 
-    /// Notes a problem.
+    /// Reports a problem.
     pub(crate) fn report(&self, problem: Problem) {
         self.reader.report(problem);
     }
 
-    /// Reports fields nobody asked for, and those that were asked for and are missing.
+    /// Reports unknown fields, and requested fields that are missing.
     ///
-    /// Where it cannot be known which fields are valid, only those are reported that look like one that is missing.
+    /// If the set of valid fields is unknown, it reports only unknown fields whose name resembles a missing one.
     pub(crate) fn finish(mut self) {
         let unknown: Vec<&FieldUse<'r>> = self.written.iter().filter(|written| !written.taken).collect();
         for written in unknown {
             let name = &*written.field.name.name;
             let known = if self.allows_unknown { &self.missing } else { &self.known };
             let meant = nearest(name, known.iter().copied());
-            // A misspelt field is not missing as well.
+            // A misspelt field does not also count as missing.
             self.missing.retain(|missing| Some(*missing) != meant);
             if !self.allows_unknown {
                 self.report_unknown(written, did_you_mean(name, &self.known, '`'));
@@ -223,7 +222,7 @@ impl<'r> Fields<'r> {
 
     fn report_missing(&mut self) {
         let Some(&first) = self.missing.first() else { return };
-        // What is missing from a broken text may be what broke it.
+        // In a broken text the missing field itself may be the syntax error.
         if self.are_broken() {
             return;
         }
@@ -237,7 +236,7 @@ impl<'r> Fields<'r> {
         };
         let help = match (self.missing.as_slice(), self.bare) {
             ([only], None) => example(only).map(|example| format!("add {example}")),
-            // What it is stands behind the brackets.
+            // The meaning of the field follows the brackets.
             ([only], Some(name)) => example(only).map(|example| match example.split_once(", the ") {
                 Some((example, about)) => format!("write {name}({example}), the {about}"),
                 None => format!("write {name}({example})"),

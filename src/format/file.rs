@@ -1,13 +1,13 @@
-//! Files that are read: ordinary ones, up to a size that their reader names.
+//! Reading of ordinary files up to a size that the caller sets.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// An open file of which no more can be read than was allowed.
+/// An open file with a limit on the bytes that can be read.
 ///
-/// Reading beyond that fails with [`ErrorKind::FileTooLarge`]: a file that grows, or whose size the system
-/// does not tell, is refused like one that was too large from the beginning.
+/// Reading beyond the limit fails with [`ErrorKind::FileTooLarge`]. A file that grows, or of unknown size, is
+/// therefore rejected like one that was too large from the beginning.
 #[derive(Debug)]
 pub struct BoundedFile {
     file: File,
@@ -15,12 +15,12 @@ pub struct BoundedFile {
     left: u64,
 }
 
-/// Opens the file at `path`, of which at most `most` bytes will be read. All readers open files this way.
+/// Opens the file at `path` for reading at most `most` bytes. All readers open files this way.
 ///
 /// # Errors
-/// What the system says; [`ErrorKind::IsADirectory`] for a folder; an error that says so for a device, pipe or
-/// socket, which are not opened at all, since that may wait or never end; [`ErrorKind::FileTooLarge`] for a file of
-/// more than `most` bytes.
+/// The error of the system; [`ErrorKind::IsADirectory`] for a folder; an error for a device, pipe or socket, which
+/// are not opened at all, since reading them may block or never end; [`ErrorKind::FileTooLarge`] for a file of more
+/// than `most` bytes.
 pub fn open_bounded(path: &Path, most: u64) -> io::Result<BoundedFile> {
     let file = open_ordinary(path)?;
     if file.metadata()?.len() > most {
@@ -29,12 +29,12 @@ pub fn open_bounded(path: &Path, most: u64) -> io::Result<BoundedFile> {
     Ok(BoundedFile { file, most, left: most })
 }
 
-/// Opens the file at `path`, of any size, for those who read it piece by piece.
+/// Opens the file at `path`, of any size, for callers that read it piece by piece.
 ///
 /// # Errors
-/// Those of [`open_bounded`], but for a size.
+/// Those of [`open_bounded`] except the one for the size.
 pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
-    // Examined before it is opened: opening a pipe waits for a writer.
+    // The file type is checked before opening: opening a pipe waits for a writer.
     let metadata = path.metadata()?;
     if metadata.is_dir() {
         return Err(ErrorKind::IsADirectory.into());
@@ -45,7 +45,7 @@ pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// The bytes of the file at `path`, `most` at most.
+/// Reads the bytes of the file at `path`, `most` at most.
 ///
 /// # Errors
 /// Those of [`open_bounded`].
@@ -55,7 +55,7 @@ pub(crate) fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The text of the file at `path`, `most` bytes at most.
+/// Reads the text of the file at `path`, `most` bytes at most.
 ///
 /// # Errors
 /// Those of [`open_bounded`]; [`ErrorKind::InvalidData`] if it is not UTF-8.
@@ -67,7 +67,7 @@ pub fn read_bounded(path: &Path, most: u64) -> io::Result<String> {
 
 impl Read for BoundedFile {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        // One byte more than is allowed is asked for, so that a file that goes on is told from one that ends.
+        // Reads one byte more than allowed to distinguish a file that goes on from one that ends.
         let room = usize::try_from(self.left.saturating_add(1)).unwrap_or(usize::MAX).min(buffer.len());
         let read = self.file.read(buffer.get_mut(..room).unwrap_or_default())?;
         self.left = self.left.checked_sub(read as u64).ok_or_else(|| too_large(self.most))?;
@@ -120,7 +120,7 @@ mod tests {
             let error = read_bytes(Path::new(device), 10).unwrap_err();
             assert_eq!(error.to_string(), "it is not an ordinary file");
         }
-        // The system tells no size of such a file: it is bounded while it is read.
+        // The system reports no size for such a file: the limit applies while it is read.
         #[cfg(target_os = "linux")]
         assert_eq!(
             read_bytes(Path::new("/proc/self/status"), 10).unwrap_err().kind(),

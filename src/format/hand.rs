@@ -1,33 +1,33 @@
-//! Numbers turned by hand.
+//! Tuning of the numbers in a record.
 
 use super::codec::Num;
 use super::node::Within;
 
-/// What is known of one number of a record.
+/// Description of one number of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knob {
-    /// What it belongs to: empty for the record itself, or `mode 1`, `release`, `part 3, mode 2`.
+    /// The part that the number belongs to: empty for the record itself, or `mode 1`, `release`, `part 3, mode 2`.
     pub part: String,
-    /// What files call it.
+    /// Its name in files.
     pub name: &'static str,
-    /// Least and greatest, in the unit of its name.
+    /// Minimum and maximum, in the unit of its name.
     pub range: (f32, f32),
-    /// What its value is multiplied with to be in the unit of its name.
+    /// Factor from the value to the unit of its name.
     pub scale: f32,
-    /// Whether equal ways of the hand should be equal ratios.
+    /// Whether equal distances on the slider should be equal ratios.
     pub by_ratio: bool,
     /// Whether it takes whole numbers only.
     pub whole: bool,
 }
 
-/// What is done with each number in turn.
+/// The callback for each number.
 pub(crate) type Visit<'a> = dyn FnMut(&Knob, &mut f32) + 'a;
 
-/// Goes through the numbers of a record and shows each to a visitor, who may change it within its range.
+/// Passes each number of a record to a callback, which may change it within its range.
 pub(crate) struct Hand<'v> {
     visit: &'v mut Visit<'v>,
     part: String,
-    /// What numbers that are bounded so keep to.
+    /// Limits of the numbers that are marked as bounded.
     pub(crate) within: Option<Within>,
 }
 
@@ -36,7 +36,7 @@ impl<'v> Hand<'v> {
         Self { visit, part: String::new(), within: None }
     }
 
-    /// What `show` shows belongs to `part` of what is shown now.
+    /// Prepends `part` to the name of the part while `show` runs.
     pub(crate) fn part(&mut self, part: &str, show: impl FnOnce(&mut Self)) {
         let before = self.part.len();
         if before > 0 {
@@ -47,14 +47,14 @@ impl<'v> Hand<'v> {
         self.part.truncate(before);
     }
 
-    /// Shows one number; what the visitor makes of it is kept within what a hand may reach, NaN refused.
+    /// Passes one number to the callback and clamps the result to the range; NaN keeps the old value.
     pub(crate) fn show(&mut self, number: &Num, whole: bool, name: &'static str, value: &mut f32) {
         let (scale, shown) = (number.scale as f32, *value * number.scale as f32);
         let (mut low, mut high) = (number.hand.0 as f32, number.hand.1 as f32);
         if let Some(within) = self.within.filter(|_| number.bounded) {
             (low, high) = (within.low as f32, within.high as f32);
         }
-        // What is beyond a hand's reach already stays in sight.
+        // A value above the range extends the range, so that it stays visible.
         high = high.max(shown);
         let knob =
             Knob { part: self.part.clone(), name, range: (low, high), scale, by_ratio: low > 0.0, whole };

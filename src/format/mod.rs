@@ -1,4 +1,4 @@
-//! RON records: each is described once, where its type is; reader, writer, knobs and reference follow from that.
+//! RON records: each is described once, at its type; reader, writer, knobs and reference follow from that.
 //!
 //! ```text
 //! record! { pub struct Mode ... }   name, type, unit, range, default and one line of each field
@@ -8,14 +8,13 @@
 //!   -syntax-> tree with spans -reader, node, fields-> numbers, texts, names in range -record-> the typed record
 //! ```
 //!
-//! All problems of a file are found in one reading, each with its place and the
-//! nearest valid name. A record is read over a base, which says what is not
-//! written. This module knows no record itself: it stands below all of them.
+//! One reading finds all problems of a file, each with its place and the nearest valid name. A record is read over a
+//! base, which supplies the fields that are not written. This module depends on no particular record: it stands below
+//! all of them.
 //!
-//! Serde's derive cannot do this: it stops at the first problem, has neither
-//! places nor ranges, and cannot read over a base. With schemars beside it every
-//! record would be a second struct of what is written, and a conversion with the
-//! units; here the record is the type that is used.
+//! Serde's derive cannot do this: it stops at the first problem, has neither places nor ranges, and cannot read over
+//! a base. With schemars, every record would need a second struct for the file format and a conversion of the units;
+//! here the record is the type that the program uses.
 
 pub(crate) mod codec;
 mod complaint;

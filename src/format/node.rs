@@ -1,4 +1,4 @@
-//! One value in the tree, read as what is wanted.
+//! One value in the syntax tree, and typed reading of it.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -13,19 +13,19 @@ use super::suggest::{listed, nearest};
 use super::words::unit;
 use crate::label::{describe as describe_character, first_unfit};
 
-/// What numbers of a record keep to beyond their own range, because of another field.
+/// Limits that another field sets for numbers of a record, beyond their own range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Within {
     pub(crate) low: f64,
     pub(crate) high: f64,
-    /// What messages call it.
+    /// Name of the limits in messages.
     pub(crate) noun: &'static str,
-    /// How to let more in: what to do, and the field that says it.
+    /// Advice on how to widen the limits, and the field that sets them.
     pub(crate) wider: &'static str,
 }
 
 impl Within {
-    /// Whether `number` keeps to it; reports it if not.
+    /// Whether `number` is within the limits; reports it if not.
     fn holds(&self, node: &Node<'_>, number: f64) -> bool {
         let holds = (self.low..=self.high).contains(&number);
         if !holds {
@@ -40,32 +40,32 @@ impl Within {
     }
 }
 
-/// One value of the file, and the name by which messages speak of it.
+/// One value of the file, and its name in messages.
 #[derive(Clone, Copy)]
 pub(crate) struct Node<'r> {
     pub(crate) reader: &'r Reader<'r>,
     pub(crate) expr: &'r Expr<'r>,
-    /// The field it is the value of, or what the entries of its list are.
+    /// The field that holds the value, or the name for entries of its list.
     pub(crate) name: &'static str,
 }
 
 impl<'r> Node<'r> {
-    /// Where it stands.
+    /// Returns its place in the text.
     pub(crate) fn span(&self) -> Range<usize> {
         bytes(self.expr.span())
     }
 
-    /// Notes a problem.
+    /// Reports a problem.
     pub(crate) fn report(&self, problem: Problem) {
         self.reader.report(problem);
     }
 
-    /// Whether it is `None`.
+    /// Whether the value is `None`.
     pub(crate) fn is_none(&self) -> bool {
         matches!(self.expr, Expr::Option(option) if option.value.is_none())
     }
 
-    /// What is inside of any `Some(...)` around it.
+    /// Returns the value inside any `Some(...)` around it.
     pub(crate) fn inside(mut self) -> Self {
         while let Expr::Option(option) = self.expr
             && let Some(some) = &option.value
@@ -75,7 +75,7 @@ impl<'r> Node<'r> {
         self
     }
 
-    /// The value of the field `name` if this is a `Kind(...)` that has one; nothing is reported.
+    /// Returns the value of the field `name` if this is a `Kind(...)` with that field; reports nothing.
     pub(crate) fn peek(&self, kind: &'static str, name: &'static str) -> Option<Node<'r>> {
         let fields = match self.expr {
             Expr::AnonStruct(node) => &node.fields,
@@ -89,18 +89,18 @@ impl<'r> Node<'r> {
         Some(Node { expr: &field.value, name, ..*self }.inside())
     }
 
-    /// Whether it is a `Name(...)` of this name, or the name alone.
+    /// Whether the value is a `Name(...)` with this name, or the name alone.
     pub(crate) fn is_called(&self, name: &str) -> bool {
         matches!(self.expr, Expr::Struct(node) if node.name.name == name)
     }
 
-    /// Its value if it is text; nothing is reported.
+    /// Returns the text if the value is one; reports nothing.
     pub(crate) fn peek_text(&self) -> Option<&'r str> {
         let Expr::String(text) = self.expr else { return None };
         Some(&text.value)
     }
 
-    /// The unit of the number it is, with a space before it; empty if it has none.
+    /// Returns the unit of the number, with a space before it; empty if it has none.
     fn unit(&self) -> &'static str {
         match self.name {
             "at" | "size" | "gap" => self.reader.length_unit(),
@@ -108,15 +108,15 @@ impl<'r> Node<'r> {
         }
     }
 
-    /// Its value if it is a number; nothing is reported.
+    /// Returns the number if the value is one; reports nothing.
     pub(crate) fn peek_number(&self) -> Option<f64> {
         let Expr::Number(number) = self.expr else { return None };
         parse_number(&number.raw).ok().map(|number| number.value)
     }
 
-    /// Reports that this is not the `expected` thing, and gives `None`.
+    /// Reports that this is not the `expected` thing, and returns `None`.
     pub(crate) fn mismatch<T>(&self, expected: &str) -> Option<T> {
-        // The parser has reported already what is wrong with an error node.
+        // The parser has already reported the cause of an error node.
         if !matches!(self.expr, Expr::Error(_)) {
             let message = format!("`{}` must be {expected}", self.name);
             let found = format!("expected {expected}, found {}", describe(self.expr));
@@ -163,7 +163,7 @@ impl<'r> Node<'r> {
         self.report(Problem::error(self.span(), message).expected("expected digits only"));
     }
 
-    /// A finite number within `range`, and within what bounds such numbers here.
+    /// A finite number within `range` and within the limits of the surrounding record.
     pub(crate) fn bounded(&self, range: RangeInclusive<f64>) -> Option<Number> {
         let number = self.number(range)?;
         let within = self.reader.within();
@@ -176,7 +176,7 @@ impl<'r> Node<'r> {
         Some(flag.value)
     }
 
-    /// Text of at most `longest` characters, all of which can be seen.
+    /// Text of at most `longest` characters, all of them visible.
     pub(crate) fn text(&self, longest: usize) -> Option<&'r str> {
         let Expr::String(text) = self.expr else { return self.mismatch("text") };
         let length = text.value.chars().count();
@@ -195,7 +195,7 @@ impl<'r> Node<'r> {
         Some(&text.value)
     }
 
-    /// Where `character` stands in the text that this is; all of it where it is written as an escape.
+    /// Returns the place of `character` in this text, or the whole text if the character is written as an escape.
     fn place_of(&self, character: char) -> Range<usize> {
         let span = self.span();
         let written = self.reader.text().get(span.clone()).unwrap_or_default();
@@ -222,11 +222,11 @@ impl<'r> Node<'r> {
         None
     }
 
-    /// One of the names in `choices`, and what it stands for.
+    /// Reads one of the names in `choices` and returns its value.
     pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let all = listed(&names, "or");
-        // What is too long to stand beside the carets is told below them.
+        // A list too long to stand beside the carets goes below them.
         let (expected, many) =
             if names.len() <= 8 { (all, None) } else { (format!("one of {} names", names.len()), Some(all)) };
         let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
@@ -248,7 +248,7 @@ impl<'r> Node<'r> {
         None
     }
 
-    /// Which of `names` is written, and the fields in the brackets behind it, if there are any.
+    /// Returns the one of `names` that is written, and the fields in the brackets behind it, if any.
     pub(crate) fn variant(&self, names: &[&'static str]) -> Option<(&'static str, Fields<'r>)> {
         let expected = listed(names, "or");
         let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
@@ -267,7 +267,7 @@ impl<'r> Node<'r> {
         Some((name, fields))
     }
 
-    /// The entries of a list of at most `most`; messages call each of them `entry`.
+    /// Returns the entries of a list of at most `most`; messages call each of them `entry`.
     pub(crate) fn list(&self, entry: &'static str, most: usize) -> Option<Vec<Node<'r>>> {
         let Expr::Seq(list) = self.expr else { return self.mismatch("a list") };
         if list.items.len() > most {
@@ -279,7 +279,7 @@ impl<'r> Node<'r> {
         Some(list.items.iter().map(|item| Node { expr: &item.expr, name: entry, ..*self }.inside()).collect())
     }
 
-    /// The values of a tuple of `N`, shown as `pattern` if it is not such a tuple.
+    /// Returns the `N` values of a tuple; the error message shows `pattern`.
     pub(crate) fn tuple<const N: usize>(&self, pattern: &str) -> Option<[Node<'r>; N]> {
         let elements = match self.expr {
             Expr::Tuple(tuple) => &tuple.elements,
@@ -298,7 +298,7 @@ impl<'r> Node<'r> {
         Some([east?.value, north?.value])
     }
 
-    /// One number within `range` for both directions, or one for each.
+    /// One number within `range` for both directions, or one number for each.
     pub(crate) fn one_or_two(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
         match self.expr {
             Expr::Tuple(_) => self.pair(range),
@@ -306,7 +306,7 @@ impl<'r> Node<'r> {
         }
     }
 
-    /// The named fields of a `Name(...)`, the name being optional.
+    /// Returns the named fields of a `Name(...)`; the name is optional.
     pub(crate) fn fields(&self, name: &'static str) -> Option<Fields<'r>> {
         let (written, open, fields) = match self.expr {
             Expr::AnonStruct(node) => (None, bytes(&node.open_paren), node.fields.as_slice()),

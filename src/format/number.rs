@@ -1,6 +1,6 @@
-//! Numbers as written.
+//! Numbers as files hold them.
 
-/// A number as written.
+/// A number as a file holds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Number {
     /// Its value; finite.
@@ -11,18 +11,18 @@ pub(crate) struct Number {
     pub(crate) whole: bool,
 }
 
-/// Why something written like a number can't be used as one.
+/// Reasons why a text that looks like a number cannot be used as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NotANumber {
-    /// `NaN` or `inf`, which no quantity of a floor ever is.
+    /// `NaN` or `inf`, which no quantity of a floor can be.
     NotFinite,
-    /// Its digits stand for more than can be represented.
+    /// The value is too large to represent.
     TooLarge,
-    /// It doesn't read as a number.
+    /// The text is not a number.
     Malformed,
 }
 
-/// Reads a RON number: underscores, `0x`, `0o`, `0b`, exponents and type suffixes are understood.
+/// Parses a RON number: underscores, `0x`, `0o`, `0b`, exponents and type suffixes are allowed.
 pub(crate) fn parse_number(written: &str) -> Result<Number, NotANumber> {
     let text = written.replace('_', "");
     let (sign, digits) = match text.strip_prefix('-') {
@@ -39,7 +39,7 @@ pub(crate) fn parse_number(written: &str) -> Result<Number, NotANumber> {
         return Ok(Number { value: sign * value as f64, single: sign as f32 * value as f32, whole: true });
     }
     let digits = without_suffix(digits, 10);
-    // Rust also takes words such as "infinity" here; a number begins with a digit.
+    // Rust also accepts words such as "infinity" here; a number begins with a digit.
     if !digits.starts_with(|c: char| c.is_ascii_digit()) {
         return Err(NotANumber::Malformed);
     }
@@ -52,14 +52,14 @@ pub(crate) fn parse_number(written: &str) -> Result<Number, NotANumber> {
     Ok(Number { value: sign * value, single: sign as f32 * single, whole })
 }
 
-/// `digits` without a type such as `u8` or `f32` behind them.
+/// Removes a type such as `u8` or `f32` from the end of `digits`.
 fn without_suffix(digits: &str, base: u32) -> &str {
     let suffixes = ["i8", "i16", "i32", "i64", "i128", "u8", "u16", "u32", "u64", "u128"];
     let floats = if base == 10 { ["f32", "f64"].as_slice() } else { &[] };
     suffixes.iter().chain(floats).find_map(|suffix| digits.strip_suffix(suffix)).unwrap_or(digits)
 }
 
-/// `value` as people write it: at most four decimals, no zeros behind them.
+/// Formats `value` for people: at most four decimals, without trailing zeros.
 pub(crate) fn plain(value: f64) -> String {
     let rounded = format!("{value:.4}");
     let text = rounded.trim_end_matches('0').trim_end_matches('.');

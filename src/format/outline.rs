@@ -1,4 +1,4 @@
-//! Where the values of a text are written: for editors, which change a text in place and leave the rest as it is.
+//! Places of the values in a text, for editors that change a text in place and leave the rest as it is.
 
 use std::ops::Range;
 
@@ -8,22 +8,22 @@ use super::pairs::Limits;
 use super::reader::bytes;
 use super::syntax;
 
-/// One value of a text and where it is written. Places count in bytes of the text without a byte-order mark.
+/// One value of a text and its place. Places count in bytes of the text without a byte-order mark.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Outline {
     pub(crate) span: Range<usize>,
     pub(crate) shape: OutlineShape,
     /// The name before the brackets of a record.
     pub(crate) name: Option<String>,
-    /// What is between its brackets; `None` without any.
+    /// Bytes between its brackets; `None` without brackets.
     pub(crate) inside: Option<Range<usize>>,
     /// Fields of a record, entries of a list, values of a tuple.
     pub(crate) elements: Vec<Element>,
-    /// What a text in quotes says.
+    /// The content of a text in quotes.
     pub(crate) says: Option<String>,
 }
 
-/// How a value is written.
+/// The written form of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OutlineShape {
     /// Named fields in round brackets, or a name alone.
@@ -32,7 +32,7 @@ pub(crate) enum OutlineShape {
     List,
     /// Values in round brackets.
     Tuple,
-    /// Anything that holds no other values.
+    /// A value that holds no other values.
     Leaf,
 }
 
@@ -50,19 +50,19 @@ impl Element {
         Self { field: None, value: Outline::of(value), comma: comma.map(bytes) }
     }
 
-    /// Where it begins, a field with its name.
+    /// Returns the start of the element; that of a field is the start of its name.
     pub(crate) fn start(&self) -> usize {
         self.field.as_ref().map_or(self.value.span.start, |(_, at)| at.start)
     }
 
-    /// Where it ends, with its comma.
+    /// Returns the end of the element, its comma included.
     pub(crate) fn end(&self) -> usize {
         self.comma.as_ref().map_or(self.value.span.end, |comma| comma.end)
     }
 }
 
 impl Outline {
-    /// The outline of what `text` holds; `None` if it is not RON.
+    /// Parses `text` into its outline; `None` if it is not RON.
     pub(crate) fn parse(text: &str) -> Option<Self> {
         let syntax = syntax::parse(text, "value", Limits::LAYOUT);
         let whole = syntax.holes.is_empty();
@@ -133,7 +133,7 @@ impl Outline {
         }
     }
 
-    /// The field called `name`.
+    /// Returns the field called `name`.
     pub(crate) fn field(&self, name: &str) -> Option<&Element> {
         let is_called = |element: &&Element| element.field.as_ref().is_some_and(|(own, _)| own == name);
         self.elements.iter().find(is_called)

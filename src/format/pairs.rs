@@ -1,17 +1,17 @@
-//! Which brackets belong together, and which entry a place belongs to.
+//! Pairing of brackets, and the entry that holds a place.
 
 use std::ops::Range;
 
 use super::problem::Problem;
 
-/// How much one file may hold.
+/// Limits on the content of one file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
-    /// Brackets within brackets; bounds the stack that parsing needs.
+    /// Nesting of brackets; bounds the stack of the parser.
     pub(crate) depth: usize,
     /// Entries of one list.
     pub(crate) entries: usize,
-    /// Words, numbers, texts, opening brackets and commas in the whole file; bounds the memory that parsing needs.
+    /// Words, numbers, texts, opening brackets and commas in the whole file; bounds the memory of the parser.
     pub(crate) tokens: usize,
 }
 
@@ -44,10 +44,10 @@ impl Open {
     }
 }
 
-/// Most complaints about brackets: what follows the first few is rarely true.
+/// Maximum number of problems reported about brackets: after the first few, most are consequences.
 const MOST: usize = 20;
 
-/// What is wrong with the brackets of `text`; usually nothing.
+/// Checks the brackets of `text` and returns their problems.
 pub(crate) fn check(text: &str, marks: &[Mark], limits: Limits) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut open: Vec<Open> = Vec::new();
@@ -90,10 +90,10 @@ pub(crate) fn check(text: &str, marks: &[Mark], limits: Limits) -> Vec<Problem> 
     problems
 }
 
-/// Decides what is wrong where the first of `rest` closes something else than the bracket opened last.
+/// Finds the error where the first of `rest` closes another bracket than the one opened last.
 ///
-/// Either that one was never closed, or this one is too many: whichever lets
-/// the rest of the file pair up for longer.
+/// Either that bracket was never closed, or this one is surplus: the function chooses the repair with which more of
+/// the rest of the file pairs up.
 fn mend(text: &str, open: &mut Vec<Open>, rest: &[Mark]) -> Problem {
     let Some((closing, rest)) = rest.split_first() else { return Problem::error(0..0, "") };
     let matching = open.iter().rposition(|bracket| bracket.closed_by(closing.character));
@@ -111,7 +111,7 @@ fn mend(text: &str, open: &mut Vec<Open>, rest: &[Mark]) -> Problem {
     Problem::error(closing.at..closing.at + 1, message).expected("one bracket too many")
 }
 
-/// How many of `rest` pair up with what is `open`; all and one more if nothing stays open.
+/// Counts the marks of `rest` that pair up with the `open` brackets; all and one more if no bracket stays open.
 fn horizon(open: &[Open], rest: &[Mark]) -> usize {
     let mut open: Vec<u8> = open.iter().map(|bracket| bracket.bracket).collect();
     for (index, mark) in rest.iter().enumerate() {
@@ -133,7 +133,7 @@ fn never_closed(open: &Open) -> Problem {
     Problem::error(open.at..open.at + 1, message).expected(format!("expected a `{closing}` further down"))
 }
 
-/// The entry of a list, tuple or struct that holds the byte at `offset`, with the comma behind it.
+/// Returns the entry of a list, tuple or struct that holds the byte at `offset`, with the comma behind it.
 ///
 /// `None` outside of all brackets. The brackets must pair up.
 pub(crate) fn entry_around(marks: &[Mark], offset: usize) -> Option<Range<usize>> {
@@ -143,7 +143,7 @@ pub(crate) fn entry_around(marks: &[Mark], offset: usize) -> Option<Range<usize>
     Some(before.at + 1..after.at + usize::from(after.character == b','))
 }
 
-/// The first comma or bracket that ends an entry on the way along `marks`, past pairs that begin with one of `inner`.
+/// Returns the first comma or bracket along `marks` that ends an entry; skips pairs that begin with one of `inner`.
 fn end_of_entry<'m>(mut marks: impl Iterator<Item = &'m Mark>, inner: [u8; 2]) -> Option<&'m Mark> {
     let mut depth = 0;
     marks.find(|mark| match mark.character {
@@ -190,7 +190,7 @@ mod tests {
         let nested = |depth| format!("{}{}", "[".repeat(depth), "]".repeat(depth));
         assert_eq!(problems(&nested(64)), []);
         assert_eq!(problems(&nested(65)), [("brackets nest deeper than 64".into(), 64..65)]);
-        // A million brackets take no deeper stack.
+        // A million brackets need no deeper stack.
         let bottomless = "(".repeat(1_000_000);
         let marks = scan(&bottomless, 2_000_000).marks;
         assert_eq!(check(&bottomless, &marks, Limits::LAYOUT).len(), 1);

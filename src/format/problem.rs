@@ -1,10 +1,10 @@
-//! A problem of a text, before its file is known.
+//! A problem of a text, independent of its file.
 
 use std::ops::Range;
 
 use super::diagnostic::Severity;
 
-/// Something wrong with a text, before it is known which file the text is.
+/// A problem of a text, independent of the file that holds the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem {
     pub(crate) severity: Severity,
@@ -13,12 +13,12 @@ pub(crate) struct Problem {
     pub(crate) message: String,
     pub(crate) expected: String,
     pub(crate) help: Option<String>,
-    /// The field that is missing from what stands at `span`.
+    /// The field that is missing at `span`.
     pub(crate) missing: Option<&'static str>,
 }
 
 impl Problem {
-    /// Something because of which the file cannot be used.
+    /// A problem that makes the file unusable.
     pub(crate) fn error(span: Range<usize>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -30,22 +30,22 @@ impl Problem {
         }
     }
 
-    /// Something that is probably not meant so.
+    /// A problem that is probably a mistake.
     pub(crate) fn warning(span: Range<usize>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(span, message) }
     }
 
-    /// The same, with `expected` written beside the carets.
+    /// Sets the text beside the carets.
     pub(crate) fn expected(self, expected: impl Into<String>) -> Self {
         Self { expected: expected.into(), ..self }
     }
 
-    /// The same, saying what to do about it.
+    /// Sets the advice.
     pub(crate) fn help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
     }
 
-    /// The same, with what to do about it if that is known.
+    /// Sets the advice, if there is any.
     pub(crate) fn help_if(self, help: Option<String>) -> Self {
         Self { help, ..self }
     }

@@ -1,7 +1,7 @@
 //! Reads a syntax tree and collects problems instead of stopping at the first.
 //!
-//! Every reading gives `None` after it has reported why. Callers read on with
-//! what they have, and only build something if nothing was `None`.
+//! A read returns `None` after it has reported the reason. Callers read on with the values they have, and build a
+//! result only if nothing was `None`.
 
 use std::any::{Any, TypeId};
 use std::cell::{Cell, RefCell};
@@ -18,16 +18,16 @@ use super::problem::Problem;
 use super::source::Source;
 use super::syntax::{self, Syntax};
 
-/// One file being read, and everything found wrong with it so far.
+/// One file being read, and all problems found in it so far.
 pub(crate) struct Reader<'t> {
     source: &'t Source<'t>,
     syntax: Syntax<'t>,
     problems: RefCell<Vec<Problem>>,
-    /// What bounded numbers keep to.
+    /// Limits of the numbers that are marked as bounded.
     within: Cell<Option<Within>>,
     /// The unit of places and sizes, with a space before it.
     length_unit: Cell<&'static str>,
-    /// What else readings need to know, one of each type.
+    /// Other context for reads, one value of each type.
     known: RefCell<HashMap<TypeId, Arc<dyn Any + Send + Sync>>>,
 }
 
@@ -51,17 +51,17 @@ impl<'t> Reader<'t> {
         self.source.text()
     }
 
-    /// What the file holds.
+    /// Returns the root value of the file.
     pub(crate) fn root(&self, name: &'static str) -> Option<Node<'_>> {
         self.syntax.root.as_ref().map(|expr| Node { reader: self, expr, name })
     }
 
-    /// From now on readings can ask for `what`.
+    /// Makes `what` available to later reads.
     pub(crate) fn know<T: Any + Send + Sync>(&self, what: Arc<T>) {
         self.known.borrow_mut().insert(TypeId::of::<T>(), what);
     }
 
-    /// What is known of this type; its default if that is nothing.
+    /// Returns the context of this type, or its default if there is none.
     pub(crate) fn known<T: Any + Default + Send + Sync>(&self) -> Arc<T> {
         let known = self.known.borrow().get(&TypeId::of::<T>()).cloned();
         known.and_then(|known| known.downcast().ok()).unwrap_or_default()
@@ -72,54 +72,54 @@ impl<'t> Reader<'t> {
         self.length_unit.get()
     }
 
-    /// From now on places and sizes are shown with this unit.
+    /// Sets the unit in which messages show places and sizes.
     pub(crate) fn show_lengths_in(&self, unit: &'static str) {
         self.length_unit.set(unit);
     }
 
-    /// What bounded numbers keep to, if anything.
+    /// Returns the limits of bounded numbers, if any.
     pub(crate) fn within(&self) -> Option<Within> {
         self.within.get()
     }
 
-    /// From now on bounded numbers keep to these; gives back what they kept to before.
+    /// Sets the limits of bounded numbers from now on and returns the previous ones.
     pub(crate) fn keep_within(&self, within: Option<Within>) -> Option<Within> {
         self.within.replace(within)
     }
 
-    /// What diagnostics call the file.
+    /// Returns the name of the file in diagnostics.
     pub(crate) fn name(&self) -> &'t str {
         self.source.name()
     }
 
-    /// Notes a problem, unless it lies where the text is broken anyway.
+    /// Reports a problem, unless it lies within a syntax error.
     pub(crate) fn report(&self, problem: Problem) {
         if !self.is_broken(&problem.span) {
             self.problems.borrow_mut().push(problem);
         }
     }
 
-    /// Whether the text is broken somewhere in `span`, so that nothing can be said of what is missing there.
+    /// Whether `span` holds a syntax error, so that a field that seems missing there may have been written.
     pub(crate) fn is_broken(&self, span: &Range<usize>) -> bool {
         self.syntax.holes.iter().any(|hole| hole.start < span.end && span.start < hole.end)
     }
 
-    /// Whether everything so far can be used.
+    /// Whether everything read so far is usable.
     pub(crate) fn is_sound(&self) -> bool {
         self.problems.borrow().iter().all(|problem| problem.severity == Severity::Warning)
     }
 
-    /// The line of a place, for messages that point elsewhere.
+    /// Returns the line of a place, for messages that point to a second place.
     pub(crate) fn line(&self, span: &Range<usize>) -> usize {
         self.source.line(span.start)
     }
 
-    /// This one problem, whatever else there may be.
+    /// Returns this problem alone and drops all others.
     pub(crate) fn only(&self, problem: Problem) -> Diagnostics {
         diagnose(self.source, self.syntax.root.as_ref(), problem).into()
     }
 
-    /// Everything noted so far.
+    /// Returns all problems found so far.
     pub(crate) fn into_diagnostics(self) -> Diagnostics {
         let mut problems = self.problems.take();
         problems.sort_by_key(|problem| (problem.span.start, problem.severity));
@@ -130,11 +130,11 @@ impl<'t> Reader<'t> {
         Diagnostics::new(list.collect(), omitted)
     }
 
-    /// `value` with the warnings, if there is one and nothing was wrong; otherwise everything that was.
+    /// Returns `value` with the warnings if it exists and there are no errors; otherwise all problems.
     pub(crate) fn conclude<T>(self, value: Option<T>) -> Result<(T, Diagnostics), Diagnostics> {
         match value {
             Some(value) if self.is_sound() => Ok((value, self.into_diagnostics())),
-            // Nobody is told "no" without a reason.
+            // Every rejection has a reason.
             None if self.is_sound() => Err(self.only(Problem::error(0..0, "this file makes no sense"))),
             _ => Err(self.into_diagnostics()),
         }
@@ -155,7 +155,7 @@ fn diagnose(source: &Source<'_>, root: Option<&Expr<'_>>, problem: Problem) -> D
     }
 }
 
-/// The path of fields from `expr` down to the byte at `offset`.
+/// Returns the path of fields from `expr` down to the byte at `offset`.
 fn path_to(expr: &Expr<'_>, offset: usize) -> String {
     let fields = match expr {
         Expr::AnonStruct(node) => node.fields.as_slice(),

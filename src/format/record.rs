@@ -1,4 +1,4 @@
-//! Records and what is described of them.
+//! Records and their descriptions.
 
 use super::describe::Description;
 use super::fault::Faults;
@@ -7,41 +7,42 @@ use super::hand::Hand;
 use super::node::Node;
 use super::text::Entry;
 
-/// Something that files write as named fields in round brackets. [`record!`] makes one.
+/// A type that files write as named fields in round brackets. [`record!`] implements it.
 pub(crate) trait Record: Clone + PartialEq + 'static {
-    /// What files call it.
+    /// Its name in files.
     const NAME: &'static str;
 
-    /// What `fields` say of it; where they say nothing, it is as in `base`.
+    /// Reads the record from `fields`; fields that are not written come from `base`.
     ///
-    /// What could not be read is noted in `fields` ([`Fields::are_read`]), and something fills its place, so that
-    /// what is wrong between fields is found too.
+    /// An unreadable field is noted in `fields` ([`Fields::are_read`]) and replaced by a stand-in, so that conflicts
+    /// between the other fields are found too.
     fn read_fields(fields: &mut Fields<'_>, base: Option<&Self>) -> Self;
 
-    /// Appends the fields that are not as they would be if nothing were said of them.
+    /// Appends the fields that differ from their defaults.
     fn write_fields(&self, entries: &mut Vec<Entry>);
 
-    /// Shows each of its numbers to a hand that may turn it.
+    /// Passes each of its numbers to a tuner, which may change it.
     fn turn_fields(&mut self, hand: &mut Hand<'_>);
 
-    /// What is known of it and its fields.
+    /// Describes the record and its fields.
     fn describe() -> Description;
 
-    /// Any value of its type, for the place of one that could not be read.
+    /// Returns any value of the type, as a stand-in for one that cannot be read.
     fn stand_in() -> Self;
 }
 
-/// One of several records, told apart by their names. [`choices!`] makes one.
+/// One of several records, distinguished by name. [`choices!`] implements it.
 pub(crate) trait Variants: Clone + PartialEq + 'static {
-    /// The names of all.
+    /// The names of all variants.
     const NAMES: &'static [&'static str];
 
-    /// The name of this one.
+    /// The name of this variant.
     fn variant(&self) -> &'static str;
 
-    /// What `fields` say of the one called `name`; where they say nothing, it is as in `base`, if that has this name.
+    /// Reads the variant called `name` from `fields`; fields that are not written come from `base` if it has the same
+    /// name.
     ///
-    /// `None` if none has this name.
+    /// `None` if there is no variant of this name.
     fn read_fields(name: &str, fields: &mut Fields<'_>, base: Option<&Self>) -> Option<Self>;
 
     /// As [`Record::write_fields`].
@@ -50,15 +51,15 @@ pub(crate) trait Variants: Clone + PartialEq + 'static {
     /// As [`Record::turn_fields`].
     fn turn_fields(&mut self, hand: &mut Hand<'_>);
 
-    /// All of them, in the order of [`Variants::NAMES`].
+    /// Describes all variants, in the order of [`Variants::NAMES`].
     fn describe() -> Vec<Description>;
 
-    /// Any value of its type, for the place of one that could not be read.
+    /// Returns any value of the type, as a stand-in for one that cannot be read.
     fn stand_in() -> Self;
 }
 
 impl Node<'_> {
-    /// The record written here, over `base`.
+    /// Reads the record at this node over `base`.
     pub(crate) fn record<T: Record>(self, base: Option<&T>) -> Option<T> {
         let mut fields = self.fields(T::NAME)?;
         let read = T::read_fields(&mut fields, base);
@@ -68,14 +69,14 @@ impl Node<'_> {
     }
 }
 
-/// A rule of a record: what is wrong between its fields, and what follows from them.
+/// A rule of a record: finds conflicts between its fields and computes derived ones.
 pub(crate) type Rules<T> = fn(&mut T, &mut Faults);
 
 /// Defines a struct and describes it as a record of files.
 ///
-/// Each field stands once, as `field: Type = "name in files", codec => default;` behind its documentation. The codec
-/// says what is written (see [`super::codec`]); unit and range of a number are in it and in the end of the name.
-/// A field without a default must be written, unless there is a base.
+/// Each field is one entry `field: Type = "name in files", codec => default;` below its documentation. The codec
+/// defines the written form (see [`super::codec`]); the codec and the end of the name give the range and unit of a
+/// number. A field without a default must be written, unless there is a base.
 macro_rules! record {
     (
         $(#[doc = $doc:expr])*
@@ -150,9 +151,9 @@ macro_rules! record {
     };
 }
 
-/// Defines an enum of which each variant holds the record that is written under its name, or nothing.
+/// Defines an enum. Each variant holds the record that is written under its name, or nothing.
 ///
-/// Behind `=` stands the variant that is its default, if it has one.
+/// `=` gives the default variant, if there is one.
 macro_rules! choices {
     (
         $(#[doc = $doc:expr])*
@@ -231,7 +232,7 @@ macro_rules! choices {
     };
 }
 
-/// What is known of the fields of a record; of none without one.
+/// The descriptions of a record's fields; empty without a record.
 macro_rules! fields_of {
     () => {
         Vec::new()

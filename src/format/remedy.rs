@@ -1,13 +1,13 @@
-//! What stands where a record should, in words.
+//! Descriptions of an unexpected value, and advice on how to correct it.
 
 use ron2::ast::Expr;
 
 use super::number::parse_number;
 
-/// What is expected where a `Name(field: value, ...)` should stand.
+/// Expected form where a `Name(field: value, ...)` should stand.
 pub(crate) const NAMED_FIELDS: &str = "named fields in round brackets";
 
-/// What stands there, in the words of layout authors.
+/// Describes the value found, in the words of layout authors.
 pub(crate) fn describe(expr: &Expr<'_>) -> String {
     match expr {
         Expr::Unit(_) => "empty brackets".into(),
@@ -27,7 +27,7 @@ pub(crate) fn describe(expr: &Expr<'_>) -> String {
     }
 }
 
-/// How to turn what was written into what was expected, where that is plain.
+/// Advice on how to turn the value found into the expected one, where that is clear.
 pub(crate) fn remedy(found: &Expr<'_>, expected: &str) -> Option<String> {
     match found {
         Expr::String(text) if expected == "a number" && parse_number(&text.value).is_ok() => {
@@ -62,7 +62,7 @@ pub(crate) fn remedy(found: &Expr<'_>, expected: &str) -> Option<String> {
     }
 }
 
-/// Which of the two a word for it means.
+/// The boolean that a word stands for.
 fn truth(word: &str) -> Option<String> {
     match word.to_lowercase().as_str() {
         "true" | "on" | "yes" | "1" => Some("write true".into()),

@@ -1,9 +1,8 @@
-//! A look at quotes, comments and characters before the text is parsed.
+//! A scan of quotes, comments and characters before the text is parsed.
 //!
-//! A parser reports what it stumbled over; for a quote left open that is often
-//! the end of the file. This pass knows the line on which it was opened. It
-//! also refuses every text that the parser might cut into tokens differently,
-//! so that what [`super::pairs`] finds out about brackets holds for the parser too.
+//! A parser reports the place where it failed; for an unclosed quote that is often the end of the file. This pass
+//! knows the line of the opening quote. It also rejects every text that the parser might split into tokens
+//! differently, so that the results of [`super::pairs`] about brackets hold for the parser too.
 
 use std::ops::Range;
 
@@ -11,23 +10,23 @@ use super::diagnostic::Diagnostics;
 use super::pairs::Mark;
 use super::problem::Problem;
 
-/// What a text looks like from outside.
+/// Result of a scan.
 #[derive(Default)]
 pub(crate) struct Scan {
-    /// What is wrong with its quotes, comments and characters; usually nothing.
+    /// Problems of its quotes, comments and characters.
     pub(crate) problems: Vec<Problem>,
-    /// Its brackets and commas, those in texts and comments left out.
+    /// Its brackets and commas, except those in texts and comments.
     pub(crate) marks: Vec<Mark>,
     /// Its comments.
     #[cfg_attr(not(feature = "edit"), expect(dead_code, reason = "only edits move comments"))]
     pub(crate) comments: Vec<Range<usize>>,
-    /// Number of its words, numbers, texts, opening brackets and commas: what a parser makes values of.
+    /// Number of its words, numbers, texts, opening brackets and commas; a parser makes values of these.
     pub(crate) tokens: usize,
-    /// Whether `marks` can be relied upon in spite of `problems`.
+    /// Whether `marks` is reliable in spite of `problems`.
     pub(crate) certain: bool,
 }
 
-/// Looks through `text`; gives up when it holds more than `most` tokens.
+/// Scans `text`; stops when it holds more than `most` tokens.
 pub(crate) fn scan(text: &str, most: usize) -> Scan {
     let mut scanner = Scanner { text, at: 0, misled: false, braces: false, scan: Scan::default() };
     while scanner.step() {
@@ -49,15 +48,15 @@ pub(crate) fn scan(text: &str, most: usize) -> Scan {
 struct Scanner<'t> {
     text: &'t str,
     at: usize,
-    /// Brackets may have been swallowed and prove nothing any more.
+    /// A token may have hidden brackets, so that the bracket marks are unreliable.
     misled: bool,
-    /// Curly brackets have been complained of; once is enough.
+    /// Curly brackets have been reported; one report is enough.
     braces: bool,
     scan: Scan,
 }
 
 impl Scanner<'_> {
-    /// Passes one token; false at the end.
+    /// Consumes one token; false at the end.
     fn step(&mut self) -> bool {
         let rest = &self.text[self.at..];
         let Some(first) = rest.chars().next() else { return false };
@@ -128,11 +127,11 @@ impl Scanner<'_> {
                 "names are made of a-z, A-Z, 0-9 and _",
             );
         }
-        // Where the parser would cut this in two (`2r"..."`), a quote follows, and that is refused.
+        // Where the parser would split this in two (`2r"..."`), a quote follows, and the scan rejects that.
         self.at += word.len();
     }
 
-    /// Passes text whose quote stands `prefix` bytes on; it must end on its line.
+    /// Consumes a text in quotes whose quote stands `prefix` bytes on; the text must end on its line.
     fn string(&mut self, prefix: usize) {
         let start = self.at;
         let line = self.text[start..].lines().next().unwrap_or_default();
@@ -235,7 +234,7 @@ impl Scanner<'_> {
     }
 }
 
-/// Bytes before the quote of a raw or byte text that begins here; `None` if a plain word does.
+/// Returns the number of bytes before the quote of a raw or byte text that begins here; `None` for a plain word.
 fn string_prefix(rest: &str) -> Option<usize> {
     let letters = ["br", "r", "b"].into_iter().find(|letters| rest.starts_with(letters))?;
     let hashes =

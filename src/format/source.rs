@@ -8,7 +8,7 @@ use super::diagnostic::{Diagnostic, Diagnostics, Severity};
 use super::excerpt::Excerpt;
 use super::file::read_bytes;
 
-/// Largest file that is read, in bytes.
+/// Maximum size of a file that is read, in bytes.
 pub(crate) const MAX_BYTES: usize = 4 << 20;
 
 /// The text of one file and where its lines begin.
@@ -21,7 +21,7 @@ pub(crate) struct Source<'t> {
 }
 
 impl<'t> Source<'t> {
-    /// The text of a file called `name`; a byte-order mark is set aside.
+    /// The text of a file called `name`, without its byte-order mark.
     ///
     /// # Errors
     /// If it is larger than [`MAX_BYTES`].
@@ -34,7 +34,7 @@ impl<'t> Source<'t> {
         Ok(Self { name, text: bare, skipped: text.len() - bare.len(), line_starts })
     }
 
-    /// What diagnostics call the file.
+    /// Returns the name of the file in diagnostics.
     pub(crate) fn name(&self) -> &'t str {
         self.name
     }
@@ -118,7 +118,7 @@ fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> Diagnostic {
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "this looks like UTF-16: save it as UTF-8",
         _ => "save it as UTF-8 in the editor",
     };
-    // The text up to the bad byte, which then stands as one replacement character under the caret.
+    // The text up to the invalid byte, which becomes one replacement character under the caret.
     let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
     let shown = format!("{before}\u{fffd}");
     let place = before.len()..shown.len();

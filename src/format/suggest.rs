@@ -2,17 +2,17 @@
 
 use strsim::{jaro_winkler, osa_distance};
 
-/// The name among `valid` that `written` was most likely meant to be; `None` if none comes close.
+/// Returns the name among `valid` that resembles `written` most; `None` if none is close.
 pub(crate) fn nearest<'v>(written: &str, valid: impl IntoIterator<Item = &'v str>) -> Option<&'v str> {
     let plain = written.to_lowercase().replace(['-', ' '], "_");
-    // A typo changes a third of a name at most; beyond that a suggestion is a guess.
+    // A typo changes at most a third of a name; a suggestion beyond that is a guess.
     let most = (plain.chars().count() / 3).max(1);
     valid
         .into_iter()
         .filter_map(|name| {
             let lower = name.to_lowercase();
             let distance = osa_distance(&plain, &lower);
-            // `press` for `press_n`: the unit was forgotten.
+            // `press` for `press_n`: the unit is missing.
             let unfinished = plain.len() >= 3
                 && lower.strip_prefix(plain.as_str()).is_some_and(|end| end.starts_with('_'));
             (distance <= most || unfinished).then(|| (name, distance, jaro_winkler(&plain, &lower)))
@@ -21,7 +21,7 @@ pub(crate) fn nearest<'v>(written: &str, valid: impl IntoIterator<Item = &'v str
         .map(|(name, ..)| name)
 }
 
-/// What to say about a name that is not among `valid`: the nearest one, or all of them.
+/// Advice about a name that is not among `valid`: the nearest one, or all of them.
 pub(crate) fn did_you_mean(written: &str, valid: &[&str], quote: char) -> Option<String> {
     let quoted = |name: &str| format!("{quote}{name}{quote}");
     match nearest(written, valid.iter().copied()) {

@@ -1,9 +1,8 @@
-//! Text to syntax tree, with all that is wrong with the text.
+//! Parses a text into a syntax tree and collects all syntax errors.
 //!
-//! The parser is asked for its first complaint only. If one character mends it,
-//! that is put in; otherwise the entry that caused it is blanked out, brackets
-//! telling how far it reaches. Then the text is parsed again: so everything
-//! beside a broken entry is still read and judged.
+//! The parser reports its first error only. If one character repairs it, that character is put in; otherwise the
+//! entry with the error is blanked out, up to the brackets or commas around it. Then the text is parsed again, so
+//! that everything beside a broken entry is still read and checked.
 
 use std::ops::Range;
 
@@ -16,16 +15,16 @@ use super::problem::Problem;
 use super::scan::{Scan, scan};
 use super::suggest::did_you_mean;
 
-/// Tokens that may be parsed in all while one broken place after another is found.
+/// Maximum number of tokens parsed in total while one error after the other is found.
 const EFFORT: usize = 2_000_000;
 
-/// What could be made of a text.
+/// Result of parsing a text.
 pub(crate) struct Syntax<'t> {
-    /// The value the file holds, as far as it can be made out.
+    /// The root value, as far as it could be parsed.
     pub(crate) root: Option<Expr<'t>>,
-    /// What is wrong with the text as such.
+    /// Syntax errors.
     pub(crate) problems: Vec<Problem>,
-    /// Where `root` is not what was meant, and must not be judged.
+    /// Places where `root` differs from the text and must not be checked.
     pub(crate) holes: Vec<Range<usize>>,
 }
 
@@ -49,7 +48,7 @@ pub(crate) fn parse<'t>(text: &'t str, kind: &str, limits: Limits) -> Syntax<'t>
     Syntax { root: None, problems, holes: Vec::new() }
 }
 
-/// A text whose broken places are mended or blanked out as they are found.
+/// A text whose errors are repaired or blanked out as they are found.
 struct Mended<'t> {
     text: &'t str,
     marks: Vec<Mark>,
@@ -85,7 +84,8 @@ impl<'t> Mended<'t> {
             match (entry, repair) {
                 (Some(_), Some(repair)) => self.repair(repair),
                 (Some(entry), None) if !seen[entry.clone()].trim().is_empty() => self.holes.push(entry),
-                // Out of all brackets, or a mess: only what stands before it can be judged.
+                // The error is outside of all brackets, or the brackets do not pair up: only the text before it can
+                // be checked.
                 _ => {
                     self.holes.push(span.start..self.text.len());
                     return document.value;
@@ -104,7 +104,7 @@ impl<'t> Mended<'t> {
         }
     }
 
-    /// The text with spaces in place of the holes, and repaired.
+    /// Returns the text with spaces in place of the holes, and with the repairs.
     fn masked(&self) -> String {
         let mut bytes = self.text.as_bytes().to_vec();
         for hole in &self.holes {
@@ -115,12 +115,13 @@ impl<'t> Mended<'t> {
                 *byte = character;
             }
         }
-        // Holes end at brackets and commas, repairs replace one of ASCII by another: this stays UTF-8.
+        // Holes end at brackets and commas, and repairs replace one ASCII character by another, so the text stays
+        // UTF-8.
         String::from_utf8(bytes).unwrap_or_default()
     }
 }
 
-/// `#![enable(...)]` is understood by other RON readers; whatever it asks for is on here anyway.
+/// Other RON readers know `#![enable(...)]`; all extensions that it can enable are on here anyway.
 fn unknown_attributes(document: &Document<'_>) -> Vec<Problem> {
     const EXTENSIONS: [&str; 4] =
         ["implicit_some", "unwrap_newtypes", "unwrap_variant_newtypes", "explicit_struct_names"];

@@ -3,7 +3,7 @@
 /// A named field of a record.
 pub(crate) type Entry = (&'static str, Text);
 
-/// A value as it is written.
+/// A value in its written form.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Text {
     /// A number, a name or a text in quotes.
@@ -14,11 +14,11 @@ pub(crate) enum Text {
     Fields(&'static str, Vec<Entry>),
 }
 
-/// Longest line that holds a whole record, in characters.
+/// Maximum length of a line that holds a whole record, in characters.
 const WIDTH: usize = 96;
 
 impl Text {
-    /// The value on one line.
+    /// Formats the value on one line.
     pub(crate) fn inline(&self) -> String {
         match self {
             Self::Plain(text) => text.clone(),
@@ -32,7 +32,8 @@ impl Text {
         }
     }
 
-    /// The value behind `column` characters of a line that is indented by so many steps, on as many lines as it takes.
+    /// Formats the value behind `column` characters of a line at indentation level `indent`, on as many lines as
+    /// needed.
     pub(crate) fn lay_out(&self, indent: usize, column: usize) -> String {
         let whole = self.inline();
         if column + whole.chars().count() <= WIDTH {
@@ -59,7 +60,8 @@ impl Text {
     }
 }
 
-/// The shortest text that reads back as `value` once it is divided by `scale`, without a point where none is needed.
+/// Returns the shortest text that reads back as `value` after division by `scale`, without a decimal point where none
+/// is needed.
 pub(crate) fn number(value: f32, scale: f64) -> String {
     if !value.is_finite() {
         return "0".to_owned();
@@ -68,7 +70,7 @@ pub(crate) fn number(value: f32, scale: f64) -> String {
         let is_small = value != 0.0 && value.abs() < 1e-4;
         return if is_small { format!("{value:e}") } else { format!("{value}") };
     }
-    // Most are whole hundredths; those that are not need all digits, found by trying.
+    // Most values are whole hundredths; the others need all digits, found by trial.
     let written = f64::from(value) * scale;
     (2..=9)
         .map(|digits| format!("{written:.digits$}"))

@@ -1,4 +1,4 @@
-//! What is known of fields by their names alone: units and how they are written.
+//! Units and examples of fields, found by their names alone.
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
 pub(crate) fn unit(field: &str) -> &'static str {
@@ -28,7 +28,7 @@ pub(crate) fn unit(field: &str) -> &'static str {
     UNITS.iter().find(|(end, _)| field.ends_with(end)).map_or("", |(_, unit)| unit)
 }
 
-/// How a field might be written, for those who left it out.
+/// An example of a field, for a file that lacks it.
 pub(crate) fn example(field: &str) -> Option<&'static str> {
     Some(match field {
         "version" => "version: 1",

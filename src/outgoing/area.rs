@@ -1,4 +1,4 @@
-//! How the areas of a floor that several computers serve are doing.
+//! State of the areas of a floor that several computers serve.
 
 use std::time::Duration;
 
@@ -8,25 +8,25 @@ use super::osc::message;
 use crate::units::Instant;
 use crate::wire::{Prefix, write};
 
-/// How one area of a floor stands with the gateway that joins them.
+/// State of one area of a floor at the gateway that joins the areas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AreaState {
-    /// Nothing was heard of it yet.
+    /// No data from the area so far.
     #[default]
     Waiting,
-    /// What happens in it is told.
+    /// The gateway reports events of the area.
     Live,
-    /// Nothing new comes from it: what feet held there is cancelled, its contacts have ended.
+    /// No new data from the area: holds there are cancelled, its contacts have ended.
     Lost,
-    /// Several computers say that they serve it: none is believed.
+    /// Several computers claim to serve the area: the gateway ignores all of them.
     Disputed,
 }
 
 impl AreaState {
-    /// All of them.
+    /// All states.
     pub const ALL: [Self; 4] = [Self::Waiting, Self::Live, Self::Lost, Self::Disputed];
 
-    /// The word for it in OSC and JSON.
+    /// Returns its name in OSC and JSON.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -38,23 +38,23 @@ impl AreaState {
     }
 }
 
-/// How one area stands from now on.
+/// A change in the state of one area.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AreaNews {
-    /// When that was found.
+    /// Time of the change.
     pub at: Instant,
-    /// Which area of the floor.
+    /// The area.
     pub area: String,
-    /// How it stands.
+    /// Its new state.
     pub state: AreaState,
-    /// Why, in words for a person; empty for one that lives.
+    /// The reason, in words for a person; empty for a live area.
     pub why: String,
-    /// By how much the times of its events may be wrong against those of other areas; zero for one that does not live.
+    /// Maximum error of the area's event times relative to those of other areas; zero unless the area is live.
     pub uncertainty: Duration,
 }
 
-/// Writes how an area stands as the OSC message `/underfoot/area`: its name, state and why, three strings, and the
-/// uncertainty of its times in seconds, a float.
+/// Writes the state of an area as the OSC message `/underfoot/area`: its name, state and reason, three strings, and
+/// the uncertainty of its times in seconds, a float.
 pub fn write_area(prefix: &Prefix, news: &AreaNews, bytes: &mut Vec<u8>) {
     let texts = [news.area.as_str(), news.state.name(), news.why.as_str()];
     let mut args: Vec<OscType> = texts.map(|text| OscType::String(text.into())).into();

@@ -1,4 +1,4 @@
-//! OSC messages that are repeated for as long as they are true.
+//! OSC messages that are repeated while they are valid.
 
 use rosc::OscType;
 
@@ -7,26 +7,26 @@ use crate::units::Instant;
 use crate::widget::WidgetId;
 use crate::wire::{Prefix, write};
 
-/// Which controls feet hold at one moment; repeated 50 times a second while there are any.
+/// The controls held by feet at one moment; repeated 50 times a second while there are any.
 ///
-/// Whoever has not heard for 100 ms that a control is held must take it for released: the
-/// server, the network or a board may be gone.
+/// A receiver must treat a control as released after 100 ms without a report: the server, the network or a board may
+/// have failed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HeldReport {
-    /// When, on the floor's sample clock.
+    /// Time on the floor's sample clock.
     pub at: Instant,
     /// The controls that are held.
     pub held: Vec<WidgetId>,
-    /// Those that were in the last report and no longer are.
+    /// Controls that were held in the last report and are not any more.
     pub ended: Vec<WidgetId>,
     /// Number of the report, from 1, wrapping at 2^32.
     pub sequence: u32,
 }
 
-/// Writes each held control as an OSC message `/underfoot/widget/<id>/held 1 <sequence>`, each that has
-/// ended with 0, giving every datagram to `send`.
+/// Writes each held control as an OSC message `/underfoot/widget/<id>/held 1 <sequence>`, and each ended one with 0;
+/// passes every datagram to `send`.
 ///
-/// Both arguments are ints; the sequence goes on with negative numbers after 2^31 - 1.
+/// Both arguments are ints; the sequence continues with negative numbers after 2^31 - 1.
 pub fn write_held(prefix: &Prefix, report: &HeldReport, bytes: &mut Vec<u8>, mut send: impl FnMut(&[u8])) {
     let held = report.held.iter().map(|id| (id, 1));
     let ended = report.ended.iter().map(|id| (id, 0));
@@ -37,7 +37,7 @@ pub fn write_held(prefix: &Prefix, report: &HeldReport, bytes: &mut Vec<u8>, mut
     }
 }
 
-/// Writes that the server lives as the OSC message `/underfoot/alive <sequence>`, an int.
+/// Writes the alive signal of the server as the OSC message `/underfoot/alive <sequence>`, an int.
 pub fn write_alive(prefix: &Prefix, sequence: u32, bytes: &mut Vec<u8>) {
     write(&message(prefix.address("alive"), vec![OscType::Int(sequence.cast_signed())]), bytes);
 }

@@ -1,4 +1,4 @@
-//! Events, contacts and states to datagrams for other programs, OSC and TUIO: pure, no sockets.
+//! Encoding of events, contacts and states as datagrams for other programs, OSC and TUIO: pure, no sockets.
 
 mod area;
 mod held;

@@ -1,4 +1,4 @@
-//! OSC messages that tell of events, contacts and states.
+//! OSC messages for events, contacts and states.
 
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 
@@ -8,17 +8,17 @@ use crate::sense::{Contact, SensorHealth};
 use crate::widget::{Detail, Value, WidgetEvent, WidgetId};
 use crate::wire::{LinkCause, LinkState, Prefix, write};
 
-/// Most contacts in one datagram: it stays below 1500 bytes, what every network carries whole.
+/// Maximum number of contacts in one datagram: it stays below 1500 bytes, the size that every network carries
+/// unfragmented.
 const CONTACTS_PER_DATAGRAM: usize = 20;
 
-/// Writes one event as an OSC message into `bytes`, replacing what was there.
+/// Writes one event as an OSC message into `bytes`, replacing their contents.
 ///
-/// The address is `/underfoot/widget/<id>/<kind>`, beginning with `prefix`. For `changed` the value
-/// comes first: a float for a number, two floats for a pair, the number of a
-/// choice (int), or 0 or 1 (int) for what is off or on, since some receivers
-/// stumble over OSC's true and false; for `swiped` the direction (string).
-/// Then always force (newtons), x and y (floor metres), as floats. Characters
-/// of the id that OSC addresses may not have are written as `_`.
+/// The address is `/underfoot/widget/<id>/<kind>`, with `prefix` at its beginning. For `changed` the value comes
+/// first: a float for a number, two floats for a pair, the index of a choice (int), or 0 or 1 (int) for off or on,
+/// since some receivers cannot read OSC's true and false; for `swiped` the direction (string). Then always force
+/// (newtons), x and y (floor metres), as floats. Characters of the id that are invalid in OSC addresses are written
+/// as `_`.
 pub fn write_event(prefix: &Prefix, event: &WidgetEvent, bytes: &mut Vec<u8>) {
     let mut args = Vec::with_capacity(5);
     match event.kind.detail() {
@@ -40,13 +40,12 @@ fn write_value(value: Value, args: &mut Vec<OscType>) {
     }
 }
 
-/// Writes the contacts of one instant as OSC bundles, giving each datagram to `send`.
+/// Writes the contacts of one instant as OSC bundles and passes each datagram to `send`.
 ///
-/// Each datagram starts with `/underfoot/contacts <count>`, the number of all
-/// contacts, followed by one `/underfoot/contact` per contact: id (int), then
-/// x, y (floor metres), force (newtons), and velocity x, y (metres per second)
-/// as floats. A receiver drops the contacts it no longer hears of, at the
-/// latest when the count is 0. More than 20 contacts take several datagrams.
+/// Each datagram starts with `/underfoot/contacts <count>`, the number of all contacts, followed by one
+/// `/underfoot/contact` per contact: id (int), then x, y (floor metres), force (newtons), and velocity x, y (metres
+/// per second) as floats. A receiver drops contacts that are no longer reported, at the latest when the count is 0.
+/// More than 20 contacts take several datagrams.
 pub fn write_contacts(
     prefix: &Prefix,
     contacts: &[Contact],
@@ -68,18 +67,18 @@ pub fn write_contacts(
     }
 }
 
-/// Most sensors that one message names.
+/// Maximum number of sensors in one message.
 const NAMED_SENSORS: usize = 8;
 
-/// Most tiles that one message names: it stays below 1500 bytes.
+/// Maximum number of tiles in one message: it stays below 1500 bytes.
 const NAMED_TILES: usize = 100;
 
-/// Writes how the floor is doing as the OSC message `/underfoot/health`.
+/// Writes the health of the floor as the OSC message `/underfoot/health`.
 ///
-/// First the state of its link, a string: `waiting`, `live`, `partial` or `lost`. Then four numbers of
-/// sensors (ints): degraded, silent, faulty, and those that nobody has calibrated. Then, if something is
-/// sent and no frame can be used, its cause, a string (`link: rate_low: board 0 sends 100 packets a second ...`).
-/// Then the sensors in trouble, a string each (`tile (2, 1) sw: stuck`), eight at most.
+/// First the state of its link, a string: `waiting`, `live`, `partial` or `lost`. Then four numbers of sensors
+/// (ints): degraded, silent, faulty, and uncalibrated. Then, if boards send and no frame is usable, the cause, a
+/// string (`link: rate_low: board 0 sends 100 packets a second ...`). Then the sensors in trouble, a string each
+/// (`tile (2, 1) sw: stuck`), eight at most.
 pub fn write_health(
     prefix: &Prefix,
     state: LinkState,
@@ -96,11 +95,11 @@ pub fn write_health(
     write(&message(prefix.address("health"), args), bytes);
 }
 
-/// Writes how the device that moves the actuators is doing as the OSC message `/underfoot/device`.
+/// Writes the state of the device that drives the actuators as the OSC message `/underfoot/device`.
 ///
-/// Its name, its state (`playing`, `lost`, `faulty` or `unfit`) and why it does not play (strings, the last one
-/// empty while it does); then channels, samples per second, frames in a block, underruns so far, and how often it
-/// was opened anew (ints); then its priority: `real-time`, `denied`, or `host` where its host sees to that.
+/// Its name, its state (`playing`, `lost`, `faulty` or `unfit`) and the reason why it does not play (strings, the
+/// last one empty while it plays); then channels, samples per second, frames in a block, underruns so far, and number
+/// of reopenings (ints); then its priority: `real-time`, `denied`, or `host` if its host sets it.
 pub fn write_device(prefix: &Prefix, status: &DeviceStatus, bytes: &mut Vec<u8>) {
     let int = |count: u64| OscType::Int(i32::try_from(count).unwrap_or(i32::MAX));
     let mut args = vec![
@@ -114,11 +113,10 @@ pub fn write_device(prefix: &Prefix, status: &DeviceStatus, bytes: &mut Vec<u8>)
     write(&message(prefix.address("device"), args), bytes);
 }
 
-/// Writes that the ice has cracked as the OSC message `/underfoot/crack`.
+/// Writes a crack of the ice as the OSC message `/underfoot/crack`.
 ///
-/// First the number of the seed that the cracks come from (int), then energy (joules) and x and y
-/// (floor metres) as floats, then how many cracks there have been since the last message of which
-/// there was none (int).
+/// First the seed of the cracks (int), then energy (joules) and x and y (floor metres) as floats, then the number of
+/// cracks without a message since the last one (int).
 pub fn write_crack(
     prefix: &Prefix,
     seed: u32,
@@ -133,34 +131,34 @@ pub fn write_crack(
     write(&message(prefix.address("crack"), args), bytes);
 }
 
-/// Writes which page is shown as the OSC message `/underfoot/page` with one string; empty in a layout without pages.
+/// Writes the shown page as the OSC message `/underfoot/page` with one string; empty in a layout without pages.
 pub fn write_page(prefix: &Prefix, page: &str, bytes: &mut Vec<u8>) {
     write(&message(prefix.address("page"), vec![OscType::String(page.into())]), bytes);
 }
 
-/// Writes what is muted as the OSC message `/underfoot/mute`.
+/// Writes the mute state as the OSC message `/underfoot/mute`.
 ///
-/// First whether everything is (int, 0 or 1), then column and row of each single tile that is not felt (ints), 100
-/// tiles at most.
+/// First whether everything is muted (int, 0 or 1), then column and row of each muted tile (ints), 100 tiles at most.
 pub fn write_mute(prefix: &Prefix, muted: &Muted, bytes: &mut Vec<u8>) {
     let places = muted.tiles.iter().take(NAMED_TILES).flat_map(|tile| [tile.column, tile.row]);
     let args = std::iter::once(u16::from(muted.all)).chain(places).map(|number| OscType::Int(number.into()));
     write(&message(prefix.address("mute"), args.collect()), bytes);
 }
 
-/// Writes why a request was refused as the OSC message `/underfoot/error`: the address it came to, and a sentence.
+/// Writes the reason for rejecting a request as the OSC message `/underfoot/error`: the request's address, and a
+/// sentence.
 pub fn write_error(prefix: &Prefix, address: &str, why: &str, bytes: &mut Vec<u8>) {
     let args = vec![OscType::String(address.into()), OscType::String(why.into())];
     write(&message(prefix.address("error"), args), bytes);
 }
 
-/// Writes how a control is as an OSC bundle.
+/// Writes the state of a control as an OSC bundle.
 ///
-/// `/underfoot/widget/<id>/value` with what it holds, if anything, as `changed` has it; `/state` with enabled, locked,
-/// pressed, armed (ints, 0 or 1), indicator and label (strings); `/off` with why no foot can press it, a word
-/// ([`crate::widget::OffReason::name`]) and a sentence, both empty if one can; `/range` with least, greatest and step of a number,
-/// least and greatest of both numbers of a pair (floats), or the names of the choices (strings); `/page` with its page,
-/// empty if it is on all.
+/// `/underfoot/widget/<id>/value` with its value, if any, as in `changed`; `/state` with enabled, locked, pressed,
+/// armed (ints, 0 or 1), indicator and label (strings); `/off` with the reason why feet cannot press it, a word
+/// ([`crate::widget::OffReason::name`]) and a sentence, both empty if they can; `/range` with minimum, maximum and
+/// step of a number, minimum and maximum of both numbers of a pair (floats), or the names of the choices (strings);
+/// `/page` with its page, empty if it is on all pages.
 pub fn write_control(prefix: &Prefix, state: &ControlState, bytes: &mut Vec<u8>) {
     let ControlState { id, value, range, enabled, off, locked, pressed, armed, indicator, label, page } =
         state;
@@ -194,9 +192,9 @@ pub(super) fn of_widget(prefix: &Prefix, id: &WidgetId, what: &str) -> String {
     prefix.address(&format!("widget/{}/{what}", address_part(id)))
 }
 
-/// These messages in one datagram.
+/// Puts these messages into one datagram.
 pub(super) fn at_once(content: Vec<OscPacket>) -> OscPacket {
-    // The time tag that means "at once".
+    // This time tag means "at once".
     OscPacket::Bundle(OscBundle { timetag: OscTime { seconds: 0, fractional: 1 }, content })
 }
 
@@ -347,7 +345,7 @@ mod tests {
         write_mute(&Prefix::default(), &muted, &mut bytes);
         let args = [0, 2, 1, 5, 5].map(OscType::Int);
         assert_eq!(decoded(&bytes), message("/underfoot/mute".into(), args.into()));
-        // A floor of 32 x 32 tiles, all of them.
+        // All tiles of a floor of 32 x 32 tiles.
         muted.tiles = (0..1024).map(|n| TileId::new(n % 32, n / 32)).collect();
         write_mute(&Prefix::default(), &muted, &mut bytes);
         assert!(bytes.len() < 1400, "{}", bytes.len());

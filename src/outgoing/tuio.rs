@@ -1,4 +1,4 @@
-//! What both versions of TUIO have in common: a unit square seen from above, and frames in small datagrams.
+//! Common parts of both TUIO versions: a unit square seen from above, and frames in small datagrams.
 
 use std::collections::HashMap;
 
@@ -11,20 +11,20 @@ use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
 use crate::wire::write;
 
-/// Largest datagram, in bytes: what every network carries whole (1500 less the headers of IP and UDP),
-/// and what clients with a buffer of 1536 bytes don't cut.
+/// Maximum size of a datagram, in bytes: the size that every network carries unfragmented (1500 less the headers of
+/// IP and UDP), and that clients with a buffer of 1536 bytes do not truncate.
 pub const TUIO_DATAGRAM: usize = 1472;
 
-/// Most contacts of one frame: so many names still fit into one datagram.
+/// Maximum number of contacts of one frame: their ids still fit into one datagram.
 pub const TUIO_CONTACTS: usize = 200;
 
-/// Time that all contacts are sent at the latest, changed or not: datagrams may be lost.
+/// Maximum time between two full reports of all contacts, changed or not: datagrams may be lost.
 pub(super) const REFRESH: std::time::Duration = std::time::Duration::from_secs(1);
 
-/// A shoe's length and width, in metres; the floor feels no outlines.
+/// Length and width of a shoe, in metres; the floor does not measure outlines.
 pub(super) const SHOE_M: Vec2 = Vec2::new(0.27, 0.10);
 
-/// The floor as TUIO sees it: 1 wide and 1 high, from the north-west corner, y towards the south.
+/// The floor in TUIO coordinates: 1 wide and 1 high, from the north-west corner, y towards the south.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surface {
     size: Vec2,
@@ -35,43 +35,43 @@ impl Surface {
         Self { size: geometry.bounds().size() }
     }
 
-    /// Width and height, in metres.
+    /// Returns width and height, in metres.
     pub(super) const fn size(&self) -> Vec2 {
         self.size
     }
 
-    /// A place on the surface, 0 to 1 both ways; places beyond the floor are moved to its edge.
+    /// Converts a place to the surface, 0 to 1 both ways; clamps places beyond the floor to its edge.
     pub(super) fn place(&self, at: Vec2) -> Vec2 {
         let share = (at / self.size).clamp(Vec2::ZERO, Vec2::ONE);
         Vec2::new(share.x, 1.0 - share.y)
     }
 
-    /// Metres per second as surfaces per second.
+    /// Converts metres per second to surfaces per second.
     pub(super) fn velocity(&self, velocity: Vec2) -> Vec2 {
         Vec2::new(velocity.x, -velocity.y) / self.size
     }
 }
 
-/// What is told of one contact.
+/// The reported state of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Told {
     pub(super) place: Vec2,
     pub(super) velocity: Vec2,
     /// Change of speed, in surfaces per second squared.
     pub(super) acceleration: f32,
-    /// Direction of the foot, clockwise from the x axis, 0 up to half a turn: heel and toe are not told apart.
+    /// Direction of the foot, clockwise from the x axis, 0 up to half a turn: heel and toe are indistinguishable.
     pub(super) angle: f32,
     pub(super) force: f32,
     /// Change of force, in newtons per second.
     pub(super) force_change: f32,
 }
 
-/// A contact that has to be told in this frame.
+/// A contact to report in this frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct News {
     pub(super) id: ContactId,
     pub(super) told: Told,
-    /// Whether it has never been told before.
+    /// Whether this is its first report.
     is_new: bool,
 }
 
@@ -81,7 +81,7 @@ struct Known {
     at: Instant,
 }
 
-/// The contacts of the last frame, and which of those of the next one have to be told.
+/// The contacts of the last frame, from which it selects the ones to report in the next frame.
 #[derive(Debug)]
 pub(super) struct Memory {
     surface: Surface,
@@ -94,7 +94,7 @@ impl Memory {
         Self { surface, known: HashMap::new(), refreshed: None }
     }
 
-    /// Those of `contacts` that are new or have changed, or all of them if that is due.
+    /// Returns the `contacts` that are new or changed, or all of them if a full report is due.
     pub(super) fn news(&mut self, at: Instant, contacts: &[&Contact]) -> Vec<News> {
         let refresh = self.refreshed.is_none_or(|last| at.since(last) >= REFRESH);
         if refresh {
@@ -115,7 +115,7 @@ impl Memory {
 
     fn told(&self, at: Instant, contact: &Contact, before: Option<Known>) -> Told {
         let velocity = self.surface.velocity(contact.velocity);
-        // Without a second tile nothing hints at the direction: as it was, at first to the north.
+        // Without a second tile the direction is unknown: it keeps its last value, at first north.
         let angle = match contact.difference {
             Some(difference) if difference != Vec2::ZERO => {
                 (-difference.y).atan2(difference.x).rem_euclid(std::f32::consts::PI)
@@ -139,7 +139,7 @@ impl Memory {
     }
 }
 
-/// The heaviest of `contacts`, as many as fit, in order of their names, and how many are left out.
+/// Returns the heaviest of `contacts` up to the maximum, in order of their ids, and the number of contacts left out.
 pub(super) fn heaviest(contacts: &[Contact]) -> (Vec<&Contact>, usize) {
     let mut all: Vec<&Contact> = contacts.iter().collect();
     let left_out = all.len().saturating_sub(TUIO_CONTACTS);
@@ -151,7 +151,7 @@ pub(super) fn heaviest(contacts: &[Contact]) -> (Vec<&Contact>, usize) {
     (all, left_out)
 }
 
-/// A session id: TUIO's have a sign, ours don't.
+/// Returns a session id: TUIO's are signed, contact ids are unsigned.
 pub(super) fn session(id: ContactId) -> OscType {
     OscType::Int(id.0.cast_signed())
 }
@@ -160,13 +160,13 @@ pub(super) fn message(address: &str, args: Vec<OscType>) -> OscPacket {
     OscPacket::Message(OscMessage { addr: address.into(), args })
 }
 
-/// Frame numbers that a clock gives in a second: about as many datagrams as a floor sends on average at most.
+/// Frame numbers per second of the clock: about the maximum mean rate of datagrams of a floor.
 const NUMBERS_PER_SECOND: u64 = 500;
 
-/// The number of the first frame of a program that starts at `clock`, 1 to `i32::MAX`.
+/// Returns the number of the first frame of a program that starts at `clock`, 1 to `i32::MAX`.
 ///
-/// Clients take a smaller number than the last for a late datagram, so a program that is started again has to go on
-/// beyond what it had reached. It begins anew after 49 days.
+/// Clients treat a smaller number than the last as a late datagram, so a restarted program has to continue above its
+/// last number. The numbers restart after 49 days.
 #[must_use]
 pub fn tuio_first_frame(clock: OscTime) -> i32 {
     let fraction = (u64::from(clock.fractional) * NUMBERS_PER_SECOND) >> 32;
@@ -174,17 +174,17 @@ pub fn tuio_first_frame(clock: OscTime) -> i32 {
     i32::try_from(number + 1).unwrap_or(1)
 }
 
-/// The frame number after `number`: never 0 nor negative.
+/// Returns the frame number after `number`: always positive.
 const fn following(number: i32) -> i32 {
     if number < 1 || number == i32::MAX { 1 } else { number + 1 }
 }
 
-/// Sends one frame in as many bundles as it takes, at least one; `next` is the number of the next bundle.
+/// Sends one frame in as many bundles as needed, at least one; `next` is the number of the next bundle.
 ///
-/// `bundle` makes one of its number, the contacts that are alive, and what `set` made of news. Clients take each bundle
-/// for a frame, drop one whose number they have seen, and think up a place for contacts that are alive but were
-/// never set. Therefore each bundle has a number of its own, and a new contact is alive from the bundle on that sets
-/// it.
+/// `bundle` makes a bundle from its number, the ids of the alive contacts, and the messages made by `set`. Clients
+/// treat each bundle as a frame, drop a bundle with a known number, and invent a place for contacts that are alive
+/// but were never set. Therefore each bundle has its own number, and a new contact is alive only from the bundle on
+/// that sets it.
 pub(super) fn send_frame(
     next: &mut i32,
     contacts: &[&Contact],
@@ -195,7 +195,7 @@ pub(super) fn send_frame(
 ) {
     let size = |packet: &OscPacket| encoder::encode(packet).map_or(0, |bytes| bytes.len() + 4);
     let everybody = contacts.iter().map(|contact| session(contact.id)).collect();
-    // The tag "#bundle", the time, and what every bundle has.
+    // The tag "#bundle", the time, and the content common to all bundles.
     let frame = 16 + bundle(1, everybody, Vec::new()).iter().map(size).sum::<usize>();
     let mut unset: Vec<ContactId> = news.iter().filter(|news| news.is_new).map(|news| news.id).collect();
     let mut bytes = Vec::new();
@@ -229,7 +229,7 @@ mod tests {
         let at = |seconds, fractional| tuio_first_frame(OscTime { seconds, fractional });
         let then = at(3_900_000_000, 0);
         assert!(then > 0);
-        // A hundred seconds of 200 datagrams each later, and half a second.
+        // A hundred seconds of 500 numbers each later, and half a second.
         assert_eq!(at(3_900_000_100, 0) - then, 50_000);
         assert_eq!(at(3_900_000_000, 1 << 31) - then, 250);
         for seconds in [0, 1, 4_294_967, u32::MAX] {

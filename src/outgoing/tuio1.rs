@@ -12,15 +12,14 @@ use crate::units::Instant;
 const CURSOR: &str = "/tuio/2Dcur";
 const BLOB: &str = "/tuio/2Dblb";
 
-/// What makes a `set` message of a profile.
+/// Makes a `set` message of a profile.
 type Set = fn(&Surface, &News) -> OscPacket;
 
 /// Contacts as TUIO 1.1 cursors (`2Dcur`) and blobs (`2Dblb`).
 ///
-/// Positions run from 0 to 1, from the floor's north-west corner, y towards the
-/// south; speeds are in floors per second. A blob has the size of a shoe, for
-/// the floor feels no outlines, and points along the foot where two tiles hint
-/// at it (half a turn at most: heel and toe look alike); that it turns is not measured.
+/// Positions run from 0 to 1, from the floor's north-west corner, y towards the south; speeds are in floors per
+/// second. A blob has the size of a shoe, since the floor does not measure outlines. It points along the foot if the
+/// foot is on two tiles (half a turn at most: heel and toe look alike); its rotation speed is not measured.
 ///
 /// # Source
 /// TUIO 1.1 protocol specification (tuio.org).
@@ -34,10 +33,10 @@ pub struct Tuio1 {
     profiles: TuioProfiles,
 }
 
-/// Which of TUIO 1.1's profiles tell of a foot.
+/// TUIO 1.1 profiles that represent a foot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TuioProfiles {
-    /// `2Dcur` only: for clients that take a blob for a second touch.
+    /// `2Dcur` only: for clients that treat a blob as a second touch.
     Cursors,
     /// `2Dblb` only.
     Blobs,
@@ -47,8 +46,8 @@ pub enum TuioProfiles {
 }
 
 impl Tuio1 {
-    /// An encoder for a floor of this geometry, that calls itself `source`, such as `underfoot@10.0.0.5`, and
-    /// numbers its bundles from `first` on ([`super::tuio_first_frame`]).
+    /// An encoder for a floor of this geometry. `source` is its name, such as `underfoot@10.0.0.5`; its bundles are
+    /// numbered from `first` on ([`super::tuio_first_frame`]).
     #[must_use]
     pub fn new(geometry: &Geometry, source: &str, first: i32) -> Self {
         let surface = Surface::of(geometry);
@@ -56,20 +55,20 @@ impl Tuio1 {
         Self { surface, memory: Memory::of(surface), source: source.into(), next: first, profiles }
     }
 
-    /// The same encoder for these profiles.
+    /// Sets the profiles.
     #[must_use]
     pub fn with_profiles(mut self, profiles: TuioProfiles) -> Self {
         self.profiles = profiles;
         self
     }
 
-    /// Gives each datagram of one frame to `send`, none larger than [`super::TUIO_DATAGRAM`];
-    /// gives back how many contacts had no room.
+    /// Passes each datagram of one frame to `send`, none larger than [`super::TUIO_DATAGRAM`]; returns the number of
+    /// contacts left out.
     ///
-    /// A bundle per profile holds `source`, `alive` with all contacts, `set` with those that have
-    /// changed (all of them once a second) and `fseq`; a frame that is too large takes several
-    /// bundles, each with an `fseq` of its own and an `alive` without the new contacts that are still to be set.
-    /// Without contacts `alive` is empty: that is also the goodbye.
+    /// A bundle per profile holds `source`, `alive` with all contacts, `set` with those that have changed (all of
+    /// them once a second) and `fseq`; a frame that is too large takes several bundles, each with its own `fseq` and
+    /// an `alive` without the new contacts that are still to be set. Without contacts `alive` is empty, which is also
+    /// the goodbye.
     pub fn write(&mut self, at: Instant, contacts: &[Contact], mut send: impl FnMut(&[u8])) -> usize {
         let (contacts, left_out) = heaviest(contacts);
         let news = self.memory.news(at, &contacts);

@@ -7,14 +7,15 @@ use crate::floor::Geometry;
 use crate::sense::Contact;
 use crate::units::Instant;
 
-/// Force that is told as pressure 1, in newtons: a person of 100 kg on one foot. More is told as 1.
+/// Force that is reported as pressure 1, in newtons: a person of 100 kg on one foot. Greater forces are reported as
+/// 1.
 pub const TUIO_FULL_FORCE_N: f32 = 1000.0;
 
 /// Contacts as TUIO 2.0 pointers, with their force as pressure.
 ///
-/// Positions run from 0 to 1, from the floor's north-west corner, y towards the
-/// south; the floor's dimension is told in millimetres. Pressure is force over
-/// [`TUIO_FULL_FORCE_N`]. Type, user and component are 0: the floor knows feet, not whose.
+/// Positions run from 0 to 1, from the floor's north-west corner, y towards the south; the floor's dimension is in
+/// millimetres. Pressure is force over [`TUIO_FULL_FORCE_N`]. Type, user and component are 0: the floor identifies
+/// feet, not people.
 ///
 /// # Source
 /// TUIO 2.0 protocol specification (tuio.org).
@@ -23,7 +24,7 @@ pub struct Tuio2 {
     memory: Memory,
     /// Width and height in millimetres, 16 bits each.
     dimension: i32,
-    /// Half a shoe's width, where the floor is 1 wide.
+    /// Half a shoe's width, in units of the floor's width.
     radius: f32,
     source: String,
     /// The number of the next bundle.
@@ -31,13 +32,13 @@ pub struct Tuio2 {
 }
 
 impl Tuio2 {
-    /// An encoder for a floor of this geometry, that calls itself `source`, such as `underfoot:0@10.0.0.5`, and
-    /// numbers its bundles from `first` on ([`super::tuio_first_frame`]).
+    /// An encoder for a floor of this geometry. `source` is its name, such as `underfoot:0@10.0.0.5`; its bundles are
+    /// numbered from `first` on ([`super::tuio_first_frame`]).
     #[must_use]
     pub fn new(geometry: &Geometry, source: &str, first: i32) -> Self {
         let surface = Surface::of(geometry);
         let millimetres = (surface.size() * 1000.0).round();
-        // Beyond 65 m a side is told as 65 m.
+        // A side beyond 65 m is reported as 65 m.
         let dimension = (u32::from(millimetres.x as u16) << 16) | u32::from(millimetres.y as u16);
         Self {
             memory: Memory::of(surface),
@@ -48,13 +49,13 @@ impl Tuio2 {
         }
     }
 
-    /// Gives each datagram of one frame to `send`, none larger than [`super::TUIO_DATAGRAM`];
-    /// gives back how many contacts had no room.
+    /// Passes each datagram of one frame to `send`, none larger than [`super::TUIO_DATAGRAM`]; returns the number of
+    /// contacts left out.
     ///
-    /// A bundle holds `/tuio2/frm` with the bundle's number and `clock`, `/tuio2/ptr` for the contacts
-    /// that have changed (all of them once a second) and `/tuio2/alv` with all contacts; a frame that
-    /// is too large takes several bundles, each with a number of its own and an `alv` without the new
-    /// contacts that are still to come. Without contacts `alv` is empty: that is also the goodbye.
+    /// A bundle holds `/tuio2/frm` with the bundle's number and `clock`, `/tuio2/ptr` for the contacts that have
+    /// changed (all of them once a second) and `/tuio2/alv` with all contacts; a frame that is too large takes
+    /// several bundles, each with its own number and an `alv` without the new contacts that are still to come.
+    /// Without contacts `alv` is empty, which is also the goodbye.
     pub fn write(
         &mut self,
         at: Instant,

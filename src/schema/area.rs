@@ -14,7 +14,7 @@ use crate::format::Codec;
 use crate::format::describe::{FieldDescription, FieldType};
 use crate::format::text::Text;
 
-/// How far edges may miss each other and still count as touching, in tiles: far below any foot, far above rounding.
+/// Tolerance within which edges count as touching, in tiles: far below any foot, far above rounding errors.
 const TOUCH: f64 = 1e-6;
 
 /// A rectangle as layouts write it: in their [`Units`], from the floor's south-west corner.
@@ -25,7 +25,7 @@ pub(super) struct Area {
 }
 
 impl Area {
-    /// The area in the fields `at` and `size`.
+    /// Reads the area from the fields `at` and `size`.
     pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
         let (least, most) = (fields.units().shortest(), fields.units().furthest());
         let at = fields.read("at", None, |node| node.pair(-most..=most));
@@ -39,7 +39,7 @@ impl Area {
 
     /// The whole floor.
     pub(super) fn of_floor(geometry: &Geometry, units: Units) -> Self {
-        // How long a tile is: 1 tile, without rounding.
+        // Side of a tile; exactly 1 in tiles, without rounding.
         let tile = match units {
             Units::Tiles => 1.0,
             Units::Metres => Units::Tiles.metres(geometry),
@@ -59,7 +59,7 @@ impl Area {
         self.max
     }
 
-    /// The smallest rectangle that holds both.
+    /// Returns the smallest rectangle around both.
     pub(super) fn around(&self, other: &Self) -> Self {
         let (mut min, mut max) = (self.min, self.max);
         for axis in 0..2 {
@@ -69,7 +69,7 @@ impl Area {
         Self { min, max }
     }
 
-    /// The same, moved east and north.
+    /// Returns the area moved east and north.
     pub(super) fn moved_by(&self, by: [f64; 2]) -> Self {
         let move_corner = |corner: [f64; 2]| [corner[0] + by[0], corner[1] + by[1]];
         Self { min: move_corner(self.min), max: move_corner(self.max) }
@@ -83,26 +83,26 @@ impl Area {
         [0.5 * (self.min[0] + self.max[0]), 0.5 * (self.min[1] + self.max[1])]
     }
 
-    /// Whether `point` lies inside; west and south edges count, east and north ones don't.
+    /// Whether `point` lies inside; west and south edges count, east and north ones do not.
     pub(super) fn contains(&self, point: [f64; 2]) -> bool {
         (0..2).all(|axis| self.min[axis] <= point[axis] && point[axis] < self.max[axis])
     }
 
-    /// Whether all of this lies in `outer`, edges touching or not.
+    /// Whether all of this lies in `outer`; edges may touch.
     pub(super) fn within(&self, outer: &Self) -> bool {
         (0..2).all(|axis| {
             outer.min[axis] <= self.min[axis] + TOUCH && self.max[axis] <= outer.max[axis] + TOUCH
         })
     }
 
-    /// Width and depth of what the two share; `None` if they only touch or lie apart.
+    /// Returns width and depth of the intersection; `None` if the areas only touch or lie apart.
     pub(super) fn shared(&self, other: &Self) -> Option<[f64; 2]> {
         let along = |axis: usize| self.max[axis].min(other.max[axis]) - self.min[axis].max(other.min[axis]);
         let shared = [along(0), along(1)];
         shared.iter().all(|length| *length > TOUCH).then_some(shared)
     }
 
-    /// The shortest move that takes this off `other` and keeps it on `floor`, in words.
+    /// Describes the shortest move that separates this from `other` and keeps it on `floor`.
     pub(super) fn way_off(&self, other: &Self, floor: &Self) -> Option<String> {
         let moves = [
             (other.max[0] - self.min[0], 0, 1.0, "east"),
@@ -123,7 +123,7 @@ impl Area {
         self
     }
 
-    /// The same rectangle in floor metres.
+    /// Returns the same rectangle in floor metres.
     pub(super) fn in_metres(&self, geometry: &Geometry, units: Units) -> Rect {
         let metres =
             |point: [f64; 2]| Vec2::from(point.map(|length| (length * units.metres(geometry)) as f32));
@@ -139,7 +139,7 @@ impl fmt::Display for Area {
     }
 }
 
-/// An area and where its `at` is written.
+/// An area, and the place of its `at` in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Placed {
     pub(super) area: Area,
@@ -153,7 +153,7 @@ impl Placed {
     }
 }
 
-/// The place of something in `at` and `size` among its fields; `None` if it could not be read.
+/// Reads an area from `at` and `size` among the fields; `None` if it could not be read.
 pub(super) struct Place;
 
 impl Codec<Option<Placed>> for Place {
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn edges_that_meet_touch_in_spite_of_rounding() {
-        // 0.1 + 0.2 is a little more than 0.3.
+        // In floating point, 0.1 + 0.2 is slightly more than 0.3.
         let west = Area::new([0.1, 0.0], [0.2, 1.0]);
         let east = Area::new([0.3, 0.0], [0.3, 1.0]);
         assert_eq!(west.shared(&east), None);

@@ -1,7 +1,7 @@
-//! Entries of `widgets` to controls with places: neighbours, groups and grids resolved.
+//! Arrangement of `widgets` entries: resolves neighbours, groups and grids to controls with places.
 //!
-//! Neighbours are entries of the same list, so that a list can be arranged by
-//! itself, in coordinates of its own: the floor's, or those of its group.
+//! Neighbours are entries of the same list, so that each list can be arranged by itself, in its own coordinates:
+//! those of the floor or of its group.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -19,7 +19,7 @@ use crate::format::codec::By;
 use crate::format::describe::FieldType;
 use crate::format::text::Text;
 
-/// Entries of `widgets`, as the controls that they stand for.
+/// Reads the entries of `widgets` into controls.
 pub(super) const WIDGETS: By<Vec<Control>> = By {
     shape: || FieldType::Words(WIDGET),
     read: |node| {
@@ -30,12 +30,12 @@ pub(super) const WIDGETS: By<Vec<Control>> = By {
     stand_in: Vec::new,
 };
 
-/// An entry of `widgets`, for people.
+/// Description of a `widgets` entry, for people.
 const WIDGET: &str = "a list of controls, each with `id`, `kind`, a place, `size`, `label`, `goto`, `repeat` and what it \
     overrides of its kind, and of Group(...)s with `id`, a place and `widgets`; a place is `at`, or one of `right_of`, \
     `left_of`, `above` and `below` with `gap` and `align`";
 
-/// The controls that the list at `node` stands for, in its own coordinates.
+/// Reads the controls of the list at `node`, in its own coordinates.
 fn read(node: Node<'_>, kinds: &Choice, room: &Room) -> Vec<Control> {
     let nodes = node.list("widget", MAX_WIDGETS).unwrap_or_default();
     let entries: Vec<Entry<'_>> =
@@ -43,17 +43,17 @@ fn read(node: Node<'_>, kinds: &Choice, room: &Room) -> Vec<Control> {
     arrange(entries)
 }
 
-/// One entry of a list: controls that keep together, and where they go.
+/// One entry of a list: controls that are placed together, and their place.
 struct Entry<'r> {
     placing: Placing<'r>,
-    /// What others of the list may stand beside.
+    /// Name by which other entries of the list can refer to it.
     name: Option<&'r str>,
     body: EntryContent<'r>,
 }
 
 enum EntryContent<'r> {
     Grid(Grid<'r>),
-    /// Controls that have their places within the group, and what those cover.
+    /// Controls with places within the group, and their bounds.
     Group(Vec<Control>, Option<Area>),
 }
 
@@ -81,7 +81,7 @@ impl<'r> Entry<'r> {
         Some(Self { placing, name, body: EntryContent::Group(controls, bounds) })
     }
 
-    /// What it covers before it has a place; `None` if that can't be known.
+    /// Returns its area relative to its own place; `None` if the area is unknown.
     fn extent(&self, neighbour: Option<&Area>) -> Option<Area> {
         match &self.body {
             EntryContent::Grid(grid) => {
@@ -95,7 +95,7 @@ impl<'r> Entry<'r> {
         }
     }
 
-    /// Gives all of its controls their places; `by` is how far it is moved.
+    /// Places all of its controls; `by` is the shift of the entry.
     fn move_by(&mut self, by: [f64; 2], neighbour: Option<&Area>) {
         let at = self.placing.at.clone();
         match &mut self.body {
@@ -117,7 +117,7 @@ impl<'r> Entry<'r> {
         }
     }
 
-    /// Where the neighbour called `name` is, which is all of this or part of it.
+    /// Returns the area of the neighbour called `name`, which is this entry or a part of it.
     fn area_of(&self, name: &str) -> Option<Area> {
         match &self.body {
             EntryContent::Grid(grid) => {
@@ -153,7 +153,7 @@ impl Grid<'_> {
     }
 }
 
-/// The controls of all entries, each at its place; without one where that can't be known, which has been reported.
+/// Places the controls of all entries; a control has no place if that is unknown, which has been reported.
 fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
     let follows = neighbours(&entries);
     let chains = Chains::of(&follows);
@@ -173,7 +173,7 @@ fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
             entry.move_by(by, neighbour.as_ref());
         } else if let Some(Entry { body: EntryContent::Group(controls, bounds), .. }) = entries.get_mut(index)
         {
-            // Without the group's place those within it are unknown.
+            // Without a place of the group, the places of its controls are unknown.
             controls.iter_mut().for_each(|control| control.place = None);
             *bounds = None;
         }
@@ -186,7 +186,7 @@ fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
     entries.into_iter().flat_map(Entry::into_controls).collect()
 }
 
-/// How far `entry` is to be moved, and the area of the neighbour it stands beside.
+/// Returns the shift of `entry`, and the area of its neighbour.
 fn beside_neighbour(
     beside: &Beside<'_>,
     entry: &Entry<'_>,
@@ -198,7 +198,7 @@ fn beside_neighbour(
     Some(([corner[0] - extent.min()[0], corner[1] - extent.min()[1]], Some(area)))
 }
 
-/// Of each entry, the index of the one that holds its neighbour.
+/// Returns for each entry the index of the entry that contains its neighbour.
 fn neighbours(entries: &[Entry<'_>]) -> Vec<Option<usize>> {
     let mut owners: HashMap<&str, usize> = HashMap::new();
     for (index, entry) in entries.iter().enumerate() {
@@ -218,7 +218,7 @@ fn neighbours(entries: &[Entry<'_>]) -> Vec<Option<usize>> {
     entries.iter().map(owner).collect()
 }
 
-/// Most names that a message lists.
+/// Maximum number of names in a message.
 const LISTED: usize = 8;
 
 fn report_unknown(beside: &Beside<'_>, mut names: Vec<&str>) {

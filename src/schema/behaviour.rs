@@ -1,4 +1,4 @@
-//! What a control does, as its widget writes it: the settings of its behaviour among the fields.
+//! Behaviour of a control in its widget: the settings are among the widget's fields.
 
 use std::time::Duration;
 
@@ -7,17 +7,17 @@ use super::problem::Problem;
 use crate::format::Variants;
 use crate::widget::{Behaviour, Guard};
 
-/// A foot that walks across a control is on it for less than this.
+/// A walking foot is on a control for less than this.
 const STEP: Duration = Duration::from_millis(250);
 
-/// `base` with the settings that are written.
+/// Reads the settings over `base`.
 pub(super) fn read_over(fields: &mut Fields<'_>, base: &Behaviour) -> Option<Behaviour> {
     let behaviour = Behaviour::read_fields(base.variant(), fields, Some(base))?;
     check_guard(fields, &behaviour);
     fields.are_read().then_some(behaviour)
 }
 
-/// Reports a guard that does not suit what it guards.
+/// Reports a guard that does not fit the behaviour.
 pub(super) fn check_guard(fields: &Fields<'_>, behaviour: &Behaviour) {
     let at = behaviour.thresholds();
     let Guard::HoldToRun(_) = at.guard else { return };

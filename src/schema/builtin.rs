@@ -25,7 +25,7 @@ pub(super) const KINDS: [(&str, &str); 21] = [
     ("widgets/two_stage_button.ron", include_str!("../../widgets/two_stage_button.ron")),
 ];
 
-/// The shipped effects: file name and text. One that is made of another comes after it.
+/// The shipped effects: file name and text. An effect made of another one comes after it.
 pub(super) const EFFECTS: [(&str, &str); 22] = [
     ("effects/confirm_arm.ron", include_str!("../../effects/confirm_arm.ron")),
     ("effects/crisp_click.ron", include_str!("../../effects/crisp_click.ron")),
@@ -61,15 +61,15 @@ const LAYOUTS: [(&str, &str); 6] = [
     ("winter_walk", include_str!("../../layouts/winter_walk.ron")),
 ];
 
-/// The names of the layouts that come with underfoot, for [`builtin_layout`].
+/// Returns the names of the layouts that come with underfoot, for [`builtin_layout`].
 pub fn builtin_layouts() -> impl Iterator<Item = &'static str> {
     LAYOUTS.iter().map(|(name, _)| *name)
 }
 
-/// The text of the layout of this name that comes with underfoot; `None` if there is none.
+/// Returns the text of the layout of this name that comes with underfoot; `None` if there is none.
 ///
-/// It is the text of the file of that name in `layouts/`, comments included,
-/// to be read by [`super::parse_layout`] or written out as a start for one's own.
+/// It is the text of the file of that name in `layouts/`, with comments. It can be read by [`super::parse_layout`] or
+/// written to a file as the start of another layout.
 #[must_use]
 pub fn builtin_layout(name: &str) -> Option<&'static str> {
     LAYOUTS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)

@@ -1,16 +1,16 @@
-//! In which order to work when each thing follows from at most one other.
+//! Processing order for items that each depend on at most one other item.
 
-/// Things in an order in which each comes behind the one it follows, and circles of things that follow themselves.
+/// Items in an order in which each comes after the item it depends on, and cycles of items.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Chains {
-    /// All things, those in circles included.
+    /// All items, those in cycles included.
     pub(super) order: Vec<usize>,
-    /// Each circle once, every thing of it followed by the one it follows.
+    /// Each cycle once, every item followed by the one it depends on.
     pub(super) circles: Vec<Vec<usize>>,
 }
 
 impl Chains {
-    /// The chains of things of which each follows the thing at the index written in its place, or none.
+    /// Orders items; `follows` gives for each item the index of the item it depends on, if any.
     pub(super) fn of(follows: &[Option<usize>]) -> Self {
         #[derive(Clone, Copy, PartialEq)]
         enum State {
@@ -21,7 +21,7 @@ impl Chains {
         let mut state = vec![State::New; follows.len()];
         let mut chains = Self::default();
         let mut path = Vec::new();
-        // Not recursive: a chain may be as long as a list.
+        // Iterative: a chain may be as long as a list.
         for start in 0..follows.len() {
             let mut next = Some(start);
             while let Some(at) = next.filter(|&at| state.get(at) == Some(&State::New)) {
@@ -40,7 +40,7 @@ impl Chains {
         chains
     }
 
-    /// Whether the thing at this index follows itself.
+    /// Whether the item at this index is part of a cycle.
     pub(super) fn is_circular(&self, index: usize) -> bool {
         self.circles.iter().any(|circle| circle.contains(&index))
     }
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn circles_are_found_once_and_those_who_lead_into_them_are_none() {
-        // 0 follows itself; 1, 2 and 3 follow each other; 4 follows one of them.
+        // 0 depends on itself; 1, 2 and 3 form a cycle; 4 depends on one of them.
         let chains = Chains::of(&[Some(0), Some(2), Some(3), Some(1), Some(3)]);
         assert_eq!(chains.circles, [vec![0], vec![1, 2, 3]]);
         assert!(!chains.is_circular(4));

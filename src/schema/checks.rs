@@ -1,4 +1,4 @@
-//! What only shows when all parts of a layout are seen together, and on which floor.
+//! Checks that need all parts of a layout together, and the floor.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,7 +12,7 @@ use super::problem::Problem;
 use super::reader::Reader;
 use crate::floor::Geometry;
 
-/// Notes everything wrong between the parts of `page`, and between it and the floor.
+/// Reports all conflicts between the parts of `page`, and between `page` and the floor.
 pub(super) fn check(reader: &Reader<'_>, page: &Page, geometry: &Geometry) {
     let floor = Area::of_floor(geometry, page.units);
     check_zones(reader, page, &floor);
@@ -23,7 +23,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page, geometry: &Geometry) {
         let problem = Problem::warning(page.widgets_at.clone(), "this layout has no controls");
         reader.report(problem.expected("expected some `widgets`"));
     }
-    // What is wrong with a grid is said of its first control only.
+    // Problems of a grid are reported for its first control only.
     let mut said = HashSet::new();
     for (index, control) in page.controls.iter().enumerate() {
         let Some(place) = &control.place else { continue };
@@ -117,7 +117,7 @@ fn check_unique<'a>(
     }
 }
 
-/// What to say of something that is not all on the floor.
+/// Returns the problem of an area that is not completely on the floor.
 fn off_floor(page: &Page, name: &str, place: &Placed, floor: &Area) -> Option<Problem> {
     if place.area.within(floor) {
         return None;
@@ -128,7 +128,7 @@ fn off_floor(page: &Page, name: &str, place: &Placed, floor: &Area) -> Option<Pr
     Some(problem.expected(expected).help(help))
 }
 
-/// What to say of a control that is not all in one region.
+/// Returns the problem of a control that is not completely within one region.
 fn outside_region(page: &Page, name: &str, place: &Placed) -> Option<Problem> {
     match page.region_of(&place.area).and_then(|index| page.regions.get(index)) {
         Some(region) => {
@@ -137,7 +137,7 @@ fn outside_region(page: &Page, name: &str, place: &Placed) -> Option<Problem> {
             let expected = "feet on that part don't count";
             (!within).then(|| Problem::warning(place.at.clone(), message).expected(expected))
         }
-        // A region that could not be read might be the one.
+        // The right region may be one that could not be read.
         None if !page.regions_known => None,
         None => {
             let [east, north] = place.area.middle().map(plain);
@@ -151,7 +151,7 @@ fn outside_region(page: &Page, name: &str, place: &Placed) -> Option<Problem> {
     }
 }
 
-/// What to say of the first of the earlier controls that the one at `index` overlaps.
+/// Returns the problem of the first earlier control that overlaps the one at `index`.
 fn overlapping(
     reader: &Reader<'_>,
     page: &Page,

@@ -1,4 +1,4 @@
-//! One entry of a layout's `widgets`: a control, or a grid of alike ones.
+//! One entry of a layout's `widgets`: a control, or a grid of similar ones.
 
 use std::ops::Range;
 
@@ -15,26 +15,26 @@ use crate::format::codec::{At, Written};
 use crate::format::{Codec, Id};
 use crate::layout::Icon;
 
-/// One control. What could not be read is `None` and has been reported.
+/// One control. A field that could not be read is `None` and has been reported.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Control {
     pub(super) id: Option<String>,
     pub(super) place: Option<Placed>,
     pub(super) label: Option<String>,
-    /// The number of its page; `None` if it is on all of them.
+    /// The index of its page; `None` if it is on all pages.
     pub(super) page: Option<usize>,
     /// The id of the page that it switches to.
     pub(super) goto: Option<Written<String>>,
-    /// Its kind with everything that it overrides.
+    /// Its kind, with all overridden fields.
     pub(super) kind: Option<Kind>,
     pub(super) written: ControlSpans,
 }
 
-/// Where a control is written.
+/// Places of a control's fields in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ControlSpans {
     pub(super) id: Range<usize>,
-    /// `at`, or what stands for it.
+    /// `at`, or the field in its place.
     pub(super) at: Range<usize>,
     pub(super) size: Option<Range<usize>>,
     pub(super) press: Option<Range<usize>>,
@@ -42,32 +42,32 @@ pub(super) struct ControlSpans {
     pub(super) label: Option<Range<usize>>,
     pub(super) look: Option<Range<usize>>,
     pub(super) kind: Range<usize>,
-    /// Where the grid is written that it is part of.
+    /// Place of the `repeat` field of its grid.
     pub(super) repeat: Option<Range<usize>>,
 }
 
-/// How large a control is.
+/// Size of a control.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Size {
     Fixed([f64; 2]),
-    /// As large as the neighbour that it stands beside.
+    /// The size of the neighbour.
     Neighbours,
 }
 
-/// An entry of `widgets` that stands for one control or a grid of them.
+/// An entry of `widgets` that describes one control or a grid of controls.
 pub(super) struct Grid<'r> {
     pub(super) placing: Placing<'r>,
     pub(super) size: Option<Size>,
-    /// Between columns and between rows.
+    /// Gaps between columns and between rows.
     pub(super) gap: [f64; 2],
     pub(super) rows: u32,
     pub(super) columns: u32,
-    /// The controls, which have no places yet.
+    /// The controls, without places so far.
     pub(super) controls: Vec<(Cell, Control)>,
 }
 
 impl<'r> Grid<'r> {
-    /// The entry at `node`, of at most `room` controls.
+    /// Reads the entry at `node`, with at most `room` controls.
     pub(super) fn read(node: Node<'r>, kinds: &Choice, room: usize) -> Option<Self> {
         let mut fields = node.fields("Widget")?;
         let repeat = fields.read("repeat", Some(Some(None)), |node| Some(Repeat::read(node).map(Some)));
@@ -76,7 +76,7 @@ impl<'r> Grid<'r> {
         let size = size(&mut fields, placing.is_relative);
         let goto: Option<Written<String>> = fields.take("goto").and_then(|node| At(Id).read(node, None));
         let repeat_at = fields.value_span("repeat");
-        // A grid that can't be read says nothing of its ids, which may well be patterns.
+        // If the grid is unreadable, its ids are not checked, since they may be patterns.
         let names = match &repeat {
             Some(Some(Some(repeat))) => names_of_grid(&mut fields, repeat, room),
             Some(Some(None)) => {
@@ -110,7 +110,7 @@ impl<'r> Grid<'r> {
                 fields.finish();
                 kind
             }
-            // Which other fields it may have, only its kind could tell.
+            // Only the kind could tell which other fields are valid.
             None => {
                 fields.allow_unknown();
                 fields.finish();
@@ -136,7 +136,7 @@ fn size(fields: &mut Fields<'_>, is_relative: bool) -> Option<Size> {
 
 type Names = Vec<(Cell, Option<String>, Option<String>)>;
 
-/// The ids and labels of all places of a grid; none if they would be more than `room`.
+/// Returns the ids and labels of all cells of a grid; none if there are more than `room`.
 fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> Names {
     let label = match fields.take("label") {
         Some(node) if repeat.has_labels() => {
@@ -153,7 +153,7 @@ fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> N
         }
         Some(node) => node.text(64).map(|text| (node, text)),
         None if repeat.has_ids() => None,
-        // Reports that it is missing.
+        // This reports the missing field.
         None => fields.read("id", None, |_| None),
     };
     let cells: Vec<Cell> = repeat.cells().collect();
@@ -163,7 +163,7 @@ fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> N
         fields.report(problem.expected(expected));
         return Names::new();
     }
-    // A pattern that cannot be read is reported first.
+    // An invalid pattern is reported first.
     let first = cells.first().copied();
     let sound = |(node, pattern): (Node<'_>, &str)| {
         first.is_none_or(|cell| fill(node, pattern, cell, Some("")).is_some())
@@ -183,7 +183,7 @@ fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> N
     let mut sound = true;
     let mut names = Names::new();
     for cell in cells {
-        // What is wrong with a pattern is said once.
+        // Problems of a pattern are reported once.
         if !sound {
             names.push((cell, None, None));
             continue;
@@ -224,7 +224,7 @@ fn fill(node: Node<'_>, pattern: &str, cell: Cell, label: Option<&str>) -> Optio
     }
 }
 
-/// Whether an id made of a pattern is one; says so if not.
+/// Whether an id made from a pattern is valid; reports it if not.
 fn is_fit(node: Node<'_>, id: &str) -> bool {
     let fits = is_id(id);
     if !fits {
@@ -234,7 +234,7 @@ fn is_fit(node: Node<'_>, id: &str) -> bool {
     fits
 }
 
-/// `base` with the fields that this widget overrides.
+/// Reads the fields that this widget overrides, over `base`.
 fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
     let behaviour = behaviour::read_over(fields, &base.behaviour);
     let look = fields.read("look", Some(base.look), |node| node.record(Some(&base.look)));

@@ -20,11 +20,11 @@ use crate::format::describe::FieldType;
 use crate::format::text::Text;
 use crate::format::{Flat, Record, record};
 
-/// The shipped ones, read once: balancing each takes a moment.
+/// The shipped effects, read once, since normalising each takes a while.
 static BUILTIN: LazyLock<Effects> = LazyLock::new(|| {
     let mut effects = Effects::default();
     for (name, text) in builtin::EFFECTS {
-        // That each of them reads without a warning is tested.
+        // A test checks that each is read without a warning.
         let added = effects.add(text, name);
         debug_assert!(added.is_ok(), "{added:?}");
     }
@@ -32,32 +32,32 @@ static BUILTIN: LazyLock<Effects> = LazyLock::new(|| {
 });
 
 impl Effects {
-    /// The effects that come with underfoot: the files of `effects/`, compiled in.
+    /// Returns the effects that come with underfoot: the files of `effects/`, compiled in.
     #[must_use]
     pub fn builtin() -> Self {
         BUILTIN.clone()
     }
 
-    /// Adds the effect that `text` describes, in place of any other of its name; gives back warnings.
+    /// Adds the effect that `text` describes, replacing any other of the same name; returns warnings.
     ///
-    /// It may be made of these effects, also of the one that it replaces.
-    /// `name` is what diagnostics call the text, usually a path.
+    /// The effect may be made of these effects, including the one that it replaces. `name` is the name of the text in
+    /// diagnostics, usually a path.
     ///
     /// # Errors
-    /// Everything wrong with the text; these effects then stay as they were.
+    /// Every problem of the text; these effects are then unchanged.
     pub fn add(&mut self, text: &str, name: &str) -> Result<Diagnostics, Diagnostics> {
         let (effect, warnings) = parse_effect(text, name, self)?;
         self.insert(effect);
         Ok(warnings)
     }
 
-    /// Adds the effects of all files named `*.ron` in `folder`, in place of others of their names; gives back warnings.
+    /// Adds the effects of all files named `*.ron` in `folder`, replacing others of the same name; returns warnings.
     ///
-    /// Effects may be made of these ones, and of those whose files come before theirs in the alphabet.
+    /// Effects may be made of these effects, and of those in files that come earlier in alphabetical order.
     ///
     /// # Errors
-    /// Everything wrong with any of the files, two files that describe an effect
-    /// of the same name, or a folder that cannot be read; these effects then stay as they were.
+    /// Every problem of any of the files, two files with an effect of the same name, or a folder that cannot be read;
+    /// these effects are then unchanged.
     pub fn read_folder(&mut self, folder: &Path) -> Result<Diagnostics, Diagnostics> {
         let mut problems = Diagnostics::default();
         let mut all = self.clone();
@@ -93,18 +93,18 @@ impl Effects {
     }
 }
 
-/// Whether `name` can be an effect's: 1 to 64 of the characters a-z, 0-9 and _.
+/// Whether `name` is a valid effect name: 1 to 64 of the characters a-z, 0-9 and _.
 #[must_use]
 pub fn is_effect_name(name: &str) -> bool {
     is_id(name)
 }
 
-/// The effect that `text` describes, made of those in `effects`, and warnings.
+/// Reads the effect that `text` describes, made of those in `effects`, and returns warnings.
 ///
-/// `name` is what diagnostics call the text, usually a path.
+/// `name` is the name of the text in diagnostics, usually a path.
 ///
 /// # Errors
-/// Everything wrong with the text.
+/// Every problem of the text.
 pub fn parse_effect(
     text: &str,
     name: &str,
@@ -129,7 +129,7 @@ record! {
     effect: NamedEffect = "", Flat;
 }
 
-/// A layout's own effects, each of which may be made of the ones before it.
+/// A layout's own effects; each may be made of the ones before it.
 pub(super) const OWN_EFFECTS: By<()> = By {
     shape: || FieldType::List {
         count: (0, MAX_WIDGETS),
@@ -155,7 +155,7 @@ pub(super) const OWN_EFFECTS: By<()> = By {
     stand_in: || (),
 };
 
-/// The file that describes `effect`; [`parse_effect`] reads the same effect from it.
+/// Writes the file that describes `effect`; [`parse_effect`] reads the same effect from it.
 #[must_use]
 pub fn write_named_effect(effect: &NamedEffect) -> String {
     let mut text = String::from("Effect(\n");
@@ -167,7 +167,7 @@ pub fn write_named_effect(effect: &NamedEffect) -> String {
     text + ")\n"
 }
 
-/// The effect as it is written where it is played, its lines indented by so many steps.
+/// Writes the effect as a value of `plays`, with its lines indented by `indent` levels.
 #[must_use]
 pub fn write_effect(effect: &Effect, indent: usize) -> String {
     effect.to_ron().lay_out(indent, 4 * indent + "plays: ".len())

@@ -21,21 +21,21 @@ use crate::floor::{
 use crate::format::codec::{Distinct, Text};
 use crate::format::{Flag, Flat, Opt, Rec, Record, list, record};
 
-/// The floor that the file at `path` describes.
+/// Reads the floor that the file at `path` describes.
 ///
 /// # Errors
-/// Everything wrong with the file, or that it cannot be read.
+/// Every problem of the file, or that it cannot be read.
 pub fn load_floor(path: &Path) -> Result<Floor, Diagnostics> {
     let text = read_text(path)?;
     parse_floor(&text, &path.display().to_string())
 }
 
-/// The floor that `text` describes; what it doesn't mention is as on [`Floor::of`] its geometry.
+/// Reads the floor that `text` describes; fields that are not written are as on [`Floor::of`] its geometry.
 ///
-/// `name` is what diagnostics call the text, usually a path.
+/// `name` is the name of the text in diagnostics, usually a path.
 ///
 /// # Errors
-/// Everything wrong with the text.
+/// Every problem of the text.
 pub fn parse_floor(text: &str, name: &str) -> Result<Floor, Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = Reader::new(&source, FloorRecord::NAME, Limits::FLOOR);
@@ -60,50 +60,49 @@ fn floor(node: Node<'_>) -> Option<Floor> {
 }
 
 record! {
-    /// A floor: where its tiles are and what is wired to them. Lengths are in metres, tiles are (column, row) from the
-    /// south-west.
+    /// A floor: the places of its tiles and the hardware wired to them. Lengths are in metres, tiles are (column,
+    /// row) from the south-west.
     pub(super) struct FloorRecord = "Floor";
     /// The version of the format.
     pub(super) version: u32 = "version", VERSION => FORMAT_VERSION;
-    /// Where tiles and sensors are.
+    /// Places of tiles and sensors.
     pub(super) geometry: Geometry = "", Measures;
-    /// The parts of the floor that a computer of its own serves; one computer serves the whole floor if there are none.
+    /// The parts of the floor with a computer of their own; one computer serves the whole floor if there are none.
     pub(super) areas: Vec<AreaRecord> = "areas", AREAS => Vec::new();
-    /// Where the gateway that joins these computers listens for them.
+    /// Address on which the gateway that joins these computers listens.
     pub(super) gateway: Option<SocketAddr> = "gateway", Opt(ADDRESS) => None;
     /// Path of the file with the key that these computers share, from the floor file's folder.
     pub(super) key: Option<String> = "key", Opt(Text(MAX_PATH)) => None;
-    /// The boards; unless they are written, each row of tiles has its own, up to eight tiles a board.
+    /// The boards; by default each row of tiles has its own, up to eight tiles a board.
     pub(super) boards: Option<Vec<BoardRecord>> = "boards", Opt(BOARDS) => None;
     /// Networks that the boards' packets come from; this machine alone if there are none.
     pub(super) allow: Vec<Network> = "allow", list("network", MAX_NETWORKS, NETWORK) => Vec::new();
-    /// Whether the readings have no noise of their own, as those of an app or of a simulation without noise: that they
-    /// repeat says nothing then, and `HoldToRun` works all the same.
+    /// Whether the readings lack noise of their own, as those of an app or of a simulation without noise: repeated
+    /// readings are then normal, and `HoldToRun` works with them.
     pub(super) noiseless: bool = "noiseless", Flag => false;
-    /// When the floor was tared.
+    /// The day on which the floor was tared.
     pub(super) tared: Option<Day> = "tared", Opt(DAY) => None;
-    /// What is known of sensors; those that are not listed are nominal.
+    /// Calibration and tare of sensors; those that are not listed are nominal.
     pub(super) sensors: Vec<SensorRecord> = "sensors", SENSORS => Vec::new();
-    /// What pressed points taught of tiles.
+    /// Position maps of tiles, measured with pressed points.
     pub(super) maps: Vec<MapEntry> = "maps", MAPS => Vec::new();
-    /// What drives the actuators.
+    /// The amplifiers of the actuators.
     pub(super) drive: Drive = "drive", Rec => Drive::default();
-    /// How strongly all actuators move that have no response of their own.
+    /// Response of the actuators without one of their own.
     pub(super) response: ResponseRecord = "", Flat;
-    /// The actuators; unless they are written, each tile has one, channel by channel in tile order, which
-    /// begins anew in each area.
+    /// The actuators; by default each tile has one, channel by channel in tile order, from 0 in each area.
     pub(super) actuators: Option<Vec<ActuatorRecord>> = "actuators", Opt(ACTUATORS) => None;
     /// Loudspeakers beside the floor.
     pub(super) loudspeakers: Vec<LoudspeakerRecord> = "loudspeakers", LOUDSPEAKERS => Vec::new();
 }
 
-/// Longest path, in characters, as on Linux.
+/// Maximum length of a path, in characters, as on Linux.
 const MAX_PATH: usize = 4096;
 
-/// Most networks that boards may send from.
+/// Maximum number of networks that boards may send from.
 const MAX_NETWORKS: usize = 256;
 
-/// Most tiles of a floor.
+/// Maximum number of tiles of a floor.
 const TILES: usize = (Geometry::MAX_SIDE as usize).pow(2);
 
 const BOARDS: Distinct<BoardRecord> =
@@ -151,7 +150,7 @@ const LOUDSPEAKERS: Distinct<LoudspeakerRecord> = Distinct {
 };
 
 impl FloorRecord {
-    /// The floor that it describes.
+    /// Makes the floor that the record describes.
     fn floor(&self) -> Floor {
         let mut floor =
             Floor::of(self.geometry).with_areas(self.areas.iter().map(AreaRecord::area).collect());
@@ -179,7 +178,7 @@ impl FloorRecord {
         floor
     }
 
-    /// The record of `floor`; what is as on [`Floor::of`] its geometry is left out.
+    /// Makes the record of `floor`; fields as on [`Floor::of`] its geometry are omitted.
     pub(super) fn of(floor: &Floor) -> Self {
         let usual = Floor::of(floor.geometry).with_areas(floor.areas.clone());
         let boards = (floor.boards != usual.boards).then(|| {

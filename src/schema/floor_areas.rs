@@ -17,13 +17,13 @@ record! {
     id: Written<String> = "id", At(Id);
     /// Its tile in the south-west corner.
     first: TileId = "at", TILE;
-    /// How many tiles it is wide and deep.
+    /// Its width and depth in tiles.
     size: [u16; 2] = "size", TILES;
-    /// Where its computer takes the packets of its boards, and those that its neighbours forward to it.
+    /// Address on which its computer receives the packets of its boards, and those that its neighbours forward.
     listen: Option<Written<SocketAddr>> = "listen", Opt(At(ADDRESS)) => None;
 }
 
-/// The areas of a floor; more computers than this no floor has.
+/// The areas of a floor; 1024 are more than any floor has.
 pub(super) const AREAS: Distinct<AreaRecord> =
     Distinct { entry: "area", most: 1024, about: AreaRecord::told_apart };
 
@@ -52,7 +52,7 @@ impl AreaRecord {
     }
 }
 
-/// Reports areas that leave the floor or share tiles, and tiles that no area has.
+/// Reports areas that leave the floor or share tiles, and tiles outside of all areas.
 pub(super) fn check(reader: &Reader<'_>, geometry: &Geometry, records: &[AreaRecord]) {
     let floor = geometry.block();
     let blocks: Vec<TileBlock> = records.iter().map(|record| record.area().tiles).collect();

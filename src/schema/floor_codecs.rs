@@ -1,4 +1,4 @@
-//! How floor files write tiles, channels and tables.
+//! Tiles, channels and tables in floor files.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::format::text::{Entry, Text};
 use crate::format::{Codec, Follow, Name, Num, Opt, Record, num, record};
 
 record! {
-    /// Where tiles and sensors are.
+    /// Places of tiles and sensors.
     struct MeasuresRecord = "Measures";
     /// The tile in the south-west corner, if this is a part of a larger floor.
     first: TileId = "first", FIRST => TileId::default();
@@ -25,13 +25,13 @@ record! {
     rows: u16 = "rows", SIDE => Geometry::default().rows();
     /// Side of a tile.
     tile_m: f32 = "tile_m", num(0.05..=5.0).explicit() => Geometry::default().tile_m();
-    /// From one tile's middle to the next one's.
+    /// Distance between the centres of neighbouring tiles.
     pitch_m: Option<f32> = "pitch_m", Follow { explicit: Opt(num(0.05..=10.0)), otherwise: "as `tile_m`" };
-    /// From a tile's edges to its sensors.
+    /// Distance from a tile's edges to its sensors.
     inset_m: f32 = "sensor_inset_m", num(0.0..=2.5).explicit() => Geometry::default().sensor_inset_m();
 }
 
-/// Where a part of a larger floor begins.
+/// The south-west corner of a part of a larger floor.
 const FIRST: By<TileId> = By {
     shape: || FieldType::Words("(column, row), each a whole number from 0 to 4095"),
     read: |node| {
@@ -40,7 +40,7 @@ const FIRST: By<TileId> = By {
     ..TILE
 };
 
-/// How large the floor is of which this is a part.
+/// Columns and rows of the larger floor.
 const WHOLE: By<[u16; 2]> = By {
     shape: || FieldType::Words("(columns, rows), each a whole number from 1 to 4351"),
     read: |node| {
@@ -57,7 +57,7 @@ const FIRST_END: u16 = Geometry::FARTHEST + 1;
 
 const SIDE: Num = num(1.0..=Geometry::MAX_SIDE as f64).explicit();
 
-/// The measures of a floor among its fields; tiles that come after them must be on that floor.
+/// The measures of a floor among its fields; later tiles must be on that floor.
 pub(super) struct Measures;
 
 impl Codec<Geometry> for Measures {
@@ -102,7 +102,7 @@ impl Codec<Geometry> for Measures {
                 })
                 .ok()
         });
-        // A floor whose measures are wrong is read on as the paper's, but its tiles are not judged by that.
+        // After invalid measures, reading continues with those of the paper, but tiles are not checked against them.
         fields.reader().know(Arc::new(Grid { known }));
         known.unwrap_or_default()
     }
@@ -145,7 +145,7 @@ impl MeasuresRecord {
     }
 }
 
-/// The tiles that a file may speak of; any if its geometry could not be read.
+/// The tiles that are valid in a file; all if its geometry could not be read.
 #[derive(Clone, Copy, Default)]
 struct Grid {
     known: Option<Geometry>,
@@ -159,7 +159,7 @@ impl Grid {
     }
 }
 
-/// A tile within these columns and rows.
+/// Reads a tile within these columns and rows.
 fn tile(column: Node<'_>, row: Node<'_>, [columns, rows]: [Range<u16>; 2]) -> Option<TileId> {
     let number = |name, node: Node<'_>, range: Range<u16>| {
         Node { name, ..node }.whole(range.start.into()..=u32::from(range.end) - 1)
@@ -179,7 +179,7 @@ pub(super) const TILE: By<TileId> = By {
     stand_in: TileId::default,
 };
 
-/// How many tiles something is wide and deep, as `(columns, rows)`.
+/// Width and depth in tiles, as `(columns, rows)`.
 pub(super) const TILES: By<[u16; 2]> = By {
     shape: || FieldType::Words("(columns, rows), each a whole number from 1"),
     read: |node| {
@@ -211,7 +211,7 @@ pub(super) const CHANNEL: By<Option<SensorId>> = By {
     stand_in: || None,
 };
 
-/// Lists of numbers, each from minus this to this.
+/// Lists of numbers, each from minus this value to this value.
 pub(super) struct Table(pub(super) f32);
 
 impl<const ROWS: usize, const COLUMNS: usize> Codec<[[f32; COLUMNS]; ROWS]> for Table {
@@ -234,7 +234,7 @@ impl<const ROWS: usize, const COLUMNS: usize> Codec<[[f32; COLUMNS]; ROWS]> for 
     }
 }
 
-/// What `read` makes of all entries, if there are as many as there must be and each could be read.
+/// Reads all entries with `read`; `None` if their number is wrong or one of them could not be read.
 fn exactly<'r, T, const COUNT: usize>(
     node: Node<'r>,
     read: impl Fn(Node<'r>) -> Option<T>,
@@ -249,7 +249,7 @@ fn exactly<'r, T, const COUNT: usize>(
     entries?.try_into().ok()
 }
 
-/// Pairs of hertz, which rise, and a gain from the first to the second of these.
+/// Pairs of a rising frequency in hertz and a gain within these two limits.
 pub(super) struct Points(pub(super) f64, pub(super) f64);
 
 impl Codec<Vec<(f32, f32)>> for Points {

@@ -14,9 +14,9 @@ use crate::units::Newtons;
 use crate::wire::MAX_CHANNELS;
 
 record! {
-    /// A board: what it measures, as whole tiles or sensor by sensor.
+    /// A board and its sensors, as whole tiles or sensor by sensor.
     pub(super) struct BoardRecord = "Board" => BoardRecord::rules;
-    /// OSC address of its packets; `/underfoot/board/` and its number, from 0, unless it is written.
+    /// OSC address of its packets; by default `/underfoot/board/` and its number, from 0.
     address: Option<String> = "address", Opt(ADDRESS) => None;
     /// Tiles, each with four channels in the order sw, se, nw, ne.
     tiles: Option<Vec<Written<TileId>>> = "tiles",
@@ -26,7 +26,7 @@ record! {
         Opt(list("channel", MAX_CHANNELS, At(SENSOR_OF_CHANNEL))) => None;
 }
 
-/// An OSC address that stands for itself: no pattern characters.
+/// A literal OSC address, without pattern characters.
 const ADDRESS: Spelled<String> = Spelled {
     about: "an OSC address in quotes",
     parse: |text| {
@@ -41,7 +41,7 @@ const ADDRESS: Spelled<String> = Spelled {
     stand_in: String::new(),
 };
 
-/// The address of the board of this number, unless told otherwise.
+/// Returns the default address of the board with this number.
 fn usual_address(number: usize) -> String {
     format!("/underfoot/board/{number}")
 }
@@ -62,7 +62,7 @@ impl BoardRecord {
         }
     }
 
-    /// No two boards have the same address, and no two channels the same sensor.
+    /// Reports boards with the same address, and channels with the same sensor.
     pub(super) fn told_apart(number: usize, board: &Self, fields: &Fields<'_>, seen: &mut Seen) {
         if !fields.have_failed(&["address"]) {
             let address = board.address.clone().unwrap_or_else(|| usual_address(number));
@@ -75,7 +75,7 @@ impl BoardRecord {
         }
     }
 
-    /// What each channel measures, and where that is written.
+    /// Returns the sensor of each channel, and its place in the text.
     fn sensors(&self) -> Vec<(Option<SensorId>, std::ops::Range<usize>)> {
         let of_tile = |tile: &Written<TileId>| {
             Corner::ALL.map(|corner| (Some(SensorId { tile: tile.value, corner }), tile.at.clone()))
@@ -89,7 +89,7 @@ impl BoardRecord {
         }
     }
 
-    /// The board of this number that it describes.
+    /// Makes the board with this number.
     pub(super) fn board(&self, number: usize) -> Board {
         let address = self.address.clone().unwrap_or_else(|| usual_address(number));
         Board { address, channels: self.sensors().into_iter().map(|(sensor, _)| sensor).collect() }
@@ -97,7 +97,7 @@ impl BoardRecord {
 
     pub(super) fn of(board: &Board, number: usize) -> Self {
         let address = (board.address != usual_address(number)).then(|| board.address.clone());
-        // Tiles that have all four sensors in the usual order are written as such.
+        // Tiles with all four sensors in the usual order are written as whole tiles.
         let whole = |four: &[Option<SensorId>]| {
             let tile = four.first().copied().flatten()?.tile;
             let usual = Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
@@ -112,7 +112,7 @@ impl BoardRecord {
 }
 
 record! {
-    /// What is known of one sensor.
+    /// Calibration and tare of one sensor.
     pub(super) struct SensorRecord = "Sensor" => |it, faults| {
         faults.together(&["calibrated", "residual"], [it.calibrated.is_some(), it.residual.is_some()]);
     };
@@ -120,11 +120,11 @@ record! {
     tile: TileId = "tile", TILE;
     /// The corner of the tile.
     corner: Corner = "corner", Name;
-    /// How its voltage becomes newtons.
+    /// The law that converts its voltage to newtons.
     law: Calibration = "law", Beside => Calibration::NOMINAL;
-    /// What it reads on the empty floor.
+    /// Its reading on the empty floor.
     tare: Newtons = "tare_n", num(-5000.0..=5000.0).explicit() => Newtons::ZERO;
-    /// When its law was measured.
+    /// The day on which its law was measured.
     calibrated: Option<Day> = "calibrated", Opt(DAY) => None;
     /// Root mean square of the law's error, as a share of the greatest force measured.
     residual: Option<f32> = "residual", Opt(num(0.0..=1e6)) => None;
@@ -148,7 +148,7 @@ impl SensorRecord {
         }
     }
 
-    /// All sensors of `floor` of which something is known.
+    /// Returns the records of all sensors of `floor` that differ from the nominal one.
     pub(super) fn all(floor: &Floor) -> Vec<Self> {
         let tiles = floor.calibration.iter().zip(&floor.tare).zip(&floor.calibration_records);
         let sensors = floor.geometry.tiles().zip(tiles).flat_map(|(tile, ((laws, tares), records))| {
@@ -177,19 +177,19 @@ impl SensorRecord {
 }
 
 record! {
-    /// What pressed points taught of one tile: measured, not edited.
+    /// The position map of one tile: measured, not edited.
     pub(super) struct MapEntry = "Map" => |it, faults| {
         faults.together(&["mapped", "residual_m"], [it.mapped.is_some(), it.residual_m.is_some()]);
     };
     /// The tile.
     pub(super) tile: TileId = "tile", TILE;
-    /// When it was measured.
+    /// The day on which it was measured.
     mapped: Option<Day> = "mapped", Opt(DAY) => None;
-    /// Error that all but 5 % of the points keep to with the map.
+    /// Position error with the map that 95 % of the points do not exceed.
     residual_m: Option<f32> = "residual_m", Opt(num(0.0..=10.0)) => None;
-    /// For each sensor, what is added to a factor of one at each of 21 loads.
+    /// For each sensor, the number added to a factor of one at each of 21 loads.
     trims: [[f32; PositionMap::TRIMS]; 4] = "trims", Table(PositionMap::MOST_TRIM) => PositionMap::NONE.trims;
-    /// For the shift east and north, what each of ten terms counts.
+    /// For the shift east and north, the coefficient of each of ten terms.
     bends: [[f32; PositionMap::BENDS]; 2] = "bends", Table(PositionMap::MOST_BEND) => PositionMap::NONE.bends;
 }
 
@@ -205,7 +205,7 @@ impl MapEntry {
         }
     }
 
-    /// Those of all tiles of `floor` that have one.
+    /// Returns the position maps of all tiles of `floor`.
     pub(super) fn all(floor: &Floor) -> Vec<Self> {
         let maps = floor.geometry.tiles().zip(floor.position_maps.iter().zip(&floor.map_records));
         let entry = |(tile, (map, record)): (TileId, (&Option<PositionMap>, &Option<MapRecord>))| {
@@ -218,7 +218,7 @@ impl MapEntry {
 }
 
 record! {
-    /// How strongly an actuator moves its plate.
+    /// Frequency response of an actuator.
     pub(super) struct ResponseRecord = "Response" => |it, faults| {
         if it.decibels.is_some() && it.newtons.is_some() {
             let message = "there is `response_db` or `response_n`, not both";
@@ -232,7 +232,7 @@ record! {
 }
 
 impl ResponseRecord {
-    /// The response of an actuator that is meant to give `full_scale`; `None` if none is written.
+    /// Returns the response of an actuator with nominal force `full_scale`; `None` if none is written.
     pub(super) fn of(&self, full_scale: Newtons) -> Option<Response> {
         let newtons = self.newtons.as_ref().and_then(|points| Response::of_newtons(points, full_scale));
         newtons.or_else(|| Response::of(self.decibels.clone()?))
@@ -252,11 +252,11 @@ record! {
     channel: u16 = "channel", CHANNEL;
     /// Force at the plate for a full-scale sample.
     full_scale: Newtons = "full_scale_n", num(0.1..=10_000.0).explicit() => Actuator::nominal(0).full_scale;
-    /// How strongly it moves its plate, where that is not as for all.
+    /// Its own response, if it differs from the common one.
     pub(super) response: ResponseRecord = "", Flat;
 }
 
-/// Output channels that a device may have.
+/// Valid output channels of a device.
 const CHANNEL: Num = num(0.0..=4095.0);
 
 impl ActuatorRecord {
@@ -270,7 +270,7 @@ impl ActuatorRecord {
     }
 }
 
-/// The response that all actuators of `floor` have in common, and the actuators with their own.
+/// Returns the common response of the actuators of `floor`, and the actuators with their own.
 pub(super) fn all_actuators(floor: &Floor) -> (ResponseRecord, Vec<ActuatorRecord>) {
     let moved = || floor.actuators.iter().zip(&floor.responses).filter(|(actuator, _)| actuator.is_some());
     let first = moved().next().and_then(|(_, response)| response.as_ref());
@@ -291,11 +291,11 @@ pub(super) fn all_actuators(floor: &Floor) -> (ResponseRecord, Vec<ActuatorRecor
 record! {
     /// A loudspeaker beside the floor.
     pub(super) struct LoudspeakerRecord = "Loudspeaker";
-    /// Where it stands, from the floor's south-west corner; also outside of the floor.
+    /// Its place, from the floor's south-west corner; may be outside of the floor.
     pub(super) at: Vec2 = "at_m", Pair { each: num(-1000.0..=1000.0), pattern: "(east, north)", parts: ["east", "north"] };
     /// Output channel, from 0.
     pub(super) channel: Written<u16> = "channel", At(CHANNEL);
-    /// How loud it is: at 0, a cue of 40 N that is heard in full is a full-scale sample.
+    /// Its gain: at 0, a cue of 40 N with sound 1 is a full-scale sample.
     gain_db: f32 = "gain_db", num(-60.0..=24.0).explicit() => 0.0;
 }
 

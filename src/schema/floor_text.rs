@@ -1,11 +1,11 @@
-//! Floor files, written.
+//! Writing of floor files.
 
 use super::floor::FloorRecord;
 use crate::floor::{Floor, LawKind};
 use crate::format::Record;
 use crate::format::text::Text;
 
-/// What is said above a field, and in place of one that is not written.
+/// Comments above each field, and the comment in place of a field that is not written.
 const COMMENTS: [(&str, &[&str], Option<&str>); 12] = [
     ("areas", &["The parts of the floor that a computer of its own serves."], None),
     ("gateway", &["Where the computer that joins them listens."], None),
@@ -42,12 +42,11 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 12] = [
     ("loudspeakers", &["Loudspeakers, by where they stand, in metres from the south-west corner."], None),
 ];
 
-/// The file that describes `floor`, with comments; [`super::parse_floor`] reads the same floor from it.
+/// Writes the file that describes `floor`, with comments; [`super::parse_floor`] reads the same floor from it.
 ///
-/// What is as on [`Floor::of`] its geometry is left out. A list of more than
-/// about 40,000 sensors, or 4,000 mapped tiles, is longer than the 4 MB that are read
-/// back; that and numbers outside of the ranges that files may hold are refused on
-/// reading (`save_floor` refuses them on writing).
+/// Fields as on [`Floor::of`] its geometry are omitted. A list of more than about 40,000 sensors, or 4,000 mapped
+/// tiles, exceeds the 4 MB limit on reading; reading rejects such files and numbers outside of the valid ranges
+/// (`save_floor` rejects them on writing).
 #[must_use]
 pub fn write_floor(floor: &Floor) -> String {
     let record = FloorRecord::of(floor);
@@ -85,7 +84,7 @@ pub fn write_floor(floor: &Floor) -> String {
     text
 }
 
-/// What a law means other than the paper's, which is told above all sensors.
+/// Returns the comment on a law other than the paper's, which the comment above all sensors explains.
 fn meaning(kind: LawKind) -> &'static str {
     match kind {
         LawKind::Exponential => "",

@@ -1,4 +1,4 @@
-//! What the floor seems to be made of.
+//! Simulated grounds.
 //!
 //! ```ron
 //! grounds: [
@@ -24,15 +24,15 @@ use crate::format::{Codec, Record};
 use crate::ground::{GrainSpec, GroundSpec, IceSpec, Material, WoodSpec};
 use crate::layout::{Colour, Ground, HEX};
 
-/// Most grounds of one layout: each has state for every tile.
+/// Maximum number of grounds of one layout: each has state for every tile.
 const MOST: usize = 16;
 
 const NAMES: [&str; 5] = ["Ice", "Snow", "Gravel", "Sand", "Wood"];
 
-/// One ground as written. What could not be read is `None` and has been reported.
+/// One ground as written. A field that could not be read is `None` and has been reported.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct GroundDefinition {
-    /// `None` inside for the whole floor.
+    /// The inner `None` stands for the whole floor.
     place: Option<Option<Placed>>,
     page: Option<usize>,
     seed: Option<u32>,
@@ -51,7 +51,7 @@ pub(super) const GROUNDS: By<Vec<GroundDefinition>> = By {
 
 fn read(node: Node<'_>) -> Vec<GroundDefinition> {
     let Some(nodes) = node.list("ground", MOST) else { return Vec::new() };
-    // A ground that could not be read has been reported; the others alone don't make a layout.
+    // A ground that could not be read has been reported; its stand-in keeps the layout incomplete.
     let unreadable = || GroundDefinition::unreadable(node.span());
     nodes.into_iter().map(|node| GroundDefinition::read(node).unwrap_or_else(unreadable)).collect()
 }
@@ -86,32 +86,32 @@ impl GroundDefinition {
         Self { place: None, page: None, seed: None, material: None, colours: None, at }
     }
 
-    /// The same on the page of this number only.
+    /// Returns the ground restricted to the page with this number.
     pub(super) fn on_page(self, number: usize) -> Self {
         Self { page: Some(number), ..self }
     }
 
-    /// Where it is, on a floor that is `floor`; `None` if that could not be read.
+    /// Returns its area on the floor with area `floor`; `None` if the area could not be read.
     pub(super) fn area(&self, floor: &Area) -> Option<Area> {
         Some(self.place.as_ref()?.as_ref().map_or(*floor, |place| place.area))
     }
 
-    /// Where its place is written, if it is.
+    /// Returns its place in the text, if the place is written.
     pub(super) fn placed(&self) -> Option<&Placed> {
         self.place.as_ref()?.as_ref()
     }
 
-    /// What messages call it.
+    /// Returns its name in messages.
     pub(super) fn name(&self) -> &'static str {
         self.material.map_or("ground", |material| material.name())
     }
 
-    /// Whether both are ever there at the same time.
+    /// Whether both can be present at the same time.
     pub(super) fn overlaps(&self, other: &Self) -> bool {
         self.page.is_none() || other.page.is_none() || self.page == other.page
     }
 
-    /// The ground as the engine knows it; `None` if anything of it is missing.
+    /// Makes the ground for the engine; `None` if any part is missing.
     pub(super) fn checked(&self, geometry: &Geometry, units: Units) -> Option<Ground> {
         let area = self.area(&Area::of_floor(geometry, units))?.in_metres(geometry, units);
         let [surface, deep] = self.colours?;
@@ -120,7 +120,7 @@ impl GroundDefinition {
     }
 }
 
-/// Notes what is wrong between grounds, and between them and the floor.
+/// Reports conflicts between grounds, and between them and the floor.
 pub(super) fn check(grounds: &[GroundDefinition], units: Units, floor: &Area, report: impl Fn(Problem)) {
     for (index, definition) in grounds.iter().enumerate() {
         let Some(area) = definition.area(floor) else { continue };
@@ -153,14 +153,14 @@ fn standard(name: &str) -> Material {
     }
 }
 
-/// What can be said of a ground of this name; nothing for a name that no ground has.
+/// Returns the fields of a ground with this name; empty if there is no such ground.
 #[cfg(feature = "edit")]
 pub(crate) fn ground_fields(name: &str) -> Vec<FieldDescription> {
     let described = describe().into_iter().find(|description| description.name == name);
     described.map(|description| description.fields).unwrap_or_default()
 }
 
-/// What is known of each ground; what is not written is as in the usual ground of its name.
+/// Describes each ground; the defaults are those of the standard ground of its name.
 pub(super) fn describe() -> Vec<Description> {
     let described = NAMES.map(|name| {
         let mut usual = Vec::new();
@@ -188,7 +188,7 @@ pub(super) fn describe() -> Vec<Description> {
     described.into()
 }
 
-/// Surface and depth.
+/// Returns the colours of surface and depth.
 fn colours(name: &str) -> (Colour, Colour) {
     match name {
         "Snow" => (Colour::rgb(0xf4, 0xf8, 0xfc), Colour::rgb(0x8f, 0xa9, 0xc4)),

@@ -1,8 +1,8 @@
 //! Kinds made from other kinds: `Kind(name: "big_button", from: "button", press_n: 80)`.
 //!
-//! Kinds come in layers: those that come with underfoot, those of a folder,
-//! those of a layout. A kind may be made from any kind of its own layer or the
-//! ones below; one of its own name is that of a layer below, which it replaces.
+//! Kinds come in layers: those that come with underfoot, those of a folder, those of a layout. A kind may be made
+//! from any kind of its own layer or of the layers below. A kind made from its own name extends and replaces the one
+//! of a layer below.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -25,21 +25,20 @@ use crate::format::codec::By;
 use crate::format::describe::FieldType;
 use crate::format::text::Text;
 
-/// What a kind is made from.
+/// The parent of a kind.
 #[derive(Clone, Copy)]
 enum Parent<'k> {
-    /// From nothing.
+    /// No parent.
     None,
     /// A kind of a layer below.
     Below(&'k Kind),
-    /// Another one of this layer.
+    /// Another kind of this layer.
     Here(usize),
-    /// One that can't be used, which has been reported.
+    /// An unusable kind, which has been reported.
     Unusable,
 }
 
-/// The kinds that `nodes` describe, on top of those `below`; `None` for each that can't be used, which has been
-/// reported.
+/// Reads the kinds at `nodes`, on top of those `below`; `None` for each unusable kind, which has been reported.
 pub(super) fn layer(nodes: &[Node<'_>], below: &Kinds) -> Vec<Option<Kind>> {
     let mut here: HashMap<&str, usize> = HashMap::new();
     for (index, node) in nodes.iter().enumerate() {
@@ -136,10 +135,10 @@ fn report_circle(circle: &[usize], nodes: &[Node<'_>]) {
     first.report(problem.expected(format!("from {}", names.join(", from "))));
 }
 
-/// The kinds in the files at `paths`, on top of those `below`, and warnings.
+/// Reads the kinds in the files at `paths`, on top of those `below`, and returns warnings.
 ///
 /// # Errors
-/// Everything wrong with any of the files.
+/// Every problem of any of the files.
 pub(super) fn read_files<P: AsRef<Path>>(
     paths: &[P],
     below: &Kinds,
@@ -166,10 +165,11 @@ pub(super) fn read_files<P: AsRef<Path>>(
     }
 }
 
-/// The kinds that `texts` describe, given with the names that diagnostics use, on top of those `below`, and warnings.
+/// Reads the kinds in `texts`, which come with their names in diagnostics, on top of those `below`, and returns
+/// warnings.
 ///
 /// # Errors
-/// Everything wrong with any of the texts.
+/// Every problem of any of the texts.
 pub(super) fn read_texts(
     texts: &[(&str, &str)],
     below: &Kinds,
@@ -196,7 +196,7 @@ pub(super) fn read_texts(
     let mut read = layer(&nodes, below).into_iter();
     let kinds: Vec<Option<Kind>> =
         roots.iter().map(|root| root.and_then(|_| read.next().flatten())).collect();
-    // A kind that only lacks its parent is told of at the parent's place.
+    // A kind without other errors fails because of its parent; the parent's text has the report.
     let several = texts.len() > 1;
     drop(nodes);
     drop(roots);
@@ -217,15 +217,15 @@ pub(super) fn read_texts(
     if problems.errors() > 0 { Err(problems) } else { Ok((good, problems)) }
 }
 
-/// The kinds that the controls of a layout may be of.
+/// The kinds available to the controls of a layout.
 #[derive(Default)]
 pub(super) struct Choice {
     kinds: Kinds,
-    /// Names of kinds of the layout itself that can't be used, which has been reported.
+    /// Names of unusable kinds of the layout itself, which have been reported.
     unusable: HashSet<String>,
 }
 
-/// A layout's own kinds, which its controls may be of besides those that are known.
+/// A layout's own kinds, available to its controls besides the known ones.
 pub(super) const OWN_KINDS: By<()> = By {
     shape: || FieldType::List {
         count: (0, MAX_WIDGETS),
@@ -251,12 +251,12 @@ pub(super) const OWN_KINDS: By<()> = By {
 };
 
 impl Choice {
-    /// Those in `kinds`.
+    /// Makes a choice of those in `kinds`.
     pub(super) fn of(kinds: &Kinds) -> Self {
         Self { kinds: kinds.clone(), unusable: HashSet::new() }
     }
 
-    /// The kind that `node` names; `None` if it can't be used, which has been reported.
+    /// Returns the kind that `node` names; `None` if it is unusable, which has been reported.
     pub(super) fn named(&self, node: Node<'_>) -> Option<&Kind> {
         let name = node.text(64)?;
         if self.unusable.contains(name) {

@@ -18,15 +18,15 @@ use crate::layout::Look;
 use crate::widget::Behaviour;
 
 record! {
-    /// One kind of control: what its widgets do, feel and look like unless they say otherwise.
+    /// One kind of control: behaviour, feel and look of its widgets, which they may override.
     pub struct Kind = "Kind";
-    /// What layouts call it.
+    /// Its name in layouts.
     pub name: String = "name", Id;
-    /// What it does, with all settings.
+    /// Its behaviour, with all settings.
     pub behaviour: Behaviour = "behaviour", Beside;
-    /// What it feels like.
+    /// Its haptic feedback.
     pub feel: Feel = "feel", Rec => Feel::default();
-    /// What it looks like.
+    /// Its appearance.
     pub look: Look = "look", Rec => Look::PLAIN;
 }
 
@@ -35,13 +35,13 @@ record! {
     pub(super) struct KindFile = "Kind";
     /// The version of the format.
     version: u32 = "version", VERSION => FORMAT_VERSION;
-    /// The kind that it is made from: all that it doesn't say is that one's.
+    /// The kind that it is made from; all fields that are not written come from that one.
     from: Option<String> = "from", Opt(Text(64)) => None;
     /// The kind.
     kind: Kind = "", Flat;
 }
 
-/// The kinds that a layout may use, by name, and the effects that they and it may name.
+/// The kinds available to a layout, by name, and the effects available to both.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Kinds {
     kinds: BTreeMap<String, Kind>,
@@ -49,19 +49,19 @@ pub struct Kinds {
 }
 
 impl Kinds {
-    /// The kinds and effects that come with underfoot: the files of `widgets/` and `effects/`, compiled in.
+    /// Returns the kinds and effects that come with underfoot: the files of `widgets/` and `effects/`, compiled in.
     #[must_use]
     pub fn builtin() -> Self {
         let kinds = Self::shipped(Effects::builtin());
-        // That each of them reads without a warning is tested.
+        // A test checks that each is read without a warning.
         debug_assert!(kinds.is_ok(), "{kinds:?}");
         kinds.unwrap_or_default()
     }
 
-    /// The kinds that come with underfoot, felt as `effects` say, in which some may replace the shipped ones.
+    /// Returns the kinds that come with underfoot with the given `effects`, which may replace shipped ones.
     ///
     /// # Errors
-    /// What a shipped kind can't use: an effect that it names is missing, or can't be played where it is.
+    /// An effect that a shipped kind names is missing, or cannot be played there.
     pub fn shipped(effects: Effects) -> Result<Self, Diagnostics> {
         let mut kinds = Self::knowing(effects);
         for (name, text) in builtin::KINDS {
@@ -70,30 +70,30 @@ impl Kinds {
         Ok(kinds)
     }
 
-    /// No kinds yet, but effects for kinds to name.
+    /// Returns a set without kinds, with effects for later kinds.
     #[must_use]
     pub fn knowing(effects: Effects) -> Self {
         Self { kinds: BTreeMap::new(), effects: Arc::new(effects) }
     }
 
-    /// Adds the kind that `text` describes, in place of any other of its name; gives back warnings.
+    /// Adds the kind that `text` describes, replacing any other of the same name; returns warnings.
     ///
-    /// It may be made from any of these kinds, also from the one that it replaces.
-    /// `name` is what diagnostics call the text, usually a path.
+    /// The kind may be made from any of these kinds, including the one that it replaces. `name` is the name of the
+    /// text in diagnostics, usually a path.
     ///
     /// # Errors
-    /// Everything wrong with the text; these kinds then stay as they were.
+    /// Every problem of the text; these kinds are then unchanged.
     pub fn add(&mut self, text: &str, name: &str) -> Result<Diagnostics, Diagnostics> {
         let (kinds, warnings) = inherit::read_texts(&[(name, text)], self)?;
         kinds.into_iter().for_each(|kind| self.insert(kind));
         Ok(warnings)
     }
 
-    /// Adds the kinds of all files named `*.ron` in `folder`, in place of others of their names; gives back warnings.
+    /// Adds the kinds of all files named `*.ron` in `folder`, replacing others of the same name; returns warnings.
     ///
     /// # Errors
-    /// Everything wrong with any of the files, two files that describe a kind
-    /// of the same name, or a folder that cannot be read; these kinds then stay as they were.
+    /// Every problem of any of the files, two files with a kind of the same name, or a folder that cannot be read;
+    /// these kinds are then unchanged.
     ///
     /// A kind may be made from another one of the folder or from any of these kinds.
     pub fn read_folder(&mut self, folder: &Path) -> Result<Diagnostics, Diagnostics> {
@@ -102,35 +102,35 @@ impl Kinds {
         Ok(warnings)
     }
 
-    /// The effects that kinds and layouts may name.
+    /// Returns the effects that kinds and layouts may name.
     #[must_use]
     pub fn effects(&self) -> &Arc<Effects> {
         &self.effects
     }
 
-    /// Puts `kind` in place of any other of its name.
+    /// Adds `kind`, replacing any other of the same name.
     pub(super) fn insert(&mut self, kind: Kind) {
         self.kinds.insert(kind.name.clone(), kind);
     }
 
-    /// The kind called `name`.
+    /// Returns the kind called `name`.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&Kind> {
         self.kinds.get(name)
     }
 
-    /// All kinds, by name.
+    /// Returns all kinds, by name.
     pub fn iter(&self) -> impl Iterator<Item = &Kind> {
         self.kinds.values()
     }
 
-    /// The names of all kinds, sorted.
+    /// Returns the names of all kinds, sorted.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.kinds.keys().map(String::as_str)
     }
 }
 
-/// The kind that `node` describes; where it is made from a `parent`, all that it doesn't say is the parent's.
+/// Reads the kind at `node`; with a `parent`, fields that are not written come from the parent.
 pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
     let mut fields = node.fields(KindFile::NAME)?;
     let base = parent.map(|kind| KindFile { version: FORMAT_VERSION, from: None, kind: kind.clone() });
@@ -141,7 +141,7 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
         fields.report(Problem::error(span, message).expected(expected).help(help));
         fields.refuse("behaviour");
     }
-    // The one thing that is not taken from a parent.
+    // The name is the only field not inherited from a parent.
     if parent.is_some() && fields.value_span("name").is_none() {
         fields.lack("name");
         fields.fail("name");
@@ -155,10 +155,10 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
     good.then_some(read.kind)
 }
 
-/// Most kinds of one folder.
+/// Maximum number of kinds in one folder.
 const MAX_FILES: usize = 4096;
 
-/// The files named `*.ron` in `folder`, which should hold `what`, sorted.
+/// Returns the files named `*.ron` in `folder`, sorted; messages call their contents `what`.
 pub(super) fn ron_files(folder: &Path, what: &str) -> Result<Vec<std::path::PathBuf>, Diagnostics> {
     let unreadable = |error: std::io::Error| {
         let message = format!("the folder of {what} cannot be read: {error}");

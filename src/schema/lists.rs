@@ -1,11 +1,11 @@
-//! How many controls a layout may have.
+//! Limit on the number of controls in a layout.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Most controls, regions or stance zones of one layout.
+/// Maximum number of controls, regions or stance zones of one layout.
 pub const MAX_WIDGETS: usize = 4096;
 
-/// How many more controls the layout that is being read may have.
+/// Number of controls that the layout being read may still have.
 pub(super) struct Room(AtomicUsize);
 
 impl Default for Room {
@@ -15,12 +15,12 @@ impl Default for Room {
 }
 
 impl Room {
-    /// How many more there may be.
+    /// Returns the number of controls that may follow.
     pub(super) fn left(&self) -> usize {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Notes so many controls; a layout is read by one thread.
+    /// Counts `count` controls; one thread reads a layout.
     pub(super) fn take(&self, count: usize) {
         self.0.store(self.left().saturating_sub(count), Ordering::Relaxed);
     }

@@ -1,4 +1,4 @@
-//! What a review finds about a layout's controls, shown where they are written.
+//! Places of review findings about a layout's controls in the text.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use super::source::Source;
 use crate::ergonomics::{Finding, Part};
 
 impl Places {
-    /// Bytes of the text, without a byte-order mark, where this part of the control at `index` is written.
+    /// Returns the bytes of this part of the control at `index` in the text, without a byte-order mark.
     fn span(&self, index: usize, part: Part) -> Range<usize> {
         let Some(written) = self.widgets.get(index) else { return 0..0 };
         let own = match part {
@@ -23,17 +23,17 @@ impl Places {
             Part::Label => written.label.as_ref(),
             Part::Look => written.look.as_ref(),
         };
-        // What is not written here comes from the kind; a size, from the neighbour.
+        // A value that is not written here comes from the kind, or for a size from the neighbour.
         let kind = matches!(part, Part::Press | Part::Step | Part::Look).then_some(&written.kind);
         own.or(kind).unwrap_or(&written.id).clone()
     }
 
-    /// The same findings at their places in the file, in the order of the text.
+    /// Returns the findings at their places in the file, in the order of the text.
     ///
-    /// Of several alike findings about the controls of one grid, the first is kept and says how many there are.
+    /// Similar findings about the controls of one grid are merged into the first, with their number.
     #[must_use]
     pub fn locate(&self, findings: &[Finding]) -> Diagnostics {
-        // The text was read before: it is not too large.
+        // The text has been read before, so it is not too large.
         let Ok(source) = Source::new(&self.name, &self.text) else { return Diagnostics::default() };
         if findings.is_empty() {
             return Diagnostics::default();

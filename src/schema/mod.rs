@@ -1,7 +1,7 @@
-//! RON files: floors, control kinds and layouts as written, checked into the types the engine uses.
+//! RON files: floors, control kinds and layouts, checked and converted to the engine's types.
 //!
-//! All problems of a file are found in one reading, each with its place; there
-//! is never a part of a layout. A file is read in these steps, one module each:
+//! One reading finds all problems of a file, each with its place; the result is a complete layout or none. A file is
+//! read in these steps, one module each:
 //!
 //! ```text
 //! bytes -format-> tree with spans, fields in range

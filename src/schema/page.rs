@@ -29,38 +29,39 @@ use crate::format::{Id, Name, Record, Text, record};
 use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
 
-/// A layout that can be used, and what is odd about it.
+/// A valid layout, with its warnings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// The layout, in floor metres.
     pub layout: Layout,
     /// Warnings; no errors.
     pub warnings: Diagnostics,
-    /// Where its parts are written.
+    /// The places of its parts in the text.
     pub places: Places,
 }
 
-/// The layout in the file at `path`, made of `kinds` and placed on a floor of this `geometry`.
+/// Reads the layout in the file at `path`, made of `kinds` and placed on a floor of this `geometry`.
 ///
 /// # Errors
-/// Everything wrong with the file, or that it cannot be read. There is no part of a layout then.
+/// Every problem of the file, or that it cannot be read. The layout is never partial.
 pub fn load_layout(path: &Path, kinds: &Kinds, geometry: &Geometry) -> Result<Loaded, Diagnostics> {
     let text = read_text(path)?;
     parse_layout(&text, &path.display().to_string(), kinds, geometry)
 }
 
-/// The folder called `name` beside the file `path` or beside its folder, where a layout's own kinds and effects are.
+/// Returns the folder called `name` next to the file `path` or next to its folder; it holds a layout's own kinds and
+/// effects.
 #[must_use]
 pub fn folder_beside(path: &Path, name: &str) -> Option<PathBuf> {
     let home = std::path::absolute(path).ok()?;
     home.ancestors().skip(1).take(2).map(|folder| folder.join(name)).find(|folder| folder.is_dir())
 }
 
-/// The shipped kinds and effects, and those in folders `widgets` and `effects` beside the file `path` or beside its
-/// folder.
+/// Returns the shipped kinds and effects, and those in folders `widgets` and `effects` next to the file `path` or
+/// next to its folder.
 ///
 /// # Errors
-/// Everything wrong with the files in these folders, or that one cannot be read.
+/// Every problem of the files in these folders, or that a folder cannot be read.
 pub fn kinds_beside(path: &Path) -> Result<Kinds, Diagnostics> {
     let mut effects = Effects::builtin();
     if let Some(folder) = folder_beside(path, "effects") {
@@ -73,12 +74,12 @@ pub fn kinds_beside(path: &Path) -> Result<Kinds, Diagnostics> {
     Ok(kinds)
 }
 
-/// The layout that `text` describes, made of `kinds` and placed on a floor of this `geometry`.
+/// Reads the layout that `text` describes, made of `kinds` and placed on a floor of this `geometry`.
 ///
-/// `name` is what diagnostics call the text, usually a path.
+/// `name` is the name of the text in diagnostics, usually a path.
 ///
 /// # Errors
-/// Everything wrong with the text. There is no part of a layout then.
+/// Every problem of the text. The layout is never partial.
 pub fn parse_layout(
     text: &str,
     name: &str,
@@ -107,23 +108,23 @@ record! {
     pub(super) struct LayoutRecord = "Layout";
     /// The version of the format.
     version: u32 = "version", VERSION;
-    /// What places, sizes and gaps count in.
+    /// The unit of places, sizes and gaps.
     units: Units = "units", UNITS => Units::Tiles;
-    /// What people call it.
+    /// Its title for people.
     title: String = "title", Text(200) => String::new();
     /// The active parts of the floor, each with a cursor of its own.
     regions: Vec<RegionRecord> = "regions", REGIONS => Vec::new();
-    /// Where people stand while they use the controls.
+    /// The places of people while they use the controls.
     stances: Vec<StanceRecord> = "stances", STANCES => Vec::new();
-    /// Effects of the layout's own.
+    /// The layout's own effects.
     effects: () = "effects", OWN_EFFECTS => ();
-    /// Kinds of the layout's own.
+    /// The layout's own kinds.
     kinds: () = "kinds", OWN_KINDS => ();
     /// The controls that are on every page.
     widgets: Vec<Control> = "widgets", WIDGETS => Vec::new();
-    /// What the floor seems to be made of on every page.
+    /// The simulated grounds on every page.
     grounds: Vec<GroundDefinition> = "grounds", GROUNDS => Vec::new();
-    /// Pages that take turns.
+    /// The pages, of which one is shown at a time.
     pages: Vec<PageRecord> = "pages", PAGES => Vec::new();
 }
 
@@ -132,18 +133,18 @@ record! {
     struct RegionRecord = "Region";
     /// Unique among the layout's regions.
     id: Written<String> = "id", At(Id);
-    /// Where it is.
+    /// Its place.
     place: Option<Placed> = "at", Place;
-    /// Which contacts in it operate its controls.
+    /// The contacts in it that operate its controls.
     cursor: CursorRule = "cursor", Name => CursorRule::default();
 }
 
 record! {
     /// A place to stand while using the controls.
     struct StanceRecord = "Stance";
-    /// What is written on it.
+    /// The text on it.
     label: Written<String> = "label", At(Text(64)) => Written::default();
-    /// Where it is.
+    /// Its place.
     place: Option<Placed> = "at", Place;
 }
 
@@ -153,20 +154,20 @@ const REGIONS: Distinct<RegionRecord> =
 const STANCES: Distinct<StanceRecord> =
     Distinct { entry: "stance", most: MAX_WIDGETS, about: |_, _, _, _| {} };
 
-/// A layout as written, whose problems have been reported.
+/// A layout as written; its problems have been reported.
 pub(super) struct Page {
     title: String,
     pub(super) units: Units,
     pub(super) regions: Vec<Zone>,
     pub(super) stances: Vec<Zone>,
     pub(super) pages: Vec<PageRecord>,
-    /// Those of all pages.
+    /// The grounds of all pages.
     pub(super) grounds: Vec<GroundDefinition>,
-    /// Those of all pages.
+    /// The controls of all pages.
     pub(super) controls: Vec<Control>,
     /// Whether all regions could be read.
     pub(super) regions_known: bool,
-    /// Where the list of controls is written.
+    /// Place of the list of controls in the text.
     pub(super) widgets_at: Range<usize>,
 }
 
@@ -178,7 +179,7 @@ pub(super) struct Zone {
 }
 
 impl Page {
-    /// The layout at `node`, and whether everything of it could be read.
+    /// Reads the layout at `node`; the flag says whether all of it could be read.
     fn read(node: Node<'_>) -> Option<(Self, bool)> {
         let mut fields = node.fields(LayoutRecord::NAME)?;
         node.reader.count_in(Units::default());
@@ -205,13 +206,13 @@ impl Page {
         Some((page, good))
     }
 
-    /// The region whose area holds the middle of `area`.
+    /// Returns the region that contains the middle of `area`.
     pub(super) fn region_of(&self, area: &Area) -> Option<usize> {
         let holds = |zone: &Zone| zone.place.as_ref().is_some_and(|place| place.area.contains(area.middle()));
         self.regions.iter().position(holds)
     }
 
-    /// The checked layout; `None` if anything of it is missing.
+    /// Makes the checked layout; `None` if any part is missing.
     fn placed_on(&self, geometry: &Geometry) -> Option<Layout> {
         let units = self.units;
         let regions = self.regions.iter().map(|zone| {

@@ -1,4 +1,4 @@
-//! Pages that take turns on one floor, and the controls that switch them.
+//! Pages of a layout, of which one is shown at a time, and the controls that switch them.
 //!
 //! ```ron
 //! widgets: [ /* on every page */ ],
@@ -21,15 +21,15 @@ use crate::layout;
 use crate::widget::{Behaviour, WidgetId};
 
 record! {
-    /// One of the pages that take turns on one floor.
+    /// One of the pages of a layout; one is shown at a time.
     pub(super) struct PageRecord = "Page";
     /// Unique among the layout's pages.
     pub(super) id: Written<String> = "id", At(Id);
-    /// What people call it.
+    /// Its title for people.
     pub(super) title: String = "title", Text(200) => String::new();
-    /// The controls that are there only while the page is shown.
+    /// The controls that exist only while the page is shown.
     pub(super) widgets: Vec<Control> = "widgets", WIDGETS => Vec::new();
-    /// What the floor seems to be made of while the page is shown.
+    /// The simulated grounds while the page is shown.
     pub(super) grounds: Vec<GroundDefinition> = "grounds", GROUNDS => Vec::new();
 }
 
@@ -37,12 +37,12 @@ record! {
 pub(super) const PAGES: Distinct<PageRecord> =
     Distinct { entry: "page", most: MAX_WIDGETS, about: |_, _, _, _| {} };
 
-/// Whether two controls are ever there at the same time.
+/// Whether two controls can be present at the same time.
 pub(super) fn can_both_show(one: &Control, other: &Control) -> bool {
     one.page.is_none() || other.page.is_none() || one.page == other.page
 }
 
-/// Notes what is wrong between pages and the controls that switch them.
+/// Reports conflicts between pages and the controls that switch them.
 pub(super) fn check(reader: &Reader<'_>, pages: &[PageRecord], controls: &[Control]) {
     for (number, definition) in pages.iter().enumerate() {
         let same = |other: &&PageRecord| other.id().is_some() && other.id == definition.id;
@@ -71,18 +71,18 @@ pub(super) fn check(reader: &Reader<'_>, pages: &[PageRecord], controls: &[Contr
 }
 
 impl PageRecord {
-    /// Its id, if it could be read.
+    /// Returns its id, if it could be read.
     fn id(&self) -> Option<&str> {
         (!self.id.at.is_empty()).then_some(&self.id.value)
     }
 
-    /// The page as the engine knows it.
+    /// Makes the page for the engine.
     pub(super) fn checked(&self) -> layout::Page {
         layout::Page { id: WidgetId::new(&self.id.value), title: self.title.clone() }
     }
 }
 
-/// The number of the page among `pages` that has this `id`.
+/// Returns the index of the page with this `id` among `pages`.
 pub(super) fn number_of(id: &str, pages: &[PageRecord]) -> Option<usize> {
     pages.iter().position(|definition| definition.id() == Some(id))
 }

@@ -1,4 +1,4 @@
-//! Where a control or group is to stand: at a place of its own, or beside a neighbour.
+//! Place of a control or group: absolute, or relative to a neighbour.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use super::fields::Fields;
 use super::node::Node;
 use super::problem::Problem;
 
-/// On which side of its neighbour something stands.
+/// Side of the neighbour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     RightOf,
@@ -19,7 +19,7 @@ enum Side {
 const SIDES: [(&str, Side); 4] =
     [("right_of", Side::RightOf), ("left_of", Side::LeftOf), ("above", Side::Above), ("below", Side::Below)];
 
-/// How something lies along the side of its neighbour.
+/// Alignment along the side of the neighbour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Align {
     /// South or west edges in line.
@@ -32,7 +32,7 @@ enum Align {
 
 const ALIGNS: [(&str, Align); 3] = [("Start", Align::Start), ("Middle", Align::Middle), ("End", Align::End)];
 
-/// A place beside a neighbour of the same list.
+/// A place next to a neighbour of the same list.
 #[derive(Clone, Copy)]
 pub(super) struct Beside<'r> {
     side: Side,
@@ -40,7 +40,7 @@ pub(super) struct Beside<'r> {
     gap: f64,
     /// The neighbour's id.
     pub(super) neighbour: &'r str,
-    /// Where that is written.
+    /// The node of that id.
     pub(super) node: Node<'r>,
 }
 
@@ -49,22 +49,22 @@ pub(super) struct Beside<'r> {
 pub(super) enum Spot<'r> {
     /// The south-west corner of a control, the origin of a group.
     At([f64; 2]),
-    /// Found once the neighbour has its place.
+    /// Known once the neighbour has its place.
     Beside(Beside<'r>),
 }
 
-/// What is said of a place.
+/// The fields of a place.
 pub(super) struct Placing<'r> {
     /// `None` if it could not be read, which has been reported.
     pub(super) spot: Option<Spot<'r>>,
-    /// Where it is written.
+    /// Its place in the text.
     pub(super) at: Range<usize>,
-    /// Whether it has a neighbour whose size it may take.
+    /// Whether it has a neighbour, whose size it may take.
     pub(super) is_relative: bool,
 }
 
 impl<'r> Placing<'r> {
-    /// The place in `at`, or in one of `right_of`, `left_of`, `above` and `below` with `gap` and `align`.
+    /// Reads the place in `at`, or in one of `right_of`, `left_of`, `above` and `below` with `gap` and `align`.
     pub(super) fn read(fields: &mut Fields<'r>) -> Self {
         let mut sides = SIDES
             .into_iter()
@@ -100,7 +100,7 @@ impl<'r> Placing<'r> {
 }
 
 impl Beside<'_> {
-    /// The south-west corner of something of this `size` that stands there.
+    /// Returns the south-west corner of an area of this `size` at this place.
     pub(super) fn corner(&self, neighbour: &Area, size: [f64; 2]) -> [f64; 2] {
         let (min, max) = (neighbour.min(), neighbour.max());
         let along = |axis: usize| match self.align {

@@ -1,4 +1,4 @@
-//! Where the parts of a layout are written.
+//! Places of the parts of a layout in its text.
 
 #[cfg(feature = "edit")]
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::control::ControlSpans;
 
-/// Where the controls of a layout are written: what is found out about them later is shown there.
+/// Places of the controls of a layout in its text; later findings point to them.
 #[derive(Clone, Debug)]
 #[cfg_attr(not(feature = "ergonomics"), expect(dead_code, reason = "only a review points at these"))]
 pub struct Places {
@@ -17,7 +17,7 @@ pub struct Places {
 }
 
 impl PartialEq for Places {
-    /// Whether both are of the same text, whatever it is called.
+    /// Whether both have the same text, regardless of its name.
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
     }
@@ -28,7 +28,8 @@ impl Places {
         Self { name: name.into(), text: text.into(), widgets }
     }
 
-    /// Bytes of the text, without a byte-order mark, where the control at `index` has its id, or its grid its ids.
+    /// Returns the bytes of the id of the control at `index`, or of its grid's ids, in the text without a byte-order
+    /// mark.
     #[cfg(feature = "edit")]
     pub(crate) fn id_span(&self, index: usize) -> Option<Range<usize>> {
         self.widgets.get(index).map(|written| written.id.clone())

@@ -1,4 +1,4 @@
-//! The reference of the format, made of the descriptions that its reader goes by.
+//! The reference of the format, made from the reader's own descriptions.
 
 use std::fmt::Write;
 
@@ -10,22 +10,22 @@ use crate::format::{Record, Variants};
 use crate::layout::Look;
 use crate::widget::Behaviour;
 
-/// One kind of thing that files hold, with all records that it may be.
+/// One kind of content of files, with all possible records.
 #[derive(Clone, Debug)]
 pub struct Chapter {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
-    /// Where it is written.
+    /// Its place in files.
     pub about: &'static str,
-    /// What each of them may say.
+    /// Fields common to all records.
     pub common: Vec<FieldDescription>,
-    /// What each of them may say besides.
+    /// The records, with their other fields.
     pub records: Vec<Description>,
 }
 
 impl Chapter {
     fn new(name: &'static str, about: &'static str, mut records: Vec<Description>) -> Self {
-        // What all say alike is told once.
+        // Fields that all records share are listed once.
         let is_common = |field: &FieldDescription| {
             let has = |record: &Description| {
                 record.fields.iter().any(|other| other.name == field.name && other.about == field.about)
@@ -44,7 +44,7 @@ impl Chapter {
     }
 }
 
-/// All that is described of layouts, kinds and effects.
+/// Returns the descriptions of layouts, kinds and effects.
 #[must_use]
 pub fn reference() -> Vec<Chapter> {
     let mut effects = Chapter::new(
@@ -107,10 +107,10 @@ pub fn reference() -> Vec<Chapter> {
     chapters
 }
 
-/// The reference as Markdown: all of it, or only the chapter or record called `name`.
+/// Writes the reference as Markdown: all of it, or only the chapter or record called `name`.
 ///
 /// # Errors
-/// That nothing is called so, and what might have been meant.
+/// Says that there is no such name, and suggests similar ones.
 pub fn write_reference(name: Option<&str>) -> Result<String, String> {
     let chapters = reference();
     let is_meant = |other: &str| name.is_none_or(|name| name.eq_ignore_ascii_case(other));
@@ -140,7 +140,7 @@ pub fn write_reference(name: Option<&str>) -> Result<String, String> {
     Ok(text)
 }
 
-/// The records that `fields` of `owner` hold, and theirs, but for those that stand in a chapter of their own.
+/// Writes the records within `fields` of `owner`, recursively, except those with a chapter of their own.
 fn parts(text: &mut String, chapters: &[Chapter], owner: &str, fields: &[FieldDescription]) {
     let is_told = |part: &Description| {
         let told = chapters.iter().flat_map(|chapter| &chapter.records);
@@ -160,7 +160,7 @@ fn heading(text: &mut String, level: usize, name: &str, about: &str, fields: &[F
     let _ = writeln!(text, "{} {name}\n\n{}\n", "#".repeat(level), plain(about));
     for field in fields {
         let default = match &field.default {
-            // Tables are too long to tell.
+            // Tables are too long to print.
             Some(default) if default == "()" || default.starts_with("[[") => String::new(),
             Some(default) => format!("; {default} where nothing is written"),
             None => "; must be written".to_owned(),
@@ -178,8 +178,8 @@ fn heading(text: &mut String, level: usize, name: &str, about: &str, fields: &[F
     }
 }
 
-/// Documentation without the brackets of its links, and without the unit and range that values have in code: files
-/// have their own, which are told beside it.
+/// Removes the brackets of links, and the unit and range of values in code: files have their own, which the reference
+/// lists with the field.
 fn plain(about: &str) -> String {
     let mut text = about.replace("[`", "`").replace("`]", "`");
     for unit in UNITS {
@@ -196,6 +196,6 @@ fn plain(about: &str) -> String {
     text
 }
 
-/// How documentation tells the unit of a value in code.
+/// Endings that give the unit of a value in code.
 const UNITS: [&str; 6] =
     [", in seconds", ", in hertz", ", in metres", ", in degrees", ", in radians", ", in decibels"];

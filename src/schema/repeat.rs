@@ -1,32 +1,32 @@
-//! One control written, a grid of them meant: the keys of a keypad, the tiles of a menu.
+//! Grids: one written control that stands for many, such as the keys of a keypad or the tiles of a menu.
 
 use super::node::Node;
 use super::problem::Problem;
 use super::suggest::did_you_mean;
 
-/// Most columns or rows of one grid.
+/// Maximum number of columns or rows of one grid.
 const MOST: u32 = 256;
 
-/// A grid of controls; as people read, row by row from the north-west.
+/// A grid of controls, in reading order: row by row from the north-west.
 pub(super) struct Repeat<'r> {
     pub(super) columns: u32,
     pub(super) rows: u32,
-    /// Between columns and between rows.
+    /// Gaps between columns and between rows.
     pub(super) gap: [f64; 2],
-    /// Names for ids, one per place; `None` leaves the place empty.
+    /// Names for ids, one per cell; `None` leaves the cell empty.
     ids: Option<Vec<Option<Node<'r>>>>,
-    /// What is written on them, likewise.
+    /// Labels, likewise.
     labels: Option<Vec<Option<Node<'r>>>>,
 }
 
-/// One place of a grid.
+/// One cell of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cell {
-    /// Place in reading order, from 0.
+    /// Index in reading order, from 0.
     pub(super) index: u32,
-    /// From 0, from the west.
+    /// Column from the west, from 0.
     pub(super) column: u32,
-    /// From 0, from the north.
+    /// Row from the north, from 0.
     pub(super) row: u32,
 }
 
@@ -35,7 +35,7 @@ impl<'r> Repeat<'r> {
         let mut fields = node.fields("Repeat")?;
         let far = fields.units().furthest();
         let rows = fields.read("rows", Some(1), |node| node.whole(1..=MOST));
-        // One of the two must be written, or nothing is repeated.
+        // One of the two must be written, otherwise there is no repetition.
         let alone = fields.value_span("rows").map(|_| 1);
         let columns = fields.read("columns", alone, |node| node.whole(1..=MOST));
         let gap = fields.read("gap", Some([0.0; 2]), |node| node.one_or_two(0.0..=far));
@@ -46,22 +46,22 @@ impl<'r> Repeat<'r> {
         Some(Self { columns: columns?, rows: rows?, gap: gap?, ids: ids?, labels: labels? })
     }
 
-    /// A grid of one place.
+    /// A grid of one cell.
     pub(super) fn single() -> Self {
         Self { columns: 1, rows: 1, gap: [0.0; 2], ids: None, labels: None }
     }
 
-    /// Whether ids come from a list of their own.
+    /// Whether the ids come from a list.
     pub(super) fn has_ids(&self) -> bool {
         self.ids.is_some()
     }
 
-    /// Whether labels come from a list of their own.
+    /// Whether the labels come from a list.
     pub(super) fn has_labels(&self) -> bool {
         self.labels.is_some()
     }
 
-    /// All places that are not left empty.
+    /// Returns all cells that are not empty.
     pub(super) fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
         let columns = self.columns;
         let all = (0..columns * self.rows).map(move |index| Cell {
@@ -75,18 +75,18 @@ impl<'r> Repeat<'r> {
         all.filter(move |cell| !is_empty(&self.ids, cell) && !is_empty(&self.labels, cell))
     }
 
-    /// The entry for this place in the list of ids.
+    /// Returns the entry of this cell in the list of ids.
     pub(super) fn id(&self, cell: Cell) -> Option<Node<'r>> {
         self.ids.as_ref()?.get(cell.index as usize).copied().flatten()
     }
 
-    /// The entry for this place in the list of labels.
+    /// Returns the entry of this cell in the list of labels.
     pub(super) fn label(&self, cell: Cell) -> Option<Node<'r>> {
         self.labels.as_ref()?.get(cell.index as usize).copied().flatten()
     }
 }
 
-/// A list with an entry per place, `None` for an empty one.
+/// Reads a list with an entry per cell, `None` for an empty one.
 fn words<'r>(node: Node<'r>, entry: &'static str, count: Option<u32>) -> Option<Vec<Option<Node<'r>>>> {
     let nodes = node.list(entry, (MOST * MOST) as usize)?;
     if let Some(count) = count
@@ -103,10 +103,10 @@ fn words<'r>(node: Node<'r>, entry: &'static str, count: Option<u32>) -> Option<
     Some(nodes.into_iter().map(|node| (!node.is_none()).then_some(node)).collect())
 }
 
-/// `pattern` with `{n}`, `{row}`, `{column}` and `{label}` replaced; places count from 1.
+/// Replaces `{n}`, `{row}`, `{column}` and `{label}` in `pattern`; numbers count from 1.
 ///
 /// # Errors
-/// The word in braces that stands for nothing, or what to put in its place.
+/// The unknown word in braces, and a suggestion for it.
 pub(super) fn filled(
     pattern: &str,
     cell: Cell,
@@ -134,14 +134,14 @@ pub(super) fn filled(
     Ok(text)
 }
 
-/// Whether every place of a grid gets another text from `pattern`.
+/// Whether `pattern` gives a different text in every cell of a grid.
 pub(super) fn varies(pattern: &str) -> bool {
     pattern.contains("{n}")
         || pattern.contains("{label}")
         || (pattern.contains("{row}") && pattern.contains("{column}"))
 }
 
-/// A label as part of an id: small letters and digits, `_` for anything else.
+/// Converts a label to a part of an id: small letters and digits, `_` for all other characters.
 fn as_id(label: &str) -> String {
     let part = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
     label.chars().map(part).collect()

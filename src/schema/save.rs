@@ -1,4 +1,4 @@
-//! Saving: the old file or the new one, never a mix, and never a loss.
+//! Atomic saving: the file always holds the old or the new text, and the old text is kept.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -13,45 +13,45 @@ use super::file::read_bytes;
 use super::{Diagnostics, parse_floor, write_floor};
 use crate::floor::Floor;
 
-/// What saving did.
+/// Result of saving.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Saved {
-    /// There was no such file.
+    /// The file did not exist.
     New,
-    /// The file held the same already and was left alone.
+    /// The file already had the same content and was not changed.
     Unchanged,
-    /// The file was replaced; what it held before is in this one.
+    /// The file was replaced; a backup holds its previous content.
     Replaced {
-        /// The copy of what it held.
+        /// The backup of the previous content.
         backup: PathBuf,
     },
 }
 
-/// Why a file could not be saved. Whatever was there before is still there.
+/// Reason for which a file could not be saved. The previous content is unchanged.
 #[derive(Debug, Error)]
 pub enum SaveError {
-    /// The floor has numbers that no floor file may hold, or is too large for one.
+    /// The floor has numbers that floor files may not hold, or is too large for one.
     #[error("this floor can't be kept in a file:\n{0}")]
     Unreadable(Diagnostics),
-    /// The system refused.
+    /// The system reported an error.
     #[error("{} could not be saved while {doing}: {source}; what it held before is untouched", path.display())]
     File {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What was under way.
+        /// The step that failed.
         doing: &'static str,
-        /// What the system said.
+        /// The error of the system.
         #[source]
         source: io::Error,
     },
 }
 
-/// Writes the floor to `path` as [`write_floor`] does, once it has been seen to read back as the same floor.
+/// Writes the floor to `path` as [`write_floor`] does, after a check that it reads back.
 ///
-/// As [`save_text`], of which it has the promises.
+/// It saves as [`save_text`] does, with the same guarantees.
 ///
 /// # Errors
-/// [`SaveError`]; the old file, if there was one, is then as it was.
+/// [`SaveError`]; the old file, if there was one, is then unchanged.
 pub fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, SaveError> {
     let text = write_floor(floor);
     match parse_floor(&text, &path.display().to_string()) {
@@ -60,20 +60,19 @@ pub fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, SaveError> {
     }
 }
 
-/// Writes `text` to `path`; after a crash or power loss at any moment it is the old file or the new one.
+/// Writes `text` to `path`; after a crash or power failure at any time the file holds the old or the new text.
 ///
-/// The text goes to a new file beside it, which takes its place when it is
-/// safely on the disk. What the file held before is kept as `name.bak`, or
-/// `name.bak2` and so on up to `name.bak10`, of which the oldest but the first then makes room. A symbolic link stays
-/// one: the file it points to is replaced.
+/// The text goes to a new file next to it, which replaces the old file once it is on the disk. The previous content
+/// is kept as `name.bak`, or `name.bak2` and so on up to `name.bak10`; after that, the oldest backup except the first
+/// is removed. A symbolic link stays one: the file that it points to is replaced.
 ///
 /// # Errors
-/// [`SaveError::File`]; the old file, if there was one, is then as it was.
+/// [`SaveError::File`]; the old file, if there was one, is then unchanged.
 pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
     write(text, path, true)
 }
 
-/// As [`save_text`], but keeps nothing of what the file held before.
+/// As [`save_text`], but without a backup.
 ///
 /// # Errors
 /// Those of [`save_text`].
@@ -89,7 +88,7 @@ fn write(text: &str, path: &Path, keeps_old: bool) -> Result<Saved, SaveError> {
         Err(error) if error.kind() == ErrorKind::NotFound => path.to_path_buf(),
         Err(error) => return Err(failed("looking for it")(error)),
     };
-    // Of an old file that is longer than the new one, only that matters.
+    // A longer old file is not read completely: it differs from the new text.
     let old = match read_bytes(&target, text.len() as u64) {
         Ok(old) if old == text.as_bytes() => return Ok(Saved::Unchanged),
         Err(error) if error.kind() == ErrorKind::NotFound => None,
@@ -100,10 +99,10 @@ fn write(text: &str, path: &Path, keeps_old: bool) -> Result<Saved, SaveError> {
     };
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
-    // Removed by itself if anything below fails.
+    // Deleted automatically if a step below fails.
     remove_left_over(folder);
     let mut file = fresh(folder).map_err(failed("making a file beside it"))?;
-    // Held while it is written, so that it is not taken for one that a killed process left.
+    // Locked while it is written, so that another process does not remove it as a left-over file.
     let _ = file.as_file().try_lock();
     file.write_all(text.as_bytes()).map_err(failed("writing"))?;
     if let Some(old) = &old {
@@ -120,14 +119,14 @@ fn write(text: &str, path: &Path, keeps_old: bool) -> Result<Saved, SaveError> {
     Ok(backup.map_or(Saved::New, |backup| Saved::Replaced { backup }))
 }
 
-/// What files are called until they take their place.
+/// Names of temporary files.
 const PREFIX: &str = ".underfoot-";
 const SUFFIX: &str = ".tmp";
 
-/// How old such a file must be to count as left over: its writer has locked it long since.
+/// Minimum age of a left-over file: a running writer has locked its file long before.
 const LEFT_OVER: Duration = Duration::from_secs(60);
 
-/// Removes what processes left in `folder` that were killed while they saved; what fails is left to the next save.
+/// Removes temporary files in `folder` of processes that were killed while saving; the next save retries failures.
 fn remove_left_over(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -143,7 +142,7 @@ fn remove_left_over(folder: &Path) {
     }
 }
 
-/// An empty file in `folder` with the permissions that any new file gets.
+/// Creates an empty file in `folder` with the permissions of any new file.
 fn fresh(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
@@ -152,10 +151,10 @@ fn fresh(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// Most backups of one file.
+/// Maximum number of backups of one file.
 const MOST_BACKUPS: u32 = 10;
 
-/// The name of backup `number` of `target`.
+/// Returns the name of backup `number` of `target`.
 fn backup_name(target: &Path, number: u32) -> PathBuf {
     let mut name = OsString::from(target.as_os_str());
     name.push(".bak");
@@ -165,8 +164,8 @@ fn backup_name(target: &Path, number: u32) -> PathBuf {
     name.into()
 }
 
-/// Keeps what `target` holds under a name that nothing has yet, and gives that name. Of too many backups the oldest
-/// makes room; not the first, which holds what there was before this program changed anything.
+/// Backs up `target` under an unused name, and returns that name. If there are too many backups, it removes the
+/// oldest except the first, which holds the content before any change by this program.
 fn back_up(target: &Path) -> io::Result<PathBuf> {
     let names = || (1..=MOST_BACKUPS).map(|number| backup_name(target, number));
     if names().all(|name| name.exists()) {
@@ -177,7 +176,7 @@ fn back_up(target: &Path) -> io::Result<PathBuf> {
     }
     for backup in names() {
         let kept = match fs::hard_link(target, &backup) {
-            // Some file systems know no links.
+            // Some file systems do not support links.
             Err(error) if error.kind() != ErrorKind::AlreadyExists => copied(target, &backup),
             linked => linked,
         };
@@ -195,7 +194,7 @@ fn copied(target: &Path, backup: &Path) -> io::Result<()> {
     match copied.and_then(|_| copy.sync_all()) {
         Ok(()) => Ok(()),
         Err(error) => {
-            // Half a backup is not a backup.
+            // An incomplete backup is useless.
             let _ = fs::remove_file(backup);
             Err(error)
         }
@@ -207,7 +206,7 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
-/// Other systems don't open folders; they bring them to the disk by themselves.
+/// Other systems do not open folders; they sync them without a call.
 #[cfg(not(unix))]
 fn sync_folder(_folder: &Path) -> io::Result<()> {
     Ok(())
@@ -243,7 +242,7 @@ mod tests {
         );
     }
 
-    /// Row F8. Two editors have read the same file; each saves what it made of it.
+    /// Row F8. Two editors have read the same file; each saves its own changes.
     #[test]
     fn what_another_editor_saved_meanwhile_is_found_and_kept() {
         let folder = tempfile::tempdir().unwrap();
@@ -263,7 +262,7 @@ mod tests {
         let path = folder.path().join("floor.ron");
         for number in 0..30_u64 {
             save_text(&number.to_string(), &path).unwrap();
-            // Files that are written within one tick of the clock are equally old.
+            // Files written within one tick of the clock have equal times.
             let day = std::time::UNIX_EPOCH + Duration::from_secs(86_400 * (number + 1));
             File::options().write(true).open(&path).unwrap().set_modified(day).unwrap();
         }
@@ -302,7 +301,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let missing = folder.path().join("nowhere").join("floor.ron");
         assert!(matches!(save_text("one", &missing), Err(SaveError::File { .. })));
-        // A folder is in the way.
+        // A folder blocks the name.
         let path = folder.path().join("floor.ron");
         fs::create_dir(&path).unwrap();
         assert!(matches!(save_text("one", &path), Err(SaveError::File { .. })));

@@ -1,9 +1,9 @@
-//! The folder for what outlives a program.
+//! The folder for data that persist between runs.
 
 use std::path::PathBuf;
 
-/// Where the program keeps what outlives it, such as drafts of layouts without a file: `underfoot` in the folder that
-/// the system names for the state of programs, or in the one for temporary files.
+/// Returns the folder for data that persist between runs, such as drafts of layouts without a file: `underfoot` in
+/// the system's folder for the state of programs, or in the one for temporary files.
 #[must_use]
 pub fn usual_state() -> PathBuf {
     let of = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);

@@ -1,4 +1,4 @@
-//! Floor files, read and written.
+//! Reading and writing of floor files.
 
 mod geometry_and_boards {
     use crate::floor::{Actuator, Calibration, Corner, Floor, Geometry, SensorId, TileId};

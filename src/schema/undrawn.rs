@@ -1,4 +1,4 @@
-//! Letters of a layout that no font has, shown where they are written.
+//! Places of letters in a layout that no font contains.
 
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::pairs::Limits;
@@ -8,18 +8,18 @@ use super::reader::Reader;
 use super::source::Source;
 use crate::format::outline::Outline;
 
-/// The rule's code, as `underfoot check --explain` knows it.
+/// The rule's code in `underfoot check --explain`.
 const CODE: &str = "U304";
 
-/// Letters that are named one by one.
+/// Maximum number of letters listed.
 const NAMED: usize = 6;
 
 impl Places {
-    /// A warning for each text in quotes of which some letters can't be drawn; `missing` tells which those are, such as
-    /// [`Fonts::missing`](crate::letters::Fonts::missing).
+    /// Returns a warning for each text in quotes with letters that cannot be drawn; `missing` returns those letters,
+    /// for example [`Fonts::missing`](crate::letters::Fonts::missing).
     #[must_use]
     pub fn undrawn(&self, mut missing: impl FnMut(&str) -> Vec<char>) -> Diagnostics {
-        // The text was read before: it is not too large, and it has an outline.
+        // The text has been read before, so it is not too large, and it has an outline.
         let (Ok(source), Some(root)) = (Source::new(&self.name, &self.text), Outline::parse(&self.text))
         else {
             return Diagnostics::default();
@@ -45,7 +45,7 @@ impl Places {
     }
 }
 
-/// The letters with their numbers, the first ones of many.
+/// Lists the letters with their numbers; only the first ones if there are many.
 fn named(letters: &[char]) -> String {
     let first = letters.iter().take(NAMED);
     let mut named: Vec<String> =
@@ -87,7 +87,7 @@ mod tests {
         let told = undrawn(&layout("Map", "Stand here", "首页 Home"));
         assert!(told.contains("warning[U304]: no font has 首 (U+9996) and 页 (U+9875)"), "{told}");
         assert!(told.contains("it.ron:3:"), "{told}");
-        // Everything that is written is drawn, not only labels of controls.
+        // All texts are drawn, not only labels of controls.
         let told = undrawn(&layout("地図", "ここ", "Home"));
         assert_eq!(told.matches("U304").count(), 2, "{told}");
         assert!(told.contains("it.ron:1:") && told.contains("it.ron:2:"), "{told}");

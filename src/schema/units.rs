@@ -1,4 +1,4 @@
-//! Tiles or metres.
+//! Units of layouts: tiles or metres.
 
 use super::fields::Fields;
 use super::reader::Reader;
@@ -7,7 +7,7 @@ use crate::format::codec::By;
 use crate::format::{Codec, Name, Named};
 use std::sync::Arc;
 
-/// What the places, sizes and gaps of a layout count in.
+/// The unit of the places, sizes and gaps of a layout.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Units {
     /// The floor's pitch: a layout keeps its arrangement on a floor with other tiles.
@@ -18,7 +18,7 @@ pub(super) enum Units {
 }
 
 impl Units {
-    /// Written behind a number.
+    /// Returns the suffix of a number.
     pub(super) const fn suffix(self) -> &'static str {
         match self {
             Self::Tiles => " tiles",
@@ -26,7 +26,7 @@ impl Units {
         }
     }
 
-    /// The word for them in a sentence.
+    /// Returns the name for a sentence.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Tiles => "tiles",
@@ -34,7 +34,7 @@ impl Units {
         }
     }
 
-    /// How long one of them is on a floor of this `geometry`, in metres.
+    /// Returns the length of one unit on a floor of this `geometry`, in metres.
     pub(super) fn metres(self, geometry: &Geometry) -> f64 {
         match self {
             Self::Tiles => geometry.pitch_m().into(),
@@ -42,7 +42,7 @@ impl Units {
         }
     }
 
-    /// Furthest a place may be from its origin, well beyond any floor.
+    /// Maximum distance of a place from its origin, well beyond any floor.
     pub(super) const fn furthest(self) -> f64 {
         match self {
             Self::Tiles => Geometry::MAX_SIDE as f64,
@@ -50,7 +50,7 @@ impl Units {
         }
     }
 
-    /// Shortest side of anything; far below any foot.
+    /// Minimum side of an area; far below any foot.
     pub(super) const fn shortest(self) -> f64 {
         match self {
             Self::Tiles => 0.05,
@@ -63,7 +63,7 @@ impl Named for Units {
     const ALL: &'static [(&'static str, Self)] = &[("Tiles", Self::Tiles), ("Metres", Self::Metres)];
 }
 
-/// What all places and sizes behind it count in.
+/// The unit of all places and sizes that follow in the file.
 pub(super) const UNITS: By<Units> = By {
     shape: || Codec::<Units>::shape(&Name),
     read: |node| {
@@ -76,12 +76,12 @@ pub(super) const UNITS: By<Units> = By {
 };
 
 impl Reader<'_> {
-    /// What places and sizes count in.
+    /// Returns the unit of places and sizes.
     pub(super) fn units(&self) -> Units {
         *self.known()
     }
 
-    /// From now on places and sizes count in these.
+    /// Sets the unit of places and sizes from now on.
     pub(super) fn count_in(&self, units: Units) {
         self.know(Arc::new(units));
         self.show_lengths_in(units.suffix());
@@ -89,7 +89,7 @@ impl Reader<'_> {
 }
 
 impl Fields<'_> {
-    /// What places and sizes count in.
+    /// Returns the unit of places and sizes.
     pub(super) fn units(&self) -> Units {
         self.reader().units()
     }

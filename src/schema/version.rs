@@ -8,10 +8,10 @@ use crate::format::{Num, num};
 /// The version of the formats that this program reads and writes.
 pub const FORMAT_VERSION: u32 = 1;
 
-/// The version that a file says it is of.
+/// The version field of a file.
 pub(super) const VERSION: Num = num(1.0..=FORMAT_VERSION as f64).explicit();
 
-/// What to say of a file of a newer version than this program knows: that, and nothing else.
+/// Returns the only problem of a file with a newer version than this program supports.
 pub(super) fn newer(reader: &Reader<'_>, kind: &'static str) -> Option<Diagnostics> {
     let field = reader.root("")?.peek(kind, "version")?;
     let version = field.peek_number().filter(|version| *version > f64::from(FORMAT_VERSION))?;

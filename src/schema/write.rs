@@ -1,4 +1,4 @@
-//! Layouts made in code, as files.
+//! Writing of layouts made in code.
 
 use super::version::FORMAT_VERSION;
 use crate::floor::Rect;
@@ -7,9 +7,9 @@ use crate::format::{Codec, Name, Rec, Record, Variants};
 use crate::ground::Material;
 use crate::layout::{Ground, HEX, Layout, Widget};
 
-/// The file that describes `layout`, in metres; [`super::parse_layout`] reads it again.
+/// Writes the file that describes `layout`, in metres; [`super::parse_layout`] reads it.
 ///
-/// Places are rounded to a ten thousandth of a millimetre. What widgets do, feel and look like is written once, in
+/// Places are rounded to a ten thousandth of a millimetre. Behaviour, feel and look of widgets are written once, in
 /// kinds of the layout's own. Reading puts the controls of all pages before those of the first page and so on, each
 /// group in its order here.
 #[must_use]
@@ -53,7 +53,7 @@ pub fn write_layout(layout: &Layout) -> String {
     format!("{}\n", Text::Fields("Layout", entries).lay_out(0, 0))
 }
 
-/// The name of the kind among `kinds` that `widget` is of; it is added if there is none.
+/// Returns the name of the kind of `widget` in `kinds`; adds the kind if there is none.
 fn kind_of<'l>(widget: &'l Widget, kinds: &mut Vec<(String, &'l Widget)>) -> String {
     let is_like = |other: &Widget| {
         (&other.behaviour, &other.feel, &other.look) == (&widget.behaviour, &widget.feel, &widget.look)
@@ -68,7 +68,7 @@ fn kind_of<'l>(widget: &'l Widget, kinds: &mut Vec<(String, &'l Widget)>) -> Str
     name
 }
 
-/// The controls and grounds of one page, or those of all pages.
+/// Writes the controls and grounds of one page, or those on all pages.
 fn of_page(layout: &Layout, kinds: &[String], page: Option<usize>, entries: &mut Vec<Entry>) {
     let widgets = layout.widgets.iter().zip(kinds).filter(|(widget, _)| widget.page == page);
     let widgets = widgets.map(|(widget, kind)| {

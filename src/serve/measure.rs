@@ -1,49 +1,48 @@
-//! Least, median and greatest forces over time.
+//! Minimum, median and maximum forces over time.
 
 use crate::floor::{Floor, TileId};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 
-/// Least, median and greatest of a force over time.
+/// Minimum, median and maximum of a force over time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct ForceRange {
-    /// The least.
+    /// Minimum, in newtons.
     pub least_n: f32,
-    /// Half of the time it was no more.
+    /// Median, in newtons.
     pub median_n: f32,
-    /// The greatest.
+    /// Maximum, in newtons.
     pub greatest_n: f32,
 }
 
-/// What one tile and its sensors felt over time.
+/// Forces on one tile and its sensors over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileRange {
-    /// Which tile.
+    /// The tile.
     pub tile: TileId,
     /// The whole tile.
     pub force: ForceRange,
     /// Its sensors, in [`crate::floor::Corner::ALL`] order.
     pub sensors: [ForceRange; 4],
-    /// The worst quality that any of its values had.
+    /// The worst quality of any of its values.
     pub quality: Quality,
 }
 
-/// Forces watched over time, for choosing thresholds on site.
+/// Records forces over time, for the choice of thresholds on site.
 ///
-/// Forces are corrected by the floor's position maps, as controls feel them.
-/// The extremes are exact; the median is that of at most 1024 moments, evenly
-/// spread over the time.
+/// Forces are corrected by the floor's position maps, as for controls. The extremes are exact; the median is that of
+/// at most 1024 moments, evenly spread over the time.
 #[derive(Clone, Debug)]
 pub struct ForceWatch {
     floor: Floor,
     tiles: Vec<[Spread; 5]>,
     quality: Vec<Quality>,
     frames: u64,
-    /// Every so many frames one is kept for the medians.
+    /// One of `stride` frames is kept for the medians.
     stride: u64,
 }
 
-/// The extremes of one force, and some of its values.
+/// Extremes and kept values of one force.
 #[derive(Clone, Debug)]
 struct Spread {
     least: f32,
@@ -51,11 +50,11 @@ struct Spread {
     kept: Vec<f32>,
 }
 
-/// Most moments that medians are taken from.
+/// Maximum number of moments for the medians.
 const MOMENTS: usize = 1024;
 
 impl ForceWatch {
-    /// A watch over `floor` that has seen nothing yet.
+    /// A watch over `floor` without any frames yet.
     #[must_use]
     pub fn new(floor: &Floor) -> Self {
         let nothing = Spread { least: f32::INFINITY, greatest: f32::NEG_INFINITY, kept: Vec::new() };
@@ -69,13 +68,13 @@ impl ForceWatch {
         }
     }
 
-    /// Frames seen.
+    /// Returns the number of frames so far.
     #[must_use]
     pub const fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Looks at one frame; tiles without a usable value are passed over.
+    /// Adds one frame; ignores tiles without a usable value.
     pub fn take(&mut self, frame: &ForceFrame) {
         let keep = self.frames.is_multiple_of(self.stride);
         self.frames += 1;
@@ -95,7 +94,7 @@ impl ForceWatch {
             }
         }
         if keep && self.frames.div_ceil(self.stride) >= MOMENTS as u64 {
-            // Every other of the moments kept so far; from now on they lie twice as far apart.
+            // Keep every other moment; from now on the moments lie twice as far apart.
             self.stride *= 2;
             for spread in self.tiles.iter_mut().flatten() {
                 let mut number = 0;
@@ -107,7 +106,7 @@ impl ForceWatch {
         }
     }
 
-    /// The greatest force any whole tile carried in the last moment kept, and where.
+    /// Returns the tile with the greatest force in the last kept moment, and that force.
     #[must_use]
     pub fn heaviest(&self) -> Option<(TileId, Newtons)> {
         let now = |spreads: &[Spread; 5]| spreads[0].kept.last().copied().unwrap_or(0.0);
@@ -115,7 +114,7 @@ impl ForceWatch {
         Some((self.floor.geometry.tile_at_index(index), Newtons(force)))
     }
 
-    /// What each tile felt, in tile-index order; zero for a tile that never had a usable value.
+    /// Returns the forces on each tile in tile-index order; zero for a tile that never had a usable value.
     pub fn ranges(&self) -> impl Iterator<Item = TileRange> + '_ {
         let tiles = self.floor.geometry.tiles().zip(self.tiles.iter().zip(&self.quality));
         tiles.map(|(tile, (spreads, quality))| TileRange {
@@ -167,7 +166,7 @@ mod tests {
             assert_eq!(range.force.greatest_n, 100.0);
             assert_eq!(range.force.least_n, 100.0 / f32::from(frames));
             let off = (range.force.median_n - 50.0).abs();
-            // The upper of the two middle steps of the ramp, at worst a step of the kept ones further.
+            // The upper of the two middle steps of the ramp, at most one step of the kept moments away.
             assert!(off <= 110.0 / f32::from(frames.min(500)), "{off} after {frames}");
             assert!(watch.tiles[1][0].kept.len() <= MOMENTS);
         }

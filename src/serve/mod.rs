@@ -1,9 +1,8 @@
-//! A floor at work: packets in, events, cues and snapshots out, in one thread.
+//! A running floor: packets in, events, cues and snapshots out, in one thread.
 //!
-//! [`Server`] pulls packets from a source, assembles frames, steps the engine
-//! and hands out what comes of it. Nothing it waits for depends on a window,
-//! a disk or another program. `take_tare`, `ForceWatch`, `WiringWalk` and
-//! `WalkTest` are for the people who set a floor up.
+//! [`Server`] pulls packets from a source, assembles frames, steps the engine and passes the results on. It never
+//! waits for a window, a disk or another program. `take_tare`, `ForceWatch`, `WiringWalk` and `WalkTest` serve the
+//! people who set up a floor.
 
 mod cause;
 mod changes;

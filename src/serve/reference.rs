@@ -1,4 +1,4 @@
-//! Every OSC address of a floor with a layout, in and out: made from the table that the decoder goes by.
+//! Every OSC address of a floor with a layout, in and out, made from the decoder's own table.
 
 use std::ops::Range;
 
@@ -10,24 +10,24 @@ use crate::layout::{Layout, Widget};
 use crate::widget::{ActsOn, Behaviour, Control, Guard, Indicator, OffReason, Scale, Value};
 use crate::wire::{ArgumentKind, COMMANDS, Command, Prefix};
 
-/// Which way a message goes.
+/// Direction of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
     /// To the floor's own port.
     In,
-    /// From the floor to those who listen.
+    /// From the floor to its listeners.
     Out,
-    /// From the floor to whoever asked.
+    /// From the floor to the program that asked.
     Answer,
 }
 
 /// One argument.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Argument {
-    /// What it is.
+    /// Its name.
     pub name: String,
-    /// Its OSC type tag; several that are taken are separated by `|`.
+    /// Its OSC type tag; `|` separates several accepted tags.
     pub tag: &'static str,
     /// Its unit, range or choices; may be empty.
     pub range: String,
@@ -36,13 +36,13 @@ pub struct Argument {
 /// One address.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Entry {
-    /// Which way.
+    /// Direction of its messages.
     pub direction: Direction,
     /// The address as it stands in messages.
     pub address: String,
     /// Its arguments, in order.
     pub arguments: Vec<Argument>,
-    /// What it says, in a sentence.
+    /// Its meaning, in a sentence.
     pub says: String,
 }
 
@@ -96,7 +96,7 @@ impl Maker<'_> {
             self.entries.push(Entry { direction: Direction::In, address, arguments, says });
         }
         for command in COMMANDS.iter().filter(|command| !command.is_of_a_control()) {
-            // Without pages there is none to show.
+            // A layout without pages has none to show.
             if command.argument != ArgumentKind::Page || !layout.pages.is_empty() {
                 let arguments = taken(command, None, layout, &floor.geometry);
                 self.add(Direction::In, command.path, arguments, command.says);
@@ -176,7 +176,7 @@ impl Maker<'_> {
     fn control(&mut self, widget: &Widget, layout: &Layout, floor: &Floor) {
         let id = widget.id.as_str();
         let mut control = Control::new(&widget.behaviour, widget.area.size());
-        // What only a foot can hold, no app can set.
+        // An app cannot set a value that only a foot can hold.
         let settable = control.value().is_some_and(|value| control.set_value(value).is_ok());
         for command in COMMANDS.iter().filter(|command| command.is_of_a_control()) {
             let suits = match command.argument {
@@ -254,7 +254,7 @@ fn argument(name: &str, tag: &'static str, range: &str) -> Argument {
     Argument { name: name.into(), tag, range: range.into() }
 }
 
-/// What a command takes; of a value, what the control holds.
+/// Returns the arguments of a command; for a value, those of the control's value.
 fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout, geometry: &Geometry) -> Vec<Argument> {
     match command.argument {
         ArgumentKind::Nothing => Vec::new(),
@@ -290,7 +290,7 @@ fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout, geometry: 
     }
 }
 
-/// What a control of this behaviour holds, as messages carry it.
+/// Returns the arguments of the value of a control with this behaviour.
 fn values(behaviour: &Behaviour, held: Value) -> Vec<Argument> {
     let number = |name: &str, scale: Option<&Scale>| {
         argument(name, "f", &scale.map_or_else(|| "-1 to 1".to_owned(), range))
@@ -327,7 +327,7 @@ fn pages(layout: &Layout) -> String {
     ids.join(", ")
 }
 
-/// What an event carries besides force and place.
+/// Content of an event besides force and place.
 #[derive(Clone, Copy)]
 enum Carries {
     Nothing,
@@ -335,7 +335,7 @@ enum Carries {
     Direction,
 }
 
-/// The events that a control of this behaviour may cause: name, what they carry, and what they say.
+/// Returns the possible events of a control with this behaviour: name, content and meaning.
 fn events(behaviour: &Behaviour) -> Vec<(&'static str, Carries, &'static str)> {
     use Carries::{Direction, Nothing, Value};
     let mut events = vec![

@@ -1,4 +1,4 @@
-//! Why a floor does not do what an app asks.
+//! Reasons for which a floor rejects a request of an app.
 
 use std::fmt;
 
@@ -8,31 +8,31 @@ use crate::format::suggest::{listed, nearest};
 use crate::layout::Layout;
 use crate::widget::{SetError, WidgetId};
 
-/// Why a floor does not do what an app asks; nothing has changed then.
+/// Reason for which a floor rejected a request of an app; the floor is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// The control does not take it: another type, locked, in use, or guarded ([`SetError::Momentary`]: only a foot can
-    /// hold it).
+    /// The control rejects the request: another type, locked, in use, or guarded ([`SetError::Momentary`]: only a
+    /// foot can hold it).
     #[error("{id}: {why}")]
     Control {
-        /// Which control.
+        /// The control.
         id: WidgetId,
-        /// Why it stays as it was.
+        /// Reason of the rejection.
         why: SetError,
     },
     /// The layout has no control of this name.
     #[error("there is no control {id:?}{}", DidYouMean(nearest))]
     UnknownControl {
-        /// The name that was asked for.
+        /// The requested name.
         id: String,
-        /// The control of the layout whose name comes nearest; `None` if none comes close.
+        /// The control of the layout with the most similar name; `None` if no name is similar.
         nearest: Option<WidgetId>,
     },
     /// The layout has no page of this name.
     #[error("there is no page {id:?}: {}", Pages(pages))]
     UnknownPage {
-        /// The name that was asked for.
+        /// The requested name.
         id: String,
         /// The pages of the layout.
         pages: Vec<WidgetId>,
@@ -40,7 +40,7 @@ pub enum Refusal {
     /// The session is over.
     #[error("the session is over")]
     Ended,
-    /// The sensing thread did not answer within 200 ms; it may still do what was asked.
+    /// The sensing thread did not answer within 200 ms; it may still carry out the request.
     #[error("the floor does not answer")]
     NoAnswer,
 }
@@ -56,7 +56,7 @@ impl Refusal {
         Self::UnknownPage { id: id.to_owned(), pages }
     }
 
-    /// The reason without the name of a control that is there, for answers that come with its address.
+    /// Returns the reason without the name of an existing control, for answers that come with its address.
     #[must_use]
     pub fn reason(&self) -> String {
         match self {
@@ -66,7 +66,7 @@ impl Refusal {
     }
 }
 
-/// The end of a sentence about a name that is not there.
+/// The end of a sentence about an unknown name.
 struct DidYouMean<'a>(&'a Option<WidgetId>);
 
 impl fmt::Display for DidYouMean<'_> {
@@ -78,7 +78,7 @@ impl fmt::Display for DidYouMean<'_> {
     }
 }
 
-/// The pages that there are.
+/// The pages of the layout, in words.
 struct Pages<'a>(&'a [WidgetId]);
 
 impl fmt::Display for Pages<'_> {
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(text("zom"), r#"there is no control "zom"; did you mean "zoom"?"#);
         assert_eq!(text("Satelite"), r#"there is no control "Satelite"; did you mean "satellite"?"#);
         assert_eq!(text("volume"), r#"there is no control "volume""#);
-        // Whatever stands in a name, it controls no terminal.
+        // No content of a name can control a terminal.
         assert_eq!(text("\u{1b}[2J"), r#"there is no control "\u{1b}[2J""#);
     }
 

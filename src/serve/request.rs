@@ -1,25 +1,25 @@
-//! What a floor does with what apps ask.
+//! Processing of requests from apps.
 
 use super::Refusal;
 use crate::engine::Engine;
 use crate::widget::{SetError, Value, WidgetId};
 use crate::wire::{ControlMessage, is_pattern, matches};
 
-/// Does what `message` asks of `engine`.
+/// Carries out the request `message` on `engine`.
 ///
 /// # Errors
-/// [`Refusal`] if it can't be done; nothing has changed then.
+/// [`Refusal`] if the engine rejects it; nothing has changed then.
 pub(super) fn apply(engine: &mut Engine, message: &ControlMessage) -> Result<(), Refusal> {
     set(engine, message).map_err(|why| refusal(engine, message, why))
 }
 
-/// The refusal of `message` for this reason, with the names that it could have meant.
+/// Returns the refusal of `message` for reason `why`, with the most similar names.
 pub(super) fn refusal(engine: &Engine, message: &ControlMessage, why: SetError) -> Refusal {
     match (message.id(), message, why) {
         (_, ControlMessage::ShowPage { page }, _) => Refusal::unknown_page(page.as_str(), engine.layout()),
         (Some(id), _, SetError::Unknown) => Refusal::unknown_control(id.as_str(), engine.layout()),
         (Some(id), _, why) => Refusal::Control { id: id.clone(), why },
-        // Nothing else is refused.
+        // No other request can fail.
         (None, _, _) => Refusal::unknown_control("", engine.layout()),
     }
 }
@@ -38,7 +38,7 @@ fn set(engine: &mut Engine, message: &ControlMessage) -> Result<(), SetError> {
         ControlMessage::SetRange { id, least, greatest } => engine.set_range(id.as_str(), *least, *greatest),
         ControlMessage::ShowPage { page } => engine.set_page(page.as_str()),
         ControlMessage::Get { id } => engine.control(id.as_str()).map(drop).ok_or(SetError::Unknown),
-        // The server does these itself.
+        // The server processes these itself.
         ControlMessage::GetPage
         | ControlMessage::GetAll
         | ControlMessage::CancelAll
@@ -49,7 +49,7 @@ fn set(engine: &mut Engine, message: &ControlMessage) -> Result<(), SetError> {
     }
 }
 
-/// The controls that `id` means as a pattern; empty if it is not a pattern, or is the name of a control.
+/// Returns the controls that match the pattern `id`; empty if `id` is not a pattern, or is the name of a control.
 pub(super) fn meant(engine: &Engine, id: &WidgetId) -> Vec<WidgetId> {
     if !is_pattern(id.as_str()) || engine.control(id.as_str()).is_some() {
         return Vec::new();
@@ -58,8 +58,8 @@ pub(super) fn meant(engine: &Engine, id: &WidgetId) -> Vec<WidgetId> {
     ids.filter(|other| matches(id.as_str(), other.as_str())).cloned().collect()
 }
 
-/// A number stands for on or off where the control is a switch, and for a choice where it is a
-/// selector: OSC has no such types, or some apps can't send them.
+/// Converts a number to on or off for a switch, and to a choice for a selector: OSC has no such types, or some apps
+/// cannot send them.
 fn as_held(engine: &Engine, id: &str, value: Value) -> Result<Value, SetError> {
     Ok(match (engine.value(id), value) {
         (Some(Value::Switch(_)), Value::Number(number)) => Value::Switch(number != 0.0),

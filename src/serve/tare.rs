@@ -9,7 +9,7 @@ use crate::sense::{Assembler, Quality, Tare, TareOutcome, TareRules};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Newtons;
 
-/// Why no tare was taken. The floor's own is still what it was.
+/// Reasons why taking a tare failed. The floor's own tare is unchanged.
 #[derive(Debug, Error)]
 pub enum TareFailure {
     /// The packets' source failed or ended.
@@ -21,13 +21,13 @@ pub enum TareFailure {
         /// Their OSC addresses.
         boards: Vec<String>,
     },
-    /// The stream kept breaking off.
+    /// The packet stream was interrupted repeatedly.
     #[error("the packets keep breaking off, so nothing could be averaged for {:.1} s", span.as_secs_f32())]
     Broken {
-        /// The time that was to be averaged.
+        /// The time over which readings are averaged.
         span: Duration,
     },
-    /// Somebody or something is on the floor.
+    /// The floor is not empty.
     #[error(
         "the floor is not empty and quiet: the sensor of {sensor} read {:.1} N and scattered by {:.2} N \
          (at most {:.0} N and {:.1} N on an empty floor); clear the floor and try again",
@@ -36,46 +36,45 @@ pub enum TareFailure {
     NotQuiet {
         /// The worst sensor.
         sensor: SensorId,
-        /// What it read on average.
+        /// The mean of its readings.
         mean: Newtons,
-        /// By how much its readings scattered.
+        /// The standard deviation of its readings.
         deviation: Newtons,
-        /// What would have been quiet.
+        /// Limits for a quiet floor.
         rules: TareRules,
     },
-    /// A sensor gave no number.
+    /// A sensor gave no reading.
     #[error("the sensor of {sensor} gives no reading")]
     Unread {
-        /// Which sensor.
+        /// The sensor.
         sensor: SensorId,
     },
-    /// A tile weighs otherwise than when the floor was tared last.
+    /// The weight of a tile differs from that at the last tare.
     #[error(
         "tile {tile} carries {:+.1} N more than at the last tare: is something standing on it? \
          If the floor itself was changed, take the change as it is",
         change.0
     )]
     Changed {
-        /// Which tile changed most.
+        /// The tile with the greatest change.
         tile: TileId,
-        /// By how much.
+        /// The change in newtons.
         change: Newtons,
     },
 }
 
-/// The change of a tile since the last tare from which on something stands on it: far more than
-/// four sensors drift in a day, less than a bag (our choice).
+/// Change of a tile since the last tare above which a load rests on it: far more than four sensors drift in a day,
+/// less than a bag (our choice).
 const MOST_CHANGE: Newtons = Newtons(15.0);
 
-/// How long after the patience is over packets may still be under way.
+/// Time after the end of the patience during which packets may still arrive.
 const GRACE: Duration = Duration::from_millis(200);
 
-/// The tare of a floor that is provably empty and quiet: what each sensor reads, in newtons
-/// ([`Floor::tare`]'s order). Sensors that no board reads keep what the floor has.
+/// Measures the tare of a floor that is provably empty and quiet: the reading of each sensor, in newtons
+/// ([`Floor::tare`]'s order). Sensors that no board reads keep the value of the floor.
 ///
-/// Takes packets from `source` for at most `patience`, and averages the first
-/// quiet half second of each board. Where the floor was tared before, no tile may weigh
-/// 15 N more or less than then, unless `accept_change`.
+/// Takes packets from `source` for at most `patience`, and averages the first quiet half second of each board. If the
+/// floor has a tare, no tile may differ by more than 15 N from it, unless `accept_change`.
 ///
 /// # Errors
 /// [`TareFailure`] names the board, tile or sensor that caused it.
@@ -134,7 +133,7 @@ pub fn take_tare(
     }
 }
 
-/// `measured` where boards read sensors, the floor's own elsewhere.
+/// Returns `measured` where boards read sensors, the floor's own tare elsewhere.
 fn merged(floor: &Floor, measured: &[[Newtons; 4]]) -> Vec<[Newtons; 4]> {
     let mut tare = floor.tare.clone();
     for sensor in floor.boards.iter().flat_map(|board| board.channels.iter().flatten()) {
@@ -146,7 +145,7 @@ fn merged(floor: &Floor, measured: &[[Newtons; 4]]) -> Vec<[Newtons; 4]> {
     tare
 }
 
-/// The tile whose weight changed most since the floor was tared, if that is too much.
+/// Returns the tile with the greatest change since the floor was tared, if the change is too large.
 fn changed(floor: &Floor, tare: &[[Newtons; 4]]) -> Option<(TileId, Newtons)> {
     floor.tared?;
     let weight = |tare: &[Newtons; 4]| tare.iter().map(|tare| tare.0).sum::<f32>();

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use crate::feel::{Audition, Cue, CueSender, Effect, Gesture, Spot, Spots, SustainedCues};
 use crate::units::Instant;
 
-/// An effect that somebody tries on one tile.
+/// An effect on trial on one tile.
 #[derive(Debug)]
 pub(super) struct Trial {
     effect: Arc<Effect>,
     gesture: Gesture,
     spots: Spots,
-    /// Begun with the first frame.
+    /// Begins with the first frame.
     audition: Option<Audition>,
     cues: Vec<Cue>,
     sustained: SustainedCues,
@@ -23,7 +23,7 @@ impl Trial {
         Self { effect, gesture, spots, audition: None, cues: Vec::new(), sustained: SustainedCues::new() }
     }
 
-    /// Sends what happens at `now`, with what lasts on the floor besides; whether there is more to come.
+    /// Sends the cues at `now` together with the sustained cues of the floor; returns whether the trial continues.
     pub(super) fn step(&mut self, now: Instant, floor: &SustainedCues, feel: &mut CueSender) -> bool {
         let Self { effect, gesture, spots, audition, cues, sustained } = self;
         let audition =
@@ -32,7 +32,7 @@ impl Trial {
         sustained.clone_from(floor);
         let goes_on = audition.step(now, spots, cues, sustained);
         for cue in cues.iter() {
-            // What could not be sent is counted by the sender.
+            // The sender counts the cues that it cannot send.
             feel.send(cue);
         }
         feel.sustain(sustained);

@@ -1,35 +1,36 @@
-//! A walk over all tiles, in any order, that finds sensors which do not answer.
+//! A walk over all tiles, in any order, that finds sensors without a response.
 
 use crate::floor::{Corner, Floor, SensorId, TileId};
 use crate::wire::{Readings, SensorPacket};
 
-/// How many packets of a board make the mean of the empty floor.
+/// Number of packets of a board in the mean of the empty floor.
 const REST: u32 = 300;
 
-/// What a sensor must read to be believed, and what its plate must demand of it for its silence to count, in newtons: a
-/// footstep puts several times that on each corner it comes near (our choice).
+/// Minimum reading of a working sensor, and minimum expected force for a failure to count, in newtons: a footstep
+/// puts several times that on each nearby corner (our choice).
 const READS_N: f32 = 20.0;
 const DEMANDS_N: f32 = 60.0;
 
-/// Share of what its plate demands that a sensor must read at least: parts that were never calibrated differ by a
-/// quarter, plates that bend by as much again.
+/// Minimum share of the expected force that a sensor must read: uncalibrated parts differ by a quarter, plates that
+/// bend by as much again.
 const SHARE: f32 = 0.3;
 
-/// For how many packets a sensor must have read something plausible, and for how many it must have failed to.
+/// Number of packets with a plausible reading that a working sensor needs, and with a failure that a faulty one
+/// needs.
 const ENOUGH: u32 = 20;
 const FAILED: u32 = 100;
 
-/// How much more often than it is plausible a sensor may fail: a dead one misleads about the one opposite of it.
+/// Maximum ratio of failures to plausible readings: a dead sensor distorts the expected force of the opposite one.
 const MISLED: u32 = 4;
 
-/// Below this a sensor reads nothing, in newtons.
+/// Maximum reading, in newtons, of a sensor without any response.
 const NOTHING_N: f32 = 10.0;
 
-/// A walk over all tiles: each sensor must have been seen to answer to a load on its plate.
+/// A walk over all tiles: each sensor must respond to a load on its plate.
 ///
-/// The plate is rigid: what one of its corners bears follows from the other three, as the sum of its neighbours less
-/// the opposite corner. Each sensor that has read a fair share of that for a while answers; one of which much was
-/// demanded and that never did is named. It needs no tare: it takes for granted that the floor is empty at the
+/// The plate is rigid: the force on one corner follows from the other three as the sum of its neighbours less the
+/// opposite corner. A sensor that reads a fair share of this expected force for a while works; one with a large
+/// expected force and no such reading is faulty. The walk needs no tare: it assumes that the floor is empty at the
 /// beginning.
 #[derive(Clone, Debug)]
 pub struct WalkTest {
@@ -37,29 +38,29 @@ pub struct WalkTest {
     boards: Vec<BoardRest>,
 }
 
-/// How a sensor has done.
+/// Result for a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorVerdict {
     /// It has not been loaded yet.
     Untried,
-    /// It answers as its plate demands.
+    /// It reads the expected force.
     Answers,
     /// Its board gives no reading for it.
     NoReading,
-    /// It does not change whatever stands on its tile.
+    /// It does not respond to any load on its tile.
     Still,
-    /// It reads far less than its plate demands.
+    /// It reads far less than the expected force.
     Weak,
 }
 
 impl SensorVerdict {
-    /// Whether something is wrong with it.
+    /// Whether the result is a fault.
     #[must_use]
     pub const fn is_fault(self) -> bool {
         matches!(self, Self::NoReading | Self::Still | Self::Weak)
     }
 
-    /// In words, after the sensor's name.
+    /// Returns the result in words, after the sensor's name.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -75,7 +76,7 @@ impl SensorVerdict {
 #[derive(Clone, Debug)]
 struct TileTest {
     id: TileId,
-    /// Over what the corner read at rest; `None` while nobody reads it.
+    /// Force above the reading at rest per corner; `None` while no board reads the corner.
     forces: [Option<f32>; 4],
     sensors: [SensorTest; 4],
 }
@@ -88,11 +89,11 @@ struct SensorTest {
     most_n: f32,
 }
 
-/// One board: where its channels are, and what they read on the empty floor.
+/// One board: the places of its channels and their readings on the empty floor.
 #[derive(Clone, Debug)]
 struct BoardRest {
     channels: Vec<Option<Channel>>,
-    /// Indices of the tiles that it reads something of.
+    /// Indices of the tiles with a sensor of this board.
     tiles: Vec<usize>,
     rested: u32,
 }
@@ -102,9 +103,9 @@ struct Channel {
     tile: usize,
     corner: usize,
     calibration: crate::floor::Calibration,
-    /// The sum of what it read at rest.
+    /// Sum of the readings at rest.
     rest: f32,
-    /// Of how many readings.
+    /// Number of readings in the sum.
     read: u32,
 }
 
@@ -137,7 +138,7 @@ impl WalkTest {
         }
     }
 
-    /// Takes a packet.
+    /// Processes a packet.
     pub fn take(&mut self, packet: &SensorPacket) {
         let Some(board) = self.boards.get_mut(usize::from(packet.board)) else { return };
         if packet.readings.len() != board.channels.len() {
@@ -171,20 +172,20 @@ impl WalkTest {
         }
     }
 
-    /// Whether the empty floor has been read: before that, nobody should step on it.
+    /// Whether the reading of the empty floor is complete: before that, people must keep off the floor.
     #[must_use]
     pub fn is_rested(&self) -> bool {
         self.boards.iter().all(|board| board.rested >= REST || board.channels.iter().flatten().count() == 0)
     }
 
-    /// How the sensors of the tile with this index have done, in [`Corner::ALL`] order; `None` if there is no such
-    /// tile.
+    /// Returns the results of the sensors of the tile with this index, in [`Corner::ALL`] order; `None` if there is
+    /// no such tile.
     #[must_use]
     pub fn tile(&self, index: usize) -> Option<[SensorVerdict; 4]> {
         self.tiles.get(index).map(|tile| tile.sensors.map(|sensor| sensor.verdict()))
     }
 
-    /// Tiles of which all four sensors answer.
+    /// Returns the number of tiles with four working sensors.
     #[must_use]
     pub fn passed(&self) -> usize {
         let passes =
@@ -192,14 +193,14 @@ impl WalkTest {
         self.tiles.iter().filter(passes).count()
     }
 
-    /// Whether of each sensor it is known how it does.
+    /// Whether every sensor has a result.
     #[must_use]
     pub fn is_done(&self) -> bool {
         let sensors = || self.tiles.iter().flat_map(|tile| &tile.sensors);
         self.is_rested() && sensors().all(|sensor| sensor.verdict() != SensorVerdict::Untried)
     }
 
-    /// The sensors that something is wrong with.
+    /// Returns the faulty sensors.
     pub fn faults(&self) -> impl Iterator<Item = (SensorId, SensorVerdict)> + '_ {
         self.tiles.iter().flat_map(|tile| {
             let sensors = Corner::ALL.into_iter().zip(tile.sensors);
@@ -212,13 +213,13 @@ impl WalkTest {
 }
 
 impl TileTest {
-    /// Counts what each sensor reads for or against it.
+    /// Counts plausible readings and failures of each sensor.
     fn judge(&mut self) {
         let known = self.forces.map(|force| force.unwrap_or(0.0));
         let total: f32 = known.iter().sum();
         let [south_west, south_east, north_west, north_east] = known;
         let (one, other) = (south_east + north_west, south_west + north_east);
-        // Of each corner: its neighbours less the opposite one.
+        // Expected force on each corner: the sum of its neighbours less the opposite corner.
         let demanded = [one - north_east, other - north_west, other - south_east, one - south_west];
         for ((sensor, reading), demanded) in self.sensors.iter_mut().zip(self.forces).zip(demanded) {
             let Some(reading) = reading else {

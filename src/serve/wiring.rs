@@ -1,27 +1,27 @@
-//! The walk from board to board that finds which of them reads which tiles.
+//! A walk from board to board that finds which board reads which tiles.
 
 use crate::floor::{Calibration, Floor, TileId};
 use crate::wire::{Readings, SensorPacket};
 
-/// Load of a tile from which on somebody stands on it, in newtons by nominal parts: a third of a person of 45 kg (our
+/// Load of a tile above which a person stands on it, in newtons by nominal parts: a third of a person of 45 kg (our
 /// choice).
 pub const STEP_N: f32 = 150.0;
 
-/// Load below which a tile is empty again: more than a plate rings.
+/// Load below which a tile is empty again: more than the ringing of a plate.
 const EMPTY_N: f32 = 40.0;
 
-/// For how many packets a board's tile must be loaded, and how many make the mean of the empty floor.
+/// Number of packets for which a tile must be loaded, and number of packets in the mean of the empty floor.
 const FIRM: u32 = 200;
 const REST: u32 = 300;
 
-/// Somebody on the way from board to board: steps on a tile of each, and off again.
+/// A walk from board to board: a person steps on a tile of each board, and off again.
 ///
-/// Give it every packet; it says what is to be done next, goes on by itself, and knows at the end which boards have
-/// changed places. It needs no tare: it takes for granted that the floor is empty at the beginning.
+/// The caller passes every packet. The walk gives the next task, advances by itself, and reports at the end which
+/// boards are swapped. It needs no tare: it assumes that the floor is empty at the beginning.
 #[derive(Clone, Debug)]
 pub struct WiringWalk {
     readers: Vec<Reader>,
-    /// Numbers of boards and the tile of each that is to be stepped on.
+    /// Numbers of boards, with the tile to step on for each.
     way: Vec<(usize, TileId)>,
     found: Vec<WiringStep>,
     stage: Stage,
@@ -35,59 +35,59 @@ enum Stage {
     Done,
 }
 
-/// What has to be done next.
+/// The next task of the person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WiringTask {
-    /// Keep off the floor, until all boards have been heard for a while.
+    /// Keep off the floor until all boards have sent packets for a while.
     KeepOff,
     /// Step on this tile.
     Step(TileId),
     /// Step off again.
     StepOff,
-    /// Nothing: [`WiringWalk::outcome`] says what was found.
+    /// No task: [`WiringWalk::outcome`] gives the result.
     Nothing,
 }
 
-/// A tile that was stepped on, and what felt it.
+/// A step on a tile, and the tile that read it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WiringStep {
-    /// The board that should feel it, and the tile.
+    /// The board that should read the step.
     pub board: usize,
-    /// Which tile was stepped on.
+    /// The tile that was stepped on.
     pub tile: TileId,
-    /// The board that felt it.
+    /// The board that read the step.
     pub found: usize,
-    /// Where the floor file has the tile that felt it.
+    /// The tile that read the step, by the floor file.
     pub felt: TileId,
 }
 
-/// What a tile feels now.
+/// The present load of a tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeltLoad {
-    /// Which board feels it.
+    /// The board that reads the load.
     pub board: usize,
-    /// Where the floor file has the tile.
+    /// The tile, by the floor file.
     pub tile: TileId,
-    /// How much, in newtons by nominal parts.
+    /// The load, in newtons by nominal parts.
     pub force_n: f32,
 }
 
-/// One board felt the steps on tiles of several, so that nothing can be said of them.
+/// One board read the steps for several boards, so that the walk has no result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("one board felt the steps on tiles of several: was each step on the tile that was shown? Walk again")]
 pub struct FeltTwice;
 
-/// What the walk has found.
+/// The result of the walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wiring {
-    /// The boards that are not where the floor file has them: the place, and the board that is there.
+    /// The boards in other places than in the floor file: the place, and the board found there.
     pub moved: Vec<(usize, usize)>,
     /// The floor with their addresses exchanged.
     pub floor: Floor,
 }
 
 impl WiringWalk {
-    /// A walk over all boards of `floor` that read something.
+    /// A walk over all boards of `floor` that read sensors.
     #[must_use]
     pub fn new(floor: &Floor) -> Self {
         let first = |(number, board): (usize, &crate::floor::Board)| {
@@ -102,7 +102,7 @@ impl WiringWalk {
         }
     }
 
-    /// Takes a packet; the step that was made with it, if one was.
+    /// Processes a packet; returns the step that it completes, if any.
     pub fn take(&mut self, packet: &SensorPacket) -> Option<WiringStep> {
         self.readers.get_mut(usize::from(packet.board))?.take(&packet.readings);
         match self.stage {
@@ -127,7 +127,7 @@ impl WiringWalk {
         if self.found.len() < self.way.len() { Stage::Step } else { Stage::Done }
     }
 
-    /// What has to be done now.
+    /// Returns the present task.
     #[must_use]
     pub fn task(&self) -> WiringTask {
         match self.stage {
@@ -147,19 +147,19 @@ impl WiringWalk {
         &self.found
     }
 
-    /// How many steps it takes.
+    /// Returns the number of steps of the whole walk.
     #[must_use]
     pub fn length(&self) -> usize {
         self.way.len()
     }
 
-    /// Boards that have sent nothing yet, by their numbers.
+    /// Returns the numbers of the boards that have sent nothing yet.
     pub fn unheard(&self) -> impl Iterator<Item = usize> + '_ {
         let silent = |(_, reader): &(usize, &Reader)| reader.rested == 0 && !reader.tiles.is_empty();
         self.readers.iter().enumerate().filter(silent).map(|(number, _)| number)
     }
 
-    /// The heaviest load on the floor now; `None` while it is empty or not known.
+    /// Returns the heaviest load on the floor; `None` while the floor is empty or unknown.
     #[must_use]
     pub fn felt(&self) -> Option<FeltLoad> {
         let loads = self.readers.iter().enumerate().map(|(board, reader)| (board, reader, reader.most()));
@@ -168,17 +168,18 @@ impl WiringWalk {
         (force_n >= EMPTY_N).then_some(FeltLoad { board, tile, force_n })
     }
 
-    /// The board that feels somebody stand, and where the floor file says that is; of several the one that feels most.
+    /// Returns the board that reads a standing person, and the tile by the floor file; of several boards, the one
+    /// with the greatest load.
     fn stepped(&self) -> Option<(usize, TileId)> {
         let firm = self.readers.iter().enumerate().filter(|(_, reader)| reader.firm.1 >= FIRM);
         let (number, reader) = firm.max_by(|(_, a), (_, b)| a.most().1.total_cmp(&b.most().1))?;
         Some((number, *reader.tiles.get(reader.most().0)?))
     }
 
-    /// What was found on `floor`, which is the one that the walk began with; `None` before its end.
+    /// Returns the result of the walk; `None` before its end. `floor` is the floor of [`WiringWalk::new`].
     ///
     /// # Errors
-    /// [`FeltTwice`] if a board felt the steps on tiles of several.
+    /// [`FeltTwice`] if one board read the steps for several boards.
     #[must_use]
     pub fn outcome(&self, floor: &Floor) -> Option<Result<Wiring, FeltTwice>> {
         if self.stage != Stage::Done {
@@ -202,17 +203,17 @@ impl WiringWalk {
     }
 }
 
-/// What one board feels on each of its tiles.
+/// Loads of one board's tiles.
 #[derive(Clone, Debug)]
 struct Reader {
-    /// Its tiles, and for each channel which of them it belongs to.
+    /// Its tiles, and for each channel the index of its tile.
     tiles: Vec<TileId>,
     channels: Vec<Option<usize>>,
-    /// The sum of what each channel read at rest, and of how many packets.
+    /// Sum of the readings of each channel at rest, and number of packets.
     rest: Vec<f32>,
     rested: u32,
     loads: Vec<f32>,
-    /// Its tile that is loaded, and for how many packets.
+    /// The loaded tile, and the number of packets for which it has been loaded.
     firm: (usize, u32),
 }
 

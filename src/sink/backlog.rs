@@ -1,29 +1,29 @@
-//! What waits for a reader that has stopped reading: bounded, and nothing is left out without a note in its place.
+//! Jobs that wait for a slow reader: bounded, with a gap record in the place of every dropped job.
 
 use std::collections::VecDeque;
 
 use crate::units::Instant;
 
-/// Most entries that are kept one by one: an hour of somebody who presses four times a second.
+/// Maximum number of entries kept one by one: an hour of four presses a second.
 const KEPT: usize = 16_384;
 
-/// How much a job matters once there is no room for everything.
+/// Importance of a job when there is no room for all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Worth<K> {
-    /// Of those with the same key only the latest matters: values, states.
+    /// Only the latest job with the same key matters: values, states.
     Latest(K),
-    /// Each one matters: what begins or ends a press. Only beyond thousands the oldest with the same key goes.
+    /// Each job matters: begins and ends of presses. Beyond `KEPT` entries the oldest with the same key is dropped.
     Each(K),
-    /// None matters.
+    /// The job may always be dropped.
     None,
 }
 
-/// Jobs that were left out between two others.
+/// Jobs dropped between two others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Gap {
-    /// When the last of them happened.
+    /// Time of the last of them.
     pub(super) at: Instant,
-    /// How many.
+    /// Number of dropped jobs.
     pub(super) dropped: u64,
 }
 
@@ -34,11 +34,11 @@ impl Gap {
     }
 }
 
-/// Jobs for which the queue to a reader has had no room.
+/// Jobs that found no room in the queue to a reader.
 #[derive(Debug)]
 pub(super) struct Backlog<T, K> {
     entries: VecDeque<Entry<T, K>>,
-    /// What was left out behind the last entry.
+    /// Jobs dropped after the last entry.
     tail: Gap,
     dropped: u64,
 }
@@ -48,7 +48,7 @@ struct Entry<T, K> {
     at: Instant,
     job: T,
     worth: Worth<K>,
-    /// What was left out before it.
+    /// Jobs dropped before it.
     before: Gap,
 }
 
@@ -59,17 +59,17 @@ impl<T, K> Default for Backlog<T, K> {
 }
 
 impl<T: From<Gap>, K: PartialEq> Backlog<T, K> {
-    /// Whether everything has been handed on.
+    /// Whether no jobs wait.
     pub(super) fn is_empty(&self) -> bool {
         self.entries.is_empty() && self.tail.dropped == 0
     }
 
-    /// Jobs left out so far.
+    /// Returns the number of jobs dropped so far.
     pub(super) const fn dropped(&self) -> u64 {
         self.dropped
     }
 
-    /// Lets a job of time `at` wait; what matters less than it does makes room.
+    /// Appends a job of time `at`; drops a less important one to make room.
     pub(super) fn push(&mut self, at: Instant, job: T, worth: Worth<K>) {
         let replaced = match &worth {
             Worth::None => {
@@ -90,7 +90,7 @@ impl<T: From<Gap>, K: PartialEq> Backlog<T, K> {
         self.entries.push_back(Entry { at, job, worth, before });
     }
 
-    /// Leaves out one entry; whoever reads the next one is told.
+    /// Drops one entry and adds it to the gap before the next one.
     fn drop_entry(&mut self, index: usize) {
         let Some(Entry { at, before, .. }) = self.entries.remove(index) else { return };
         let next = self.entries.get_mut(index).map_or(&mut self.tail, |next| &mut next.before);
@@ -99,7 +99,7 @@ impl<T: From<Gap>, K: PartialEq> Backlog<T, K> {
         self.dropped += 1;
     }
 
-    /// Gives jobs to `offer`, in order and with gaps in their places, until it gives one back.
+    /// Passes jobs to `offer`, in order and with the gaps in their places, until it returns one.
     pub(super) fn flush(&mut self, mut offer: impl FnMut(T) -> Option<T>) {
         loop {
             let gap = self.entries.front_mut().map_or(&mut self.tail, |entry| &mut entry.before);
@@ -164,7 +164,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever is pushed and read when: order, gaps of the right size in the right places, every end, every last.
+        /// For any sequence of pushes and reads: order, correct gaps in the correct places, every end and every last
+        /// value.
         #[test]
         fn what_is_left_out_is_told_in_its_place(ops in ops()) {
             let (mut backlog, mut heard, mut pushed) = (Backlog::default(), Vec::new(), Vec::new());
@@ -180,7 +181,7 @@ mod tests {
             }
             read(&mut backlog, usize::MAX, &mut heard);
             prop_assert!(backlog.is_empty());
-            // Every number is read or counted in the gap where it would have been.
+            // Every number is either read or counted in the gap in its place.
             let (mut next, mut dropped) = (0, 0);
             for job in &heard {
                 match *job {

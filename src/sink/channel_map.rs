@@ -1,12 +1,12 @@
-//! Which output channel moves which tile, as a plan.
+//! The map from output channels to tiles, printed as a plan.
 
 use std::fmt;
 
 use crate::floor::{Floor, TileId};
 
-/// Which output channel moves which tile, as the floor file says; its text is a plan of the floor, north at the top.
+/// The map from output channels to tiles, from the floor file; its text is a plan of the floor, north at the top.
 ///
-/// Channels count from 0, as in the floor file; what is printed on a sound card often counts from 1.
+/// Channels count from 0, as in the floor file; the labels on a sound card often count from 1.
 #[derive(Clone, Copy, Debug)]
 pub struct ChannelMap<'a> {
     floor: &'a Floor,
@@ -19,18 +19,18 @@ impl<'a> ChannelMap<'a> {
         Self { floor }
     }
 
-    /// Every tile that has an actuator, in tile-index order, and its channel, from 0.
+    /// Returns every tile with an actuator, in tile-index order, and its channel, from 0.
     pub fn entries(&self) -> impl Iterator<Item = (TileId, u16)> + 'a {
         let tiles = self.floor.geometry.tiles().zip(&self.floor.actuators);
         tiles.filter_map(|(tile, actuator)| actuator.map(|actuator| (tile, actuator.channel)))
     }
 
-    /// The tiles that a device of so many channels would leave out.
+    /// Returns the tiles that a device with this number of channels cannot drive.
     pub fn beyond(&self, channels: usize) -> impl Iterator<Item = (TileId, u16)> + 'a {
         self.entries().filter(move |(_, channel)| usize::from(*channel) >= channels)
     }
 
-    /// The channels that several tiles share, each with its tiles: allowed, and rarely meant.
+    /// Returns the channels that several tiles share, with their tiles: allowed, but usually a mistake.
     #[must_use]
     pub fn shared(&self) -> Vec<(u16, Vec<TileId>)> {
         let mut by_channel: Vec<(u16, Vec<TileId>)> = Vec::new();
@@ -48,7 +48,7 @@ impl<'a> ChannelMap<'a> {
 }
 
 impl fmt::Display for ChannelMap<'_> {
-    /// A row of the plan per line, `-` where there is no actuator; the columns' numbers come last.
+    /// One row of the plan per line, `-` for a tile without an actuator; the numbers of the columns come last.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let geometry = &self.floor.geometry;
         let width = self.entries().map(|(_, channel)| channel.to_string().len()).max().unwrap_or(1).max(2);

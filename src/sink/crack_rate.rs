@@ -1,44 +1,44 @@
-//! A limit to the rate at which cracks are told.
+//! A rate limit on crack reports.
 
 use std::time::Duration;
 
 use crate::ground::GroundEvent;
 use crate::units::Instant;
 
-/// Least time between two messages, on average: 200 a second.
+/// Minimum mean time between two messages: 200 a second.
 const PERIOD: Duration = Duration::from_millis(5);
 
-/// Messages that may come at once after a pause.
+/// Maximum number of messages at once after a pause.
 const BURST: u32 = 10;
 
-/// Lets through as many crack events as other programs can follow; a stamp makes hundreds.
+/// Limits crack events to a rate that other programs can follow; a stamp makes hundreds.
 #[derive(Debug, Default)]
 pub(crate) struct CrackRateLimiter {
-    /// The time up to which messages are paid for.
+    /// End of the time that messages have used up; each message uses `PERIOD`.
     paid: Instant,
-    /// Events left out since the last message.
+    /// Events dropped since the last message.
     skipped: u32,
 }
 
 /// A crack event, for other programs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrackNews {
-    /// When it was felt.
+    /// Time of the event.
     pub at: Instant,
     /// The seed of its cracks.
     pub seed: u32,
-    /// The energy it took, in joules.
+    /// The energy of the event, in joules.
     pub energy_j: f32,
     /// East, in floor metres.
     pub x_m: f32,
     /// North, in floor metres.
     pub y_m: f32,
-    /// Events since the last message that there was no room for.
+    /// Number of events dropped since the last message.
     pub skipped: u32,
 }
 
 impl CrackRateLimiter {
-    /// What is to be told of `event`; `None` if it opened no crack, or has to wait its turn and is only counted.
+    /// Returns the report of `event`; `None` if it opened no crack, or if the rate limit drops and counts it.
     pub(crate) fn news(&mut self, event: &GroundEvent) -> Option<CrackNews> {
         let seed = event.seed?;
         let earliest = event.at.before(PERIOD * BURST);

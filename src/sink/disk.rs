@@ -1,24 +1,23 @@
-//! A file that is being recorded and the disk under it: brought to the disk every few seconds, and a word before it is
-//! full.
+//! Disk care for a recorded file: syncs the data every few seconds, and warns before the disk is full.
 
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant as HostInstant};
 
-/// How often data are brought to the disk: what a power failure can take.
+/// Interval between two syncs: the maximum loss in a power failure.
 const SYNC_EVERY: Duration = Duration::from_secs(5);
 
-/// Space below which it is told, in bytes: a minute and a half of a WAV file of 36 channels.
+/// Free space below which a warning is logged, in bytes: a minute and a half of a WAV file of 36 channels.
 const LOW: u64 = 500_000_000;
 
-/// Space above which it may be told again.
+/// Free space above which the warning may be repeated, in bytes.
 const ENOUGH: u64 = 600_000_000;
 
-/// Keeps one file safe while it is being written.
+/// Keeps one file safe while it is written.
 #[derive(Debug)]
 pub(crate) struct Disk {
-    /// A second handle of it.
+    /// A second handle of the file.
     file: File,
     path: PathBuf,
     synced: HostInstant,
@@ -26,10 +25,10 @@ pub(crate) struct Disk {
 }
 
 impl Disk {
-    /// Looks after `file` at `path`.
+    /// Takes care of `file` at `path`.
     ///
     /// # Errors
-    /// What the system says if it gives no second handle.
+    /// The error of the system if it gives no second handle.
     pub(crate) fn of(file: &File, path: &Path) -> io::Result<Self> {
         let mut disk = Self {
             file: file.try_clone()?,
@@ -41,10 +40,10 @@ impl Disk {
         Ok(disk)
     }
 
-    /// Looks after `file` at `path` from now on, in which the recording goes on.
+    /// Takes care of `file` at `path` from now on, the next file of the recording.
     ///
     /// # Errors
-    /// What the system says if it gives no second handle.
+    /// The error of the system if it gives no second handle.
     #[cfg(feature = "wav")]
     pub(crate) fn go_on(&mut self, file: &File, path: &Path) -> io::Result<()> {
         self.file = file.try_clone()?;
@@ -53,10 +52,10 @@ impl Disk {
         Ok(())
     }
 
-    /// Does what is due; to be called after each flush, from a thread that may wait for the disk.
+    /// Syncs and checks the disk if that is due. Called after each flush, from a thread that may block.
     ///
     /// # Errors
-    /// What the system says if it can't bring the data to the disk.
+    /// The error of the system if the sync fails.
     pub(crate) fn tend(&mut self) -> io::Result<()> {
         if self.synced.elapsed() < SYNC_EVERY {
             return Ok(());
@@ -75,14 +74,14 @@ impl Disk {
     }
 }
 
-/// Whether little space has been told of.
+/// Whether low space has been reported.
 #[derive(Clone, Copy, Debug, Default)]
 struct Space {
     told: bool,
 }
 
 impl Space {
-    /// Whether `left` bytes must be told of: once, until there has been enough again.
+    /// Whether `left` bytes must be reported: once, until there is enough space again.
     const fn is_news(&mut self, left: u64) -> bool {
         let is_low = left < LOW;
         let is_news = is_low && !self.told;
@@ -91,7 +90,7 @@ impl Space {
     }
 }
 
-/// The bytes that the disk of `path` has left for programs without privileges; `None` where the system does not tell.
+/// Returns the free bytes of the disk of `path` for programs without privileges; `None` if unknown.
 #[cfg(unix)]
 #[allow(clippy::useless_conversion, reason = "macOS counts blocks in 32 bits")]
 fn free(path: &Path) -> Option<u64> {
@@ -108,7 +107,7 @@ fn free(_path: &Path) -> Option<u64> {
 mod tests {
     use super::*;
 
-    /// Row F4. The space goes down, hovers about the limit, is made, and goes down again.
+    /// Row F4. The space falls, hovers around the limit, is freed, and falls again.
     #[test]
     fn little_space_is_told_once_until_there_was_enough() {
         let mut space = Space::default();

@@ -10,7 +10,7 @@ pub struct Fanout {
 }
 
 impl Fanout {
-    /// A fanout that reaches nobody yet.
+    /// A fanout without sinks.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -21,7 +21,7 @@ impl Fanout {
         self.sinks.push(Box::new(sink));
     }
 
-    /// The same fanout with one sink more.
+    /// Adds a sink and returns the fanout.
     #[must_use]
     pub fn with(mut self, sink: impl EventSink + 'static) -> Self {
         self.push(sink);

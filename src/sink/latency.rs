@@ -10,15 +10,15 @@ use std::time::Duration;
 use crate::feel::Onset;
 use crate::units::{HostClock, Instant};
 
-/// Buckets per doubling of the latency: a quantile is at most 0.1 % off.
+/// Buckets per doubling of the latency: the error of a quantile is at most 0.1 %.
 const FINENESS: u64 = 1024;
 
-/// Longest latency told apart: 67 seconds.
+/// Maximum latency with its own bucket, in microseconds: 67 seconds.
 const LONGEST_US: u64 = (1 << 26) - 1;
 
 const BUCKETS: usize = bucket(LONGEST_US) + 1;
 
-/// Gathers latencies from any thread and tells their quantiles; clones share what they gather.
+/// Collects latencies from any thread and gives their quantiles; clones share their counts.
 ///
 /// # Real-time
 /// Recording adds one to a counter: no allocation, no lock.
@@ -28,13 +28,13 @@ pub struct LatencyMeter {
 }
 
 impl LatencyMeter {
-    /// A meter that has seen nothing.
+    /// A meter without any latencies yet.
     #[must_use]
     pub fn new() -> Self {
         Self { buckets: (0..BUCKETS).map(|_| AtomicU64::new(0)).collect() }
     }
 
-    /// Takes one latency; longer ones than 67 s count as 67 s.
+    /// Records one latency; longer ones than 67 s count as 67 s.
     pub fn record(&self, latency: Duration) {
         let micros = u64::try_from(latency.as_micros()).unwrap_or(u64::MAX).min(LONGEST_US);
         if let Some(counter) = self.buckets.get(bucket(micros)) {
@@ -42,7 +42,7 @@ impl LatencyMeter {
         }
     }
 
-    /// How many latencies lay between which bounds, shortest first; what nobody took is left out.
+    /// Returns the buckets with at least one latency, shortest first.
     pub fn buckets(&self) -> impl Iterator<Item = Bucket> + '_ {
         self.buckets.iter().enumerate().filter_map(|(index, count)| {
             let count = count.load(Ordering::Relaxed);
@@ -55,7 +55,7 @@ impl LatencyMeter {
         })
     }
 
-    /// What was recorded so far; `None` if nothing was.
+    /// Returns the distribution so far; `None` if nothing was recorded.
     #[must_use]
     pub fn summary(&self) -> Option<LatencySummary> {
         let counts: Vec<u64> = self.buckets.iter().map(|bucket| bucket.load(Ordering::Relaxed)).collect();
@@ -95,29 +95,29 @@ impl fmt::Debug for LatencyMeter {
     }
 }
 
-/// Latencies that were about equal.
+/// Latencies within the bounds of one bucket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bucket {
-    /// The shortest that counts here.
+    /// Lower bound, inclusive.
     pub from: Duration,
-    /// The shortest that counts no longer.
+    /// Upper bound, exclusive.
     pub to: Duration,
-    /// How many there were, at least 1.
+    /// Number of latencies, at least 1.
     pub count: u64,
 }
 
-/// The distribution of the latencies that a [`LatencyMeter`] has gathered; exact to 0.1 %.
+/// The distribution of the latencies in a [`LatencyMeter`]; exact to 0.1 %.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LatencySummary {
-    /// How many there were, at least 1.
+    /// Number of latencies, at least 1.
     pub count: u64,
-    /// 5 % were at most this long.
+    /// 5 % are at most this long.
     pub p5: Duration,
-    /// Half were at most this long.
+    /// Half are at most this long.
     pub median: Duration,
-    /// 95 % were at most this long.
+    /// 95 % are at most this long.
     pub p95: Duration,
-    /// 99 % were at most this long.
+    /// 99 % are at most this long.
     pub p99: Duration,
     /// The longest.
     pub max: Duration,
@@ -137,31 +137,31 @@ impl fmt::Display for LatencySummary {
     }
 }
 
-/// The way of a packet that is felt, stage by stage; clones share what they gather.
+/// The latency from packet to actuator, stage by stage; clones share their counts.
 #[derive(Clone, Debug, Default)]
 pub struct LatencyStages {
-    /// From the packet's arrival, as the system has it, until it was taken by the sensing thread.
+    /// From the packet's arrival, as stamped by the system, until the sensing thread takes it.
     pub link: LatencyMeter,
-    /// From there until its cue was sent to the renderer.
+    /// From there until the sensing thread sends its cue to the renderer.
     pub engine: LatencyMeter,
-    /// From there until the device's callback handed on its first sample.
+    /// From there until the device's callback returns its first sample.
     pub audio: LatencyMeter,
-    /// All of that: from the packet to the callback.
+    /// All of these: from the packet to the callback.
     pub whole: LatencyMeter,
     /// From the packet until the first sample sounds, by the device's own account.
     pub sounding: LatencyMeter,
 }
 
-/// When the samples of a block sound; by default nobody knows.
+/// Time at which the samples of a block sound; unknown by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HandedOn {
-    /// When the block's first sample sounds, if the device says so.
+    /// Time at which the block's first sample sounds, if the device reports it.
     pub sounds: Option<Instant>,
     /// The block's samples per second.
     pub sample_rate: u32,
 }
 
-/// Measures how long packets take until the first sample they caused is handed on.
+/// Measures the time from a packet to the output of its first sample.
 #[derive(Clone)]
 pub struct LatencyProbe {
     stages: LatencyStages,
@@ -169,14 +169,14 @@ pub struct LatencyProbe {
 }
 
 impl LatencyProbe {
-    /// A probe that fills `meter`; `clock` is the one that stamped the packets' arrival.
+    /// A probe that fills `meter`; `clock` must be the one that stamps the arrival of packets.
     #[must_use]
     pub fn new(meter: LatencyMeter, clock: HostClock) -> Self {
         Self::of_stages(LatencyStages { whole: meter, ..LatencyStages::default() }, clock)
     }
 
-    /// A probe that fills those of `stages` that end with the device; `clock` is the one that stamped the packets'
-    /// arrival.
+    /// A probe that fills those of `stages` that end with the device; `clock` must be the one that stamps the arrival
+    /// of packets.
     #[must_use]
     pub fn of_stages(stages: LatencyStages, clock: HostClock) -> Self {
         Self { stages, clock }
@@ -188,7 +188,7 @@ impl LatencyProbe {
         (self.clock)()
     }
 
-    /// Notes that the block with these onsets is handed on now.
+    /// Records that the block with these onsets is output now.
     ///
     /// # Real-time
     /// Reads the clock once, and only if there is an onset.
@@ -215,7 +215,7 @@ impl fmt::Debug for LatencyProbe {
     }
 }
 
-/// The bucket of a latency: one per microsecond at first, then [`FINENESS`] per doubling.
+/// Returns the bucket of a latency: one per microsecond at first, then [`FINENESS`] per doubling.
 const fn bucket(micros: u64) -> usize {
     if micros < FINENESS {
         return micros as usize;
@@ -224,7 +224,7 @@ const fn bucket(micros: u64) -> usize {
     (FINENESS * (octave + 1) + (micros >> octave) - FINENESS) as usize
 }
 
-/// The shortest latency that falls into a bucket, in microseconds.
+/// Returns the lower bound of a bucket, in microseconds.
 const fn bucket_low(index: usize) -> u64 {
     let index = index as u64;
     if index < FINENESS {
@@ -233,7 +233,7 @@ const fn bucket_low(index: usize) -> u64 {
     (index % FINENESS + FINENESS) << (index / FINENESS - 1)
 }
 
-/// The middle of the latencies that fall into a bucket, in microseconds.
+/// Returns the middle of a bucket, in microseconds.
 const fn bucket_middle(index: usize) -> u64 {
     let low = bucket_low(index);
     low + (bucket_low(index + 1) - low) / 2
@@ -280,7 +280,7 @@ mod tests {
         probe.handed_on(&[Onset { frame: 48, received, sent }], block);
         let median = |meter: &LatencyMeter| meter.summary().map(|summary| summary.median.as_micros());
         assert_eq!((median(&meter), median(&probe.stages.audio)), (Some(90), Some(40)));
-        // The first sample of the click is the block's 49th: 1 ms on.
+        // The first sample of the click is the block's 49th: 1 ms later.
         let sounding = median(&probe.stages.sounding).unwrap();
         assert!(sounding.abs_diff(2000) <= 16, "{sounding}");
     }

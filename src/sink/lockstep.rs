@@ -1,4 +1,4 @@
-//! Samples rendered as far as time has passed.
+//! Rendering in step with the sample clock.
 
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ impl Lockstep {
         self.frames
     }
 
-    /// Renders every sample before `now` and hands them on block by block, interleaved.
+    /// Renders every sample before `now` and passes them to `hand_on` block by block, interleaved.
     pub(super) fn advance<E>(
         &mut self,
         now: Instant,

@@ -9,8 +9,7 @@ use crate::units::Instant;
 
 /// Keeps all samples in memory, for tests and work without a device.
 ///
-/// Time passes only when [`ActuatorSink::advance`] says so, and every cue
-/// starts at its own sample.
+/// Time passes only with [`ActuatorSink::advance`], and every cue starts at its own sample.
 #[derive(Debug)]
 pub struct ManualSink {
     lockstep: Lockstep,
@@ -31,14 +30,14 @@ impl ManualSink {
         }
     }
 
-    /// This sink, measuring latency with `probe`.
+    /// Measures latency with `probe`.
     #[must_use]
     pub fn with_latency(mut self, probe: LatencyProbe) -> Self {
         self.probe = Some(probe);
         self
     }
 
-    /// All samples of `channel` so far; empty if there is no such channel.
+    /// Returns all samples of `channel` so far; empty if there is no such channel.
     #[must_use]
     pub fn channel(&self, channel: usize) -> &[f32] {
         self.channels.get(channel).map_or(&[], Vec::as_slice)
@@ -50,7 +49,8 @@ impl ManualSink {
         self.channels.len()
     }
 
-    /// The first moving sample of every cue so far, counted from the start, and when its packet arrived.
+    /// Returns the first moving sample of every cue so far, counted from the start, and the arrival time of its
+    /// packet.
     pub fn onsets(&self) -> impl Iterator<Item = (u64, Instant)> {
         self.onsets.iter().map(|(block, onset)| (block + onset.frame as u64, onset.received))
     }

@@ -1,4 +1,4 @@
-//! Where samples and events go: sound cards, files, other programs.
+//! Outputs for samples and events: sound cards, files, other programs.
 
 mod backlog;
 mod channel_map;
@@ -66,58 +66,58 @@ internal! {
     use priority::{Rank, claim_priority, step_back};
 }
 
-/// Something that plays the renderer's samples.
+/// A sink for the renderer's samples.
 pub trait ActuatorSink {
-    /// Plays everything up to `now` on the floor's sample clock; a device with a clock of its own ignores it.
+    /// Plays everything up to `now` on the floor's sample clock; a device with a clock of its own ignores the call.
     ///
     /// # Errors
-    /// [`SinkError`] if samples can no longer be taken.
+    /// [`SinkError`] if the sink can no longer play samples.
     fn advance(&mut self, now: Instant) -> Result<(), SinkError>;
 
-    /// Writes how the device is doing into `status`; false where there is no device.
+    /// Writes the status of the device into `status`; false if there is no device.
     fn device(&self, _status: &mut DeviceStatus) -> bool {
         false
     }
 }
 
-/// Something that tells other programs what happened; it never blocks its caller.
+/// A sink for reports to other programs; it never blocks its caller.
 pub trait EventSink: Send {
-    /// Takes one report; they come in order.
+    /// Accepts one report; reports come in order.
     fn report(&mut self, report: Report<'_>);
 
-    /// Called every few milliseconds, also while no frames come: for what is told again and again, or had to wait.
+    /// Sends periodic and delayed reports. Called every few milliseconds, also while no frames come.
     fn poll(&mut self, _now: Instant) {}
 
-    /// Reports that could not be passed on, since the start: nobody took them fast enough, or at all.
+    /// Returns the number of reports lost since the start: the receiver was too slow or absent.
     fn dropped(&self) -> u64 {
         0
     }
 }
 
-/// Why a sink cannot take samples.
+/// Reasons why a sink cannot accept samples.
 #[derive(Debug, Error)]
 pub enum SinkError {
-    /// There is no such device, or it is in use; `message` says what to do.
+    /// There is no such device, or it is in use; `message` gives advice.
     #[error("{message}")]
     Device {
         /// One sentence for the person who started the program.
         message: String,
     },
-    /// Events cannot be sent or written; `message` says what to do.
+    /// Events cannot be sent or written; `message` gives advice.
     #[error("{message}")]
     Output {
         /// One sentence for the person who started the program.
         message: String,
-        /// What the system said.
+        /// The error of the system.
         #[source]
         source: std::io::Error,
     },
     /// The file cannot be written.
     #[error("cannot write {path}: {source}")]
     File {
-        /// Which file.
+        /// The file.
         path: std::path::PathBuf,
-        /// What the system said.
+        /// The error of the system.
         #[source]
         source: std::io::Error,
     },

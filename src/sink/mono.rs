@@ -7,8 +7,8 @@ use hound::{SampleFormat, WavSpec, WavWriter};
 use super::SinkError;
 use super::wav::file_error;
 
-/// Writes newtons as a sound of one channel and 24 bits, `full_scale` newtons loud at most; gives back how many
-/// samples were beyond that and were cut off, and those that are not finite, which are silence.
+/// Writes newtons as a sound of one channel and 24 bits with full scale at `full_scale` newtons. Returns the number
+/// of samples that were clipped, and of those that were not finite and became silence.
 ///
 /// # Errors
 /// [`SinkError::File`] if the file cannot be written.

@@ -19,14 +19,12 @@ use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::wire::{LinkCause, LinkState, Prefix};
 
-/// Sends events, contacts and how link and sensors are doing as OSC over UDP.
+/// Sends events, contacts and the state of link and sensors as OSC over UDP.
 ///
-/// Events go out at once, in order. Contacts go out 100 times a second while
-/// there are any, always the latest, and once a second while there are none, also while no
-/// frames come. What is held is repeated 50 times a second, and a sign of life ten times. The
-/// messages are those of `write_event`, `write_contacts`, `write_held`,
-/// `write_alive`, `write_crack`, `write_page`, `write_health`,
-/// `write_device`, `write_mute` and `write_control`.
+/// Events go out at once, in order. The latest contacts go out 100 times a second while there are any, and once a
+/// second while there are none, also while no frames come. The held controls go out 50 times a second, and an alive
+/// message ten times. The messages are those of `write_event`, `write_contacts`, `write_held`, `write_alive`,
+/// `write_crack`, `write_page`, `write_health`, `write_device`, `write_mute` and `write_control`.
 #[derive(Debug)]
 pub struct OscSink {
     worker: Worker<Job>,
@@ -40,9 +38,9 @@ pub struct OscSink {
 #[derive(Debug)]
 enum Job {
     Told(OwnedReport),
-    /// Whatever the latest contacts are when it is its turn.
+    /// Send the contacts that are the latest when the job runs.
     Contacts,
-    /// Nobody is there any more, as far as anybody can tell.
+    /// The floor counts as empty.
     Nobody,
 }
 
@@ -55,7 +53,7 @@ impl OscSink {
         Self::under(target, Prefix::default())
     }
 
-    /// A sink that sends to `target` and begins addresses with `prefix`.
+    /// A sink that sends to `target` and puts `prefix` before its addresses.
     ///
     /// # Errors
     /// [`SinkError::Output`] if the system gives no socket or no thread.
@@ -85,9 +83,9 @@ impl OscSink {
 }
 
 impl OscSink {
-    /// Nobody is on the floor, as far as this program can tell.
+    /// Reports an empty floor.
     fn say_nobody_is_there(&mut self, now: Instant) {
-        // While the worker copies the last ones, the next poll tries again.
+        // If the worker is copying the contacts, the next poll tries again.
         if self.latest.store(now, &[], || self.worker.try_offer(Job::Contacts)) {
             self.periodic.reported(now, &[]);
         }
@@ -104,7 +102,7 @@ impl EventSink for OscSink {
             return;
         }
         let Some(told) = OwnedReport::of(report, &mut self.cracks) else { return };
-        // A repetition may be missed; that something has ended may not.
+        // A repeated report may be lost; the end of a hold may not.
         let is_repeated = match report {
             Report::Held(report) => report.ended.is_empty(),
             Report::Alive(..) => true,
@@ -133,20 +131,20 @@ impl EventSink for OscSink {
 }
 
 impl Drop for OscSink {
-    /// Says that nobody is on the floor any more, as far as this program can tell.
+    /// Reports an empty floor at the end.
     fn drop(&mut self) {
-        // A job of its own: contacts that wait already would say so before what was held is cancelled.
+        // A job of its own: contacts already in the queue would report that before the held controls are cancelled.
         if self.periodic.is_somebody_there() {
             self.worker.offer(Job::Nobody);
         }
     }
 }
 
-/// What the worker thread owns.
+/// State of the worker thread.
 struct Sender {
     out: UdpOut,
     prefix: Prefix,
-    /// The last reports of link and sensors: each message has all of them.
+    /// The last reports of link and sensors: each message contains all of them.
     link: LinkState,
     cause: Option<LinkCause>,
     health: SensorHealth,

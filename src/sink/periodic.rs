@@ -1,4 +1,4 @@
-//! Contacts at a steady rate, always the latest: between the engine's thread and one that sends.
+//! Contacts at a steady rate, always the latest, from the engine's thread to a sending thread.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, TryLockError};
@@ -10,20 +10,20 @@ use crate::units::Instant;
 /// Time between two reports of the contacts: the paper's 100 Hz.
 const PERIOD: Duration = Duration::from_millis(10);
 
-/// How often an empty floor is told of: clients that came late learn that it is there.
+/// Interval between reports of an empty floor, so that late clients learn that the floor exists.
 pub(super) const IDLE: Duration = Duration::from_secs(1);
 
-/// When contacts are to be reported.
+/// Schedule of the contact reports.
 #[derive(Debug, Default)]
 pub(super) struct PeriodicSender {
-    /// When the next report is due; `None` while nobody is on the floor.
+    /// Due time of the next report; `None` while the floor is empty.
     due: Option<Instant>,
-    /// When it was last said that nobody is there.
+    /// Time of the last report of an empty floor.
     told_empty: Option<Instant>,
 }
 
 impl PeriodicSender {
-    /// Whether `contacts` are to be reported now.
+    /// Whether `contacts` are due now.
     pub(super) fn is_due(&self, at: Instant, contacts: &[Contact]) -> bool {
         match (self.due, contacts.is_empty()) {
             (Some(due), _) => at >= due,
@@ -32,12 +32,12 @@ impl PeriodicSender {
         }
     }
 
-    /// Whether it is time to say again that nobody is there, where no frames say it.
+    /// Whether the report of an empty floor is due while no frames come.
     pub(super) fn is_silence_due(&self, now: Instant) -> bool {
         self.due.is_some() || self.told_empty.is_none_or(|told| now.since(told) >= IDLE)
     }
 
-    /// Notes that `contacts` have been reported.
+    /// Records that `contacts` have been reported.
     pub(super) fn reported(&mut self, at: Instant, contacts: &[Contact]) {
         if contacts.is_empty() {
             self.due = None;
@@ -49,13 +49,13 @@ impl PeriodicSender {
         self.due = Some(if next > at { next } else { at + PERIOD });
     }
 
-    /// Whether somebody was there when contacts were last reported.
+    /// Whether the last report had contacts.
     pub(super) const fn is_somebody_there(&self) -> bool {
         self.due.is_some()
     }
 }
 
-/// The contacts to be sent next; older ones not yet sent are overwritten.
+/// The contacts to send next; newer ones overwrite unsent ones.
 #[derive(Debug, Default)]
 pub(super) struct Latest {
     contacts: Mutex<(Instant, Vec<Contact>)>,
@@ -63,8 +63,8 @@ pub(super) struct Latest {
 }
 
 impl Latest {
-    /// Stores `contacts`, and has `queue` called if nobody is on the way to fetch them; false if the
-    /// last ones are being fetched just now.
+    /// Stores `contacts`, and calls `queue` if no job is under way to fetch them; false if the worker is fetching the
+    /// previous ones.
     pub(super) fn store(&self, at: Instant, contacts: &[Contact], queue: impl FnOnce() -> bool) -> bool {
         let mut stored = match self.contacts.try_lock() {
             Ok(stored) => stored,
@@ -81,7 +81,7 @@ impl Latest {
         true
     }
 
-    /// Fetches them.
+    /// Fetches the latest contacts.
     pub(super) fn fetch(&self) -> (Instant, Vec<Contact>) {
         self.queued.store(false, Ordering::Release);
         self.contacts.lock().unwrap_or_else(PoisonError::into_inner).clone()
@@ -92,7 +92,7 @@ impl Latest {
 mod tests {
     use super::*;
 
-    /// The milliseconds at which a report is made while somebody is there from 5 to 35 ms.
+    /// Returns the milliseconds of the reports for a contact from 5 to 35 ms.
     fn reports(until: u64) -> Vec<u64> {
         let mut periodic = PeriodicSender::default();
         let mut reports = Vec::new();

@@ -1,29 +1,29 @@
-//! Real-time priority of threads that a foot waits for.
+//! Real-time priority of the threads in the signal path.
 
 use crate::feel::Priority;
 
-/// Who goes before whom among the threads that a foot waits for.
+/// Priority order of the threads in the signal path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rank {
     /// The sound card's callback: it must never wait.
     Sound,
-    /// Whoever takes packets and decides what they mean; also whoever stands in for the boards.
+    /// The thread that reads and evaluates packets; also a thread that simulates boards.
     Sensing,
-    /// Whoever tells another computer what was sensed, which gives it up for lost otherwise.
+    /// The thread that reports to another computer, which would otherwise count this one as lost.
     Telling,
 }
 
-/// Asks the system to run the calling thread before others; a thread that has real-time priority keeps it.
+/// Asks the system for real-time priority of the calling thread; a thread that has it keeps it.
 ///
-/// On Linux threads that it starts later inherit this, so that it belongs after them, and it takes `rtprio` in the
-/// limits of the user. On macOS and Windows no privilege is needed; the sound card's callback is promoted there by the
-/// audio host and left alone.
+/// On Linux, threads that it starts later inherit the priority, so start them first; `rtprio` in the limits of the
+/// user is required. On macOS and Windows no privilege is needed; there the audio host promotes the sound card's
+/// callback, and this function leaves it alone.
 pub fn claim_priority(rank: Rank) -> Priority {
     claim(rank)
 }
 
-/// Lets the calling thread go after everybody else's: it works while nobody else has anything to do. Where the system
-/// knows no such order (it is asked on Linux only), nothing is done.
+/// Gives the calling thread the lowest priority: it runs while no other thread is ready. It does nothing on systems
+/// without such a priority (supported on Linux only).
 pub fn step_back() {
     #[cfg(target_os = "linux")]
     {
@@ -51,7 +51,8 @@ fn claim(rank: Rank) -> Priority {
     if cfg!(target_os = "macos") && rank == Rank::Sound {
         return Priority::Hosts;
     }
-    // Interrupts of a real-time kernel are at 50: samples go before them, packets come out of them.
+    // Interrupts of a real-time kernel run at 50: the audio thread runs above them, and sensing below, since
+    // interrupts deliver its packets.
     let value: u8 = match rank {
         Rank::Sound => 60,
         Rank::Sensing => 40,

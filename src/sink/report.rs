@@ -1,4 +1,4 @@
-//! What other programs are told.
+//! Reports to other programs.
 
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::{AreaNews, HeldReport};
@@ -10,36 +10,36 @@ use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::wire::{LinkCause, LinkState};
 
-/// One thing that other programs are told; times are on the floor's sample clock.
+/// One report to other programs; times are on the floor's sample clock.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum Report<'a> {
-    /// Something happened to a control.
+    /// An event of a control.
     Event(&'a WidgetEvent),
-    /// The contacts of one frame; told for every frame, so a sink thins them out itself.
+    /// The contacts of one frame; reported for every frame, so a sink limits the rate itself.
     Contacts(Instant, &'a [Contact]),
-    /// A page has taken the place of another, or somebody has asked which one is shown.
+    /// Another page is shown, or an app has asked for the current one.
     Page(&'a PageShown),
-    /// A ground gave way under a foot.
+    /// A ground event under a foot.
     Ground(&'a GroundEvent),
     /// The floor's link has changed its state.
     Link(Instant, LinkState),
-    /// The cause for which something is sent and no frame can be used has changed; `None` when it is gone.
+    /// The cause of unusable frames has changed; `None` when it is gone.
     LinkCause(Instant, Option<&'a LinkCause>),
-    /// How the sensors are doing has changed; told once a second at most.
+    /// The state of the sensors has changed; reported at most once a second.
     Health(Instant, &'a SensorHealth),
-    /// How the device that moves the actuators is doing has changed; told once a second at most.
+    /// The state of the device that drives the actuators has changed; reported at most once a second.
     Device(Instant, &'a DeviceStatus),
-    /// Which controls are held: at once when that changes, and 50 times a second while any is.
+    /// The held controls: at once when they change, and 50 times a second while there are any.
     Held(&'a HeldReport),
-    /// A sign of life, numbered from 1; told ten times a second, also while no packets come.
+    /// An alive message, numbered from 1; sent ten times a second, also while no packets come.
     Alive(Instant, u32),
-    /// What is muted has changed, or somebody has asked.
+    /// The mute state has changed, or an app has asked for it.
     Muted(Instant, &'a Muted),
-    /// How a control is now: an app has changed it or asked for it, or it has the guard `HoldToRun` and has gone off or
-    /// on.
+    /// The state of a control: an app has changed it or asked for it, or it has the guard `HoldToRun` and has gone
+    /// off or on.
     Control(Instant, &'a ControlState),
-    /// How one area of a floor that several computers serve stands has changed.
+    /// The state of one area of a floor that several computers serve has changed.
     Area(&'a AreaNews),
 }
 
@@ -62,7 +62,7 @@ pub(crate) enum OwnedReport {
 }
 
 impl OwnedReport {
-    /// A copy of `report`; of ground events only those that `cracks` lets through.
+    /// Copies `report`; `None` for ground events that `cracks` drops.
     pub(crate) fn of(report: Report<'_>, cracks: &mut CrackRateLimiter) -> Option<Self> {
         Some(match report {
             Report::Event(event) => Self::Event(event.clone()),
@@ -81,7 +81,7 @@ impl OwnedReport {
         })
     }
 
-    /// When it was so.
+    /// Returns the time of the report.
     pub(crate) const fn at(&self) -> Instant {
         match self {
             Self::Event(event) => event.at,

@@ -7,7 +7,7 @@ use super::{ActuatorSink, HandedOn, LatencyProbe, SinkError};
 use crate::feel::Renderer;
 use crate::units::Instant;
 
-/// Renders every sample and plays none: scopes and latencies work without a sound card.
+/// Renders every sample and plays none: scopes and latency measurements work without a sound card.
 #[derive(Debug)]
 pub struct SilentSink {
     lockstep: Lockstep,

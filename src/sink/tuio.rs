@@ -18,10 +18,10 @@ use crate::sense::Contact;
 use crate::units::Instant;
 use crate::wire::LinkState;
 
-/// How often a goodbye is sent: one datagram may be lost.
+/// Number of goodbyes, since one datagram may be lost.
 const GOODBYES: usize = 2;
 
-/// Which TUIO is spoken.
+/// The TUIO version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TuioVersion {
     /// TUIO 1.1: cursors and blobs, each in bundles of its own.
@@ -32,25 +32,24 @@ pub enum TuioVersion {
 
 /// Sends the contacts as TUIO over UDP.
 ///
-/// They go out 100 times a second while there are any, always the latest, and
-/// once a second while there are none. When the sink ends, and when the floor is
-/// lost, it says that nobody is there: clients have no time-out of their own.
-/// Events of controls are not TUIO's business.
+/// The latest contacts go out 100 times a second while there are any, and once a second while there are none. When
+/// the sink ends, and when the floor is lost, it reports an empty floor: clients have no time-out of their own. TUIO
+/// carries no control events.
 #[derive(Debug)]
 pub struct TuioSink {
     worker: Worker<Job>,
     latest: Arc<Latest>,
     undelivered: Arc<AtomicU64>,
     periodic: PeriodicSender,
-    /// Whether no frames come: nobody else says then that nobody is there.
+    /// Whether no frames come, so that the sink itself must report an empty floor.
     lost: bool,
 }
 
 #[derive(Debug)]
 enum Job {
-    /// Whatever the latest contacts are when it is its turn.
+    /// Send the contacts that are the latest when the job runs.
     Contacts,
-    /// Nobody is there, as far as anybody can tell.
+    /// The floor counts as empty.
     Lost(Instant),
 }
 
@@ -108,7 +107,7 @@ impl EventSink for TuioSink {
     }
 }
 
-/// Sends until there is nothing more to send, then says goodbye.
+/// Sends until the jobs end, then says goodbye.
 fn run(jobs: &Receiver<Job>, latest: &Latest, mut speaker: Speaker, out: &UdpOut) {
     let mut now = Instant::START;
     for job in jobs {
@@ -157,7 +156,7 @@ impl Speaker {
     }
 }
 
-/// The wall clock: only told, never used for a decision on the floor. "At once" if it stands before 1900.
+/// Returns the wall clock, which is only sent and never used for a decision. Before 1900 it returns "at once".
 fn clock() -> OscTime {
     OscTime::try_from(SystemTime::now()).unwrap_or(OscTime { seconds: 0, fractional: 1 })
 }

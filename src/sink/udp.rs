@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::SinkError;
 
-/// A socket that only sends, and counts what it could not send.
+/// A socket that only sends, and counts failures.
 #[derive(Debug)]
 pub(super) struct UdpOut {
     socket: UdpSocket,
@@ -25,7 +25,7 @@ impl UdpOut {
             SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
             SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, 0).into(),
         };
-        // Never connected: a closed port at the other end must not become an error at ours.
+        // Not connected: a closed port at the other end must not cause an error here.
         let socket = UdpSocket::bind(any).map_err(failed)?;
         if target.is_ipv4() {
             socket.set_broadcast(true).map_err(failed)?;
@@ -33,7 +33,7 @@ impl UdpOut {
         Ok(Self { socket, target, undelivered: Arc::new(AtomicU64::new(0)) })
     }
 
-    /// The counter of datagrams that the system did not take.
+    /// Returns the counter of datagrams that could not be sent.
     pub(super) fn undelivered(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.undelivered)
     }
@@ -44,19 +44,19 @@ impl UdpOut {
         }
     }
 
-    /// Counts what could not be told for another reason.
+    /// Counts `lost` messages that failed for another reason.
     pub(super) fn count(&self, lost: usize) {
         self.undelivered.fetch_add(lost as u64, Ordering::Relaxed);
     }
 
-    /// The address by which the target knows this machine, as far as the system tells; else `localhost`.
+    /// Returns the address under which the target sees this machine, if the system knows it; otherwise `localhost`.
     pub(super) fn own_name(&self) -> String {
         let probe = || -> std::io::Result<String> {
             let any: SocketAddr = match self.target {
                 SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
                 SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, 0).into(),
             };
-            // Connecting sends nothing; it only chooses the way.
+            // Connecting sends nothing; it only selects the route.
             let socket = UdpSocket::bind(any)?;
             socket.connect(self.target)?;
             Ok(socket.local_addr()?.ip().to_string())

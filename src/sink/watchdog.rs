@@ -1,4 +1,4 @@
-//! Signs of life for a service manager that speaks systemd's protocol.
+//! Alive signals for a service manager with systemd's protocol.
 
 use std::env;
 use std::io;
@@ -10,11 +10,11 @@ use tracing::warn;
 use super::{EventSink, Report};
 use crate::units::Instant;
 
-/// Time between two signs: a quarter of the two seconds that the shipped units set as `WatchdogSec`.
+/// Time between two signals: a quarter of the two seconds that the shipped units set as `WatchdogSec`.
 const EVERY: Duration = Duration::from_millis(500);
 
-/// Reports to a service manager that a program serves its floor: `READY=1` when it begins, `WATCHDOG=1` twice a second
-/// from the thread that polls its sinks, `STOPPING=1` when it is dropped. A thread that hangs sends no sign.
+/// Reports to a service manager that a program serves its floor: `READY=1` when it begins, `WATCHDOG=1` twice a
+/// second from the thread that polls its sinks, `STOPPING=1` when it is dropped. A thread that hangs sends no signal.
 ///
 /// # Source
 /// sd_notify(3): datagrams to the socket that `NOTIFY_SOCKET` names, a path or, after `@`, an abstract name.
@@ -26,8 +26,8 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// One that reports to the service manager that started this process; `None` if there is no such manager, or, with
-    /// a line in the log, if its socket cannot be used.
+    /// A watchdog for the service manager that started this process; `None` if there is no such manager, or, with a
+    /// line in the log, if its socket cannot be used.
     #[must_use]
     pub fn of_environment() -> Option<Self> {
         let name = env::var("NOTIFY_SOCKET").ok()?;
@@ -52,7 +52,7 @@ impl Watchdog {
     }
 
     fn send(&self, sign: &str) {
-        // A manager whose queue is full misses one sign of four and starts nothing anew.
+        // A manager with a full queue misses one signal of four and restarts nothing.
         let _ = self.socket.send_to_addr(sign.as_bytes(), &self.manager);
     }
 }

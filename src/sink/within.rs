@@ -1,11 +1,11 @@
-//! Tells of what is in one area of a floor.
+//! Limits reports to the contacts in one area of a floor.
 
 use crate::floor::{Area, Geometry};
 use crate::sense::Contact;
 use crate::sink::{EventSink, Report};
 use crate::units::Instant;
 
-/// Passes everything on but contacts beyond an area: the computer that serves the area next to it tells of those.
+/// Passes on all reports, except contacts beyond an area: the computer that serves the next area reports those.
 pub struct Within<S> {
     inner: S,
     area: Area,
@@ -15,7 +15,7 @@ pub struct Within<S> {
 }
 
 impl<S: EventSink> Within<S> {
-    /// Tells `inner` of contacts whose centroid is in `area` of the floor of this `geometry`.
+    /// Reports to `inner` the contacts whose centroid is in `area` of the floor of this `geometry`.
     pub fn new(inner: S, area: Area, geometry: Geometry) -> Self {
         Self { inner, area, geometry, contacts: Vec::new() }
     }

@@ -1,4 +1,4 @@
-//! A thread that does what may block, behind a bounded queue.
+//! A thread for work that may block, behind a bounded queue.
 
 use std::io;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,25 +7,25 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
-/// Jobs that may wait: a second of every foot of a crowd doing something at once.
+/// Maximum number of waiting jobs: a second in which every foot of a crowd causes an event.
 const QUEUE: usize = 1024;
 
-/// How long the end of the program waits for the last jobs; a reader that has stopped must not hold it.
+/// Maximum wait for the last jobs at the end of the program; a stopped reader must not block it.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A thread that does what may block, so that its owner never does.
+/// A thread for work that may block, so that its owner never blocks.
 #[derive(Debug)]
 pub(crate) struct Worker<T> {
     /// `None` only while being dropped.
     jobs: Option<SyncSender<T>>,
-    /// Locked by nobody but who drops it: several threads may share a worker.
+    /// Locked only in `drop`: several threads may share a worker.
     finished: Mutex<Receiver<()>>,
     thread: Option<JoinHandle<()>>,
     dropped: Arc<AtomicU64>,
 }
 
 impl<T: Send + 'static> Worker<T> {
-    /// Starts a thread that runs `work` until the jobs end; what waits when it ends earlier is dropped.
+    /// Starts a thread that runs `work` until the jobs end; if `work` ends earlier, waiting jobs are dropped.
     pub(crate) fn spawn(name: &str, work: impl FnOnce(&Receiver<T>) + Send + 'static) -> io::Result<Self> {
         let (jobs, queue) = sync_channel(QUEUE);
         let (finish, finished) = channel();
@@ -34,14 +34,14 @@ impl<T: Send + 'static> Worker<T> {
         let thread = Builder::new().name(name.into()).spawn(move || {
             work(&queue);
             left.fetch_add(queue.try_iter().count() as u64, Ordering::Relaxed);
-            // Whoever waits for the end may be gone.
+            // The owner may have stopped waiting for the end.
             let _ = finish.send(());
         })?;
         let finished = Mutex::new(finished);
         Ok(Self { jobs: Some(jobs), finished, thread: Some(thread), dropped })
     }
 
-    /// Gives the thread a job; false, and counted, if too many wait or the thread has ended.
+    /// Queues a job; false, and counted, if the queue is full or the thread has ended.
     pub(crate) fn offer(&self, job: T) -> bool {
         let taken = self.try_offer(job);
         if !taken {
@@ -50,7 +50,7 @@ impl<T: Send + 'static> Worker<T> {
         taken
     }
 
-    /// Gives the thread a job; gives it back if too many wait. A thread that has ended takes no more: that is counted.
+    /// Queues a job; returns it if the queue is full. If the thread has ended, the job is dropped and counted.
     pub(crate) fn hand(&self, job: T) -> Option<T> {
         match self.jobs.as_ref()?.try_send(job) {
             Ok(()) => None,
@@ -62,19 +62,19 @@ impl<T: Send + 'static> Worker<T> {
         }
     }
 
-    /// Gives the thread a job that does not matter if it does not fit.
+    /// Queues a job that may be lost.
     pub(crate) fn try_offer(&self, job: T) -> bool {
         self.jobs.as_ref().is_some_and(|jobs| jobs.try_send(job).is_ok())
     }
 
-    /// Jobs that were offered in vain.
+    /// Returns the number of dropped jobs.
     pub(crate) fn dropped(&self) -> u64 {
         self.dropped.load(Ordering::Relaxed)
     }
 }
 
 impl<T> Drop for Worker<T> {
-    /// Lets the thread finish what was offered, but not for ever.
+    /// Waits for the thread to finish the queued jobs, up to a time-out.
     fn drop(&mut self) {
         self.jobs = None;
         let finished = self.finished.get_mut().unwrap_or_else(PoisonError::into_inner);

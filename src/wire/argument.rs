@@ -1,4 +1,4 @@
-//! The arguments of what apps may ask.
+//! Arguments of requests from apps.
 
 use glam::Vec2;
 use rosc::OscType;
@@ -8,18 +8,18 @@ use crate::widget::{Indicator, Value};
 
 pub use crate::label::MAX_LABEL;
 
-/// What a command takes.
+/// The arguments that a command takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArgumentKind {
     /// No argument.
     Nothing,
-    /// What the control holds: one number (or OSC true or false), two for a pair.
+    /// A value of the control: one number (or OSC true or false), two for a pair.
     Value,
     /// A string of at most [`MAX_LABEL`] characters.
     Label,
     /// A string: `off`, `on`, `busy` or `attention`; or 0 or 1.
     Indicator,
-    /// Two numbers: the least, and the greatest.
+    /// Two numbers: the minimum and the maximum.
     Range,
     /// A string: the id of a page.
     Page,
@@ -77,7 +77,7 @@ impl ArgumentKind {
         }
     }
 
-    /// What is expected, for those who sent something else.
+    /// Describes the expected arguments, for the sender of other ones.
     pub(super) const fn expected(self) -> &'static str {
         match self {
             Self::Nothing => "no argument",
@@ -93,7 +93,7 @@ impl ArgumentKind {
     }
 }
 
-/// On or off.
+/// Reads on or off.
 fn flag(argument: &OscType) -> Option<bool> {
     match value(argument)? {
         Value::Switch(true) | Value::Number(1.0) => Some(true),
@@ -102,7 +102,7 @@ fn flag(argument: &OscType) -> Option<bool> {
     }
 }
 
-/// A column or a row.
+/// Reads a column or a row.
 fn index(argument: &OscType) -> Option<u16> {
     match value(argument)? {
         Value::Number(number) if number.fract() == 0.0 && (0.0..=f32::from(u16::MAX)).contains(&number) => {

@@ -1,15 +1,15 @@
-//! Why a link gives no usable frame although something is sent.
+//! Causes for which a link gives no usable frame although boards send.
 
 use std::fmt;
 
-/// The lowest and the highest rate of boards that is understood, in packets a second (our choice: a press needs a
-/// few samples within its 20 ms of dwell at least, and one sample a millisecond is used at most).
+/// Minimum and maximum rate of boards, in packets a second (our choice: a press needs at least a few samples within
+/// its 20 ms of dwell, and the engine uses at most one sample a millisecond).
 pub const BOARD_RATES_HZ: [f32; 2] = [150.0, 1500.0];
 
-/// Why a link gives no usable frame although something is sent, or why what boards send can't be what the floor file
-/// says.
+/// Reason for which a link gives no usable frame although boards send, or for which their readings contradict the
+/// floor file.
 ///
-/// Where several boards have the same fault, the first is named. Names and fields stay; later versions may add
+/// If several boards have the same fault, the cause gives the first. Names and fields stay; later versions may add
 /// variants.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -21,7 +21,7 @@ pub enum LinkCause {
         /// Packets a second, measured.
         hz: f32,
     },
-    /// A board sends more packets a second than [`BOARD_RATES_HZ`]; those that are too many are left out.
+    /// A board sends more packets a second than [`BOARD_RATES_HZ`]; the surplus is dropped.
     RateHigh {
         /// The board's number.
         board: u16,
@@ -39,7 +39,7 @@ pub enum LinkCause {
     SequenceStep {
         /// The board's number.
         board: u16,
-        /// By how much it grows; 2 at least.
+        /// The step; at least 2.
         step: u32,
     },
     /// A board's sequence number counts down.
@@ -47,37 +47,37 @@ pub enum LinkCause {
         /// The board's number.
         board: u16,
     },
-    /// A board's sequence number begins anew again and again.
+    /// A board's sequence number restarts repeatedly.
     SequenceRestarts {
         /// The board's number.
         board: u16,
-        /// The greatest number before it begins anew.
+        /// The greatest number before a restart.
         after: u32,
     },
-    /// Two counts are mixed under one board's address: two boards or two programs send under it.
+    /// Two sequences are mixed under one board's address: two boards or two programs use it.
     SequenceMixed {
         /// The board's number.
         board: u16,
     },
-    /// A board's sequence numbers follow no order.
+    /// A board's sequence numbers have no order.
     SequenceJumps {
         /// The board's number.
         board: u16,
     },
-    /// Messages with readings come for an address that no board of the floor file has.
+    /// Messages with readings use an address that no board of the floor file has.
     OtherAddress {
-        /// The address that is sent.
+        /// The address in the messages.
         found: String,
         /// The nearest address of the floor file.
         expected: String,
     },
-    /// A board's messages hold other types or another number of readings than the floor file says.
+    /// A board's messages have other types or another number of readings than in the floor file.
     WrongReadings {
         /// The board's number.
         board: u16,
-        /// How many channels it has by the floor file.
+        /// The number of its channels by the floor file.
         channels: usize,
-        /// The OSC type tags that come, such as `idddd`.
+        /// The OSC type tags of its messages, such as `idddd`.
         found: String,
     },
     /// Datagrams are not well-formed OSC.
@@ -85,9 +85,9 @@ pub enum LinkCause {
         /// Their fault, and their likely format.
         why: String,
     },
-    /// Datagrams come from an address from which none are taken.
+    /// Datagrams come from a blocked address.
     SenderRefused {
-        /// The sender, and the rule that refuses it.
+        /// The sender, and the rule that blocks it.
         why: String,
     },
     /// Counts are outside of 0 to 65535.
@@ -105,30 +105,30 @@ pub enum LinkCause {
         /// The board's number.
         board: u16,
     },
-    /// Readings move, no load was ever seen, and counts use a small part of 0 to 65535.
+    /// Readings move and no load was ever seen; the counts use only a small part of 0 to 65535.
     CountsNarrow {
         /// The board's number.
         board: u16,
-        /// The least count so far.
+        /// The minimum count so far.
         least: u16,
-        /// The greatest count so far.
+        /// The maximum count so far.
         greatest: u16,
     },
-    /// Readings move, no load was ever seen, and newtons stay small.
+    /// Readings move and no load was ever seen; the newtons stay small.
     NewtonsSmall {
         /// The board's number.
         board: u16,
-        /// The greatest so far.
+        /// The maximum so far.
         greatest: f32,
     },
     /// Newtons are more than any floor carries.
     NewtonsLarge {
         /// The board's number.
         board: u16,
-        /// The greatest so far.
+        /// The maximum so far.
         greatest: f32,
     },
-    /// Readings fall where they should rise, so that no load was ever seen.
+    /// Readings fall under load instead of rising, so that no load was ever seen.
     ReadingsFall {
         /// The board's number.
         board: u16,
@@ -138,7 +138,7 @@ pub enum LinkCause {
         /// The board's number.
         board: u16,
     },
-    /// Two boards, or more in a ring, have changed places.
+    /// Two boards are swapped, or several in a ring.
     BoardsSwapped {
         /// The number of one of them.
         board: u16,
@@ -147,24 +147,24 @@ pub enum LinkCause {
     },
     /// Only some of the floor's boards send.
     BoardsMissing {
-        /// The first that is missing.
+        /// The first missing board.
         board: u16,
         /// Its address by the floor file.
         address: String,
-        /// How many are missing.
+        /// The number of missing boards.
         missing: u32,
-        /// How many boards the floor has.
+        /// The number of boards of the floor.
         boards: u32,
     },
     /// None of the above.
     Unknown {
-        /// The reason for which the last message was refused; empty if none was.
+        /// The reason for the last rejected message; empty if there was none.
         last_refused: String,
     },
 }
 
 impl LinkCause {
-    /// The word for it in OSC, JSON and other languages, such as `rate_low`. It never changes.
+    /// Its name in OSC, JSON and other languages, such as `rate_low`. The name never changes.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -194,7 +194,7 @@ impl LinkCause {
         }
     }
 
-    /// The number of the board it concerns; `None` where it concerns no board of the floor file.
+    /// Returns the number of the faulty board; `None` if no board of the floor file is concerned.
     #[must_use]
     pub const fn board(&self) -> Option<u16> {
         match self {
@@ -224,14 +224,14 @@ impl LinkCause {
         }
     }
 
-    /// Whether both are the same cause at the same board: measured figures may differ.
+    /// Whether both are the same cause at the same board; measured values may differ.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         self.name() == other.name() && self.board() == other.board()
     }
 }
 
-/// One sentence: the fault, and what would be right.
+/// One sentence: the fault, and the correct form.
 impl fmt::Display for LinkCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [lowest, highest] = BOARD_RATES_HZ;
@@ -333,7 +333,7 @@ impl fmt::Display for LinkCause {
     }
 }
 
-/// A rate for people: whole packets a second, or a tenth where there are few.
+/// Formats a rate for people: whole packets a second, or tenths below 10.
 fn rounded(hz: f32) -> String {
     if hz < 10.0 { format!("{hz:.1}") } else { format!("{hz:.0}") }
 }
@@ -397,7 +397,7 @@ fn counts_narrow(f: &mut fmt::Formatter<'_>, board: u16, least: u16, greatest: u
     }
 }
 
-/// The likely format of a datagram that is not OSC, as a message to people; `None` without a guess.
+/// Returns the likely format of a datagram that is not OSC, as a message for people; `None` if there is no guess.
 pub(crate) fn guess_format(datagram: &[u8]) -> Option<&'static str> {
     let length = datagram.split_first_chunk().map(|(length, _)| u32::from_be_bytes(*length));
     let is_text = |byte: &u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
@@ -419,7 +419,7 @@ mod tests {
 
     use super::*;
 
-    /// One of each.
+    /// Returns one cause of each kind.
     fn every() -> Vec<LinkCause> {
         let board = 3;
         vec![

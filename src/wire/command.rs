@@ -1,4 +1,4 @@
-//! What apps may ask, as the wire spells it. The decoder, the reference and the tests go by one table.
+//! Requests of apps in OSC. The decoder, the reference and the tests share one table.
 
 use rosc::OscType;
 
@@ -8,19 +8,19 @@ use super::pattern::{is_pattern, matches};
 use super::prefix::Prefix;
 use crate::widget::WidgetId;
 
-/// One thing that apps may ask.
+/// One request that apps can make.
 #[derive(Clone, Copy, Debug)]
 pub struct Command {
     /// The address behind the prefix; `<id>` stands for a control's id.
     pub path: &'static str,
     /// Its arguments.
     pub argument: ArgumentKind,
-    /// What it does, in a sentence.
+    /// Its effect, in a sentence.
     pub says: &'static str,
     make: fn(WidgetId, Argument) -> Option<ControlMessage>,
 }
 
-/// Everything that apps may ask.
+/// All requests that apps can make.
 pub const COMMANDS: [Command; 16] = [
     Command {
         path: "get",
@@ -157,16 +157,16 @@ pub const COMMANDS: [Command; 16] = [
     },
 ];
 
-/// Why a message is not a command.
+/// Reason for which a message is not a command.
 pub(super) enum NoCommand {
     /// No command has such an address.
     Unknown,
-    /// The command takes something else: this.
+    /// The command expects these arguments.
     Expected(&'static str),
 }
 
 impl Command {
-    /// The id that `path` has where this command's has `<id>`, empty if it has none; `None` if it is another address.
+    /// Returns the part of `path` in the place of `<id>`, empty without `<id>`; `None` if the address does not match.
     fn id_in<'a>(&self, path: &'a str) -> Option<&'a str> {
         match self.path.split_once("<id>") {
             Some((before, after)) => {
@@ -177,7 +177,8 @@ impl Command {
         }
     }
 
-    /// What `pattern` has where this command's address has `<id>`, empty if it has none; `None` if it means none such.
+    /// Returns the part of `pattern` in the place of `<id>`, empty without `<id>`; `None` if the pattern does not
+    /// match.
     fn id_in_pattern<'a>(&self, prefix: &Prefix, pattern: &'a str) -> Option<&'a str> {
         let address = prefix.address(self.path);
         let (mut id, mut parts) = ("", pattern.split('/'));
@@ -192,23 +193,23 @@ impl Command {
         parts.next().is_none().then_some(id)
     }
 
-    /// The address behind the prefix for the control named `id`.
+    /// Returns the address behind the prefix for the control with this `id`.
     #[must_use]
     pub(crate) fn path_of(&self, id: &str) -> String {
         self.path.replace("<id>", id)
     }
 
-    /// Whether it is about one control.
+    /// Whether it concerns one control.
     #[must_use]
     pub(crate) fn is_of_a_control(&self) -> bool {
         self.path.contains("<id>")
     }
 }
 
-/// The commands at `address`, which may be a pattern, with these arguments.
+/// Reads the commands at `address`, which may be a pattern, with these arguments.
 ///
-/// Of the commands that a pattern means, those take part that take such arguments. Where it has a control's id it
-/// stays a pattern: only the floor knows its controls.
+/// A pattern selects the matching commands that accept these arguments. An id in a pattern stays a pattern: only the
+/// floor knows its controls.
 pub(super) fn read(
     prefix: &Prefix,
     address: &str,
@@ -236,7 +237,7 @@ pub(super) fn read(
     }
 }
 
-/// Whether a floor itself sends this, behind its prefix: an answer to it could be answered for ever.
+/// Whether a floor itself sends this address, behind its prefix: an answer to it could cause an endless exchange.
 pub(super) fn is_sent_by_floors(path: &str) -> bool {
     match path.split_once('/') {
         None => SENT.contains(&path),
@@ -247,11 +248,11 @@ pub(super) fn is_sent_by_floors(path: &str) -> bool {
     }
 }
 
-/// What a floor tells of itself.
+/// Addresses of a floor's own reports.
 const SENT: [&str; 9] =
     ["alive", "contact", "contacts", "crack", "device", "error", "health", "mute", "page"];
 
-/// What a floor tells of its controls.
+/// Addresses of a floor's reports about its controls.
 const SENT_OF_CONTROLS: [&str; 20] = [
     "armed",
     "cancelled",

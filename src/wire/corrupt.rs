@@ -1,13 +1,12 @@
-//! Hostile and broken datagrams, for trying out what happens.
+//! Hostile and broken datagrams for tests.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Makes hostile and broken datagrams, to try out whatever listens; the same seed makes the same ones.
+/// Makes hostile and broken datagrams for tests of a receiver; the same seed makes the same datagrams.
 ///
-/// They are meant to be sent beside a good stream, made from datagrams
-/// *already sent*: a damaged copy is then recognised as a duplicate, where
-/// damage made beforehand could be mistaken for the real thing.
+/// A test sends them beside a good stream, made from datagrams *already sent*: a damaged copy is then recognised as a
+/// duplicate, while a copy damaged before the original is sent could pass as the original.
 #[derive(Clone, Debug)]
 pub struct Corruptor {
     rng: Pcg64Mcg,
@@ -20,7 +19,7 @@ impl Corruptor {
         Self { rng: Pcg64Mcg::seed_from_u64(seed) }
     }
 
-    /// A datagram of a kind chosen at random, made from `model` where the kind needs one.
+    /// Returns a datagram of a random kind, made from `model` where the kind needs one.
     pub fn corrupt(&mut self, model: &[u8]) -> Vec<u8> {
         match self.rng.random_range(0..8) {
             0 => self.truncate(model),
@@ -33,13 +32,13 @@ impl Corruptor {
         }
     }
 
-    /// The first bytes of `model`.
+    /// Returns the first bytes of `model`.
     pub fn truncate(&mut self, model: &[u8]) -> Vec<u8> {
         let length = self.rng.random_range(0..model.len().max(1));
         model.get(..length).unwrap_or_default().to_vec()
     }
 
-    /// `model` with one to four bits turned over.
+    /// Flips one to four bits of `model`.
     pub fn flip(&mut self, model: &[u8]) -> Vec<u8> {
         let mut bytes = model.to_vec();
         for _ in 0..self.rng.random_range(1..=4) {
@@ -52,7 +51,7 @@ impl Corruptor {
         bytes
     }
 
-    /// `model` with up to eight of its last words made NaN or infinite: the readings of a newton packet.
+    /// Sets up to eight of the last words of `model` to NaN, infinity or 1e38: the readings of a newton packet.
     pub fn not_a_number(&mut self, model: &[u8]) -> Vec<u8> {
         let mut bytes = model.to_vec();
         let (words, _) = bytes.as_chunks_mut();
@@ -63,7 +62,7 @@ impl Corruptor {
         bytes
     }
 
-    /// Up to 2000 random bytes, half of the time dressed up as a bundle or a message.
+    /// Returns up to 2000 random bytes, half of the time with the header of a bundle or a message.
     pub fn random_bytes(&mut self) -> Vec<u8> {
         let length = self.rng.random_range(0..2000);
         let mut bytes: Vec<u8> = match self.rng.random_range(0..4) {
@@ -76,7 +75,7 @@ impl Corruptor {
     }
 }
 
-/// Bundles in bundles, `levels` deep, 20 bytes each: what makes a recursive decoder run out of stack.
+/// Nested bundles, `levels` deep, 20 bytes each: they exhaust the stack of a recursive decoder.
 #[must_use]
 pub fn bundle_bomb(levels: usize) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(20 * levels);
@@ -90,7 +89,7 @@ pub fn bundle_bomb(levels: usize) -> Vec<u8> {
     bytes
 }
 
-/// A message whose type tags open `depth` arrays: the same trap in another place.
+/// A message whose type tags open `depth` nested arrays, for the same purpose.
 #[must_use]
 pub fn tag_bomb(depth: usize) -> Vec<u8> {
     let mut bytes = b"/underfoot/board/0\0\0,".to_vec();
@@ -115,7 +114,7 @@ mod tests {
     use super::*;
     use crate::wire::{Limits, Malformed, check};
 
-    /// Limits that let a bomb of any size through to the check it is made for.
+    /// Limits that let a bomb of any size through to the depth checks.
     const ROOMY: Limits = Limits { bytes: 65_507, tags: 65_507, address: 65_507, ..Limits::SENSORS };
 
     #[test]
@@ -143,7 +142,7 @@ mod tests {
         };
         assert_eq!(make(5), make(5));
         assert_ne!(make(5), make(6));
-        // An empty model is not a trap either.
+        // An empty model must work too.
         let mut corruptor = Corruptor::new(1);
         (0..100).for_each(|_| drop(corruptor.corrupt(&[])));
     }

@@ -1,16 +1,16 @@
-//! What came in and what was not used.
+//! Counts of received and rejected packets.
 
 use std::ops::{Add, AddAssign};
 
 use serde::Serialize;
 
-/// What came in and what was not used, since the start; nothing is dropped without being counted here.
+/// Counts of received and rejected packets since the start; every dropped packet is counted here.
 ///
-/// A source counts datagrams and what it refused, the assembler what became
-/// of the packets; their sum is the whole story.
+/// A source counts datagrams and rejections, the assembler counts the use of the packets; the sum of both is
+/// complete.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct LinkCounters {
-    /// Datagrams received, good or bad.
+    /// Datagrams received, valid or not.
     pub datagrams: u64,
     /// Sensor packets accepted.
     pub packets: u64,
@@ -18,52 +18,52 @@ pub struct LinkCounters {
     pub frames: u64,
     /// Frames completed while the tare was still being measured; they are not passed on.
     pub held_back: u64,
-    /// Packets that never came, by gaps in the boards' sequence numbers.
+    /// Packets that did not arrive, by gaps in the boards' sequence numbers.
     pub lost: u64,
-    /// Packets that came after their frame was done, or too old to act on, and were dropped.
+    /// Packets that arrived after their frame was complete, or too old to use, and were dropped.
     pub late: u64,
-    /// Packets that came again and were dropped.
+    /// Duplicate packets that were dropped.
     pub duplicate: u64,
-    /// Packets whose sequence number fits nothing seen so far; dropped unless the next two confirm it.
+    /// Packets with a sequence number that does not follow the ones before; dropped unless the next two confirm it.
     pub out_of_order: u64,
-    /// Times a board's sequence number started anew (reboot or reconnection).
+    /// Restarts of a board's sequence number (reboot or reconnection).
     pub restarts: u64,
-    /// Times a board's readings stood still for 100 ms, all of them and under a load, while its packets went on.
+    /// Times a board froze: all its readings stayed the same for 100 ms under a load while its packets continued.
     pub frozen: u64,
-    /// Times two or more sensors of a tile repeated what they had read, for 100 ms and under a load.
+    /// Times two or more sensors of a tile repeated their readings for 100 ms under a load.
     pub repeats: u64,
-    /// Times the load of a tile changed faster than a body changes it.
+    /// Times the load of a tile changed faster than a body can change it.
     pub jumps: u64,
-    /// Samples left out or repeated because a board's crystal runs faster or slower than the others'.
+    /// Samples dropped or repeated because a board's crystal runs faster or slower than the others'.
     pub slips: u64,
-    /// Datagrams refused because they are not well-formed OSC, or nest or grow past the limits.
+    /// Datagrams rejected because they are not well-formed OSC, or exceed the limits on nesting or size.
     pub malformed: u64,
-    /// Messages for an address that no board of this floor and no control has.
+    /// Messages with an address of neither a board of this floor nor a control.
     pub unknown_address: u64,
-    /// Messages for other receivers, in bundles of which the rest was used.
+    /// Messages for other receivers, in bundles with used messages.
     pub skipped: u64,
-    /// Messages for a board that don't carry what the floor says: missing sequence, wrong types, wrong count.
+    /// Messages for a board that differ from the floor file: missing sequence, wrong types, wrong count.
     pub wrong_shape: u64,
-    /// Datagrams from senders that may not send them: packets or requests.
+    /// Datagrams with packets or requests from senders that are not allowed to send them.
     pub foreign: u64,
-    /// Datagrams beyond what one sender may send.
+    /// Datagrams beyond the rate limit of one sender.
     pub limited: u64,
     /// Single readings that were NaN, infinite, outside 0 to 65535, or more than 50 kN.
     pub bad_readings: u64,
-    /// Datagrams that the kernel dropped because the receive buffer was full, where it tells,
-    /// and messages from apps that nobody took in time.
+    /// Datagrams that the kernel dropped because the receive buffer was full, where the kernel reports it, and
+    /// messages from apps that were not processed in time.
     pub overflowed: u64,
-    /// Requests of apps that were understood and could not be met: no such control or page, a value that doesn't
-    /// suit it, a control that is locked or in use.
+    /// Valid requests of apps that were rejected: no such control or page, an unsuitable value, a control that is
+    /// locked or in use.
     pub denied: u64,
-    /// Labels from apps of which something was left out: characters that no label may hold, and those beyond 64.
+    /// Labels from apps from which characters were removed: forbidden ones, and those beyond 64.
     pub cleaned: u64,
-    /// Times a sensor was found in trouble: broken, stuck, drifted too far, noisy.
+    /// Times a sensor developed a trouble: broken, stuck, drifted too far, noisy.
     pub sensor_troubles: u64,
 }
 
 impl LinkCounters {
-    /// Datagrams and messages that were refused, for whatever reason; without those that were skipped.
+    /// Returns the number of rejected datagrams and messages; skipped messages do not count.
     #[must_use]
     pub const fn refused(&self) -> u64 {
         self.malformed + self.unknown_address + self.wrong_shape + self.foreign + self.limited

@@ -1,4 +1,4 @@
-//! Datagrams in, packets of sensors and requests of apps out.
+//! Decoding of datagrams into sensor packets and requests of apps.
 
 use std::collections::HashMap;
 
@@ -14,10 +14,10 @@ use crate::floor::Floor;
 use crate::format::suggest::nearest;
 use crate::units::Instant;
 
-/// Why a datagram, or one message of a bundle, is refused.
+/// Reason for which a datagram, or one message of a bundle, is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum WireError {
-    /// It is not well-formed OSC, or larger than what may come.
+    /// It is not well-formed OSC, or exceeds the limits.
     #[error(transparent)]
     Malformed(#[from] Malformed),
     /// No board of this floor and no kind of control message has this address.
@@ -28,40 +28,40 @@ pub enum WireError {
         /// Whether its arguments look like readings of a board.
         is_reading: bool,
     },
-    /// A bundle of requests is to be met later than within a second.
+    /// A bundle of requests is due more than a second ahead.
     #[error("its time tag lies {seconds} s ahead: requests wait for 1 s at most")]
     TooEarly {
-        /// How far ahead it lies.
+        /// How far ahead it is due.
         seconds: u32,
     },
-    /// The arguments are not what this board sends by the floor file.
+    /// The arguments differ from those of this board in the floor file.
     #[error(
         "{address:?} takes an int32 sequence and {channels} counts (i), newtons (f), or one blob of u16 counts, not {found}"
     )]
     WrongReadings {
         /// The board's number.
         board: u16,
-        /// How many channels it has.
+        /// The number of its channels.
         channels: usize,
         /// The address, as sent.
         address: String,
         /// Its arguments, by type tags.
         found: String,
     },
-    /// The arguments are not what this request takes.
+    /// The arguments differ from those that this request takes.
     #[error("{address:?} takes {expected}, not {found}")]
     WrongShape {
         /// The address, as sent.
         address: String,
-        /// What would have been right.
+        /// The expected arguments.
         expected: String,
-        /// What came, by type tags.
+        /// The received arguments, by type tags.
         found: String,
     },
 }
 
 impl WireError {
-    /// Adds this refusal to the counter it belongs to.
+    /// Increments the counter for this rejection.
     pub fn count(&self, counters: &mut LinkCounters) {
         match self {
             Self::Malformed(_) => counters.malformed += 1,
@@ -72,21 +72,21 @@ impl WireError {
     }
 }
 
-/// The messages of one datagram, in the order in which they were written; kept and refilled to save allocations.
+/// The messages of one datagram, in their order; reused to save allocations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Batch {
     /// Samples of boards.
     pub packets: Vec<SensorPacket>,
-    /// What apps ask for.
+    /// Requests of apps.
     pub controls: Vec<ControlMessage>,
-    /// When that is to be met: the latest time tag of the bundles that hold it; `None` at once.
+    /// Time at which the requests are due: the latest time tag of the bundles around them; `None` means at once.
     pub due: Option<OscTime>,
     /// Well-formed messages of a bundle that are not used: for another receiver, or of the wrong shape.
     pub refused: Vec<WireError>,
 }
 
 impl Batch {
-    /// Forgets what it holds.
+    /// Removes the contents.
     pub fn clear(&mut self) {
         self.packets.clear();
         self.controls.clear();
@@ -94,20 +94,20 @@ impl Batch {
         self.refused.clear();
     }
 
-    /// Whether some message of the datagram is used.
+    /// Whether any message of the datagram is used.
     #[must_use]
     pub fn is_used(&self) -> bool {
         !self.packets.is_empty() || !self.controls.is_empty()
     }
 }
 
-/// Turns the datagrams of one floor into sensor packets and control messages.
+/// Decodes the datagrams of one floor into sensor packets and control messages.
 ///
-/// Boards' addresses are compared letter by letter, so that no pattern means them; those of
-/// requests may be OSC's patterns (`*`, `?`, `[]`, `{}`). Time tags matter for requests only.
+/// Boards' addresses are compared literally, so that no pattern matches them; those of requests may be OSC patterns
+/// (`*`, `?`, `[]`, `{}`). Time tags apply to requests only.
 #[derive(Clone, Debug)]
 pub struct Decoder {
-    /// By the bytes of their addresses.
+    /// The boards, by the bytes of their addresses.
     boards: HashMap<Box<[u8]>, BoardShape>,
     prefix: Prefix,
 }
@@ -119,7 +119,7 @@ struct BoardShape {
 }
 
 impl Decoder {
-    /// A decoder for the boards of `floor`. Of two boards with one address, the first gets the packets.
+    /// A decoder for the boards of `floor`. If two boards share an address, the first gets the packets.
     #[must_use]
     pub fn new(floor: &Floor) -> Self {
         let mut boards = HashMap::new();
@@ -130,29 +130,28 @@ impl Decoder {
         Self { boards, prefix: Prefix::default() }
     }
 
-    /// The same decoder for requests whose addresses begin otherwise.
+    /// Sets another prefix for the addresses of requests.
     #[must_use]
     pub fn with_prefix(mut self, prefix: Prefix) -> Self {
         self.prefix = prefix;
         self
     }
 
-    /// What requests' addresses begin with.
+    /// Returns the prefix of requests' addresses.
     #[must_use]
     pub const fn prefix(&self) -> &Prefix {
         &self.prefix
     }
 
-    /// Reads `datagram`, which arrived at `received`, into `batch`, replacing what was in it.
+    /// Reads `datagram`, which arrived at `received`, into `batch` and replaces its contents.
     ///
-    /// A count outside 0 to 65535 becomes `None` in its place; NaN and
-    /// infinities among newtons are kept as they came, for [`crate::sense::Assembler`] to judge.
-    /// Messages of a bundle that are for another receiver or have the wrong shape are left out and
-    /// listed in [`Batch::refused`].
+    /// A count outside 0 to 65535 becomes `None` in its place; NaN and infinite newtons stay for
+    /// [`crate::sense::Assembler`] to check. Messages of a bundle that are for another receiver or have the wrong
+    /// shape are dropped and listed in [`Batch::refused`].
     ///
     /// # Errors
-    /// [`WireError`] if any part of the datagram is malformed, or if its only message is not used;
-    /// `batch` is then empty.
+    /// [`WireError`] if any part of the datagram is malformed, or if its only message is not used; `batch` is then
+    /// empty.
     pub fn decode(&self, datagram: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
         batch.clear();
         let result = self.fill(datagram, received, batch);
@@ -163,7 +162,7 @@ impl Decoder {
     }
 
     fn fill(&self, datagram: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
-        // Nearly all that comes are single messages of boards, which are checked while they are read.
+        // Nearly all datagrams are single messages of boards, which are checked while they are read.
         if datagram.len() <= Limits::SENSORS.bytes
             && let Some(packet) = RawMessage::split(datagram).and_then(|raw| self.sensors(&raw, received))
         {
@@ -214,8 +213,8 @@ impl Decoder {
         }
         let address = raw.address_text();
         let controls = match guard::form(bytes, &Limits::SENSORS) {
-            // The guard passes nothing that rosc refuses (a property test says so); should they ever
-            // disagree, the datagram is refused.
+            // The guard passes nothing that rosc rejects (a property test checks this); if they ever disagree, the
+            // datagram is rejected.
             Ok(Form::Whole) => match rosc::decoder::decode_udp(bytes) {
                 Ok((b"", OscPacket::Message(message))) => self.controls(address, Some(&message.args)),
                 _ => return Err(Malformed::Neither { at: 0 }.into()),
@@ -236,7 +235,7 @@ impl Decoder {
         Ok(())
     }
 
-    /// The packet, if this is one of a board of this floor.
+    /// Returns the packet, if the message belongs to a board of this floor.
     fn sensors(&self, raw: &RawMessage<'_>, received: Instant) -> Option<SensorPacket> {
         let shape = self.boards.get(raw.address)?;
         let (sequence, readings) = raw.read(&Limits::SENSORS)?;
@@ -244,16 +243,17 @@ impl Decoder {
         (packet.readings.len() == shape.channels).then_some(packet)
     }
 
-    /// The requests at `address` with these arguments; `None` for arguments that can't be read.
+    /// Returns the requests at `address` with these arguments; `None` stands for unreadable arguments.
     fn controls(&self, address: &str, args: Option<&[OscType]>) -> Result<Vec<ControlMessage>, NoCommand> {
         // No request takes nil.
         command::read(&self.prefix, address, args.unwrap_or(&[OscType::Nil]))
     }
 
-    /// The address of a request that was refused for this reason, if its sender hears why.
+    /// Returns the address of the rejected request if its sender gets an answer.
     ///
-    /// Only those hear it who meant this floor: an address under its prefix, and none of those that floors send
-    /// themselves, for another floor that sends here by mistake could take an answer for an answer.
+    /// The answer goes only to senders that meant this floor: the address must have its prefix, and must not be one
+    /// that floors themselves send, since another floor that sends here by mistake could mistake an answer for a
+    /// request.
     #[must_use]
     pub fn is_answered<'e>(&self, error: &'e WireError) -> Option<&'e str> {
         match error {
@@ -269,9 +269,9 @@ impl Decoder {
 }
 
 impl Decoder {
-    /// The fault of boards that `error` is a sign of; [`LinkCause::Unknown`] with the error where it is about a request.
+    /// Returns the fault of a board that `error` indicates; [`LinkCause::Unknown`] with the error for a request.
     ///
-    /// `None` for what is malformed: the datagram tells more of that.
+    /// `None` for a malformed datagram: its bytes contain more information than the error.
     pub(crate) fn cause_of(&self, error: &WireError) -> Option<LinkCause> {
         Some(match error {
             WireError::Malformed(_) => return None,
@@ -287,7 +287,7 @@ impl Decoder {
         })
     }
 
-    /// The board's address that `address` was most likely meant to be; empty on a floor without boards.
+    /// Returns the board address nearest to `address`; empty on a floor without boards.
     fn nearest_board(&self, address: &str) -> String {
         let addresses = || {
             self.boards.iter().filter_map(|(bytes, shape)| Some((std::str::from_utf8(bytes).ok()?, shape)))
@@ -407,7 +407,7 @@ mod tests {
     }
 
     fn bundle(elements: &[Vec<u8>]) -> Vec<u8> {
-        // P10: the time tag may be anything.
+        // P10: the time tag may have any value.
         let mut bytes = b"#bundle\0\xFF\xFF\xFF\xFF\0\0\0\0".to_vec();
         for element in elements {
             bytes.extend(u32::try_from(element.len()).unwrap().to_be_bytes());
@@ -420,7 +420,7 @@ mod tests {
         bytes("/underfoot/board/0", ints(&[9, 1, 2, 3, 4]))
     }
 
-    /// A message written by hand, without the checks of an encoder.
+    /// Writes a message without the checks of an encoder.
     fn raw(address: &str, tags: Option<&str>, arguments: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::new();
         for text in [Some(address.to_owned()), tags.map(|tags| format!(",{tags}"))].into_iter().flatten() {
@@ -448,17 +448,17 @@ mod tests {
         }
     }
 
-    /// What strangers send beside a board's readings.
+    /// Messages of other senders beside a board's readings.
     fn foreign_messages() -> Vec<Vec<u8>> {
         vec![
             bytes("/battery", vec![OscType::Float(3.7)]),
-            // Older senders leave the type tags out, with arguments and without.
+            // Older senders omit the type tags, with arguments and without.
             raw("/ping", None, &[]),
             raw("/level", None, &[0, 0, 0, 1]),
-            // Type tags that no version of OSC has, or not all have.
+            // Type tags that are undefined in OSC, or defined only in some versions.
             raw("/symbol", Some("S"), b"kick"),
             raw("/odd", Some("iQz"), &[1, 2, 3, 4, 5, 6, 7, 8]),
-            // More arguments and a longer address than any message to a floor has.
+            // More arguments and a longer address than in any message to a floor.
             bytes("/spectrum", vec![OscType::Float(0.5); 300]),
             bytes(&format!("/{}", "a".repeat(200)), vec![]),
             bundle(&[bytes("/cue/1", vec![]), bundle(&[bytes("/cue/2", vec![])])]),

@@ -1,4 +1,4 @@
-//! Packets as boards write them.
+//! Encoding of packets as boards write them.
 
 use rosc::{OscMessage, OscPacket, OscType, encoder};
 use thiserror::Error;
@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::{Readings, SensorPacket};
 use crate::floor::{Calibration, Floor};
 
-/// How a board writes what its channels read.
+/// Format in which a board writes the readings of its channels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SensorFormat {
     /// One OSC `i` of raw counts per channel.
@@ -18,28 +18,29 @@ pub enum SensorFormat {
     Blob,
 }
 
-/// Why a packet cannot be written.
+/// Reason for which a packet cannot be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum EncodeError {
     /// The floor has no board of the packet's number.
     #[error("the floor has no board {0}")]
     NoBoard(u16),
-    /// The packet does not read as many channels as its board has.
+    /// The number of readings in the packet differs from the number of channels of the board.
     #[error("board {board} has {channels} channels, the packet {readings}")]
     Channels {
         /// The board.
         board: u16,
-        /// Channels it has.
+        /// The number of its channels.
         channels: usize,
         /// Readings in the packet.
         readings: usize,
     },
-    /// The packet holds newtons and the format takes counts, or a count is missing and the format cannot say so.
+    /// The packet holds newtons and the format takes counts, or a count is missing and the format has no code for
+    /// that.
     #[error("the packet has no raw counts to write")]
     NoCounts,
 }
 
-/// Writes the sensor packets of one floor the way its boards would.
+/// Writes the sensor packets of one floor in the format of its boards.
 #[derive(Clone, Debug)]
 pub struct SensorEncoder {
     boards: Vec<BoardText>,
@@ -50,12 +51,12 @@ pub struct SensorEncoder {
 #[derive(Clone, Debug)]
 struct BoardText {
     address: String,
-    /// Of each channel, for writing newtons; nominal where no sensor is.
+    /// Calibration of each channel, for writing newtons; nominal for a channel without a sensor.
     calibration: Vec<Calibration>,
 }
 
 impl SensorEncoder {
-    /// An encoder for the boards of `floor`, writing all packets in `format`.
+    /// An encoder for the boards of `floor` that writes all packets in `format`.
     #[must_use]
     pub fn new(floor: &Floor, format: SensorFormat) -> Self {
         let calibration = |sensor: &Option<crate::floor::SensorId>| {
@@ -77,15 +78,13 @@ impl SensorEncoder {
         Self { boards, format, bytes: Vec::new() }
     }
 
-    /// The datagram that carries `packet`; valid until the next call.
+    /// Returns the datagram with `packet`; valid until the next call.
     ///
-    /// Counts become newtons by the floor's calibration (tare not taken off)
-    /// where the format asks for it. A missing count is written as -1 by
-    /// [`SensorFormat::Counts`] and as NaN by [`SensorFormat::Newtons`].
+    /// If the format is newtons, counts are converted by the floor's calibration (without subtracting the tare). A
+    /// missing count is written as -1 by [`SensorFormat::Counts`] and as NaN by [`SensorFormat::Newtons`].
     ///
     /// # Errors
-    /// [`EncodeError`] if the packet does not belong to this floor, or the
-    /// format cannot express what it holds.
+    /// [`EncodeError`] if the packet does not belong to this floor, or the format cannot represent its contents.
     pub fn encode(&mut self, packet: &SensorPacket) -> Result<&[u8], EncodeError> {
         let board = self.boards.get(usize::from(packet.board)).ok_or(EncodeError::NoBoard(packet.board))?;
         let (channels, readings) = (board.calibration.len(), packet.readings.len());
@@ -124,7 +123,7 @@ impl SensorEncoder {
     }
 }
 
-/// Writes `packet` in place of what `bytes` held.
+/// Writes `packet` into `bytes` and replaces their contents.
 pub(crate) fn write(packet: &OscPacket, bytes: &mut Vec<u8>) {
     bytes.clear();
     let Ok(_) = encoder::encode_into(packet, bytes);
@@ -200,7 +199,7 @@ mod tests {
         let sent = packet(0, 1, Readings::Counts([Some(13107); 24].into_iter().collect()));
         Decoder::new(&floor).decode(encoder.encode(&sent).unwrap(), sent.received, &mut batch).unwrap();
         let Readings::Newtons(forces) = &batch.packets[0].readings else { panic!("not newtons") };
-        // 13107 counts are 1 V.
+        // 13107 counts correspond to 1 V.
         assert!((forces[6] - 2.0 * 1f32.exp()).abs() < 1e-4, "{}", forces[6]);
         assert!((forces[5] - 0.5 * 1.34f32.exp()).abs() < 1e-4, "{}", forces[5]);
     }

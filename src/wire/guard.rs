@@ -1,35 +1,35 @@
-//! Limits that a datagram must keep before it is decoded.
+//! Limits on a datagram, checked before it is decoded.
 
 use arrayvec::ArrayVec;
 use rosc::OscTime;
 use thiserror::Error;
 
-/// What one datagram may hold before it is refused unread.
+/// Limits beyond which a datagram is rejected before decoding.
 ///
-/// Every limit is far above what a board or an app sends, and far below what
-/// makes a recursive decoder run out of stack.
+/// Every limit is far above the needs of a board or an app, and far below the depth that exhausts the stack of a
+/// recursive decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Most bytes.
+    /// Maximum number of bytes.
     pub bytes: usize,
-    /// Most bundles inside one another; at most [`Limits::MAX_DEPTH`], 0 allows messages only.
+    /// Maximum nesting of bundles; at most [`Limits::MAX_DEPTH`], 0 allows messages only.
     pub depth: usize,
-    /// Most bundle elements, counted over all bundles.
+    /// Maximum number of bundle elements, counted over all bundles.
     pub elements: usize,
-    /// Most type tags of one message.
+    /// Maximum number of type tags of one message.
     pub tags: usize,
-    /// Most bytes of one address.
+    /// Maximum number of bytes of one address.
     pub address: usize,
 }
 
 impl Limits {
-    /// No datagram nests bundles deeper than this, whatever [`Limits::depth`] says.
+    /// Upper limit on the nesting of bundles, regardless of [`Limits::depth`].
     pub const MAX_DEPTH: usize = 8;
 
-    /// Most arrays inside one another within a message.
+    /// Maximum nesting of arrays within a message.
     pub const MAX_ARRAY_DEPTH: usize = 4;
 
-    /// What sensor boards and apps may send: 8 KiB, bundles four deep, 256 messages of 256 arguments.
+    /// Limits for sensor boards and apps: 8 KiB, bundles four deep, 256 messages of 256 arguments.
     pub const SENSORS: Self = Self { bytes: 8192, depth: 4, elements: 256, tags: 256, address: 128 };
 }
 
@@ -39,10 +39,10 @@ impl Default for Limits {
     }
 }
 
-/// Why a datagram is not well-formed OSC, or more than this program reads; `at` is a byte offset.
+/// Reason for which a datagram is not well-formed OSC, or exceeds the limits; `at` is a byte offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Malformed {
-    /// There is nothing in it.
+    /// The datagram is empty.
     #[error("the datagram is empty")]
     Empty,
     /// It is longer than [`Limits::bytes`].
@@ -56,63 +56,60 @@ pub enum Malformed {
     /// Its length, or that of a bundle element, is not a multiple of four.
     #[error("a length of {length} bytes is not a multiple of 4 (at byte {at})")]
     Length {
-        /// The odd length.
+        /// The length.
         length: usize,
-        /// Where it is.
+        /// Its place.
         at: usize,
     },
-    /// An element, string, blob or argument reaches past the end of what holds it.
+    /// An element, string, blob or argument extends past the end of its container.
     #[error("cut short: what starts at byte {at} reaches past the end")]
     CutShort {
-        /// Where the part starts that is too long.
+        /// The start of that part.
         at: usize,
     },
-    /// Bundles lie in bundles, or arrays in arrays, deeper than allowed; or an array never ends.
+    /// Bundles or arrays nest deeper than allowed, or an array is not closed.
     #[error("bundles or arrays nest too deep (at byte {at})")]
     TooDeep {
-        /// Where it goes too far.
+        /// The place of the excess.
         at: usize,
     },
     /// More bundle elements, type tags or address bytes than allowed.
     #[error("more elements, arguments or address bytes than allowed (at byte {at})")]
     TooMany {
-        /// Where it goes too far.
+        /// The place of the excess.
         at: usize,
     },
     /// An element is neither a bundle nor a message with an address starting in `/`.
     #[error("neither a message nor a bundle at byte {at}")]
     Neither {
-        /// Where it starts.
+        /// The start of the element.
         at: usize,
     },
-    /// A text holds bytes that OSC text may not have, or a type tag nobody knows.
+    /// A text holds bytes that OSC text may not have, or a type tag is unknown.
     #[error("bytes that are not OSC text, or an unknown type tag (at byte {at})")]
     Text {
-        /// Where it is.
+        /// Its place.
         at: usize,
     },
     /// Bytes remain after the last argument.
     #[error("bytes are left over at byte {at}")]
     LeftOver {
-        /// Where they start.
+        /// The first of these bytes.
         at: usize,
     },
 }
 
-/// Whether an OSC decoder may safely be given `datagram`.
+/// Checks whether an OSC decoder can safely read `datagram`.
 ///
-/// Reads it once, front to back, without recursion or allocation: time and
-/// memory are bounded by `limits`, whatever the bytes. What passes is
-/// well-formed throughout: every element, string, blob and argument lies
-/// within what holds it, no byte is left over, texts are UTF-8 (addresses
-/// ASCII), arrays are closed.
+/// Reads the datagram once, front to back, without recursion or allocation: `limits` bound time and memory for any
+/// bytes. A datagram that passes is well-formed throughout: every element, string, blob and argument lies within its
+/// container, no byte is left over, texts are UTF-8 (addresses ASCII), arrays are closed.
 ///
 /// # Errors
-/// [`Malformed`] names the first fault and where it is. Nothing of such a
-/// datagram should be used.
+/// [`Malformed`] gives the first fault and its place. No part of such a datagram should be used.
 ///
 /// # Source
-/// Open Sound Control 1.0 with the type tags of 1.1, as far as rosc knows them.
+/// Open Sound Control 1.0 with the type tags of 1.1, as far as rosc supports them.
 pub fn check(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
     walk(datagram, limits, |scan, _| match scan.form(limits)? {
         Form::Whole => Ok(()),
@@ -121,8 +118,8 @@ pub fn check(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
     })
 }
 
-/// Whether the parts of `datagram` can be told apart: as [`check`], but a message may have no type tags or unknown
-/// ones, and one in a bundle may be larger than `limits` allow. [`form`] says which messages can be read.
+/// Checks whether `datagram` splits into its parts: as [`check`], but a message may have no type tags or unknown
+/// ones, and a message in a bundle may exceed `limits`. [`form`] tells which messages are readable.
 pub(super) fn check_parts(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
     walk(datagram, limits, |scan, is_alone| match scan.form(limits) {
         Err(Malformed::TooMany { .. }) if !is_alone => Ok(()),
@@ -130,37 +127,37 @@ pub(super) fn check_parts(datagram: &[u8], limits: &Limits) -> Result<(), Malfor
     })
 }
 
-/// How far a message can be read; `at` is a byte offset.
+/// The readable part of a message; `at` is a byte offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     /// To its last byte.
     Whole,
-    /// It ends behind its address, as older senders write a message without arguments.
+    /// It ends after its address, as older senders write a message without arguments.
     Bare {
-        /// Where its type tags would stand.
+        /// Place where its type tags would begin.
         at: usize,
     },
-    /// Bytes follow its address, and no type tags say of which types.
+    /// Bytes follow its address without type tags for them.
     Untagged {
-        /// Where its type tags would stand.
+        /// Place where its type tags would begin.
         at: usize,
     },
-    /// Some of its type tags are unknown, so that nothing is known of its arguments.
+    /// Some of its type tags are unknown, so that its arguments are unreadable.
     Unknown {
-        /// Where its type tags stand.
+        /// Place of its type tags.
         at: usize,
     },
 }
 
-/// How far the message `bytes` can be read.
+/// Returns the readable part of the message `bytes`.
 ///
 /// # Errors
-/// [`Malformed`] if it is larger than `limits` allow, or not well-formed.
+/// [`Malformed`] if it exceeds `limits`, or is not well-formed.
 pub(super) fn form(bytes: &[u8], limits: &Limits) -> Result<Form, Malformed> {
     Scan { bytes, offset: 0, at: 0 }.form(limits)
 }
 
-/// Walks through all messages of `datagram`, each with whether it is alone.
+/// Calls `message` for all messages of `datagram`; the flag says whether the message stands alone.
 fn walk(
     datagram: &[u8],
     limits: &Limits,
@@ -176,7 +173,7 @@ fn walk(
         return Err(Malformed::Length { length: datagram.len(), at: 0 });
     }
 
-    // Where each open bundle ends, outermost first; the outermost element is the datagram itself.
+    // End of each open bundle, outermost first; the outermost element is the datagram itself.
     let mut ends: ArrayVec<usize, { Limits::MAX_DEPTH }> = ArrayVec::new();
     let mut elements = 0;
     let mut element = 0..datagram.len();
@@ -221,18 +218,18 @@ fn walk(
 
 const BUNDLE_TAG: &[u8] = b"#bundle\0";
 
-/// The tag and the time tag.
+/// Bytes of the bundle tag and the time tag.
 const BUNDLE_HEADER: usize = 16;
 
-/// A bundle that [`check`] has let through.
+/// A bundle that [`check`] has accepted.
 pub(super) struct Bundle<'a> {
-    /// When it is to be met.
+    /// Time at which it is due.
     pub(super) time_tag: OscTime,
     elements: &'a [u8],
 }
 
 impl<'a> Bundle<'a> {
-    /// `bytes` as a bundle; `None` if they are a message.
+    /// Reads `bytes` as a bundle; `None` if they are a message.
     pub(super) fn of(bytes: &'a [u8]) -> Option<Self> {
         let (seconds, rest) = bytes.strip_prefix(BUNDLE_TAG)?.split_first_chunk()?;
         let (fractional, elements) = rest.split_first_chunk()?;
@@ -240,7 +237,7 @@ impl<'a> Bundle<'a> {
         Some(Self { time_tag: OscTime { seconds, fractional }, elements })
     }
 
-    /// Its messages and bundles, in order.
+    /// Returns its messages and bundles, in order.
     pub(super) fn elements(&self) -> impl Iterator<Item = &'a [u8]> {
         let mut rest = self.elements;
         std::iter::from_fn(move || {
@@ -256,10 +253,10 @@ fn be_u32(bytes: &[u8]) -> Option<usize> {
     usize::try_from(u32::from_be_bytes(word)).ok()
 }
 
-/// A walk through one message; `bytes` is a multiple of four long.
+/// A scan of one message; the length of `bytes` is a multiple of four.
 struct Scan<'a> {
     bytes: &'a [u8],
-    /// Where `bytes` starts in the datagram, for messages.
+    /// Offset of `bytes` in the datagram, for error messages.
     offset: usize,
     at: usize,
 }
@@ -285,7 +282,7 @@ impl<'a> Scan<'a> {
         Ok(form)
     }
 
-    /// The form of a message whose type tags stand `at`.
+    /// Returns the form of a message with its type tags at `at`.
     fn tagged(&mut self, limits: &Limits, at: usize) -> Result<Form, Malformed> {
         let tags = self.text()?.strip_prefix(',').unwrap_or_default();
         if !self.arguments(tags, at)? {
@@ -300,7 +297,7 @@ impl<'a> Scan<'a> {
         Ok(Form::Whole)
     }
 
-    /// Passes over the arguments; false at the first tag that rosc does not know.
+    /// Skips the arguments; false at the first tag that rosc does not support.
     fn arguments(&mut self, tags: &str, tags_at: usize) -> Result<bool, Malformed> {
         let mut depth = 0;
         for tag in tags.bytes() {
@@ -339,7 +336,7 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
-    /// A string with its terminator, padded to four bytes.
+    /// Reads a string with its terminator, padded to four bytes.
     fn text(&mut self) -> Result<&'a str, Malformed> {
         let rest = self.rest();
         let length = rest.iter().position(|&byte| byte == 0).ok_or_else(|| self.cut_short())?;
@@ -439,7 +436,7 @@ mod tests {
             encoder::encode(&bundle(vec![message("/underfoot/board/0", vec![OscType::Int(1); 25])])).unwrap();
         assert_eq!(check(&whole, &Limits::default()), Ok(()));
         for length in 0..whole.len() {
-            // A bundle header alone, and a header with whole elements, are bundles in their own right.
+            // A bundle header alone, and a header with whole elements, are valid bundles.
             let verdict = check(&whole[..length], &Limits::default());
             assert_eq!(verdict.is_ok(), length == 16, "{length}: {verdict:?}");
         }
@@ -452,7 +449,7 @@ mod tests {
         bytes.extend([0; 4]);
         assert_eq!(check(&bytes, &Limits::default()), Err(Malformed::LeftOver { at: end }));
 
-        // The same inside a bundle, where rosc alone would not notice.
+        // The same inside a bundle, where rosc alone would not detect it.
         let mut inside = b"#bundle\0\0\0\0\0\0\0\0\x01".to_vec();
         inside.extend((bytes.len() as u32).to_be_bytes());
         inside.extend(&bytes);

@@ -7,11 +7,11 @@ use super::command::{NoCommand, read};
 use super::message::ControlMessage;
 use super::prefix::Prefix;
 
-/// The request at `path` (an address without its prefix, such as `widget/zoom/set`) with JSON's numbers, truths and
-/// texts as arguments.
+/// Reads the request at `path` (an address without its prefix, such as `widget/zoom/set`) with JSON's numbers,
+/// booleans and texts as arguments.
 ///
 /// # Errors
-/// Why there is no such request, in words for who wrote it.
+/// Says why the request is invalid, in words for its author.
 pub fn read_json(path: &str, args: &[Value]) -> Result<ControlMessage, String> {
     let prefix = Prefix::default();
     let args: Option<Vec<OscType>> = args.iter().map(argument).collect();
@@ -26,9 +26,10 @@ pub fn read_json(path: &str, args: &[Value]) -> Result<ControlMessage, String> {
     }
 }
 
-/// The path and the arguments that [`read_json`] makes `message` of; its numbers are finite, as all requests' are.
+/// Returns the path and the arguments from which [`read_json`] makes `message`; its numbers are finite, as in all
+/// requests.
 ///
-/// A choice becomes a whole number, as in OSC, which stands for a choice where the control is a selector.
+/// A choice becomes a whole number, as in OSC; a selector reads it as a choice.
 #[must_use]
 pub fn write_json(message: &ControlMessage) -> (String, Vec<Value>) {
     let value = |argument| match argument {
@@ -36,7 +37,7 @@ pub fn write_json(message: &ControlMessage) -> (String, Vec<Value>) {
         OscType::Int(number) => number.into(),
         OscType::Float(number) => f64::from(number).into(),
         OscType::String(text) => Value::String(text),
-        // No request has others.
+        // Requests have no other arguments.
         _ => Value::Null,
     };
     (message.path(), message.arguments().into_iter().map(value).collect())
@@ -45,7 +46,7 @@ pub fn write_json(message: &ControlMessage) -> (String, Vec<Value>) {
 fn argument(value: &Value) -> Option<OscType> {
     match value {
         Value::Bool(on) => Some(OscType::Bool(*on)),
-        // What is beyond a float is infinite there, and is refused as such.
+        // A number beyond the range of a float becomes infinite, which is rejected.
         Value::Number(number) => match number.as_i64().and_then(|whole| i32::try_from(whole).ok()) {
             Some(whole) => Some(OscType::Int(whole)),
             None => number.as_f64().map(|number| OscType::Float(number as f32)),

@@ -1,6 +1,6 @@
-//! Whether sensor packets arrive.
+//! State of the link: the arrival of sensor packets.
 
-/// Whether sensor packets arrive.
+/// State of the link: the arrival of sensor packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinkState {
     /// No packet has come yet.
@@ -10,12 +10,12 @@ pub enum LinkState {
     Live,
     /// Packets arrive, but not from every board.
     Partial,
-    /// Nothing has come for 100 ms or more; every control is released.
+    /// No packet for 100 ms or more; every control is released.
     Lost,
 }
 
 impl LinkState {
-    /// The word for it in OSC and JSON.
+    /// Returns its name in OSC and JSON.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! What an app asks, and who asks it.
+//! Requests of apps, with their senders.
 
 use std::net::SocketAddr;
 
@@ -7,97 +7,96 @@ use rosc::OscType;
 use crate::floor::TileId;
 use crate::widget::{Indicator, Value, WidgetId};
 
-/// What an app asks of a control or of the floor.
+/// A request of an app, about a control or the floor.
 ///
-/// Whether there is such a control or page, and whether the value suits it, only
-/// the engine knows: it takes a number other than 0 for "on" where the control
-/// is a switch, and a whole number for a choice where it is a selector.
+/// Only the engine knows whether there is such a control or page, and whether the value fits: for a switch it converts
+/// 0 to off and other numbers to on, for a selector a whole number to a choice.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControlMessage {
-    /// Hold this value; its numbers are finite.
+    /// Set the value; its numbers are finite.
     Set {
-        /// Which control.
+        /// The control.
         id: WidgetId,
         /// `Switch` if the app sent OSC true or false, `Number` if it sent any number, `Pair` for two.
         value: Value,
     },
-    /// React to feet again.
+    /// Respond to feet again.
     Enable {
-        /// Which control.
+        /// The control.
         id: WidgetId,
     },
-    /// React to feet no more.
+    /// Stop responding to feet.
     Disable {
-        /// Which control.
+        /// The control.
         id: WidgetId,
     },
-    /// Keep the value, whatever feet and apps do.
+    /// Keep the value, regardless of feet and apps.
     Lock {
-        /// Which control.
+        /// The control.
         id: WidgetId,
     },
-    /// Change the value again.
+    /// Allow changes of the value again.
     Unlock {
-        /// Which control.
+        /// The control.
         id: WidgetId,
     },
-    /// Carry another label.
+    /// Set the label.
     Label {
-        /// Which control.
+        /// The control.
         id: WidgetId,
-        /// As it was sent: what no label may hold is left out where it is written on the control.
+        /// The text as sent: the server removes forbidden characters when it sets the label.
         text: String,
     },
-    /// Switch the lamp.
+    /// Set the lamp.
     Indicate {
-        /// Which control.
+        /// The control.
         id: WidgetId,
-        /// What it shows.
+        /// The state of the lamp.
         indicator: Indicator,
     },
-    /// Have this range, in place of what the layout says.
+    /// Set the range, in place of the one in the layout.
     SetRange {
-        /// Which control.
+        /// The control.
         id: WidgetId,
-        /// The least value; finite.
+        /// The minimum value; finite.
         least: f32,
-        /// The greatest value; finite.
+        /// The maximum value; finite.
         greatest: f32,
     },
-    /// Tell the sender how the control is.
+    /// Report the state of the control to the sender.
     Get {
-        /// Which control.
+        /// The control.
         id: WidgetId,
     },
-    /// Tell the sender, and everybody else who is told, how all controls are, and the floor.
+    /// Report the state of all controls and of the floor to the sender and to all other listeners.
     GetAll,
     /// Show another page, as soon as no foot is engaged.
     ShowPage {
-        /// Which page.
+        /// The page.
         page: WidgetId,
     },
-    /// Tell the sender which page is shown.
+    /// Report the current page to the sender.
     GetPage,
-    /// Cancel what feet hold: nothing is held or commits until a foot lifts and presses anew.
+    /// Cancel everything held: nothing is held or commits until a foot lifts and presses again.
     CancelAll,
-    /// Let nothing be felt or heard, or everything again.
+    /// Mute all haptics and sound, or unmute them.
     Mute {
-        /// Whether to.
+        /// Whether to mute.
         on: bool,
     },
-    /// Let one tile not be felt, or again.
+    /// Mute the haptics of one tile, or unmute them.
     MuteTile {
-        /// Which tile.
+        /// The tile.
         tile: TileId,
-        /// Whether to.
+        /// Whether to mute.
         on: bool,
     },
-    /// Tell the sender what is muted.
+    /// Report the mute state to the sender.
     GetMute,
 }
 
 impl ControlMessage {
-    /// The control it is about, if it is about one.
+    /// Returns the control that it concerns, if any.
     #[must_use]
     pub fn id(&self) -> Option<&WidgetId> {
         match self {
@@ -120,7 +119,7 @@ impl ControlMessage {
         }
     }
 
-    /// The same, to be changed.
+    /// Returns the control that it concerns, for changing.
     pub fn id_mut(&mut self) -> Option<&mut WidgetId> {
         match self {
             Self::Set { id, .. }
@@ -142,7 +141,7 @@ impl ControlMessage {
         }
     }
 
-    /// The address behind the prefix that says so, such as `widget/zoom/set`.
+    /// Returns the address of the message behind the prefix, such as `widget/zoom/set`.
     #[must_use]
     pub fn path(&self) -> String {
         let (verb, id) = match self {
@@ -166,7 +165,7 @@ impl ControlMessage {
         format!("widget/{id}/{verb}")
     }
 
-    /// The arguments behind that address.
+    /// Returns the arguments of the message.
     #[must_use]
     pub(crate) fn arguments(&self) -> Vec<OscType> {
         match self {
@@ -199,17 +198,17 @@ impl ControlMessage {
     }
 }
 
-/// A request and who made it.
+/// A request and its sender.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// What is asked.
+    /// The request.
     pub message: ControlMessage,
-    /// Where an answer goes; `None` if nobody can be answered.
+    /// Destination of an answer; `None` if there is none.
     pub sender: Option<SocketAddr>,
 }
 
 impl From<ControlMessage> for Request {
-    /// A request that nobody waits for an answer to.
+    /// A request without a destination for an answer.
     fn from(message: ControlMessage) -> Self {
         Self { message, sender: None }
     }

@@ -1,8 +1,7 @@
-//! Datagrams to sensor packets and requests, and how the link is doing: pure, no sockets.
+//! Decoding of datagrams into sensor packets and requests, and the state of the link: pure, no sockets.
 //!
-//! A datagram is looked through by `check` before any decoder sees it, then
-//! read whole or refused whole by `Decoder`. `SensorEncoder` is the way
-//! back, for simulated boards.
+//! `check` examines a datagram before any decoder reads it; then `Decoder` accepts or rejects all of it.
+//! `SensorEncoder` is the inverse, for simulated boards.
 
 mod argument;
 mod cause;

@@ -4,15 +4,15 @@ use arrayvec::ArrayVec;
 
 use crate::units::Instant;
 
-/// Most channels that one board may send.
+/// Maximum number of channels of one board.
 pub const MAX_CHANNELS: usize = 64;
 
-/// What the channels of one board read, in channel order.
+/// Readings of the channels of one board, in channel order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Readings {
     /// Raw converter counts, 0 to 65535; `None` for one that was outside that range.
     Counts(ArrayVec<Option<u16>, MAX_CHANNELS>),
-    /// Newtons, already calibrated by the board; may hold NaN or infinities as they came.
+    /// Newtons, already calibrated by the board; may hold NaN or infinities as received.
     Newtons(ArrayVec<f32, MAX_CHANNELS>),
 }
 
@@ -33,15 +33,15 @@ impl Readings {
     }
 }
 
-/// One sample of one board, as it came off the wire.
+/// One sample of one board, as received.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorPacket {
     /// The board's number: its place in [`crate::floor::Floor::boards`].
     pub board: u16,
     /// The board's sample counter, one step a millisecond, wrapping at 2^32.
     pub sequence: u32,
-    /// When it arrived, on the clock of the [`crate::source::SensorSource`].
+    /// Arrival time, on the clock of the [`crate::source::SensorSource`].
     pub received: Instant,
-    /// What its channels read.
+    /// The readings of its channels.
     pub readings: Readings,
 }

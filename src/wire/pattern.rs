@@ -1,26 +1,26 @@
 //! Patterns in OSC addresses, part by part.
 //!
-//! Not rosc's matcher: there `[0-9]` takes several digits at once, `*` at least one character, and nothing is tried a
-//! second time, so that a request would meet other controls than OSC says.
+//! rosc's matcher is not used: there `[0-9]` matches several digits, `*` matches at least one character, and nothing
+//! backtracks, so that a request would reach other controls than OSC specifies.
 
-/// Whether `text` has characters that mean a pattern.
+/// Whether `text` has pattern characters.
 #[must_use]
 pub fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?', '[', ']', '{', '}'])
 }
 
-/// Whether `pattern` means `name`; both are parts of addresses, without slashes, of ASCII characters.
+/// Whether `pattern` matches `name`; both are parts of addresses, without slashes, of ASCII characters.
 ///
-/// A pattern that is not well-formed (a bracket that never closes) means nothing. The work is bounded by the product of
-/// both lengths, whatever the pattern.
+/// A malformed pattern (a bracket that is not closed) matches nothing. For any pattern, the work is bounded by the
+/// product of both lengths.
 ///
 /// # Source
-/// Open Sound Control 1.0, "OSC Message Dispatching and Pattern Matching": `?` is any one character, `*` any number of
-/// them, `[a-cx]` one of these, `[!a-c]` one that is not, `{one,two}` one of these words.
+/// Open Sound Control 1.0, "OSC Message Dispatching and Pattern Matching": `?` is any one character, `*` any number
+/// of characters, `[a-cx]` one of these, `[!a-c]` one that is not, `{one,two}` one of these words.
 #[must_use]
 pub fn matches(pattern: &str, name: &str) -> bool {
     let name = name.as_bytes();
-    // How far into the name what has been read of the pattern may reach.
+    // Positions in the name that the part of the pattern read so far can reach.
     let mut reached = vec![false; name.len() + 1];
     reached[0] = true;
     let mut rest = pattern.as_bytes();
@@ -50,7 +50,7 @@ pub fn matches(pattern: &str, name: &str) -> bool {
     reached.last() == Some(&true)
 }
 
-/// One element of a pattern that takes a known number of characters.
+/// One element of a pattern with a known number of characters.
 enum Step<'a> {
     AnyOne,
     This(u8),
@@ -63,7 +63,7 @@ fn split_at(text: &[u8], end: u8) -> Option<(&[u8], &[u8])> {
     Some((text.get(..at)?, text.get(at + 1..)?))
 }
 
-/// Where a name may be reached after `step` from where it was reached before.
+/// Returns the positions in the name reachable by `step` from those in `reached`.
 fn advance(reached: &[bool], name: &[u8], step: &Step<'_>) -> Vec<bool> {
     let mut next = vec![false; reached.len()];
     for (at, _) in reached.iter().enumerate().filter(|(_, reached)| **reached) {
@@ -87,7 +87,7 @@ fn advance(reached: &[bool], name: &[u8], step: &Step<'_>) -> Vec<bool> {
     next
 }
 
-/// Whether `character` is one of `set`, `a-cx` or `!a-cx`; a minus sign at the end means itself.
+/// Whether `character` is in `set`, `a-cx` or `!a-cx`; a minus sign at the end stands for itself.
 fn is_in(character: u8, set: &[u8]) -> bool {
     let (wanted, mut rest) = match set {
         [b'!', rest @ ..] => (false, rest),
@@ -152,7 +152,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever it is made of, a name is meant by patterns that leave any of its parts open.
+        /// Any name matches the patterns that leave one of its parts open.
         #[test]
         fn a_name_is_meant_by_what_leaves_parts_of_it_open(name in "[a-z0-9_]{1,12}", cut in 0_usize..12, to in 0_usize..12) {
             let (from, to) = (cut.min(to).min(name.len()), cut.max(to).min(name.len()));

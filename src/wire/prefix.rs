@@ -1,4 +1,4 @@
-//! What OSC addresses begin with.
+//! Prefix of OSC addresses.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-/// What the OSC addresses of this program begin with: `/underfoot` unless somebody wants it otherwise.
+/// The prefix of this program's OSC addresses: `/underfoot` by default.
 ///
-/// Boards are not concerned: the floor file names their addresses.
+/// It does not apply to boards: the floor file sets their addresses.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Prefix(Arc<str>);
 
-/// Why a text is not a prefix.
+/// A text is not a valid prefix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "a prefix is made of parts like /lab/floor_2: a slash, then letters, digits, `_` and `-`; 200 in all"
@@ -20,19 +20,19 @@ pub struct Prefix(Arc<str>);
 pub struct BadPrefix;
 
 impl Prefix {
-    /// The prefix as text, such as `/underfoot`.
+    /// Returns the prefix as text, such as `/underfoot`.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
-    /// The address `path` under this prefix: `widget/zoom/set` becomes `/underfoot/widget/zoom/set`.
+    /// Returns the address of `path` under this prefix: `widget/zoom/set` becomes `/underfoot/widget/zoom/set`.
     #[must_use]
     pub fn address(&self, path: &str) -> String {
         format!("{}/{path}", self.0)
     }
 
-    /// What follows the prefix and a slash in `address`; `None` if it begins otherwise.
+    /// Returns the part of `address` after the prefix and a slash; `None` if it has another prefix.
     #[must_use]
     pub fn path<'a>(&self, address: &'a str) -> Option<&'a str> {
         address.strip_prefix(&*self.0)?.strip_prefix('/')
@@ -54,7 +54,7 @@ impl fmt::Display for Prefix {
 impl FromStr for Prefix {
     type Err = BadPrefix;
 
-    /// Reads `/lab/floor_2`; one slash at the end is left out.
+    /// Reads `/lab/floor_2`; removes one slash at the end.
     fn from_str(text: &str) -> Result<Self, BadPrefix> {
         let text = text.strip_suffix('/').unwrap_or(text);
         let in_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');

@@ -1,34 +1,34 @@
-//! The messages of boards, read straight from their bytes: thousands a second come of them, and all look alike.
+//! Messages of boards, read directly from their bytes: thousands arrive every second, all of the same form.
 
 use arrayvec::ArrayVec;
 
 use super::guard::Limits;
 use super::packet::{MAX_CHANNELS, Readings};
 
-/// A message as it lies in a datagram: its address and what follows it.
+/// A message in a datagram: its address and the bytes after it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RawMessage<'a> {
-    /// The address without its end; not known to be text.
+    /// The address without its terminator; it may not be text.
     pub(super) address: &'a [u8],
     rest: &'a [u8],
 }
 
 impl<'a> RawMessage<'a> {
-    /// Splits the address off; `None` if it has no end.
+    /// Splits the address off; `None` if it has no terminator.
     pub(super) fn split(bytes: &'a [u8]) -> Option<Self> {
         let (address, rest) = text(bytes)?;
         Some(Self { address, rest })
     }
 
-    /// The address as text, without what is beyond the longest one that this program knows; empty if it is not text.
+    /// Returns the address as text, cut at the maximum length of an address; empty if it is not text.
     pub(super) fn address_text(&self) -> &'a str {
         let text = std::str::from_utf8(self.address).unwrap_or_default();
         &text[..text.floor_char_boundary(Limits::SENSORS.address)]
     }
 
-    /// Its type tags, as a message to people writes them: `iffff`, `ib (a blob of 46 bytes)`, `no type tags`.
+    /// Describes its type tags for people: `iffff`, `ib (a blob of 46 bytes)`, `no type tags`.
     pub(super) fn found(&self) -> String {
-        /// Most type tags that are written.
+        /// Maximum number of type tags shown.
         const SHOWN: usize = 40;
         if self.rest.is_empty() {
             return "nothing".to_owned();
@@ -54,8 +54,8 @@ impl<'a> RawMessage<'a> {
         numbers > 3 || tags.contains(&b'b')
     }
 
-    /// The sequence number and the readings; `None` if the message is anything but those of a board within `limits`,
-    /// to the last byte.
+    /// Returns the sequence number and the readings; `None` unless the whole message is that of a board within
+    /// `limits`.
     pub(super) fn read(&self, limits: &Limits) -> Option<(u32, Readings)> {
         let (tags, arguments) = text(self.rest)?;
         let tags = tags.strip_prefix(b",")?;
@@ -72,19 +72,19 @@ impl<'a> RawMessage<'a> {
                 Readings::Counts(values(tags, b'i', arguments, count)?)
             }
         };
-        // The sequence is 32 bits without a sign; OSC has only signed ones.
+        // The sequence number has 32 bits without a sign; OSC has only signed integers.
         Some((u32::from_be_bytes(*sequence), readings))
     }
 }
 
-/// The bytes before the first zero, and what follows its padding to four bytes.
+/// Returns the bytes before the first zero, and those after its padding to four bytes.
 fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let length = bytes.iter().position(|byte| *byte == 0)?;
     let rest = bytes.get((length + 1).next_multiple_of(4)..)?;
     Some((bytes.get(..length)?, rest))
 }
 
-/// One value of four bytes for each tag, which must all be `tag`, and nothing else.
+/// Returns one value of four bytes for each tag; `None` unless all tags are `tag` and no bytes are left over.
 fn values<T>(
     tags: &[u8],
     tag: u8,
@@ -99,7 +99,7 @@ fn values<T>(
     Some(words.iter().map(|word| value(*word)).collect())
 }
 
-/// Counts of two bytes each, with their length before them and padding behind.
+/// Reads counts of two bytes each, with their length before them and padding behind.
 fn blob(arguments: &[u8]) -> Option<ArrayVec<Option<u16>, MAX_CHANNELS>> {
     let (length, bytes) = arguments.split_first_chunk()?;
     let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;
@@ -120,7 +120,7 @@ mod tests {
 
     const ADDRESS: &str = "/underfoot/board/3";
 
-    /// What a decoder of others makes of the same bytes, if they are a board's message.
+    /// Decodes the same bytes with rosc, if they are a board's message.
     fn by_rosc(datagram: &[u8]) -> Option<(String, u32, Readings)> {
         let (_, OscPacket::Message(message)) = rosc::decoder::decode_udp(datagram).ok()? else { return None };
         let (OscType::Int(sequence), values) = message.args.split_first()? else { return None };
@@ -155,8 +155,8 @@ mod tests {
     }
 
     proptest! {
-        /// The guard does not see what is read here: whatever a datagram has become on its way, nothing is read that
-        /// the guard would refuse, nothing otherwise than others read it, and nothing whole is left unread.
+        /// These messages bypass the guard: for any damage to a datagram, the reader accepts nothing that the guard
+        /// would reject, agrees with rosc, and reads every complete message.
         #[test]
         fn what_is_read_is_what_the_guard_lets_through_and_others_read(
             mut datagram in datagrams(),
@@ -181,7 +181,7 @@ mod tests {
                     prop_assert_eq!(sequence, their_sequence);
                     prop_assert_eq!(format!("{readings:?}"), format!("{theirs:?}"));
                 }
-                // Damaged: no board has such an address.
+                // Damaged: the address belongs to no board.
                 (Some(_), _) => {}
                 (None, others) => prop_assert!(others.is_none(), "{others:?} is left unread"),
             }

@@ -1,4 +1,4 @@
-//! Records in a list, each about a thing of its own.
+//! Records in a list, each with a subject of its own.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -11,23 +11,23 @@ use crate::format::problem::Problem;
 use crate::format::record::Record;
 use crate::format::text::Text as RonText;
 
-/// Records in square brackets, no two of which may be about the same thing.
+/// Records in square brackets, no two of which may have the same subject.
 ///
-/// What is wrong between those that can be read is found although others can't be.
+/// The codec also finds conflicts between the readable records when others cannot be read.
 pub(crate) struct Distinct<T> {
-    /// What messages call one of them.
+    /// Name of one record in messages.
     pub(crate) entry: &'static str,
     pub(crate) most: usize,
-    /// Tells what one is about, by its number in the list.
+    /// Checks the subject of one record; the first argument is its index in the list.
     pub(crate) about: fn(usize, &T, &Fields<'_>, &mut Seen),
 }
 
-/// Where each of some things is first written.
+/// Places where subjects are first written.
 #[derive(Default)]
 pub(crate) struct Seen(HashMap<String, Range<usize>>);
 
 impl Seen {
-    /// Reports that what messages call `thing` has been written before.
+    /// Reports that `thing`, as messages name it, has been written before.
     pub(crate) fn check(&mut self, fields: &Fields<'_>, thing: String, span: Range<usize>) {
         match self.0.get(&thing) {
             Some(first) => {
@@ -41,7 +41,7 @@ impl Seen {
 }
 
 impl<T: Record> Distinct<T> {
-    /// All of them, with something in place of what could not be read, and whether everything could.
+    /// Reads all records, with stand-ins for those that cannot be read. The flag says whether all could be read.
     fn read_all(&self, node: Node<'_>) -> (Vec<T>, bool) {
         let Some(nodes) = node.list(self.entry, self.most) else { return (Vec::new(), false) };
         let (mut seen, mut good) = (Seen::default(), true);

@@ -13,13 +13,13 @@ use crate::format::text::Text as RonText;
 
 /// Values in square brackets.
 pub(crate) struct List<C> {
-    /// What messages call one of them.
+    /// Name of one value in messages.
     entry: &'static str,
     most: usize,
     each: C,
-    /// The fewest, what is said of fewer, and what to do then.
+    /// Minimum number of values, the message for fewer, and the advice that goes with it.
     few: Option<(usize, &'static str, Option<&'static str>)>,
-    /// Whether a hand may turn what is in it.
+    /// Whether a tuner may change the values.
     turns: bool,
 }
 
@@ -29,19 +29,19 @@ pub(crate) const fn list<C>(entry: &'static str, most: usize, each: C) -> List<C
 }
 
 impl<C> List<C> {
-    /// Edited as a list, not number by number: its values depend on each other.
+    /// Edited as a list instead of number by number, since its values depend on each other.
     pub(crate) const fn still(mut self) -> Self {
         self.turns = false;
         self
     }
 
-    /// At least so many; `message` is said of fewer.
+    /// Requires at least `least` values; `message` reports fewer.
     pub(crate) const fn at_least(mut self, least: usize, message: &'static str) -> Self {
         self.few = Some((least, message, None));
         self
     }
 
-    /// What to do where there are too few.
+    /// Adds the advice shown for too few values.
     pub(crate) const fn help(mut self, help: &'static str) -> Self {
         if let Some((_, _, told)) = &mut self.few {
             *told = Some(help);
@@ -49,7 +49,7 @@ impl<C> List<C> {
         self
     }
 
-    /// All of the values, if each could be read.
+    /// Reads all values; `None` if one of them cannot be read.
     fn read_all<T>(&self, node: Node<'_>) -> Option<Vec<T>>
     where
         C: Codec<T>,
@@ -63,24 +63,24 @@ impl<C> List<C> {
             node.report(problem.help_if(help.map(str::to_owned)));
             return None;
         }
-        // All are read before the first that failed ends it, so that each is reported.
+        // All entries are read before the first failure ends the list, so that each failure is reported.
         let read: Vec<Option<T>> = nodes.into_iter().map(|node| self.each.read(node, None)).collect();
         read.into_iter().collect()
     }
 }
 
-/// What holds the values of a list.
+/// A container of the values of a list.
 pub(crate) trait Listed {
-    /// One of them.
+    /// Type of one value.
     type Each;
 
-    /// The list of these.
+    /// Makes the container from `values`.
     fn of(values: Vec<Self::Each>) -> Self;
 
-    /// All of them.
+    /// Returns all values.
     fn all(&self) -> &[Self::Each];
 
-    /// All of them, to be turned; none where they are shared.
+    /// Returns all values for changing; none where they are shared.
     fn all_mut(&mut self) -> &mut [Self::Each] {
         &mut []
     }

@@ -1,4 +1,4 @@
-//! What is written for one field, as a value that reads and writes it.
+//! Codecs: each reads and writes the value of one field.
 
 mod distinct;
 mod list;
@@ -17,24 +17,24 @@ use super::hand::Hand;
 use super::node::Node;
 use super::text::{Entry, Text as RonText};
 
-/// What is written for a `T`.
+/// Reads and writes a `T`.
 pub(crate) trait Codec<T> {
-    /// What `node` says, over `base`; `None` after it has reported why that can't be used.
+    /// Reads `node` over `base`; `None` after it has reported why the value cannot be used.
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T>;
 
-    /// As it is written.
+    /// Returns the text that files hold for `value`.
     fn write(&self, value: &T) -> RonText;
 
-    /// What is written, for people.
+    /// Describes the written form for people.
     fn shape(&self) -> FieldType;
 
     /// Any value of its type.
     fn stand_in(&self) -> T;
 
-    /// Shows its numbers to a hand.
+    /// Passes its numbers to a tuner.
     fn turn(&self, _value: &mut T, _name: &'static str, _hand: &mut Hand<'_>) {}
 
-    /// What the field `name` says, or `base`, or `default`.
+    /// Reads the field `name`; without it, returns `base` or else `default`.
     fn read_field(
         &self,
         fields: &mut Fields<'_>,
@@ -61,7 +61,7 @@ pub(crate) trait Codec<T> {
         })
     }
 
-    /// Appends the field `name`, unless it is as its `default`.
+    /// Appends the field `name`, unless it equals its `default`.
     fn write_field(&self, value: &T, name: &'static str, default: Option<T>, entries: &mut Vec<Entry>)
     where
         T: PartialEq,
@@ -71,7 +71,7 @@ pub(crate) trait Codec<T> {
         }
     }
 
-    /// Appends what is known of the field `name`.
+    /// Appends the description of the field `name`.
     fn describe_field(
         &self,
         name: &'static str,
@@ -175,7 +175,7 @@ impl<T: Named> Codec<T> for Name {
     }
 }
 
-/// What may be `None`.
+/// An optional value: `None`, or the value itself.
 pub(crate) struct Opt<C>(pub(crate) C);
 
 impl<T, C: Codec<T>> Codec<Option<T>> for Opt<C> {
@@ -205,11 +205,11 @@ impl<T, C: Codec<T>> Codec<Option<T>> for Opt<C> {
     }
 }
 
-/// Two numbers in round brackets, shown as such a pattern.
+/// Two numbers in round brackets; messages show `pattern`.
 pub(crate) struct Pair {
     pub(crate) each: Num,
     pub(crate) pattern: &'static str,
-    /// What a hand sees.
+    /// Names of the two numbers in a tuner.
     pub(crate) parts: [&'static str; 2],
 }
 
@@ -242,10 +242,10 @@ impl<T: Copy + From<[f32; 2]> + Into<[f32; 2]>> Codec<T> for Pair {
     }
 }
 
-/// What follows from other fields where it is not written; the record's rules make it so.
+/// A value that follows from other fields where it is not written; the rules of the record compute it.
 pub(crate) struct Follow<C> {
     pub(crate) explicit: C,
-    /// What it is then, for people.
+    /// Description, for people, of the value that follows.
     pub(crate) otherwise: &'static str,
 }
 
@@ -297,7 +297,7 @@ impl<T, C: Codec<T>> Codec<T> for Follow<C> {
     }
 }
 
-/// What no file says: it is as in the base, or this.
+/// A value that no file holds: it comes from the base, or is this one.
 pub(crate) struct Own<T>(pub(crate) T);
 
 impl<T: Clone> Codec<T> for Own<T> {

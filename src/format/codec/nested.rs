@@ -31,7 +31,7 @@ impl<T: Record> Codec<T> for Rec {
     }
 
     fn turn(&self, value: &mut T, name: &'static str, hand: &mut Hand<'_>) {
-        // An entry of a list has been named by its number.
+        // Entries of a list already carry their number as name.
         if name.is_empty() {
             value.turn_fields(hand);
         } else {
@@ -77,7 +77,7 @@ impl<T: Record> Codec<T> for Flat {
     }
 }
 
-/// One of several records, by its name; its fields stand beside that.
+/// One of several records, given by its name, with its fields beside the name.
 pub(crate) struct Beside;
 
 impl<T: Variants> Codec<T> for Beside {
@@ -121,7 +121,7 @@ impl<T: Variants> Codec<T> for Beside {
         };
         chosen.and_then(|chosen| T::read_fields(chosen, fields, base)).unwrap_or_else(|| {
             fields.fail(name);
-            // Which other fields there may be, only the name could tell.
+            // Only the name could tell which other fields are valid.
             fields.allow_unknown();
             base.cloned().unwrap_or_else(T::stand_in)
         })
@@ -147,7 +147,7 @@ impl<T: Variants> Codec<T> for Beside {
     }
 }
 
-/// One of several records, by its name; its name alone says nothing of its fields.
+/// One of several records, given by its name, with its fields in brackets behind the name.
 pub(crate) struct OneOf;
 
 impl<T: Variants> Codec<T> for OneOf {

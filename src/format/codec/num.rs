@@ -1,4 +1,4 @@
-//! Numbers: within a range, in the unit of files, turned by hand.
+//! Numbers: range, unit in files, tuning.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -11,18 +11,19 @@ use crate::format::number::Number;
 use crate::format::text::{Entry, Text as RonText, number};
 use crate::units::Newtons;
 
-/// A number. Its unit follows from the end of its field's name.
+/// A number. The end of the field's name gives its unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Num {
-    /// Least and greatest that a file may hold.
+    /// Minimum and maximum in a file.
     range: (f64, f64),
-    /// What a hand reaches.
+    /// Range of a tuner.
     pub(in crate::format) hand: (f64, f64),
-    /// What a value is multiplied with to be in the unit of files.
+    /// Factor from the value to the unit of files.
     pub(in crate::format) scale: f64,
-    /// Whether it is written even where it is as its default: a file is to mean the same should that change.
+    /// Whether the number is written even where it equals its default, so that a file keeps its meaning when the
+    /// default changes.
     explicit: bool,
-    /// Whether it keeps to what bounds such numbers ([`super::node::Within`]).
+    /// Whether the limits of the surrounding record apply as well ([`super::node::Within`]).
     pub(in crate::format) bounded: bool,
 }
 
@@ -33,7 +34,7 @@ pub(crate) const fn num(range: RangeInclusive<f64>) -> Num {
 }
 
 impl Num {
-    /// Turned by hand, only so far.
+    /// Limits the range of a tuner.
     pub(crate) const fn hand(self, hand: RangeInclusive<f64>) -> Self {
         Self { hand: (*hand.start(), *hand.end()), ..self }
     }
@@ -48,7 +49,7 @@ impl Num {
         Self { scale: 180.0 / std::f64::consts::PI, ..self }
     }
 
-    /// Written even where it is as its default.
+    /// Written even where it equals its default.
     pub(crate) const fn explicit(self) -> Self {
         Self { explicit: true, ..self }
     }
@@ -58,27 +59,27 @@ impl Num {
         (self.range.0..=self.range.1).contains(&f64::from(value))
     }
 
-    /// Keeps to what bounds such numbers in the record around it.
+    /// Applies the limits of the surrounding record as well.
     pub(crate) const fn bounded(self) -> Self {
         Self { bounded: true, ..self }
     }
 }
 
-/// A type whose values are numbers in files.
+/// A type that files write as a number.
 pub(crate) trait Scalar: Copy + PartialEq {
     /// Whether only whole numbers are values.
     const WHOLE: bool = false;
 
-    /// The value of a number that is written, `scale` of which are 1.
+    /// Converts a written number to the value: `written / scale`.
     fn of(written: Number, scale: f64) -> Self;
 
-    /// The number that reads back as the same value.
+    /// Returns the number that reads back as the same value.
     fn to_ron(self, scale: f64) -> String;
 
-    /// The value as a hand sees it.
+    /// Returns the value as a tuner shows it.
     fn shown(self) -> f32;
 
-    /// What a hand made of it.
+    /// Converts the number that a tuner set.
     fn turned(shown: f32) -> Self;
 }
 
@@ -118,7 +119,7 @@ impl Scalar for Newtons {
     }
 }
 
-/// To the microsecond.
+/// Rounded to the microsecond.
 impl Scalar for Duration {
     fn of(written: Number, scale: f64) -> Self {
         Self::from_micros((written.value / scale * 1e6).round() as u64)
@@ -196,7 +197,7 @@ impl<T: Scalar> Codec<T> for Num {
     }
 
     fn turn(&self, value: &mut T, name: &'static str, hand: &mut Hand<'_>) {
-        // Numbers of a list are edited as a list.
+        // A list is edited as a whole.
         if name.is_empty() {
             return;
         }

@@ -1,4 +1,4 @@
-//! Values that remember where they are written, and values that texts stand for.
+//! Values that keep the place where they are written, and values written as texts.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -9,11 +9,11 @@ use crate::format::node::Node;
 use crate::format::problem::Problem;
 use crate::format::text::Text as RonText;
 
-/// A value, and the bytes where it is written; wherever that is, the same value is equal.
+/// A value, and the bytes where it is written. The place does not count in comparisons.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Written<T> {
     pub(crate) value: T,
-    /// Empty if it is written nowhere.
+    /// Empty if it is not written.
     pub(crate) at: Range<usize>,
 }
 
@@ -29,7 +29,7 @@ impl<T> From<T> for Written<T> {
     }
 }
 
-/// What is written so, and where.
+/// Reads a value together with its place.
 pub(crate) struct At<C>(pub(crate) C);
 
 impl<T, C: Codec<T>> Codec<Written<T>> for At<C> {
@@ -51,7 +51,7 @@ impl<T, C: Codec<T>> Codec<Written<T>> for At<C> {
     }
 }
 
-/// What a function reads.
+/// A value read by a function.
 pub(crate) struct By<T> {
     pub(crate) shape: fn() -> FieldType,
     pub(crate) read: fn(Node<'_>) -> Option<T>,
@@ -78,21 +78,21 @@ impl<T> Codec<T> for By<T> {
     }
 }
 
-/// A value that a text in quotes stands for.
+/// A value written as a text in quotes.
 pub(crate) struct Spelled<T> {
-    /// What the text must be, for people.
+    /// Description of the valid texts, for people.
     pub(crate) about: &'static str,
     pub(crate) parse: fn(&str) -> Option<T>,
-    /// What is said of the field of this name that holds another text.
+    /// Makes the message from the field's name and its invalid text.
     pub(crate) wrong: fn(&str, &str) -> String,
     pub(crate) expected: &'static str,
-    /// What to do about that text.
+    /// Makes the advice for an invalid text.
     pub(crate) help: fn(&str) -> Option<String>,
     /// Any value.
     pub(crate) stand_in: T,
 }
 
-/// Longest text that stands for a value, in characters.
+/// Maximum length of a text that stands for a value, in characters.
 const LONGEST: usize = 255;
 
 impl<T: Clone + Display> Codec<T> for Spelled<T> {

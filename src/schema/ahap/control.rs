@@ -2,15 +2,15 @@
 
 use super::file::{DynamicParameter, ParameterCurve};
 
-/// Course of one quality of all events over time: straight lines between points, in the order of time.
+/// Course of one control over time, for all events: straight lines between points in order of time.
 #[derive(Clone, Debug)]
 pub(super) struct Control {
     points: Vec<Point>,
     /// Value before the first point.
     neutral: f32,
-    /// Greatest difference from the pattern's own course.
+    /// Maximum difference from the pattern's own course.
     tolerance: f32,
-    /// Number of values that were brought into range.
+    /// Number of values that were clamped to the range.
     limited: usize,
 }
 
@@ -19,28 +19,28 @@ pub(super) struct Control {
 struct Point {
     t: f32,
     value: f32,
-    /// Whether the value jumps here, from that of the point before.
+    /// Whether the value jumps here from the value of the previous point.
     jumps: bool,
 }
 
-/// A curve, or a value from a moment on (a curve of one point), in force until the next one begins.
+/// A curve, or a constant from some time on (a curve of one point); it applies until the next piece begins.
 struct Piece {
     begin: f32,
     points: Vec<(f32, f32)>,
 }
 
-/// Moments closer together than this are the same one, in seconds.
+/// Times closer together than this are equal, in seconds.
 pub(super) const SAME_S: f32 = 1e-4;
 
-/// Time that a jump takes in a curve, in seconds.
+/// Duration of a jump in a curve, in seconds.
 pub(super) const JUMP_S: f32 = 0.001;
 
-/// Greatest number of points that one straight line replaces. A bound on time: a thinned course is as near to the
-/// pattern's with any.
+/// Maximum number of points that one straight line replaces. It limits the computing time; a thinned course keeps its
+/// tolerance with any limit.
 const LONGEST_LINE: usize = 256;
 
 impl Control {
-    /// All curves and parameters of this `id`, their values brought to `range`.
+    /// Reads all curves and parameters of this `id`, with values clamped to `range`.
     pub(super) fn of(
         id: &str,
         neutral: f32,
@@ -72,22 +72,22 @@ impl Control {
         Self { points: joined(&pieces, neutral), neutral, tolerance: 0.0, limited }
     }
 
-    /// Number of values that were brought into range.
+    /// Returns the number of values that were clamped to the range.
     pub(super) const fn limited(&self) -> usize {
         self.limited
     }
 
-    /// Greatest difference from the pattern's own course, in the control's own unit.
+    /// Returns the maximum difference from the pattern's own course, in the control's own unit.
     pub(super) const fn tolerance(&self) -> f32 {
         self.tolerance
     }
 
-    /// The value at `t`; at a jump the later one.
+    /// Returns the value at `t`; at a jump the later one.
     pub(super) fn at(&self, t: f32) -> f32 {
         value_at(&self.points, self.points.partition_point(|point| point.t <= t), t, self.neutral)
     }
 
-    /// The value at `t`; at a jump the earlier one, to which the line before leads.
+    /// Returns the value at `t`; at a jump the earlier one, the end of the line before the jump.
     pub(super) fn until(&self, t: f32) -> f32 {
         let first = self.points.partition_point(|point| point.t < t - SAME_S);
         let mut near =
@@ -103,14 +103,15 @@ impl Control {
         }
     }
 
-    /// The moments between `from` and `to` at which it bends or jumps; of a jump also the moment just before.
+    /// Returns the times between `from` and `to` at which the course bends or jumps; for a jump also the time just
+    /// before.
     pub(super) fn bends(&self, from: f32, to: f32) -> impl Iterator<Item = f32> + '_ {
         let begin = self.points.partition_point(|point| point.t <= from + SAME_S);
         let rest = self.points.get(begin..).unwrap_or_default();
         rest.iter().map(|point| point.t).take_while(move |t| *t < to - SAME_S)
     }
 
-    /// The same with as few points as keep it within `tolerance` of its course.
+    /// Returns the course with as few points as keep it within `tolerance`.
     pub(super) fn thinned(&self, tolerance: f32) -> Self {
         let mut points = Vec::new();
         let mut anchor = self.points.first().copied();
@@ -126,9 +127,9 @@ impl Control {
     }
 }
 
-/// Number of the points `rest` behind `from` that one straight line to the last of them replaces.
+/// Returns the number of points in `rest` that one straight line from `from` to the last of them replaces.
 fn reach(from: Point, rest: &[Point], tolerance: f32) -> usize {
-    // Slopes that keep the line within the tolerance of all points so far.
+    // Slopes for which the line stays within the tolerance of all points so far.
     let (mut least, mut most, mut reached) =
         (f32::NEG_INFINITY, f32::INFINITY, usize::from(!rest.is_empty()));
     for (index, point) in rest.iter().take(LONGEST_LINE).enumerate() {
@@ -145,7 +146,7 @@ fn reach(from: Point, rest: &[Point], tolerance: f32) -> usize {
     reached
 }
 
-/// All pieces as one course.
+/// Joins all pieces into one course.
 fn joined(pieces: &[Piece], neutral: f32) -> Vec<Point> {
     let mut points: Vec<Point> = Vec::new();
     for (index, piece) in pieces.iter().enumerate() {
@@ -163,7 +164,7 @@ fn joined(pieces: &[Piece], neutral: f32) -> Vec<Point> {
                 points.push(Point { t, value, jumps: false });
                 continue;
             }
-            // The next piece begins on the way there.
+            // The next piece begins before the end of this line.
             if let [a, b] = pair {
                 let t = end - JUMP_S;
                 let value = a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0).max(1e-6);
@@ -175,7 +176,7 @@ fn joined(pieces: &[Piece], neutral: f32) -> Vec<Point> {
     points
 }
 
-/// The value at `t`, where the points from number `after` on lie later.
+/// Returns the value at `t`, where the points from index `after` on lie later.
 fn value_at(points: &[Point], after: usize, t: f32, neutral: f32) -> f32 {
     let before = after.checked_sub(1).and_then(|before| points.get(before));
     match (before, points.get(after)) {

@@ -13,12 +13,12 @@ use super::{
 };
 use crate::feel::{Click, Clicks, Effect, EffectKind, Impulse, Manner, Mode, Part, PartKind, Tone};
 
-/// The AHAP file of an effect that is played once, and what of it has no counterpart there.
+/// Writes the AHAP file of an effect that plays once, and lists the parts without a counterpart in AHAP.
 ///
 /// `name` becomes the file's description.
 ///
 /// # Errors
-/// [`AhapError::Driven`] of an effect that a foot or a value drives.
+/// [`AhapError::Driven`] for an effect driven by a foot or a value.
 pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), AhapError> {
     let mut lost = Lost::default();
     let parts: Vec<Part> = match &effect.kind {
@@ -84,7 +84,7 @@ impl Lost {
     }
 }
 
-/// `share` within 0 to 1, noted as lost if it is not.
+/// Clamps `share` to 0 to 1, and notes it as lost if it is outside.
 fn within(share: f32, lost: &mut Lost, what: &'static str) -> f32 {
     lost.note(!(-0.001..=1.001).contains(&share), what);
     if share >= 0.0 { share.min(1.0) } else { 0.0 }
@@ -94,7 +94,7 @@ fn parameter(id: &str, value: f32) -> EventParameter {
     EventParameter { id: id.to_owned(), value: Number::Number(rounded(value)) }
 }
 
-/// Six decimals: finer than any hand and any float of this size.
+/// Rounds to six decimals, finer than perception and than a float of this size.
 fn rounded(value: f32) -> f64 {
     (f64::from(value) * 1e6).round() / 1e6
 }
@@ -142,7 +142,7 @@ fn continuous(at_s: f32, tone: &Tone, follows: bool, pattern: &mut Vec<Entry>, l
             parameters.push(parameter(id, time(seconds, lost)));
         }
     }
-    // A decay over the whole length is what "not sustained" means by itself.
+    // A decay over the whole length is the default of a tone that is not sustained.
     if tone.decay_s > 0.0 && (sustained || (tone.decay_s - tone.length_s).abs() > 1e-6) {
         parameters.push(parameter("DecayTime", time(tone.decay_s, lost)));
     }
@@ -178,7 +178,7 @@ fn continuous(at_s: f32, tone: &Tone, follows: bool, pattern: &mut Vec<Entry>, l
             .map(|&(time, value)| ControlPoint { time: rounded(time), parameter_value: rounded(value) });
         let curve = ParameterCurve { id: id.to_owned(), time: rounded(at_s), points: points.collect() };
         pattern.push(Entry { parameter_curve: Some(curve), ..Entry::default() });
-        // Controls concern all that comes later: what follows gets its own level back.
+        // Controls affect all later events, so the level of the following parts is restored.
         if follows {
             let time = rounded(at_s + tone.whole_s());
             let back = DynamicParameter { id: id.to_owned(), value: neutral, time };

@@ -1,17 +1,17 @@
-//! The AHAP file as written.
+//! The AHAP file format.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::AhapError;
 
-/// Largest file, in bytes: a minute of a control curve with a point every millisecond.
+/// Maximum size of a file, in bytes: a minute of a control curve with a point every millisecond.
 const LARGEST: usize = 4_000_000;
 
-/// Latest time in a pattern that is taken for one, in seconds: a day.
+/// Latest valid time in a pattern, in seconds: a day.
 const LATEST_S: f64 = 86_400.0;
 
-/// The file as written; unknown entries are kept so that they can be named.
+/// The file as written; unknown entries are kept for messages.
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(rename_all = "PascalCase")]
 pub(super) struct File {
@@ -23,7 +23,7 @@ pub(super) struct File {
     pub(super) pattern: Vec<Entry>,
 }
 
-/// One entry of a pattern: exactly one of its fields is there.
+/// One entry of a pattern, with exactly one of its fields.
 #[derive(Debug, Default, Deserialize, Serialize)]
 #[serde(rename_all = "PascalCase")]
 pub(super) struct Entry {
@@ -59,7 +59,7 @@ pub(super) struct EventParameter {
     pub(super) value: Number,
 }
 
-/// A number, or a truth where people write one.
+/// A number, or a boolean in its place.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(untagged)]
 pub(super) enum Number {
@@ -106,7 +106,7 @@ pub(super) struct ControlPoint {
 }
 
 impl File {
-    /// The file in `text`: JSON in which commas may trail and comments may stand, as in files that Apple publishes.
+    /// Parses the file in `text`: JSON with trailing commas and comments, as in files that Apple publishes.
     pub(super) fn parse(text: &str, name: &str) -> Result<Self, AhapError> {
         if text.len() > LARGEST {
             return Err(AhapError::TooLarge(name.to_owned()));
@@ -114,7 +114,7 @@ impl File {
         let written = text.strip_prefix('\u{feff}').unwrap_or(text).as_bytes();
         let mut bytes = written.to_vec();
         if json_strip_comments::strip_slice(&mut bytes).is_err() {
-            // A slash begins no comment: the JSON reader names its place.
+            // The comments are malformed: the JSON reader reports the place.
             bytes = written.to_vec();
         }
         let file: Self = serde_json::from_slice(&bytes).map_err(|error| AhapError::Json {
@@ -127,7 +127,7 @@ impl File {
         Ok(file)
     }
 
-    /// Refuses times that are none: negative, not finite, beyond a day.
+    /// Rejects invalid times: negative, not finite, beyond a day.
     fn check_times(&self, name: &str) -> Result<(), AhapError> {
         let check = |entry: usize, field: &'static str, seconds: f64| {
             if (0.0..=LATEST_S).contains(&seconds) {

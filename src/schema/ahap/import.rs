@@ -14,21 +14,20 @@ use crate::feel::{
 };
 use crate::units::Newtons;
 
-/// Latest beginning and longest duration of anything, in seconds; as in our own files.
+/// Latest begin and maximum duration of an event, in seconds, as in this program's own files.
 const LONGEST_S: f32 = 60.0;
 
-/// Duration of a tone without one, in seconds: the shortest that our own files have.
+/// Duration of a tone without a duration, in seconds: the minimum in this program's own files.
 pub(super) const SHORTEST_S: f32 = 0.001;
 
-/// The effect that an AHAP file describes, and everything of it that is left out or differs.
+/// Reads the effect that an AHAP file describes, and lists everything that is dropped or differs.
 ///
-/// `name` is what messages call the text. A pattern of one click or one tone
-/// becomes that, any other a sequence. Events that begin after 60 s, and those beyond the parts that a sequence has room
-/// for, are left out; control curves with more points than a tone has are simplified or split. Commas may trail and
-/// comments may stand where JSON forbids them.
+/// `name` is the name of the text in messages. A pattern of one click or one tone becomes that, any other a sequence.
+/// Events that begin after 60 s, and those beyond the maximum parts of a sequence, are dropped; control curves with
+/// more points than a tone can hold are simplified or split. Trailing commas and comments are allowed.
 ///
 /// # Errors
-/// [`AhapError`]: it is not a pattern, one of its times is negative or beyond a day, or nothing of it can be felt.
+/// [`AhapError`]: the text is not a pattern, one of its times is negative or beyond a day, or no event can be played.
 pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapError> {
     let file = File::parse(text, name)?;
     let mut warnings = Warnings::default();
@@ -68,13 +67,13 @@ pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapEr
 const INTENSITY: &str = "HapticIntensityControl";
 const SHARPNESS: &str = "HapticSharpnessControl";
 
-/// What changes over time for all events.
+/// The controls over time for all events.
 pub(super) struct Controls {
     pub(super) intensity: Control,
     pub(super) sharpness: Control,
 }
 
-/// A name of the file for messages: of bounded length, without control characters.
+/// Prepares a name from the file for messages: bounded length, no control characters.
 fn shown(name: &str) -> String {
     let mut shown: String = name.chars().take(64).map(|c| if c.is_control() { '?' } else { c }).collect();
     if name.chars().nth(64).is_some() {
@@ -98,7 +97,7 @@ fn warn_of_values(controls: &Controls, curves: &[ParameterCurve], warnings: &mut
     }
 }
 
-/// The events that can be felt, in the order of time.
+/// Returns the playable events in order of time.
 fn felt(events: Vec<Event>, warnings: &mut Warnings) -> Vec<Event> {
     let (mut felt, mut late) = (Vec::new(), Vec::new());
     for event in events {
@@ -130,7 +129,7 @@ fn felt(events: Vec<Event>, warnings: &mut Warnings) -> Vec<Event> {
     felt
 }
 
-/// Leaves out parts of split events that a sequence has no room for.
+/// Drops parts of split events beyond the maximum parts of a sequence.
 fn limit_split(parts: &mut Vec<Part>, warnings: &mut Warnings) {
     let in_time = parts.iter().filter(|part| part.at_s <= LONGEST_S).count();
     let room = in_time.min(MAX_PARTS);
@@ -158,7 +157,7 @@ pub(super) struct Parameters {
 
 impl Parameters {
     fn of(event: &Event, warnings: &mut Warnings) -> Self {
-        // Apple's defaults, where a file says nothing.
+        // Apple's defaults for parameters that are not written.
         let mut parameters = Self {
             intensity: 1.0,
             sharpness: 0.5,
@@ -196,7 +195,7 @@ impl Parameters {
     }
 }
 
-/// The click or the tones of one event.
+/// Makes the click or the tones of one event.
 fn parts(event: &Event, controls: &Controls, course: &mut Course<'_>, warnings: &mut Warnings) -> Vec<Part> {
     let at_s = event.time as f32;
     let parameters = Parameters::of(event, warnings);
@@ -230,7 +229,7 @@ fn click(parameters: &Parameters, at_s: f32, controls: &Controls) -> Click {
     }
 }
 
-/// The pitch of a tone at a sharpness, which is brought to 0 to 1.
+/// Returns the pitch of a tone in hertz; the sharpness is clamped to 0 to 1.
 pub(super) fn pitch_hz(sharpness: f32) -> f32 {
     at_sharpness(CONTINUOUS_HZ, sharpness.clamp(0.0, 1.0))
 }

@@ -1,4 +1,4 @@
-//! Continuous events as tones: with their control curves as they are, simplified, or split among several tones.
+//! Continuous events as tones: their control curves are kept, simplified, or split among several tones.
 
 use arrayvec::ArrayVec;
 
@@ -9,17 +9,16 @@ use super::warnings::Warnings;
 use crate::feel::{MAX_PARTS, MAX_POINTS, Part, PartKind, Tone, TonePoint};
 use crate::units::Newtons;
 
-/// Differences from the pattern's course that are tried one after the other, of full intensity and full sharpness; the
-/// greatest is our choice.
+/// Tolerances tried in this order, as shares of full intensity and full sharpness; the maximum is our choice.
 const TOLERANCES: [f32; 4] = [0.005, 0.01, 0.02, 0.05];
 
-/// Time in which one tone of a split event goes and the next one comes, in seconds: long enough that no click is felt.
+/// Duration of the crossfade between two tones of a split event, in seconds: long enough that no click is felt.
 const SEAM_S: f32 = 0.01;
 
-/// Number of straight lines that stand for an attack, a decay or a release under a curve.
+/// Number of straight lines for an attack, a decay or a release under a curve.
 const ENVELOPE_LINES: usize = 8;
 
-/// The controls, and simpler ones that are made when a curve first needs them.
+/// The controls, and simplified ones that are computed when a curve first needs them.
 pub(super) struct Course<'c> {
     exact: &'c Controls,
     thinned: [Option<Controls>; TOLERANCES.len()],
@@ -41,8 +40,8 @@ impl<'c> Course<'c> {
     }
 }
 
-/// The tones of a continuous event that begins at `at_s` and lasts `length_s`: one, or several if its control curves have
-/// too many points for one.
+/// Makes the tones of a continuous event that begins at `at_s` and lasts `length_s`: one, or several if its control
+/// curves have too many points for one.
 pub(super) fn tones(
     at_s: f32,
     length_s: f32,
@@ -85,12 +84,12 @@ struct Span<'p> {
 }
 
 impl Span<'_> {
-    /// The pattern's time at which nothing of it is left.
+    /// Returns the time in the pattern at which the event ends, its release included.
     fn end_s(&self) -> f32 {
         self.at_s + self.length_s + self.parameters.release_s
     }
 
-    /// The times of the points that its curve needs; none if the controls stay the same.
+    /// Returns the times of the points of its curve; none if the controls are constant.
     fn times(&self, controls: &Controls) -> Vec<f32> {
         let (from, to) = (self.at_s, self.end_s());
         let mut times: Vec<f32> =
@@ -105,14 +104,14 @@ impl Span<'_> {
         times
     }
 
-    /// Intensity and pitch at `t`; of what begins where the event ends nothing.
+    /// Returns intensity and pitch at `t`; at the end of the event, a control that begins there does not count.
     fn at(&self, controls: &Controls, t: f32) -> (f32, f32) {
         let is_end = t >= self.end_s() - SAME_S;
         let of = |control: &Control| if is_end { control.until(t) } else { control.at(t) };
         (of(&controls.intensity), pitch_hz(self.parameters.sharpness + of(&controls.sharpness)))
     }
 
-    /// The whole event as one tone with the points `times` of its curve.
+    /// Makes one tone of the whole event, with the points `times` in its curve.
     fn tone(&self, controls: &Controls, times: &[f32]) -> Tone {
         let curve: ArrayVec<TonePoint, MAX_POINTS> = times
             .iter()
@@ -122,7 +121,7 @@ impl Span<'_> {
                 TonePoint { at_s: t - self.at_s, level, hz: Some(hz) }
             })
             .collect();
-        // Without points the controls are the same all along.
+        // Without points, the controls are constant.
         let (steady, hz) = if curve.is_empty() {
             self.at(controls, self.at_s)
         } else {
@@ -142,13 +141,13 @@ impl Span<'_> {
         }
     }
 
-    /// A tone that is not sustained dies away over its duration, if its decay says nothing.
+    /// Returns the decay; a tone that is not sustained decays over its duration if no decay is given.
     fn decay_s(&self) -> f32 {
         let Parameters { decay_s, sustained, .. } = *self.parameters;
         if sustained || decay_s > 0.0 { decay_s } else { self.length_s }
     }
 
-    /// The event as several tones, one after the other, whose curves have its envelope in them.
+    /// Splits the event into several consecutive tones with its envelope in their curves.
     fn split(&self, controls: &Controls) -> Vec<Part> {
         let envelope = Tone { curve: ArrayVec::new(), ..self.tone(controls, &[]) };
         let mut times = self.times(controls);
@@ -171,7 +170,7 @@ impl Span<'_> {
         };
         let level = Newtons(CONTINUOUS_N * self.parameters.intensity);
         let (mut parts, mut rest) = (Vec::new(), times.as_slice());
-        // One more than a sequence has room for shows that there are more.
+        // One part beyond the maximum shows the caller that there are too many.
         while rest.len() > 1
             && parts.len() <= MAX_PARTS
             && let Some((&from, _)) = rest.split_first()
@@ -191,7 +190,7 @@ impl Span<'_> {
                 curve: own.iter().map(|&t| point(t, from)).collect(),
             };
             parts.push(Part { at_s: from, kind: PartKind::Tone(tone) });
-            // The point at the seam belongs to both.
+            // Both tones contain the point at the seam.
             rest = rest.get(own.len() - 1..).unwrap_or_default();
         }
         parts

@@ -1,7 +1,6 @@
 //! Apple's haptic patterns (AHAP, JSON), in and out.
 //!
-//! Intensity is a share of a level, sharpness a place between a dull and a
-//! sharp pitch:
+//! Intensity is a share of a level; sharpness is a position between a dull and a sharp pitch:
 //!
 //! | AHAP | here |
 //! |---|---|
@@ -10,12 +9,12 @@
 //! | `AttackTime`, `DecayTime`, `ReleaseTime`, `Sustained` | the tone's envelope, in seconds |
 //! | `HapticIntensityControl`, `HapticSharpnessControl` as curve or parameter | the clicks' levels and pitches, the tones' curves |
 //!
-//! Everything that has no counterpart, is out of range or beyond a limit is named in a warning.
+//! A warning names everything without a counterpart, out of range or beyond a limit.
 //!
 //! # Source
 //! "Representing haptic patterns in AHAP files" and `CHHapticDynamicParameter`, Apple's documentation of Core
-//! Haptics: control of intensity multiplies, that of sharpness adds; curves run straight between their points, dynamic
-//! parameters change at once; out-of-range values are brought into range.
+//! Haptics: the intensity control multiplies, the sharpness control adds; curves are straight between their points,
+//! dynamic parameters change at once; out-of-range values are clamped.
 
 mod control;
 mod export;
@@ -29,28 +28,28 @@ pub use import::read_ahap;
 
 use thiserror::Error;
 
-/// Why a pattern can't be read or an effect can't be written as one.
+/// Reason for which a pattern cannot be read or an effect cannot be written as one.
 #[derive(Debug, Error)]
 pub enum AhapError {
-    /// The file is larger than any pattern.
+    /// The file is larger than a pattern can be.
     #[error("{0}: larger than 4 MB: is it a pattern?")]
     TooLarge(String),
-    /// The text is not JSON, or its fields are of other types than a pattern's.
+    /// The text is not JSON, or its fields have other types than those of a pattern.
     #[error("{name}:{line}:{column}: {reason}")]
     Json {
-        /// What messages call the text.
+        /// Name of the text in messages.
         name: String,
-        /// Where, from 1.
+        /// Line, from 1.
         line: usize,
-        /// Where, from 1.
+        /// Column, from 1.
         column: usize,
-        /// What is wrong there.
+        /// The error there.
         reason: String,
     },
-    /// A time that cannot be one: negative or beyond a day.
+    /// An invalid time: negative or beyond a day.
     #[error("{name}: entry {entry} of the pattern: {field} is {seconds} s; expected 0 to 86400")]
     Time {
-        /// What messages call the text.
+        /// Name of the text in messages.
         name: String,
         /// Number of the entry, from 1.
         entry: usize,
@@ -59,15 +58,15 @@ pub enum AhapError {
         /// Its value.
         seconds: f64,
     },
-    /// Nothing in it can be felt.
+    /// No event in the pattern can be played.
     #[error("{name}: there is no haptic event in this pattern that can be played{}", listed(left_out))]
     Empty {
-        /// What messages call the text.
+        /// Name of the text in messages.
         name: String,
-        /// Everything that was left out.
+        /// Everything that was dropped.
         left_out: Vec<String>,
     },
-    /// What a moving foot or a value drives has no counterpart.
+    /// An effect driven by a moving foot or a value has no counterpart.
     #[error("AHAP has no counterpart for {0}, which is driven by the foot")]
     Driven(&'static str),
 }
@@ -80,17 +79,18 @@ fn listed(left_out: &[String]) -> String {
 const TRANSIENT_N: f32 = 20.0;
 const CONTINUOUS_N: f32 = 12.0;
 
-/// Pitches and decays at sharpness 0, and the factors by which they differ at sharpness 1.
+/// Pitches and decays at sharpness 0, and their factors from there to sharpness 1.
 const TRANSIENT_HZ: (f32, f32) = (90.0, 3.6);
 const TRANSIENT_DECAY_S: (f32, f32) = (0.03, 0.25);
 const CONTINUOUS_HZ: (f32, f32) = (70.0, 4.0);
 
-/// The value at a sharpness.
+/// Returns the value at a sharpness: `dull * factor ^ sharpness`.
 fn at_sharpness((dull, factor): (f32, f32), sharpness: f32) -> f32 {
     dull * factor.powf(sharpness)
 }
 
-/// The sharpness of a value; outside of 0 to 1 for one that no sharpness has.
+/// Returns the sharpness of a value: `ln(value / dull) / ln(factor)`; outside of 0 to 1 if no sharpness gives this
+/// value.
 fn sharpness_of((dull, factor): (f32, f32), value: f32) -> f32 {
     (value / dull).ln() / factor.ln()
 }

@@ -1,8 +1,8 @@
-//! Differences between a pattern and the effect that it becomes.
+//! Differences between a pattern and the effect made from it.
 
 use std::collections::BTreeMap;
 
-/// Notes, each with the number of times that it applies.
+/// Notes, each with the number of its occurrences.
 #[derive(Debug, Default)]
 pub(super) struct Warnings {
     notes: BTreeMap<String, usize>,
@@ -10,7 +10,7 @@ pub(super) struct Warnings {
     more: usize,
 }
 
-/// Greatest number of different notes; a file of 4 MB could name a hundred thousand.
+/// Maximum number of different notes; a file of 4 MB could cause a hundred thousand.
 const MOST: usize = 40;
 
 impl Warnings {
@@ -28,7 +28,7 @@ impl Warnings {
         *self.notes.entry(difference).or_default() += 1;
     }
 
-    /// All notes as lines.
+    /// Returns all notes as lines.
     pub(super) fn into_lines(self) -> Vec<String> {
         let line = |(note, count): (String, usize)| match (count, note.split_once(": ")) {
             (2.., Some((what, rest))) => format!("{what} ({count} times): {rest}"),

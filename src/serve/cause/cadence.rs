@@ -1,40 +1,40 @@
-//! How one board counts and how often it sends, by the numbers and the times of its packets.
+//! Sequence numbering and send rate of one board, from the numbers and arrival times of its packets.
 
 use std::time::Duration;
 
 use crate::units::Instant;
 use crate::wire::LinkCause;
 
-/// The least time over which a board is judged: 50 packets of a board at 100 Hz, so that its rate is known to 2 %.
+/// Minimum time over which a board is classified: 50 packets of a board at 100 Hz, which gives the rate to 2 %.
 const SPAN: Duration = Duration::from_millis(500);
 
-/// Fewest packets by which a board is judged.
+/// Minimum number of packets for a classification.
 const FEWEST: u32 = 5;
 
-/// Greatest step that counts as one: numbers that are microseconds grow by a million at 1 Hz.
+/// Maximum step that counts as one: numbers in microseconds grow by a million per packet at 1 Hz.
 const LARGEST_STEP: u32 = 1 << 24;
 
-/// How far the numbers must fall, and how low, to have begun anew: further than packets overtake each other.
+/// A restart: the number falls by more than `FALL`, to at most `LOW`. Packets that overtake each other fall less.
 const FALL: u32 = 100;
 const LOW: u32 = 16;
 
-/// By how much the last number before a new beginning may vary, because packets are lost.
+/// Tolerance on the last number before a restart, which varies when packets are lost.
 const SLACK: u32 = 8;
 
-/// How a board counts.
+/// How a board numbers its packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Count {
-    /// By one.
+    /// By steps of one.
     Steady,
-    /// Not at all: always this number.
+    /// Always this number.
     Stands(u32),
     /// By this step.
     Steps(u32),
     /// Down.
     Falls,
-    /// It begins anew after this number, again and again.
+    /// The numbers restart after this number, repeatedly.
     Restarts(u32),
-    /// As two boards do.
+    /// Two interleaved sequences, as from two boards.
     Mixed,
     /// In no order.
     Jumps,
@@ -47,11 +47,11 @@ pub(super) struct Cadence {
     before: u32,
     span: Option<Span>,
     wrap: Option<Wrap>,
-    /// When the last whole span ended, and the count and rate that it showed.
+    /// End of the last complete span, with its classification and rate (1/s).
     judged: Option<(Instant, Count, f32)>,
 }
 
-/// The packets of one span by how far their number is from that of the packet before.
+/// Packet counts of one span, by the difference from the previous number.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     begun: Instant,
@@ -62,13 +62,13 @@ struct Span {
     falls: u32,
     mixed: u32,
     jumps: u32,
-    /// Sum, least and greatest of the steps.
+    /// Sum, minimum and maximum of the steps.
     stepped: u64,
     least: u32,
     greatest: u32,
 }
 
-/// A number after which others began anew, and how often in a row.
+/// The number before a restart, and the number of such restarts in a row.
 #[derive(Clone, Copy, Debug)]
 struct Wrap {
     after: u32,
@@ -92,7 +92,8 @@ impl Span {
         }
     }
 
-    /// Takes a number that differs by `step` from the one before; `interleaves` if it continues the one before that.
+    /// Counts a number that differs by `step` from the previous one; `interleaves`: it follows the number before that
+    /// one.
     fn add(&mut self, step: i32, interleaves: bool) {
         self.packets += 1;
         match step {
@@ -111,7 +112,7 @@ impl Span {
         }
     }
 
-    /// How most of the packets count.
+    /// Classifies the numbering of most packets.
     fn count(&self, last: u32) -> Count {
         let new = (self.packets - self.same) as f32;
         let share = |count: u32| count as f32 / new.max(1.0);
@@ -131,10 +132,10 @@ impl Span {
         }
     }
 
-    /// Samples of the board in each second of `seconds`, of a board that counts so.
+    /// Returns the samples per second of the board, for a board with numbering `count` and a span of `seconds`.
     fn rate(&self, count: Count, seconds: f32) -> f32 {
         let samples = match count {
-            // Lost packets were sampled as well.
+            // Lost packets were samples as well.
             Count::Steady => u64::from(self.ones) + self.stepped,
             _ => u64::from(self.packets),
         };
@@ -143,7 +144,7 @@ impl Span {
 }
 
 impl Cadence {
-    /// Takes the number of a packet that came at `received`.
+    /// Records the number of a packet that arrived at `received`.
     pub(super) fn note(&mut self, number: u32, received: Instant) {
         let Some(last) = self.last.replace(number) else {
             self.before = number;
@@ -186,9 +187,9 @@ impl Cadence {
         self.span = Some(Span::at(now));
     }
 
-    /// How it counts, and how many packets it sends a second; `None` if that is not known or not known lately.
+    /// Returns the numbering and the packets per second; `None` if there is no recent classification.
     pub(super) fn judged(&self, now: Instant) -> Option<(Count, f32)> {
-        /// Boards that send five packets in ten seconds are judged as well.
+        /// Long enough for boards that send five packets in ten seconds.
         const LATELY: Duration = Duration::from_secs(10);
         let (at, count, hz) = self.judged?;
         (now.since(at) < LATELY).then_some((count, hz))
@@ -196,7 +197,7 @@ impl Cadence {
 }
 
 impl Count {
-    /// The fault of board `board`, if counting so is one.
+    /// Returns the fault of board `board`, if this numbering is one.
     pub(super) const fn fault(self, board: u16) -> Option<LinkCause> {
         Some(match self {
             Self::Steady => return None,
@@ -216,7 +217,7 @@ mod tests {
 
     use super::*;
 
-    /// How a board counts, and its rate, after four seconds of packets `hz` a second with these numbers.
+    /// Returns numbering and rate of a board after four seconds of `hz` packets a second with these numbers.
     fn judged(hz: u32, number: impl Fn(u32) -> u32) -> Option<(Count, f32)> {
         let mut cadence = Cadence::default();
         let packets = (0..4 * hz).map(|n| (number(n), u64::from(n) * 1_000_000 / u64::from(hz)));
@@ -304,7 +305,7 @@ mod tests {
                 if chance(n, 1) * 100 / 128 < lost_percent {
                     continue;
                 }
-                // Now and then two packets change places.
+                // Some pairs of packets swap places.
                 cadence.note(if n % 50 < 2 { n ^ 1 } else { n }, now);
                 if chance(n, 2) * 100 / 128 < repeated_percent {
                     cadence.note(n, now);

@@ -1,4 +1,4 @@
-//! Why a floor whose boards send gives no usable frame, or never shows a load.
+//! Finds the cause if a floor whose boards send gives no usable frame, or never shows a load.
 
 mod cadence;
 mod range;
@@ -13,50 +13,50 @@ use crate::sense::{Assembler, ForceFrame, Quality, TareOutcome};
 use crate::units::Instant;
 use crate::wire::{BOARD_RATES_HZ, LinkCause, LinkCounters, LinkState, SensorPacket};
 
-/// How long a cause must hold before it is told: boards that start, or are plugged in, need less.
+/// Minimum duration of a cause before it is reported: boards need less to start or to be plugged in.
 const HOLDS: Duration = Duration::from_secs(2);
 
-/// How long it must be gone before that is told.
+/// Time without the cause after which its end is reported.
 const GONE: Duration = Duration::from_secs(1);
 
-/// How often frames are looked at.
+/// Interval between two frames that are examined.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 
-/// How old the last datagram may be for something to be sent.
+/// Maximum age of the last datagram while the boards count as sending.
 const SENT_LATELY: Duration = Duration::from_secs(1);
 
-/// Facts about the floor besides its packets.
+/// State of the floor apart from its packets.
 pub(super) struct Facts<'a> {
     pub(super) assembler: &'a Assembler,
     pub(super) link: LinkState,
-    /// From the socket to the frames.
+    /// Counters from the socket to the frames.
     pub(super) counters: &'a LinkCounters,
-    /// The last datagram or message that was refused, by its cause.
+    /// The cause of the last rejected datagram or message.
     pub(super) refused: Option<LinkCause>,
 }
 
-/// Watches for causes.
+/// Detects causes.
 #[derive(Debug)]
 pub(super) struct CauseWatch {
-    /// The boards' addresses.
+    /// OSC addresses of the boards.
     addresses: Vec<String>,
     cadences: Vec<Cadence>,
     ranges: Vec<Range>,
-    /// Whether a load was ever seen.
+    /// Whether the floor has shown a load since the start.
     has_load: bool,
-    /// When a frame with a usable sensor was last seen, and when frames were last looked at.
+    /// Time of the last frame with a usable sensor, and time of the last examination of a frame.
     usable: Instant,
     looked: Instant,
-    /// When the counters of each kind last grew.
+    /// Counters by kind, each with the time of its last growth.
     datagrams: Growth,
     refused: Growth,
     limited: Growth,
     candidate: Option<(LinkCause, Instant)>,
-    /// The cause that is told, and when it was last found.
+    /// The reported cause, and the time at which it was last found.
     told: Option<(LinkCause, Instant)>,
 }
 
-/// A counter, and when it last grew.
+/// A counter, and the time at which it last grew.
 #[derive(Clone, Copy, Debug, Default)]
 struct Growth {
     count: u64,
@@ -76,7 +76,7 @@ impl Growth {
 }
 
 impl CauseWatch {
-    /// A watch for boards of these addresses.
+    /// A watch for boards with these addresses.
     pub(super) fn new(addresses: impl Iterator<Item = String>) -> Self {
         let addresses: Vec<String> = addresses.collect();
         Self {
@@ -94,7 +94,7 @@ impl CauseWatch {
         }
     }
 
-    /// Takes a packet.
+    /// Records a packet.
     pub(super) fn note(&mut self, packet: &SensorPacket) {
         let board = usize::from(packet.board);
         if let Some(cadence) = self.cadences.get_mut(board) {
@@ -105,7 +105,7 @@ impl CauseWatch {
         }
     }
 
-    /// Takes a frame, and whether something rests on the floor by it; on the source's clock it is `now`.
+    /// Records a frame; `is_loaded`: something rests on the floor; `now`: time on the clock of the source.
     pub(super) fn note_frame(&mut self, frame: &ForceFrame, is_loaded: bool, now: Instant) {
         self.has_load |= is_loaded;
         if now.since(self.looked) >= LOOK_EVERY || self.looked == Instant::START {
@@ -116,12 +116,12 @@ impl CauseWatch {
         }
     }
 
-    /// The cause that is told at present.
+    /// Returns the cause reported at present.
     pub(super) fn cause(&self) -> Option<&LinkCause> {
         self.told.as_ref().map(|(cause, _)| cause)
     }
 
-    /// Looks for a cause; whether another one, or none, is to be told from now on.
+    /// Looks for a cause; returns true when the reported cause changes or ends.
     pub(super) fn update(&mut self, facts: &Facts<'_>, now: Instant) -> bool {
         self.datagrams.update(facts.counters.datagrams + facts.counters.packets, now);
         self.refused.update(facts.counters.refused(), now);
@@ -141,7 +141,7 @@ impl CauseWatch {
         }
         let since = self.candidate.as_ref().filter(|(cause, _)| cause.is_like(&found));
         let since = since.map_or(now, |(_, since)| *since);
-        // Readings that move have been watched for long enough.
+        // Causes about loads build on seconds of moving readings and need no further delay.
         if now.since(since) < HOLDS && !found.is_of_loads() {
             self.candidate = Some((found, since));
             return false;
@@ -163,13 +163,13 @@ impl CauseWatch {
         self.fault_of_a_board(now).or_else(swapped).or_else(|| self.missing(facts, now)).or_else(loads)
     }
 
-    /// The first board that counts wrongly, sends too seldom or too often, or sends what is no reading.
+    /// Returns the fault of the first board with wrong numbering, a wrong rate or unusable readings.
     fn fault_of_a_board(&self, now: Instant) -> Option<LinkCause> {
         let is_limited = self.limited.has_grown(HOLDS, now);
         let counted = (0..).zip(&self.cadences).find_map(|(board, cadence)| {
             let (count, hz) = cadence.judged(now)?;
             match count {
-                // Some packets were refused because there are too many.
+                // The gateway rejected some packets because there were too many.
                 Count::Steps(step) if is_limited => Some(LinkCause::RateHigh { board, hz: hz * step as f32 }),
                 Count::Steady => rate(board, hz),
                 count => count.fault(board),
@@ -178,7 +178,7 @@ impl CauseWatch {
         counted.or_else(|| (0..).zip(&self.ranges).find_map(|(board, range)| range.fault(board)))
     }
 
-    /// Why no usable frame comes, or not from all boards.
+    /// Returns the cause for missing usable frames, or frames that lack boards.
     fn missing(&self, facts: &Facts<'_>, now: Instant) -> Option<LinkCause> {
         let Facts { assembler, link, refused, .. } = facts;
         let is_usable = now.since(self.usable) < HOLDS && self.usable != Instant::START;
@@ -216,7 +216,7 @@ impl CauseWatch {
 }
 
 impl LinkCause {
-    /// Whether it is about loads that were never seen.
+    /// Whether the cause is that no load was ever seen.
     const fn is_of_loads(&self) -> bool {
         matches!(
             self,
@@ -228,7 +228,7 @@ impl LinkCause {
     }
 }
 
-/// The fault of a board that sends `hz` packets a second, if that is one.
+/// Returns the fault of a board that sends `hz` packets a second, if that rate is one.
 fn rate(board: u16, hz: f32) -> Option<LinkCause> {
     let [lowest, highest] = BOARD_RATES_HZ;
     if hz < lowest {

@@ -1,38 +1,38 @@
-//! How far one board's readings move, while no load was ever seen on the floor.
+//! Movement of one board's readings while no load was ever seen on the floor.
 
 use std::time::Duration;
 
 use crate::units::Instant;
 use crate::wire::{LinkCause, MAX_CHANNELS, Readings};
 
-/// How often readings are looked at: a foot stands for longer.
+/// Interval between two readings that are examined: a foot stands for longer.
 const EVERY: Duration = Duration::from_millis(10);
 
-/// Looks after which a sensor's rest is known: half a second.
+/// Samples after which the rest value of a sensor is known: half a second.
 const KNOWN: u16 = 50;
 
-/// Looks over which readings are averaged, and over which their rest is followed: 50 ms, and 5 s.
+/// Samples in the average of the reading, and in that of its rest value: 50 ms, and 5 s.
 const SHORT: f32 = 5.0;
 const LONG: f32 = 500.0;
 
-/// Deviations of its own noise by which a reading must leave its rest to move.
+/// Distance from the rest value above which a reading counts as moved, in mean deviations of its noise.
 const DEVIATIONS: f32 = 10.0;
 
-/// The least by which it must: four counts, since a coarse converter toggles between two; and as many newtons as a
-/// share of 1 or a voltage changes at least.
+/// Minimum of that distance: four counts, since a coarse converter toggles between two; for newtons the smallest
+/// change of a board that sends shares of 1 or volts.
 const LEAST_COUNTS: f32 = 4.0;
 const LEAST_NEWTONS: f32 = 0.005;
 
-/// For how long readings must have moved in all, in looks: two seconds of somebody who stands or walks there.
+/// Samples with moved readings needed in total: two seconds of a person standing or walking there.
 const MOVED: u32 = 200;
 
-/// Greatest part of the range that is narrow: a quarter, all that a 14-bit converter has.
+/// Maximum of a narrow range of counts: a quarter of 16 bits, which is the full range of a 14-bit converter.
 const NARROW: u16 = 1 << 14;
 
-/// Most newtons of one sensor: a truck's wheel.
+/// Maximum force on one sensor, in newtons: the wheel of a truck.
 const HEAVY_N: f32 = 10_000.0;
 
-/// Newtons below which no sensor of a floor stays under a person.
+/// Force in newtons that every sensor of a floor exceeds under a person.
 const LIGHT_N: f32 = 5.0;
 
 /// The readings of one board.
@@ -44,15 +44,15 @@ pub(super) struct Range {
     least: Option<u16>,
     greatest: u16,
     greatest_newtons: f32,
-    /// Looks at which several readings were above or below their rest, and at which some were heavy.
+    /// Number of samples with several readings above rest, below rest, and with a heavy reading.
     up: u32,
     down: u32,
     heavy: u32,
-    /// The latest looks at which most readings were none, in a row.
+    /// Number of the latest consecutive samples in which most readings were unusable.
     bad: u32,
 }
 
-/// One reading.
+/// One channel.
 #[derive(Clone, Copy, Debug, Default)]
 struct Channel {
     looks: u16,
@@ -62,7 +62,9 @@ struct Channel {
 }
 
 impl Channel {
-    /// Takes a reading; 1 if it is above its rest, -1 if it is below, 0 at rest.
+    /// Updates the channel with a reading: `now += (value - now) / SHORT`. Returns 1 above rest, -1 below, 0 at rest.
+    /// At rest, `rest += (value - rest) / n` and `noise += (|value - now| - noise) / n`, n the samples so far up to
+    /// `LONG`.
     fn take(&mut self, value: f32, least: f32) -> i8 {
         self.looks = self.looks.saturating_add(1);
         if self.looks == 1 {
@@ -82,7 +84,7 @@ impl Channel {
 }
 
 impl Range {
-    /// Takes the readings of a packet that came at `received`.
+    /// Records the readings of a packet that arrived at `received`.
     pub(super) fn note(&mut self, readings: &Readings, received: Instant) {
         if self.looked.is_some_and(|looked| received.since(looked) < EVERY) {
             return;
@@ -127,7 +129,7 @@ impl Range {
         self.bad = if 2 * bad > count { self.bad + 1 } else { 0 };
     }
 
-    /// The fault in the readings of board `board` that needs no load to be noticed.
+    /// Returns a fault in the readings of board `board` that shows without a load.
     pub(super) fn fault(&self, board: u16) -> Option<LinkCause> {
         if self.bad >= MOVED / 2 {
             return Some(if self.is_newtons {
@@ -140,7 +142,7 @@ impl Range {
         (self.heavy >= MOVED / 2).then_some(LinkCause::NewtonsLarge { board, greatest })
     }
 
-    /// Why no load was ever seen although the readings of board `board` move; `None` if they do not.
+    /// Returns the reason why no load was seen although the readings of board `board` move; `None` if they do not.
     pub(super) fn unseen(&self, board: u16) -> Option<LinkCause> {
         if self.up.max(self.down) < MOVED {
             return None;
@@ -162,7 +164,7 @@ impl Range {
 mod tests {
     use super::*;
 
-    /// The cause found for a board with four sensors that read this in each millisecond of ten seconds.
+    /// Returns the cause for a board with four sensors that read `reading` in each millisecond of ten seconds.
     fn unseen(reading: impl Fn(u32) -> f32, newtons: bool) -> Option<LinkCause> {
         let mut range = Range::default();
         for ms in 0..10_000 {
@@ -176,12 +178,12 @@ mod tests {
         range.unseen(3)
     }
 
-    /// Noise of one deviation or so.
+    /// Noise with a standard deviation of about one.
     fn noise(ms: u32) -> f32 {
         (ms.wrapping_mul(2_654_435_761) >> 16) as f32 / 65_536.0 * 3.4 - 1.7
     }
 
-    /// 1 while somebody stands on the floor, from 4 to 7 s.
+    /// 1 while a person stands on the floor, from 4 to 7 s.
     fn load(ms: u32) -> f32 {
         let seconds = ms as f32 / 1000.0;
         ((seconds - 4.0) / 0.12).min((7.0 - seconds) / 0.12).clamp(0.0, 1.0)
@@ -224,7 +226,7 @@ mod tests {
 
     #[test]
     fn an_empty_floor_moves_nothing() {
-        // Noise of the paper's converters, hum, drift of its zero, and a door that is slammed.
+        // Noise of the paper's converters, hum, zero drift, and a slammed door.
         let read = |ms: u32| {
             let seconds = ms as f32 / 1000.0;
             let hum = 40.0 * (seconds * 314.0).sin();

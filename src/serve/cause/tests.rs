@@ -1,4 +1,4 @@
-//! Boards of strangers on a floor of two tiles, each with a board of its own.
+//! Faulty boards on a floor of two tiles with one board each.
 
 use super::*;
 use crate::floor::{Board, Floor, Geometry};
@@ -9,13 +9,13 @@ fn floor() -> Floor {
     Floor::of(Geometry::of_paper_tiles(1, 2).unwrap())
 }
 
-/// A floor at work, to which packets are given.
+/// A running floor that receives packets from the test.
 struct Bench {
     assembler: Assembler,
     watch: CauseWatch,
     counters: LinkCounters,
     refused: Option<LinkCause>,
-    /// When each cause was told, in milliseconds, and its name; empty where it was gone.
+    /// Time in milliseconds and name of each reported cause; the name is empty where the cause ended.
     told: Vec<(u64, &'static str)>,
 }
 
@@ -32,7 +32,7 @@ impl Bench {
         }
     }
 
-    /// From `begin` to `end`, gives the packets that `send` makes of each board and millisecond.
+    /// Sends the packets that `send` makes for each board and millisecond of the range.
     fn run(
         &mut self,
         milliseconds: std::ops::Range<u64>,
@@ -64,18 +64,18 @@ impl Bench {
     }
 }
 
-/// Newtons that look like those of an empty floor.
+/// Readings of an empty floor, in newtons.
 fn empty(ms: u64) -> Readings {
     let noise = |corner: u64| (ms * 7 + corner * 3) % 11;
     Readings::Newtons((0..4).map(|corner| 0.01 * noise(corner) as f32).collect())
 }
 
-/// A board as it should be.
+/// A board without faults.
 fn well(ms: u64) -> Option<(u32, Readings)> {
     Some((ms as u32, empty(ms)))
 }
 
-/// The causes told within five seconds of two boards, of which the second is strange.
+/// Returns the causes reported within five seconds for two boards, the second of them faulty.
 fn told_of(strange: impl Fn(u64) -> Option<(u32, Readings)>) -> Vec<(u64, &'static str)> {
     let mut bench = Bench::new();
     bench.run(1..5000, |board, ms| if board == 0 { well(ms) } else { strange(ms) });
@@ -166,7 +166,7 @@ fn a_board_that_reboots_is_no_cause() {
     assert_eq!(told, []);
 }
 
-/// Readings of shares of a newton while somebody stands on the floor from 2 to 5 s.
+/// Readings as shares of a newton while a person stands on the floor from 2 to 5 s.
 fn shares(ms: u64) -> Option<(u32, Readings)> {
     let load = if (2000..5000).contains(&ms) { 0.6 } else { 0.0 };
     let noise = (ms * 7 % 11) as f32 * 1e-4;

@@ -1,4 +1,4 @@
-//! How often other programs are told of a value that a foot keeps changing.
+//! Limits how often the server reports a value that a foot keeps changing.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -6,51 +6,52 @@ use std::time::Duration;
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
 
-/// Least time between two reports of one control: 60 a second, as often as screens show them.
+/// Minimum time between two reports of one control: 60 a second, the refresh rate of screens.
 const PERIOD: Duration = Duration::from_micros(16_667);
 
-/// Time without a change after which a value has come to rest: a foot that moves changes it every few milliseconds.
+/// Time without a change after which a value is at rest: a moving foot changes it every few milliseconds.
 const REST: Duration = Duration::from_millis(100);
 
-/// Second differences that the noise is averaged over: half a second.
+/// Number of second differences in the noise average: half a second.
 const MEMORY: f32 = 30.0;
 
 /// Mean size of the second difference of white noise with standard deviation 1: sqrt(6) sqrt(2 / pi).
 const SECOND_DIFFERENCE: f32 = 1.954;
 
-/// Standard deviations that a value must move by. Two readings of a foot at rest differ by sqrt(2) of them, so that
-/// it is told once in twelve seconds (3.2 deviations of that difference).
+/// Standard deviations that a value must move by. Two readings of a foot at rest differ by sqrt(2) of them, which
+/// gives one report in twelve seconds (3.2 deviations of that difference).
 const DEVIATIONS: f32 = 4.5;
 
-/// Lets through as many `changed` of numbers as other programs can use.
+/// Thins out the `changed` events of numbers to the rate that other programs can use.
 ///
-/// A number is told 60 times a second at most and only when it has moved beyond its own noise; the last one once it
-/// rests, and before anything else is told of its control. Switches and choices change once a press and go at once.
+/// Reports a number at most 60 times a second, and only when it has moved beyond its own noise. It reports the last
+/// value once the number is at rest, and before any other event of the control. Switches and choices change once per
+/// press and are reported at once.
 #[derive(Debug, Default)]
 pub(super) struct ChangeLimiter {
     controls: BTreeMap<WidgetId, Changes>,
-    /// Whether a control has a value that is still to be told.
+    /// Whether a control has an unreported value.
     is_waiting: bool,
     told: Vec<WidgetEvent>,
 }
 
-/// What is known of one control's changes.
+/// State of one control's changes.
 #[derive(Debug)]
 struct Changes {
-    /// The value that was told last, and when.
+    /// Time and value of the last report.
     told: (Instant, Value),
-    /// The latest one, if it was not told.
+    /// The latest event, if it is unreported.
     waiting: Option<WidgetEvent>,
-    /// When the value was last sampled, and the samples before.
+    /// Time of the last sample, and the two samples before.
     sampled: Instant,
     samples: [Option<[f32; 2]>; 2],
-    /// Mean size of the second differences of both numbers, and over how many.
+    /// Mean absolute second difference of both numbers, and the number of second differences in it.
     noise: [f32; 2],
     count: f32,
 }
 
 impl ChangeLimiter {
-    /// Those of `events` that are told now, and those that have waited until `now`; in order.
+    /// Returns the events of `events` to report now and the waiting events that are due at `now`, in order.
     pub(super) fn thin(&mut self, events: &[WidgetEvent], now: Instant) -> &[WidgetEvent] {
         self.told.clear();
         for event in events {
@@ -98,7 +99,7 @@ impl Changes {
         Self { told: (at, value), waiting: None, sampled: at, samples, noise: [0.0; 2], count: 0.0 }
     }
 
-    /// The value that waits, told as that of `now`: what is told is in order of time.
+    /// Returns the waiting value with the time `now`, so that reports are in order of time.
     fn tell(&mut self, now: Instant) -> Option<WidgetEvent> {
         let event = WidgetEvent { at: now, ..self.waiting.take()? };
         let EventKind::Changed(value) = event.kind else { return None };
@@ -109,13 +110,13 @@ impl Changes {
         Some(event)
     }
 
-    /// The value that waits, if its time has come.
+    /// Returns the waiting value if it is due.
     fn due(&mut self, now: Instant) -> Option<WidgetEvent> {
         let WidgetEvent { at, kind: EventKind::Changed(value), .. } = *self.waiting.as_ref()? else {
             return None;
         };
         if now.since(self.sampled) >= PERIOD {
-            // Samples before a pause say nothing of the noise.
+            // Samples before a pause contain no information on the noise.
             if now.since(self.sampled) >= REST {
                 self.samples = [None; 2];
             }
@@ -126,7 +127,8 @@ impl Changes {
         (is_over && (has_rested || self.is_beyond_noise(value))).then(|| self.tell(now)).flatten()
     }
 
-    /// Learns the noise: a steady movement has no second difference.
+    /// Updates the noise: `noise += (|value - 2 last + before| - noise) / count`. A steady movement has no second
+    /// difference.
     fn sample(&mut self, now: Instant, value: [f32; 2]) {
         self.sampled = now;
         if let [Some(last), Some(before)] = self.samples {

@@ -1,4 +1,4 @@
-//! A value as other programs hear of it, for all that a foot may do.
+//! Reports of a value for all possible movements of a foot.
 
 use glam::Vec2;
 use proptest::prelude::*;
@@ -15,7 +15,7 @@ fn changed(at: Instant, value: f32) -> WidgetEvent {
     event(at, "zoom", EventKind::Changed(Value::Number(value)))
 }
 
-/// What is told when `value` gives the value of each millisecond: when, and which.
+/// Returns time and value of each report when `value` gives the value in each millisecond.
 fn told(millis: u64, value: impl Fn(u64) -> f32) -> Vec<(u64, f32)> {
     let (mut limiter, mut told, mut last) = (ChangeLimiter::default(), Vec::new(), f32::NAN);
     for ms in 0..millis {
@@ -30,7 +30,7 @@ fn told(millis: u64, value: impl Fn(u64) -> f32) -> Vec<(u64, f32)> {
     told
 }
 
-/// Noise between -1 and 1, even over milliseconds, without a generator.
+/// Noise between -1 and 1, uniform over the milliseconds, without a generator.
 fn noise(ms: u64) -> f32 {
     ((ms * 2_654_435_761 % 4_294_967_296) as f32 / 2_147_483_648.0) - 1.0
 }
@@ -45,7 +45,7 @@ fn a_foot_at_rest_is_told_a_few_times_and_not_480_in_half_a_second() {
 
 #[test]
 fn a_foot_that_slides_is_followed_60_times_a_second_up_to_where_it_rests() {
-    // Half the range in a second, with noise; then nothing changes any more.
+    // Half the range in a second, with noise; then the value is constant.
     let slide = |ms: u64| if ms < 1000 { 0.0005 * ms as f32 + 0.001 * noise(ms) } else { 0.5123 };
     let told = told(1300, slide);
     let moving = told.iter().filter(|(ms, _)| *ms < 1000).count();
@@ -77,7 +77,8 @@ fn the_last_value_comes_before_the_release_and_switches_do_not_wait() {
 }
 
 proptest! {
-    /// Whatever comes when: the rate is held but for ends of presses, and in the end the last value is known.
+    /// For any sequence of events: the rate is kept except at ends of presses, and the last report has the last
+    /// value.
     #[test]
     fn never_more_than_60_a_second_and_never_an_old_value_in_the_end(
         steps in prop::collection::vec((1_u64..40, prop::option::of(-1e6_f32..1e6), any::<bool>()), 1..200),

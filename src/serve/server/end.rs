@@ -1,4 +1,4 @@
-//! The end of a server: what feet hold is cancelled before anybody is told goodbye.
+//! The end of a server: it cancels everything held before the sinks say goodbye.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -7,14 +7,15 @@ use tracing::error;
 use super::Server;
 
 impl Server {
-    /// Cancels what feet hold, tells and shows so, and lets the actuators fade out; a second time changes nothing.
+    /// Cancels everything held, reports and shows that, and lets the actuators fade out; a second call changes
+    /// nothing.
     pub(super) fn end(&mut self) {
         self.cancel_all();
         self.show_now();
         self.haptics.fade_out(self.source.now());
     }
 
-    /// Cancels what feet hold, which restores what they had changed, and tells so.
+    /// Cancels everything held, which restores the values that the feet had changed, and reports that.
     pub(super) fn cancel_all(&mut self) {
         let cancelled = self.engine.cancel_all();
         self.outputs.events(cancelled);
@@ -23,9 +24,9 @@ impl Server {
 }
 
 impl Drop for Server {
-    /// Also the end of a thread that panics: sinks say goodbye when they are dropped, after this.
+    /// Runs also at the end of a thread that panics: sinks say goodbye when they are dropped, after this.
     fn drop(&mut self) {
-        // Whatever panicked may do so again, and a second panic on the way out would end the program at once.
+        // The cause of a panic may cause another one, and a second panic while unwinding would abort the program.
         if catch_unwind(AssertUnwindSafe(|| self.end())).is_err() {
             error!("not everything that was held could be cancelled");
         }

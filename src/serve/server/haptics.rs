@@ -1,4 +1,4 @@
-//! What feet feel: cues to the renderer, the actuators that play it, and what is muted.
+//! Haptic output: cues to the renderer, the actuators that play it, and muting.
 
 use std::time::Duration;
 
@@ -13,19 +13,19 @@ use crate::serve::trial::Trial;
 use crate::sink::{ActuatorSink, LatencyStages};
 use crate::units::Instant;
 
-/// How long the actuators are given to fade out: the 5 ms of the fade, and the longest usual block of a card.
+/// Time for the actuators to fade out: the 5 ms of the fade, and the longest usual block of a sound card.
 const FADE: Duration = Duration::from_millis(50);
 
-/// How often at most it is told how the device is doing.
+/// Minimum time between two reports of the device status.
 const DEVICE_PERIOD: Duration = Duration::from_secs(1);
 
-/// Why something can't be muted.
+/// Reasons why muting fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub(super) enum MuteError {
-    /// There are no actuators.
+    /// The floor has no actuators.
     #[error("this floor plays nothing that could be muted")]
     Unplayed,
-    /// The floor is smaller.
+    /// The tile is outside the floor.
     #[error("the floor has no such tile")]
     OffTheFloor,
     /// The tile has no actuator.
@@ -33,41 +33,41 @@ pub(super) enum MuteError {
     Unmoved,
 }
 
-/// Cues out, and the device that plays them; without a renderer nothing is felt.
+/// Cues out, and the device that plays them; without a renderer nothing is played.
 #[derive(Default)]
 pub(super) struct Haptics {
     pub(super) feel: Option<CueSender>,
     pub(super) actuators: Option<Box<dyn ActuatorSink>>,
-    /// Who moves the tiles beside this computer's.
+    /// The computers that drive the tiles next to those of this one.
     pub(super) neighbours: Option<Box<dyn Neighbours>>,
-    /// What they handed on last.
+    /// Cues received last from the neighbours.
     handed: Vec<Cue>,
-    /// An effect that somebody tries.
+    /// An effect on trial.
     pub(super) trial: Option<Trial>,
-    /// Measures latency, if wanted, and when the last packet was taken.
+    /// Records latency, if requested; the time is that of the last packet.
     pub(super) latency: Option<(LatencyStages, Instant)>,
     muted: Muted,
-    /// How the device is doing, if there is one, and what was last told of it.
+    /// The device status, if there is a device, and its last report.
     device: Option<DeviceStatus>,
     device_told: Option<(Instant, DeviceStatus)>,
 }
 
 impl Haptics {
-    /// Notes that a packet was taken at `now`.
+    /// Records that a packet arrived at `now`.
     pub(super) fn note_packet(&mut self, now: Instant) {
         if let Some((_, taken)) = &mut self.latency {
             *taken = now;
         }
     }
 
-    /// Sends what is due to neighbours at `now`.
+    /// Sends everything that is due to neighbours at `now`.
     pub(super) fn poll_neighbours(&mut self, now: Instant) {
         if let Some(neighbours) = &mut self.neighbours {
             neighbours.poll(now);
         }
     }
 
-    /// Sends what a frame of time `at` leads to; `now` is the present.
+    /// Sends the cues of a frame of time `at`; `now` is the present.
     pub(super) fn send(&mut self, step: &Step<'_>, at: Instant, now: Instant) {
         let Some(feel) = &mut self.feel else { return };
         if let Some((stages, taken)) = self.latency.as_ref().filter(|_| !step.cues.is_empty()) {
@@ -78,7 +78,7 @@ impl Haptics {
             }
         }
         for cue in step.cues {
-            // What could not be sent is counted by the sender.
+            // The sender counts the cues that it cannot send.
             feel.send(cue);
         }
         let mut both = None;
@@ -101,7 +101,7 @@ impl Haptics {
         }
     }
 
-    /// Plays up to `until`; actuators that fail are dropped with a warning.
+    /// Plays up to `until`; drops actuators that fail, with a warning.
     pub(super) fn play_until(&mut self, until: Instant) {
         if let Some(actuators) = &mut self.actuators
             && let Err(error) = actuators.advance(until)
@@ -111,7 +111,7 @@ impl Haptics {
         }
     }
 
-    /// Lets the actuators fade out; a second time changes nothing.
+    /// Lets the actuators fade out; a second call changes nothing.
     pub(super) fn fade_out(&mut self, now: Instant) {
         let Some(feel) = self.feel.as_mut().filter(|feel| !feel.is_silenced()) else { return };
         feel.silence();
@@ -123,7 +123,7 @@ impl Haptics {
         }
     }
 
-    /// Mutes everything, or ends that; whether that is new.
+    /// Mutes or unmutes everything; returns whether that is a change.
     pub(super) fn mute(&mut self, on: bool, floor_is_lost: bool) -> Result<bool, MuteError> {
         if self.feel.is_none() {
             return Err(MuteError::Unplayed);
@@ -133,7 +133,7 @@ impl Haptics {
         Ok(is_news)
     }
 
-    /// Mutes one tile, or ends that; tiles on the same channel go with it. Whether that is new.
+    /// Mutes or unmutes one tile and all tiles on the same channel; returns whether that is a change.
     pub(super) fn mute_tile(
         &mut self,
         tile: TileId,
@@ -153,7 +153,7 @@ impl Haptics {
         Ok(self.muted.tiles.len() != before)
     }
 
-    /// Lets nothing be felt while the floor is lost or somebody wants it so.
+    /// Silences the output while the floor is lost or everything is muted.
     pub(super) fn update_mute(&mut self, floor_is_lost: bool) {
         match &mut self.feel {
             Some(feel) if self.muted.all || floor_is_lost => feel.silence(),
@@ -162,17 +162,17 @@ impl Haptics {
         }
     }
 
-    /// What is muted.
+    /// Returns the mute state.
     pub(super) fn muted(&self) -> &Muted {
         &self.muted
     }
 
-    /// How the device is doing; `None` without one.
+    /// Returns the device status; `None` without a device.
     pub(super) fn device(&self) -> Option<&DeviceStatus> {
         self.device.as_ref()
     }
 
-    /// How the device is doing when that has changed, once a second at most.
+    /// Returns the device status if it has changed, at most once a second.
     pub(super) fn device_news(&mut self, now: Instant) -> Option<&DeviceStatus> {
         let mut status = self.device.take().unwrap_or_default();
         if !self.actuators.as_ref().is_some_and(|actuators| actuators.device(&mut status)) {
@@ -189,7 +189,7 @@ impl Haptics {
         self.device.as_ref().filter(|_| is_news)
     }
 
-    /// What could not be felt as it should so far, or was not to be.
+    /// Returns the counts of cues that were lost, altered or muted so far.
     pub(super) fn counters(&self) -> FeelCounters {
         self.feel.as_ref().map(CueSender::counters).unwrap_or_default()
     }

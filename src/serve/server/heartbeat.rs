@@ -1,4 +1,4 @@
-//! What is said over and over, so that whoever hears it no longer knows that it has ended.
+//! Periodic reports, so that a listener detects the end of a hold by the end of the reports.
 
 use std::time::Duration;
 
@@ -7,17 +7,18 @@ use crate::sink::Report;
 use crate::units::Instant;
 use crate::widget::WidgetId;
 
-/// Time between two reports of what is held: five of them may be lost or late before 100 ms are over.
+/// Time between two reports of held controls: five of them may be lost or late within 100 ms.
 const HELD_EVERY: Duration = Duration::from_millis(20);
 
-/// How old the frame may be that says what is held: a server that works off packets of the past knows nothing of now.
-/// With the 100 ms that silence is believed for, a hold ends after 150 ms at the latest.
+/// Maximum age of the frame that a report of held controls is based on: a server that works through a backlog of
+/// packets does not know the present state. With the listener's 100 ms time-out, a hold ends after 150 ms at the
+/// latest.
 const CURRENT: Duration = Duration::from_millis(40);
 
-/// Time between two signs of life.
+/// Time between two alive reports.
 const ALIVE_EVERY: Duration = Duration::from_millis(100);
 
-/// What was last reported, and when the next reports are due.
+/// The last report, and the due times of the next ones.
 #[derive(Debug, Default)]
 pub(super) struct Heartbeat {
     report: HeldReport,
@@ -27,8 +28,8 @@ pub(super) struct Heartbeat {
 }
 
 impl Heartbeat {
-    /// Reports what is held if that has changed or is due, and that the server lives. `seen`: when the last frame came
-    /// in.
+    /// Reports the held controls if they have changed or the report is due, and sends the alive report. `seen`: time
+    /// of the last frame.
     pub(super) fn beat<'a>(
         &mut self,
         held: impl Iterator<Item = &'a WidgetId> + Clone,
@@ -56,7 +57,7 @@ impl Heartbeat {
     }
 }
 
-/// When a report is due again: a period after it was due, or after `now` if it is late or early.
+/// Returns the next due time: a period after the last due time, or after `now` if the report is late or early.
 fn next(due: Instant, period: Duration, now: Instant) -> Instant {
     let next = due + period;
     if next > now && due <= now { next } else { now + period }

@@ -1,4 +1,4 @@
-//! Notices that may repeat: some at once, then few, with the number in between.
+//! Rate-limited notices: a burst at once, then few, with the number of suppressed ones.
 
 use std::time::Duration;
 
@@ -12,19 +12,19 @@ use crate::units::Instant;
 pub(super) struct Limited(RateLimit);
 
 impl Limited {
-    /// At most `burst` at once, and in the long run one in each `every`.
+    /// At most `burst` at once, and one per `every` in the long run.
     pub(super) const fn new(burst: u32, every: Duration) -> Self {
         Self(RateLimit::new(burst, every))
     }
 
-    /// Warns, unless there were too many.
+    /// Logs a warning within the rate limit.
     pub(super) fn warn(&mut self, now: Instant, text: impl FnOnce() -> String) {
         if let Some(held_back) = self.0.take(now) {
             warn!("{}{}", text(), in_between(held_back));
         }
     }
 
-    /// Says, unless there was too much.
+    /// Logs information within the rate limit.
     pub(super) fn info(&mut self, now: Instant, text: impl FnOnce() -> String) {
         if let Some(held_back) = self.0.take(now) {
             info!("{}{}", text(), in_between(held_back));
@@ -32,7 +32,7 @@ impl Limited {
     }
 }
 
-/// What stands behind a notice after others were held back.
+/// Returns the suffix of a notice after others were held back.
 fn in_between(held_back: u64) -> String {
     if held_back == 0 {
         String::new()

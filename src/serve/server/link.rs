@@ -1,4 +1,4 @@
-//! What a server says of its floor's link: lost, found, tared, frozen, calibrated.
+//! Reports of a floor's link: lost, found, tared, frozen, calibrated.
 
 use std::time::Duration;
 
@@ -11,19 +11,19 @@ use crate::units::Instant;
 use crate::widget::OffReason;
 use crate::wire::{LinkCause, LinkState};
 
-/// How long only some boards must have reported for this to be news; controls on the others are long released.
+/// Minimum time of a partial link before it is reported; controls on the silent boards are released long before.
 const SETTLING: Duration = Duration::from_millis(100);
 
-/// What is known of the link, as far as that has been said.
+/// The link state as last reported.
 #[derive(Debug)]
 pub(super) struct LinkWatch {
     state: LinkState,
-    /// Since when only some boards have reported.
+    /// Begin of the partial link: only some boards report.
     partial_since: Option<Instant>,
     tare: TareOutcome,
     /// Sensors without calibration.
     uncalibrated: usize,
-    /// Boards that stood still, tiles whose sensors repeated themselves, and changes of boards that are swapped.
+    /// Counts of frozen boards, of tiles with repeating sensors, and of changes of swapped boards.
     frozen: u64,
     repeats: u64,
     swaps: u64,
@@ -46,17 +46,17 @@ impl Default for LinkWatch {
 }
 
 impl LinkWatch {
-    /// The state that was last told.
+    /// Returns the state that was last reported.
     pub(super) const fn state(&self) -> LinkState {
         self.state
     }
 
-    /// Whether nothing usable comes any more.
+    /// Whether the link is lost.
     pub(super) fn is_lost(&self) -> bool {
         self.state == LinkState::Lost
     }
 
-    /// Says what has changed; the link's state if it is another one.
+    /// Logs all changes; returns the state of the link if it has changed.
     pub(super) fn update(
         &mut self,
         assembler: &Assembler,
@@ -86,7 +86,7 @@ impl LinkWatch {
         Some(state)
     }
 
-    /// Logs the cause for which no frame can be used, or that it is gone.
+    /// Logs the cause of unusable frames, or its end.
     pub(super) fn note_cause(&mut self, cause: Option<&LinkCause>, now: Instant) {
         match cause {
             Some(cause) => self.notices.warn(now, || cause.to_string()),
@@ -96,7 +96,7 @@ impl LinkWatch {
         }
     }
 
-    /// Says which boards have changed places.
+    /// Logs which boards are swapped.
     fn note_swapped(&mut self, assembler: &Assembler) {
         let (changes, places) = assembler.swapped();
         if std::mem::replace(&mut self.swaps, changes) == changes {
@@ -125,7 +125,7 @@ impl LinkWatch {
         }
     }
 
-    /// The link's state; boards that come back one after the other don't make the floor look half dead for a moment.
+    /// Returns the state of the link; delays a partial link while boards come back one after the other.
     fn settled(&mut self, state: LinkState, now: Instant) -> LinkState {
         if state != LinkState::Partial {
             self.partial_since = None;
@@ -153,7 +153,7 @@ impl LinkWatch {
         self.tare = tare;
     }
 
-    /// Says which boards read the same over and over under a load.
+    /// Logs which boards repeat the same readings under a load.
     fn note_frozen(&mut self, assembler: &Assembler) {
         let frozen = assembler.counters().frozen;
         if std::mem::replace(&mut self.frozen, frozen) == frozen {
@@ -168,7 +168,7 @@ impl LinkWatch {
         }
     }
 
-    /// Says which tiles' sensors read the same over and over under a load.
+    /// Logs which tiles have sensors that repeat the same readings under a load.
     fn note_repeats(&mut self, assembler: &Assembler, now: Instant) {
         let (count, tiles) = assembler.repeating();
         if std::mem::replace(&mut self.repeats, count) == count {
@@ -188,7 +188,7 @@ impl LinkWatch {
         });
     }
 
-    /// Logs once how many sensors count as nominal parts, and which file could say otherwise.
+    /// Logs once how many sensors count as nominal parts, and which file could calibrate them.
     fn note_uncalibrated(&mut self, assembler: &Assembler, file: &FloorFile) {
         let uncalibrated = assembler.uncalibrated();
         if uncalibrated > self.uncalibrated {

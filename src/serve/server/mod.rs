@@ -1,4 +1,4 @@
-//! The server: one turn per packet, and all that follows from it.
+//! The server: one turn per packet, with all its consequences.
 
 mod end;
 mod haptics;
@@ -37,85 +37,85 @@ use crate::source::{SensorSource, SourceError};
 use crate::units::{Instant, Newtons};
 use crate::wire::{ControlMessage, LinkCounters, Prefix};
 
-/// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
+/// Maximum wait for a packet before the server does its other work; well within the 100 ms of a lost floor.
 const PATIENCE: Duration = Duration::from_millis(5);
 
-/// Time from one frame to the next: what a frame causes is played within it.
+/// Time from one frame to the next: the cues of a frame are played within it.
 const FRAME: Duration = Duration::from_millis(1);
 
-/// Most requests that are met before the next packet is taken, and most commands in a millisecond: some 5 us each, so
+/// Maximum number of requests processed before the next packet, and of commands per millisecond: about 5 us each, so
 /// that packets never wait for long.
 const MOST_AT_ONCE: usize = 16;
 
-/// How often the snapshot is renewed: more often than any screen.
+/// Interval between two snapshots: shorter than that of any screen.
 const SNAPSHOT_EVERY: Duration = Duration::from_millis(5);
 
-/// How far lockstep samples stay behind the clock while no frames come.
+/// Delay of lockstep samples behind the clock while no frames come.
 const IDLE_LAG: Duration = Duration::from_millis(20);
 
-/// What is played after the last frame, so that the last click can ring out.
+/// Time played after the last frame, so that the last click can ring out.
 const TAIL: Duration = Duration::from_millis(300);
 
-/// Something an app or a window asks of a floor at work.
+/// A command from an app or a window to a running floor.
 #[derive(Clone, Debug)]
 pub enum Command {
-    /// Take another layout (kept back while a foot is on a control that both have).
+    /// Replaces the layout (delayed while a foot is on a control that both layouts have).
     SetLayout(Box<Layout>),
-    /// What an app may also ask over OSC.
+    /// A request that an app may also send over OSC.
     Control(ControlMessage),
-    /// Do what an app may also ask over OSC, but mute, and answer.
+    /// Carries out a request that an app may also send over OSC, except mute, and answers.
     Ask(ControlMessage, SyncSender<Result<(), Refusal>>),
-    /// Give the tare in use, per tile and corner as in [`Floor::tare`]; `None` where it is the floor's own, or not
-    /// known.
+    /// Returns the tare in use, per tile and corner as in [`Floor::tare`]; `None` if it is the floor's own, or
+    /// unknown.
     GiveTare(SyncSender<Option<Vec<[Newtons; 4]>>>),
-    /// Play an effect on one tile as an imagined foot would, in place of what was being played so.
+    /// Plays an effect on one tile under a simulated foot; replaces an effect that is still playing.
     Audition {
-        /// What is felt.
+        /// The effect.
         effect: Arc<Effect>,
-        /// What the foot does.
+        /// The movement of the foot.
         gesture: Box<Gesture>,
         /// Index of the tile.
         tile: u16,
     },
 }
 
-/// Whether there is more to come after a turn.
+/// Whether the server continues after a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// Call again.
     No,
-    /// The source has ended; everything is released and handed out.
+    /// The source has ended; everything is released and reported.
     Yes,
 }
 
-/// One floor at work.
+/// A running floor.
 pub struct Server {
     source: Box<dyn SensorSource>,
     assembler: Assembler,
     engine: Engine,
     commands: Option<Receiver<Command>>,
-    /// When commands were last looked for.
+    /// Time at which commands were last polled.
     commands_looked: Instant,
     haptics: Haptics,
     outputs: Outputs,
     answers: Answers,
     link: LinkWatch,
-    /// When the boards were last looked at for it.
+    /// Time at which the link state of the boards was last checked.
     link_checked: Instant,
     causes: CauseWatch,
     sensors: SensorWatch,
     off: OffWatch,
     snapshots: Option<Input<Snapshot>>,
-    /// When the last frame came in.
+    /// Time of the last frame.
     seen: Instant,
-    /// When the snapshot was last renewed.
+    /// Time of the last snapshot.
     shown: Instant,
-    /// Whether it must be, although no frame may come.
+    /// Whether the snapshot must be renewed without a new frame.
     is_stale: bool,
 }
 
 impl Server {
-    /// A server for the controls of `layout` on `floor`, fed by `source`, which so far tells nobody.
+    /// A server for the controls of `layout` on `floor`, fed by `source`, without any outputs yet.
     ///
     /// The tare is the floor's own, or measured at the start if it has none.
     #[must_use]
@@ -143,14 +143,14 @@ impl Server {
         }
     }
 
-    /// Begins the addresses of its answers with `prefix`; its source and sinks have prefixes of their own.
+    /// Sets `prefix` for the addresses of its answers; its source and sinks have prefixes of their own.
     #[must_use]
     pub fn with_prefix(mut self, prefix: Prefix) -> Self {
         self.answers.prefix = prefix;
         self
     }
 
-    /// Hands on cues that are felt on tiles of other computers, and plays theirs.
+    /// Sends cues that are felt on tiles of other computers, and plays theirs.
     #[must_use]
     pub fn with_neighbours(mut self, neighbours: Box<dyn Neighbours>) -> Self {
         self.haptics.neighbours = Some(neighbours);
@@ -165,14 +165,14 @@ impl Server {
         self
     }
 
-    /// Measures in `stages` how long packets take to become cues; what follows is the sink's to measure.
+    /// Records in `stages` how long packets take to become cues; the sink measures the rest.
     #[must_use]
     pub fn with_latency(mut self, stages: LatencyStages) -> Self {
         self.haptics.latency = Some((stages, Instant::START));
         self
     }
 
-    /// Tells `events` what happens.
+    /// Reports events to `events`.
     #[must_use]
     pub fn with_events(mut self, events: Box<dyn EventSink>) -> Self {
         self.outputs.sink = Some(events);
@@ -186,20 +186,20 @@ impl Server {
         self
     }
 
-    /// Carries out `commands`.
+    /// Receives commands from `commands`.
     #[must_use]
     pub fn with_commands(mut self, commands: Receiver<Command>) -> Self {
         self.commands = Some(commands);
         self
     }
 
-    /// The engine, to look at.
+    /// Returns the engine for inspection.
     #[must_use]
     pub fn engine(&self) -> &Engine {
         &self.engine
     }
 
-    /// What came in and what was refused, from the socket to the frames.
+    /// Returns the counts of received and rejected packets, from the socket to the frames.
     #[must_use]
     pub fn counters(&self) -> LinkCounters {
         let Answers { denied, cleaned, .. } = self.answers;
@@ -207,19 +207,19 @@ impl Server {
         self.source.counters() + self.assembler.counters() + own
     }
 
-    /// What could not be felt as it should so far, or was not to be.
+    /// Returns the counts of cues that were lost, altered or muted so far.
     #[must_use]
     pub fn feel_counters(&self) -> FeelCounters {
         self.haptics.counters()
     }
 
-    /// Events that other programs could not be told so far.
+    /// Returns the number of events that could not be reported so far.
     #[must_use]
     pub fn unsent_events(&self) -> u64 {
         self.outputs.dropped()
     }
 
-    /// Writes everything there is to see into `snapshot`.
+    /// Writes the visible state into `snapshot`.
     pub fn snapshot(&self, snapshot: &mut Snapshot) {
         self.engine.snapshot(snapshot);
         snapshot.held.clear();
@@ -235,11 +235,11 @@ impl Server {
         snapshot.unsent_events = self.unsent_events();
     }
 
-    /// Works until the source ends or fails or `stop` is set, which is noticed within some milliseconds;
-    /// then cancels what feet still hold and tells so.
+    /// Runs until the source ends or fails or `stop` is set, which takes effect within some milliseconds; then
+    /// cancels everything held and reports that.
     ///
     /// # Errors
-    /// What [`Server::turn`] gives.
+    /// Those of [`Server::turn`].
     pub fn run(&mut self, stop: &AtomicBool) -> Result<(), SourceError> {
         self.haptics.update_mute(self.link.is_lost());
         let served = loop {
@@ -256,11 +256,11 @@ impl Server {
         served
     }
 
-    /// Takes one packet, or notices that none came, and does everything that follows from it.
+    /// Takes one packet, or notes that none came, and processes all its consequences.
     ///
     /// # Errors
-    /// [`SourceError`] if the source fails. A sink that fails is dropped with a
-    /// warning, for the controls go on working without it.
+    /// [`SourceError`] if the source fails. A failing sink is dropped with a warning, so that the controls keep
+    /// working without it.
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.process_commands();
         let mut is_silent = false;
@@ -286,7 +286,7 @@ impl Server {
         self.haptics.poll_neighbours(self.source.now());
         self.note_link(is_silent);
         while self.step() {}
-        // What silence changes no later frame would show.
+        // Changes caused by silence appear in no later frame.
         if self.is_stale || is_silent {
             self.show_now();
         }
@@ -296,7 +296,7 @@ impl Server {
         Ok(Ended::No)
     }
 
-    /// Works off one frame; false if none is complete.
+    /// Processes one frame; false if none is complete.
     fn step(&mut self) -> bool {
         let Some(frame) = self.assembler.ready() else { return false };
         let at = frame.at;
@@ -313,10 +313,10 @@ impl Server {
         true
     }
 
-    /// Says so when the floor is lost or back, and lets no actuator move while it is lost.
+    /// Reports when the floor is lost or back, and silences the actuators while it is lost.
     ///
-    /// That takes a look at every board. It is done for each frame and each millisecond and not for each packet, or it
-    /// would grow with the square of the boards.
+    /// This examines every board. It runs per frame and per millisecond instead of per packet; otherwise the cost
+    /// would grow with the square of the number of boards.
     fn note_link(&mut self, is_silent: bool) {
         let now = self.source.now();
         if !is_silent && !self.assembler.is_due() && now.since(self.link_checked) < FRAME {
@@ -329,7 +329,7 @@ impl Server {
         self.is_stale = true;
     }
 
-    /// Says how sensors and device are doing, where that has changed.
+    /// Reports the state of sensors and device where it has changed.
     fn note_sensors(&mut self) {
         let now = self.source.now();
         self.sensors.note_troubles(&self.assembler, now);
@@ -348,11 +348,11 @@ impl Server {
         self.note_off();
     }
 
-    /// Reports which controls that act while they are held are off, and why, where that has changed.
+    /// Reports for held controls whether they are off, and the reason, where that has changed.
     fn note_off(&mut self) {
         let news = self.off.news(&self.engine, self.engine.layout_revision());
         if !news.is_empty() {
-            // An app that hears of it finds it in the snapshot.
+            // An app that receives the report finds the same state in the snapshot.
             self.show_now();
         }
         for index in news {
@@ -363,7 +363,7 @@ impl Server {
         }
     }
 
-    /// Reports the cause for which no frame can be used, where that has changed.
+    /// Reports the cause of unusable frames where it has changed.
     fn note_cause(&mut self, counters: &LinkCounters, now: Instant) {
         let (link, refused) = (self.link.state(), self.source.last_refused());
         let facts = Facts { assembler: &self.assembler, link, counters, refused };
@@ -375,12 +375,12 @@ impl Server {
         }
     }
 
-    /// Reports what is held if that has changed or is due, and that the server lives.
+    /// Reports the held controls if they have changed or the report is due, and sends the alive report.
     fn beat(&mut self) {
         self.outputs.beat(self.engine.held(), self.seen, self.source.now());
     }
 
-    /// Renews the snapshot whatever its age.
+    /// Renews the snapshot regardless of its age.
     pub(crate) fn show_now(&mut self) {
         self.is_stale = true;
         self.show(self.source.now());
@@ -404,7 +404,7 @@ impl Server {
         self.is_stale = true;
     }
 
-    /// Does what is asked, as much as a turn has time for; what that changes is shown at the end of the turn.
+    /// Processes commands up to the limit of a turn; the end of the turn shows their effects.
     fn process_commands(&mut self) {
         for _ in 0..MOST_AT_ONCE {
             if let Some(request) = self.source.take_request() {
@@ -440,7 +440,7 @@ impl Server {
                 }
                 Command::GiveTare(to) => {
                     let is_measured = self.assembler.tare_outcome() == TareOutcome::Taken;
-                    // Who no longer waits for it need not know.
+                    // A caller that has stopped waiting needs no answer.
                     let _ = to.try_send(is_measured.then(|| self.assembler.tare()));
                 }
                 Command::Audition { effect, gesture, tile } => {

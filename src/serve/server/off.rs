@@ -1,25 +1,25 @@
-//! Which controls are off, and why: reported when that changes.
+//! Watches which controls are off, and the reasons, and reports changes.
 
 use crate::engine::Engine;
 use crate::widget::{Guard, OffReason};
 
-/// What was reported of the controls with the guard `HoldToRun`. Their users count on them and cannot see why they are
-/// off; of all others an app asks.
+/// The last reports about the controls with the guard `HoldToRun`. Their users rely on them and cannot see why they
+/// are off; for other controls an app asks.
 #[derive(Debug, Default)]
 pub(super) struct OffWatch {
     /// The layout that `told` belongs to.
     revision: u64,
-    /// For each control of the layout what was reported.
+    /// The last reported reason for each control of the layout.
     told: Vec<Option<OffReason>>,
-    /// For each control what was found at the last look.
+    /// The reason found at the last check for each control.
     seen: Vec<Option<OffReason>>,
 }
 
 impl OffWatch {
-    /// The indices of the controls of which there is something to report. To be asked ten times a second.
+    /// Returns the indices of the controls with a change to report. Called ten times a second.
     ///
-    /// What passes by itself is reported once it has lasted from one look to the next: a foot that lands drives sensors
-    /// to the end of their range for some milliseconds.
+    /// A transient reason is reported only if it lasts from one check to the next: a landing foot drives sensors to
+    /// the end of their range for some milliseconds.
     pub(super) fn news(&mut self, engine: &Engine, revision: u64) -> Vec<usize> {
         let widgets = &engine.layout().widgets;
         if self.revision != revision || self.told.len() != widgets.len() {

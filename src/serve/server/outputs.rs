@@ -1,4 +1,4 @@
-//! Those who are told what happens, and how often.
+//! Reports to other programs, and their rates.
 
 use super::heartbeat::Heartbeat;
 use crate::engine::Step;
@@ -7,7 +7,7 @@ use crate::sink::{EventSink, Report};
 use crate::units::Instant;
 use crate::widget::{WidgetEvent, WidgetId};
 
-/// What is told to other programs; without a sink nobody is.
+/// Sends reports to the event sink, if any.
 #[derive(Default)]
 pub(super) struct Outputs {
     pub(super) sink: Option<Box<dyn EventSink>>,
@@ -16,14 +16,14 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Tells one thing.
+    /// Sends one report.
     pub(super) fn report(&mut self, report: Report<'_>) {
         if let Some(sink) = &mut self.sink {
             sink.report(report);
         }
     }
 
-    /// Tells what a frame of time `at` led to.
+    /// Reports the results of a frame of time `at`.
     pub(super) fn step(&mut self, step: &Step<'_>, at: Instant) {
         let Some(sink) = &mut self.sink else { return };
         let events = self.changes.thin(step.events, at).iter().map(Report::Event);
@@ -33,12 +33,12 @@ impl Outputs {
         events.chain(page).chain(grounds).chain(contacts).for_each(|report| sink.report(report));
     }
 
-    /// Tells what must not wait.
+    /// Reports events that must not wait.
     pub(super) fn events(&mut self, events: &[WidgetEvent]) {
         events.iter().for_each(|event| self.report(Report::Event(event)));
     }
 
-    /// Tells what is held, if that has changed or is due, and that the server lives.
+    /// Reports the held controls if they have changed or the report is due, and sends the alive report.
     pub(super) fn beat<'a>(
         &mut self,
         held: impl Iterator<Item = &'a WidgetId> + Clone,
@@ -50,17 +50,17 @@ impl Outputs {
         }
     }
 
-    /// Tells what had to wait, also while no frames come.
+    /// Sends delayed reports, also while no frames come.
     pub(super) fn poll(&mut self, floor_is_lost: bool, now: Instant) {
         let Some(sink) = &mut self.sink else { return };
-        // Otherwise frames give the time, so that the same frames tell the same.
+        // Otherwise the frames provide the time, so that the same frames give the same reports.
         if floor_is_lost {
             self.changes.thin(&[], now).iter().for_each(|event| sink.report(Report::Event(event)));
         }
         sink.poll(now);
     }
 
-    /// Reports that could not be passed on so far.
+    /// Returns the number of reports that could not be sent so far.
     pub(super) fn dropped(&self) -> u64 {
         self.sink.as_ref().map_or(0, |sink| sink.dropped())
     }

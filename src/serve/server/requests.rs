@@ -1,4 +1,4 @@
-//! What a server does with requests: done, answered, and told to all.
+//! Processing of requests: carry out, answer, report.
 
 use std::sync::mpsc::SyncSender;
 use std::time::Duration;
@@ -15,25 +15,25 @@ use crate::sink::Report;
 use crate::widget::{SetError, WidgetId};
 use crate::wire::{ControlMessage, Prefix, Request};
 
-/// Controls that are told of when somebody asks for everything: so many at once, and one in each such time; some 5 us
-/// each, so that whoever asks without an end takes a twentieth of the sensing thread's time.
+/// Limit on reports of all controls on request: a burst of `MOST_TOLD` controls, then one per `TOLD_EVERY`; about 5
+/// us each, so that endless requests use a twentieth of the sensing thread's time.
 const MOST_TOLD: u32 = 20_000;
 const TOLD_EVERY: Duration = Duration::from_micros(100);
 
-/// How requests are answered.
+/// State of the answers to requests.
 #[derive(Debug)]
 pub(super) struct Answers {
-    /// What addresses in answers begin with.
+    /// The prefix of addresses in answers.
     pub(super) prefix: Prefix,
     /// The answer being written.
     bytes: Vec<u8>,
-    /// Requests that could not be met.
+    /// Number of rejected requests.
     pub(super) denied: u64,
-    /// How many controls are told of because somebody asks for everything.
+    /// Rate limit on reports of all controls.
     everything: RateLimit,
-    /// Whether everybody is to be told of every control as soon as there is time.
+    /// Whether a report of all controls is due as soon as there is time.
     pub(super) is_everything_due: bool,
-    /// Labels of which something was left out.
+    /// Number of labels from which characters were removed.
     pub(super) cleaned: u64,
     notices: Limited,
 }
@@ -55,10 +55,10 @@ impl Default for Answers {
 }
 
 impl Server {
-    /// Does what the program's own app asks, and gives it the answer.
+    /// Carries out a request of the program's own app and answers it.
     pub(super) fn answer(&mut self, message: ControlMessage, to: &SyncSender<Result<(), Refusal>>) {
         if message == ControlMessage::GetAll && !self.may_tell_everything() {
-            // Everybody is told, so that one report answers all who ask meanwhile.
+            // The report goes to all listeners, so that one report answers all requests in the meantime.
             self.answers.is_everything_due = true;
             let _ = to.try_send(Ok(()));
             return;
@@ -66,14 +66,14 @@ impl Server {
         let done = self.apply(&message);
         if done.is_ok() {
             self.tell(&message.into());
-            // Who reads what was written finds it.
+            // A read after this write sees its effect.
             self.show_now();
         }
-        // Who no longer waits for it need not know.
+        // A caller that has stopped waiting needs no answer.
         let _ = to.try_send(done);
     }
 
-    /// Does what an app asks of one control, or of all that a pattern means.
+    /// Carries out a request on one control, or on all controls that match a pattern.
     pub(super) fn process_request(&mut self, mut request: Request) {
         let meant = request.message.id_mut().map(|id| request::meant(&self.engine, id)).unwrap_or_default();
         if meant.is_empty() {
@@ -87,7 +87,7 @@ impl Server {
         }
     }
 
-    /// Tells everybody of every control, if that is due and there is time.
+    /// Reports every control to all listeners, if that is due and there is time.
     pub(super) fn tell_everything(&mut self) {
         if self.answers.is_everything_due && self.may_tell_everything() {
             self.answers.is_everything_due = false;
@@ -95,7 +95,7 @@ impl Server {
         }
     }
 
-    /// Whether there is time to tell of every control.
+    /// Whether there is time to report every control.
     fn may_tell_everything(&mut self) -> bool {
         let (now, controls) = (self.source.now(), self.engine.layout().widgets.len());
         self.answers.everything.take_many(now, u32::try_from(controls).unwrap_or(u32::MAX)).is_some()
@@ -114,14 +114,15 @@ impl Server {
         request::apply(&mut self.engine, message)
     }
 
-    /// Writes `text` on a control, whichever way it came, without what no label may hold.
+    /// Sets the label of a control, without the characters that labels may not contain.
     fn apply_label(&mut self, id: &WidgetId, text: &str) -> Result<(), SetError> {
         let label = label::cleaned(text, MAX_LABEL);
         self.answers.cleaned += u64::from(label != text);
         self.engine.set_label(id.as_str(), &label)
     }
 
-    /// Does what an app asks; tells it what it wants to know or why it can't be done, and everybody what is new.
+    /// Carries out a request; answers the sender or reports the reason of a rejection, and reports changes to all
+    /// listeners.
     fn handle_request(&mut self, request: &Request) {
         let done = match &request.message {
             ControlMessage::Mute { on } => {
@@ -150,7 +151,7 @@ impl Server {
         }
     }
 
-    /// Tells everybody how what was asked about or changed is now; and whoever asked, by an answer.
+    /// Reports to all listeners the state that was requested or changed, and answers the sender.
     fn tell(&mut self, request: &Request) {
         match &request.message {
             ControlMessage::Get { id } => self.tell_control(id, Some(request)),
@@ -171,7 +172,7 @@ impl Server {
                 self.tell_page(request);
                 self.answer_mute(request);
             }
-            // Told when it happens.
+            // These are reported when they happen.
             ControlMessage::ShowPage { .. }
             | ControlMessage::CancelAll
             | ControlMessage::Mute { .. }
@@ -203,7 +204,7 @@ impl Server {
         self.send_answer(request);
     }
 
-    /// Tells listeners that something else is muted now, and shows it with this turn, also while no frames come.
+    /// Reports a change of the mute state and shows it with this turn, also while no frames come.
     fn tell_mute(&mut self, is_news: Result<bool, MuteError>) -> Result<(), MuteError> {
         if is_news? {
             self.is_stale = true;

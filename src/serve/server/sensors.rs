@@ -1,4 +1,4 @@
-//! What a server says of its floor's sensors: which are in trouble, where a load jumped, whose floor it is.
+//! Reports of a floor's sensors: faults, jumps of a load, a floor file of another floor.
 
 use std::time::Duration;
 
@@ -10,26 +10,26 @@ use crate::sense::{Assembler, SensorHealth, Trouble};
 use crate::units::Instant;
 use crate::wire::LinkState;
 
-/// How often the sensors' health is checked, and how often at most it is told.
+/// Interval between two checks of the sensors' health, and minimum time between two reports of it.
 const HEALTH_LOOK: Duration = Duration::from_millis(100);
 const HEALTH_PERIOD: Duration = Duration::from_secs(1);
 
-/// What is known of the sensors, as far as that has been said.
+/// The sensor state as last reported.
 #[derive(Debug)]
 pub(super) struct SensorWatch {
-    /// Sensors known to be in trouble, and how often that had changed.
+    /// Sensors with a known trouble, and the counter of changes.
     troubles: Vec<(SensorId, Trouble)>,
     trouble_changes: u64,
-    /// Loads that jumped, and when that may be said again.
+    /// Count of jumps, and the time from which the next may be logged.
     jumps: u64,
     next_jumps: Instant,
-    /// Whether it has been said that this seems to be another floor.
+    /// Whether the log already says that this seems to be another floor.
     said_foreign: bool,
-    /// What was last told of the sensors, and when; `None` before the first time.
+    /// Time and content of the last report; `None` before the first.
     told: Option<(Instant, SensorHealth)>,
-    /// How they are, for comparing.
+    /// The current state, for comparison.
     health: SensorHealth,
-    /// Until when nothing is checked.
+    /// Time of the next check.
     next_check: Instant,
     notices: Limited,
 }
@@ -45,14 +45,14 @@ impl Default for SensorWatch {
             told: None,
             health: SensorHealth::default(),
             next_check: Instant::START,
-            // As many as a large board has channels: one that is unplugged is named sensor by sensor.
+            // As many as a large board has channels: if it is unplugged, the log names each of its sensors.
             notices: Limited::new(64, Duration::from_secs(2)),
         }
     }
 }
 
 impl SensorWatch {
-    /// Says which sensors have fallen into trouble or got out of it.
+    /// Logs which sensors have developed or lost a trouble.
     pub(super) fn note_troubles(&mut self, assembler: &Assembler, now: Instant) {
         let changes = assembler.trouble_changes();
         if changes == self.trouble_changes {
@@ -71,8 +71,8 @@ impl SensorWatch {
         self.troubles = current;
     }
 
-    /// Whether it is time for [`SensorWatch::health_news`]: qualities come and go with single readings, so what is
-    /// reported is checked a few times a second.
+    /// Whether [`SensorWatch::health_news`] is due: qualities change with single readings, so a few checks a second
+    /// suffice.
     pub(super) fn is_due(&mut self, now: Instant) -> bool {
         let is_due = now >= self.next_check;
         if is_due {
@@ -81,7 +81,7 @@ impl SensorWatch {
         is_due
     }
 
-    /// How the sensors are doing when that has changed, once a second at most; says what seems wrong with them.
+    /// Returns the sensor health when it has changed, at most once a second, and logs apparent faults.
     pub(super) fn health_news(
         &mut self,
         assembler: &Assembler,
@@ -97,7 +97,7 @@ impl SensorWatch {
         if !is_due || link == LinkState::Waiting {
             return None;
         }
-        // That all is well at first is not reported.
+        // A healthy state at the start is not reported.
         let is_news = known.is_some() || self.health.is_news_after(&SensorHealth::default());
         let (at, told) = self.told.get_or_insert_default();
         *at = now;
@@ -105,7 +105,7 @@ impl SensorWatch {
         is_news.then_some(&self.health)
     }
 
-    /// Says where a load jumped, once a second at most.
+    /// Logs where a load jumped, at most once a second.
     fn note_jumps(&mut self, assembler: &Assembler, now: Instant) {
         let (count, last) = assembler.jumps();
         let Some((tile, newtons)) = last.filter(|_| count > self.jumps && now >= self.next_jumps) else {
@@ -120,7 +120,7 @@ impl SensorWatch {
         self.next_jumps = now + HEALTH_PERIOD;
     }
 
-    /// Says once that the floor file seems to be another floor's.
+    /// Logs once that the floor file seems to belong to another floor.
     fn note_foreign(&mut self, assembler: &Assembler) {
         if self.said_foreign {
             return;

@@ -1,4 +1,4 @@
-//! When blocks begin on the cues' clock: a delay-locked loop.
+//! Start times of blocks on the clock of the cues: a delay-locked loop.
 
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
@@ -6,37 +6,36 @@ use std::f64::consts::{SQRT_2, TAU};
 
 use crate::units::Instant;
 
-/// Bandwidth of the loop once it has settled, in hertz: slow enough that a late wake-up hardly moves it, fast
-/// enough to follow crystals as they warm up.
+/// Bandwidth of the settled loop, in hertz: slow enough that a late wake-up hardly moves it, fast enough to follow
+/// crystals as they warm up.
 const BANDWIDTH_HZ: f64 = 0.2;
 
-/// Bandwidth at the start, so that it settles within a second.
+/// Bandwidth at the start, with which the loop settles within a second.
 const FIRST_BANDWIDTH_HZ: f64 = 4.0;
 
-/// A measured time that is further off than this means that blocks were left out, not that one came late.
+/// Error in microseconds above which the loop restarts: the device dropped blocks, since no callback is this late.
 const JUMP_US: f64 = 20_000.0;
 
-/// What is taken of an error at most: somebody who comes this late says nothing about the period.
+/// Limit on an error in microseconds: a later callback contains no information on the period.
 const LATEST_US: f64 = 1_000.0;
 
-/// From where on an error is not taken for a late wake-up if so many blocks in a row share it: the device has left out
-/// samples.
+/// A shift: at least `SHIFT_BLOCKS` blocks in a row with an error above `SHIFT_US` microseconds on the same side. The
+/// device has dropped samples; a late wake-up affects fewer blocks.
 const SHIFT_US: f64 = 300.0;
 const SHIFT_BLOCKS: u32 = 16;
 
-/// Largest difference in speed between the device's clock and the other one: crystals are within 200 ppm.
+/// Maximum relative difference in speed between the two clocks: crystals are within 200 ppm.
 const MOST_DRIFT: f64 = 1e-3;
 
-/// Estimates when each block of a device starts, on another clock, from when its callback happened to run.
+/// Estimates the start of each block of a device on another clock, from the times at which its callbacks ran.
 ///
-/// Callbacks come late by a varying time; blocks follow each other evenly. A
-/// delay-locked loop of second order finds the even period in the uneven calls,
-/// and follows the slow drift between the two clocks without lagging behind.
+/// Callbacks are late by a varying time, while blocks follow each other evenly. A delay-locked loop of second order
+/// finds the even period in the uneven calls, and follows the slow drift between the two clocks without lag.
 ///
 /// # Source
-/// F. Adriaensen, "Using a DLL to filter time", Linux Audio Conference 2005: with `w = 2 pi B T`, the next
-/// time moves by `sqrt(2) w e` and the period by `w^2 e` of each error `e`. Ours begins with a wider band,
-/// takes blocks of any length, and cuts large errors off.
+/// F. Adriaensen, "Using a DLL to filter time", Linux Audio Conference 2005: with `w = 2 pi B T`, the next time moves
+/// by `sqrt(2) w e` and the period by `w^2 e` of each error `e`. This one begins with a wider band, takes blocks of
+/// any length, and limits large errors.
 #[derive(Debug, Default)]
 pub(super) struct BlockClock {
     lock: Option<Lock>,
@@ -44,19 +43,19 @@ pub(super) struct BlockClock {
 
 #[derive(Debug)]
 struct Lock {
-    /// When the next block should start, in microseconds.
+    /// Predicted start of the next block, in microseconds.
     next_us: f64,
     /// Microseconds of the other clock per microsecond of the device's.
     speed: f64,
     /// Time locked so far, in seconds.
     age_s: f64,
-    /// Blocks in a row that were off to the same side, and by how much at least.
+    /// Number of blocks in a row with an error on the same side, and the smallest of these errors in microseconds.
     off: u32,
     off_us: f64,
 }
 
 impl BlockClock {
-    /// The start of the block of `frames` frames that was measured to start at `measured`.
+    /// Returns the start of the block of `frames` frames with the measured start `measured`.
     pub(super) fn start_of_block(&mut self, measured: Instant, frames: usize, sample_rate: u32) -> Instant {
         let measured_us = measured.micros() as f64;
         let length_us = frames as f64 * 1e6 / f64::from(sample_rate.max(1));
@@ -80,14 +79,14 @@ impl BlockClock {
         Instant::from_micros(start_us.round() as u64)
     }
 
-    /// Begins anew with the next block.
+    /// Restarts with the next block.
     pub(super) fn forget(&mut self) {
         self.lock = None;
     }
 }
 
 impl Lock {
-    /// Takes over an error that has come to stay: an underrun has moved all that follows.
+    /// Corrects a permanent error: an underrun has moved all later blocks.
     fn follow_shift(&mut self, error_us: f64) {
         if error_us.abs() < SHIFT_US {
             self.off = 0;
@@ -114,8 +113,8 @@ mod tests {
 
     use super::*;
 
-    /// 64 frames at 96 kHz on a sound card 100 ppm fast; how far each estimate is off in the last 20 of 30 seconds,
-    /// when each call is late by what `late_us` makes of a number from 0 to 1.
+    /// 64 frames at 96 kHz on a sound card 100 ppm fast: returns the error of each estimate in the last 20 of 30
+    /// seconds; each call is late by the value of `late_us` for a number from 0 to 1.
     fn errors(mut late_us: impl FnMut(u32, f64) -> f64) -> Vec<f64> {
         let mut random = Pcg64Mcg::seed_from_u64(1);
         let mut clock = BlockClock::default();
@@ -135,14 +134,14 @@ mod tests {
         errors
     }
 
-    /// The spread from the 5th to the 95th percentile.
+    /// Distance from the 5th to the 95th percentile.
     fn spread(errors: &[f64]) -> f64 {
         errors[errors.len() * 95 / 100] - errors[errors.len() / 20]
     }
 
     #[test]
     fn uneven_calls_give_even_blocks_on_a_card_with_another_crystal() {
-        // Up to 0.5 ms late, evenly spread: the mean, 0.25 ms, is part of the steady delay.
+        // Up to 0.5 ms late, uniform: the mean, 0.25 ms, is part of the steady delay.
         let errors = errors(|_, chance| chance * 500.0);
         assert!((errors[errors.len() / 2] - 250.0).abs() < 15.0, "{}", errors[errors.len() / 2]);
         assert!(spread(&errors) < 30.0, "{} us", spread(&errors));
@@ -150,7 +149,7 @@ mod tests {
 
     #[test]
     fn wake_ups_that_are_sometimes_very_late_hardly_move_the_period() {
-        // Mostly 20 us late, one in a hundred 5 ms: a busy machine.
+        // 20 to 60 us late, and 5 ms in one of a hundred: a busy machine.
         let errors = errors(|_, chance| if chance < 0.01 { 5000.0 } else { 20.0 + 40.0 * chance });
         assert!(spread(&errors) < 15.0, "{} us", spread(&errors));
         assert!(errors[errors.len() - 1] < 120.0, "{}", errors[errors.len() - 1]);
@@ -158,12 +157,12 @@ mod tests {
 
     #[test]
     fn an_underrun_moves_the_period_within_some_blocks() {
-        // Every 3000 blocks (2 s) the device leaves out 2 ms.
+        // Every 3000 blocks (2 s) the device drops 2 ms.
         let errors = errors(|n, chance| f64::from(n / 3000) * 2000.0 + 20.0 * chance);
         let missed: Vec<f64> = errors.iter().map(|error| error.rem_euclid(2000.0)).collect();
         let far = missed.iter().filter(|error| **error > 100.0 && **error < 1900.0).count();
         assert!(far * 50 < missed.len(), "{far} of {} blocks are off", missed.len());
-        // In the end the period has followed all of them: fourteen.
+        // At the end the clock has followed all fourteen shifts.
         assert!((errors[errors.len() - 1] - 28_000.0).abs() < 100.0, "{}", errors[errors.len() - 1]);
     }
 

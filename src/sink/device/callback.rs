@@ -1,4 +1,4 @@
-//! What runs on the device's own thread: nothing here may allocate, lock, log or wait (clippy.toml).
+//! Code on the device's own thread: it must not allocate, lock, log or wait (clippy.toml).
 
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
@@ -14,10 +14,10 @@ use super::player::Player;
 use super::priority::Promotion;
 use crate::feel::Priority;
 
-/// Errors that may wait to be examined; what follows from the first ones is of no interest.
+/// Maximum number of errors in the queue; those after the first ones are consequences.
 const REPORTS: usize = 16;
 
-/// What the callbacks count, for whoever watches over them.
+/// Counts of the callbacks, for the supervisor.
 #[derive(Debug, Default)]
 pub(super) struct CallbackStats {
     pub(super) blocks: AtomicU64,
@@ -46,13 +46,13 @@ impl CallbackStats {
     }
 }
 
-/// The way home.
+/// Returns the player to the supervisor.
 #[expect(clippy::disallowed_types, reason = "gone only when the device has let go")]
 type Home = std::sync::mpsc::Sender<Player>;
 
-/// What a device calls when it wants samples.
+/// The callback that a device calls for samples.
 ///
-/// When the device lets go of it, the player in it goes home, so that it can play on another stream.
+/// When the device drops it, it returns the player to the supervisor for another stream.
 pub(super) struct Callback {
     /// `None` only while being dropped.
     player: Option<Player>,
@@ -61,7 +61,7 @@ pub(super) struct Callback {
     promotion: Promotion,
     channels: usize,
     sample_rate: u32,
-    /// Whether cues that waited for the first block are too old to be felt.
+    /// Whether cues that waited for the first block are too old to be played.
     forgets: bool,
 }
 
@@ -84,17 +84,17 @@ impl Callback {
         }
     }
 
-    /// The same for a device that was away: a card may take seconds to open and to ask for its first block, and cues of
-    /// that time are not felt.
+    /// Discards the cues that wait for the first block: a device that was away may take seconds to open and to ask
+    /// for its first block.
     pub(super) fn forgetting(mut self) -> Self {
         self.forgets = true;
         self
     }
 
-    /// Fills a block whose first sample sounds in so much time, zero if that is not known.
+    /// Fills a block whose first sample sounds after `sounds_in`, which is zero if unknown.
     ///
     /// # Real-time
-    /// Once, soon after the start, the system is asked for priority; otherwise no allocation, lock or system call.
+    /// Asks the system for priority once, soon after the start; otherwise no allocation, lock or system call.
     #[expect(
         clippy::disallowed_methods,
         reason = "the clock is read, without a lock, until priority is settled"
@@ -118,7 +118,7 @@ impl Callback {
 impl Drop for Callback {
     fn drop(&mut self) {
         if let Some(player) = self.player.take() {
-            // Nobody waits for it if the program ends.
+            // At the end of the program there is no receiver.
             #[expect(
                 clippy::disallowed_methods,
                 reason = "the device has let go: it asks for no more samples"
@@ -128,14 +128,14 @@ impl Drop for Callback {
     }
 }
 
-/// What a device calls when something is wrong; it may do so where nothing may be locked or allocated.
+/// The error callback of a device; it may run where locks and allocation are forbidden.
 pub(super) struct ErrorForwarder {
     stats: Arc<CallbackStats>,
     reports: Producer<Error>,
 }
 
 impl ErrorForwarder {
-    /// An forwarder, and where the errors come out that are more than a late sample.
+    /// A forwarder, and the receiver of the errors that are more than a late sample.
     pub(super) fn new(stats: Arc<CallbackStats>) -> (Self, Consumer<Error>) {
         let (reports, heard) = RingBuffer::new(REPORTS);
         (Self { stats, reports }, heard)
@@ -147,7 +147,7 @@ impl ErrorForwarder {
                 self.stats.underruns.fetch_add(1, Ordering::Relaxed);
             }
             ErrorKind::RealtimeDenied => self.stats.set_priority(Priority::Denied),
-            // If there are too many, the first ones tell.
+            // If there are too many, the first ones show the cause.
             _ => drop(self.reports.push(error)),
         }
     }

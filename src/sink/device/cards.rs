@@ -9,17 +9,17 @@ use cpal::{DeviceId, ErrorKind, HostId, SupportedStreamConfigRange};
 use super::paced::{self, PACED};
 use crate::sink::SinkError;
 
-/// Something that plays samples, found but not yet in use.
+/// A device that plays samples, found but not yet in use.
 #[derive(Clone)]
 pub(super) enum Card {
-    /// What the system offers.
+    /// A device of the system.
     System(cpal::Device),
-    /// A clock that stands in for a card.
+    /// A clock in place of a sound card.
     Paced,
 }
 
 impl Card {
-    /// What people call it.
+    /// Returns its name for people.
     pub(super) fn name(&self) -> String {
         match self {
             Self::System(device) => device.to_string(),
@@ -27,7 +27,8 @@ impl Card {
         }
     }
 
-    /// What the system knows it by, with the host's name before it; its name where the system has no such thing.
+    /// Returns its identifier in the system, with the host's name before it; its name if the system has no
+    /// identifiers.
     pub(super) fn id(&self) -> String {
         match self {
             Self::System(device) => device.id().map_or_else(|_| device.to_string(), |id| id.to_string()),
@@ -35,7 +36,7 @@ impl Card {
         }
     }
 
-    /// Everything it can be opened with.
+    /// Returns all configurations that it supports.
     pub(super) fn ranges(&self) -> Result<Vec<SupportedStreamConfigRange>, cpal::Error> {
         match self {
             Self::System(device) => Ok(device.supported_output_configs()?.collect()),
@@ -44,22 +45,22 @@ impl Card {
     }
 }
 
-/// Where cards are searched for: the system, or what a test makes of it.
+/// A source of cards: the system, or a substitute in a test.
 pub(super) trait Cards: Send + Sync {
-    /// The card that the system would choose now.
+    /// Returns the present default card of the system.
     fn chosen_by_system(&self) -> Option<Card>;
 
-    /// The card of this very identifier ([`Card::id`]), if it is there now.
+    /// Returns the card with exactly this identifier ([`Card::id`]), if it is present.
     fn by_id(&self, id: &str) -> Option<Card>;
 
-    /// The first card that people would call by this name.
+    /// Returns the first card with this name.
     fn by_name(&self, name: &str) -> Option<Card>;
 
-    /// All names that [`Cards::by_name`] knows.
+    /// Returns all names that [`Cards::by_name`] knows.
     fn names(&self) -> Vec<String>;
 }
 
-/// Every host that the system has.
+/// All hosts of the system.
 #[derive(Debug, Default)]
 pub(super) struct System;
 
@@ -79,7 +80,7 @@ impl Cards for System {
             return Some(Card::Paced);
         }
         let Ok(id) = DeviceId::from_str(id) else { return self.by_name(id) };
-        // A host made anew: some know only the devices that were there when they were made.
+        // Uses a new host: some know only the devices that existed when the host was made.
         of_id(&cpal::host_from_id(id.host()).ok()?, &id)
     }
 
@@ -87,7 +88,7 @@ impl Cards for System {
         if name.eq_ignore_ascii_case(PACED) {
             return Some(Card::Paced);
         }
-        // `jack`, or `jack:output`: a host that need not be the system's first choice, and is not asked unless named.
+        // `jack`, or `jack:output`: a host that may not be the system's default; it is opened only if named.
         if let Some(host) = host_of(name) {
             let host = cpal::host_from_id(host).ok()?;
             return match name.split_once(':') {
@@ -103,26 +104,26 @@ impl Cards for System {
     }
 }
 
-/// The host that `name` begins with, up to a colon or as a whole.
+/// Returns the host that `name` begins with, up to a colon or as a whole.
 fn host_of(name: &str) -> Option<HostId> {
     let host = name.split_once(':').map_or(name, |(host, _)| host);
     HostId::from_str(&host.to_lowercase()).ok()
 }
 
-/// The card that a host would choose now, by its identifier, so that it stays that card when the choice changes.
+/// Returns the present default card of a host, by its identifier, so that it stays the same when the default changes.
 pub(super) fn chosen_of(host: &cpal::Host) -> Option<Card> {
     let default = host.default_output_device()?;
     let fixed = default.id().ok().and_then(|id| host.device_by_id(&id));
     Some(Card::System(fixed.unwrap_or(default)))
 }
 
-/// The device of that very identifier.
+/// Returns the device with exactly this identifier.
 pub(super) fn of_id(host: &cpal::Host, id: &DeviceId) -> Option<Card> {
     host.device_by_id(id).map(Card::System)
 }
 
-/// The device of that very name or identifier, or else the first that has it in its name, or what the system knows by
-/// it.
+/// Returns the device with exactly this name or identifier; otherwise the first that contains it in its name, or the
+/// one that the system knows by it.
 pub(super) fn named(host: &cpal::Host, name: &str) -> Option<Card> {
     let wanted = name.to_lowercase();
     let find = |fits: &dyn Fn(&cpal::Device) -> bool| host.output_devices().ok()?.find(fits);
@@ -142,28 +143,28 @@ pub(super) fn names(host: &cpal::Host) -> Vec<String> {
         .unwrap_or_default()
 }
 
-/// One device, for a list to choose from.
+/// One device, for a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceEntry {
     /// The host that offers it: ALSA, JACK, CoreAudio, ...
     pub host: String,
-    /// What people call it.
+    /// Its name for people.
     pub name: String,
-    /// What the system knows it by; `--device` takes it as well as the name.
+    /// Its identifier in the system; `--device` accepts it as well as the name.
     pub id: String,
-    /// Whether it is its host's own choice.
+    /// Whether it is the default device of its host.
     pub is_default: bool,
-    /// Most channels it can be opened with; 0 if it can't be asked, for example because it is in use.
+    /// Maximum number of channels; 0 if the query failed, for example because the device is in use.
     pub channels: u16,
-    /// Sample rates that it can be opened with at most channels, lowest first: from, to.
+    /// Sample rates with the maximum number of channels, lowest first: from, to.
     pub rates: Vec<(u32, u32)>,
-    /// Frames in a block: least and most; `None` if it does not say.
+    /// Minimum and maximum number of frames in a block; `None` if unknown.
     pub block: Option<(u32, u32)>,
-    /// Why it could not be asked.
+    /// The reason why the query failed.
     pub trouble: Option<String>,
 }
 
-/// All devices of all hosts that can play something, and the paced clock that stands in for one.
+/// All output devices of all hosts, and the paced clock.
 #[must_use]
 pub fn output_devices() -> Vec<DeviceEntry> {
     let mut entries = Vec::new();
@@ -206,7 +207,7 @@ fn entry(host: &str, card: &Card, is_default: bool) -> DeviceEntry {
     }
 }
 
-/// What a person can do about `error` of the card called `name`.
+/// Advice for people about `error` of the card called `name`.
 pub(super) fn trouble(name: &str, error: &cpal::Error) -> SinkError {
     let message = match error.kind() {
         ErrorKind::DeviceNotAvailable | ErrorKind::HostUnavailable => format!(

@@ -6,7 +6,7 @@ use super::options::{DeviceOptions, Mix};
 use crate::floor::Floor;
 use crate::sink::{ChannelMap, SinkError};
 
-/// How a device will be used.
+/// The configuration in which a device is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Choice {
     pub(super) channels: u16,
@@ -21,13 +21,13 @@ impl Choice {
     }
 }
 
-/// Frames in a block where nobody asks for others.
+/// Default number of frames in a block.
 const BLOCK: u32 = 128;
 
 /// Rates in order of preference.
 const RATES: [u32; 3] = [48_000, 96_000, 44_100];
 
-/// Sample formats in order of preference: what needs no conversion, then the finest.
+/// Sample formats in order of preference: first the one without conversion, then by precision.
 const FORMATS: [SampleFormat; 10] = [
     SampleFormat::F32,
     SampleFormat::I32,
@@ -41,10 +41,10 @@ const FORMATS: [SampleFormat; 10] = [
     SampleFormat::U8,
 ];
 
-/// The best of what the device `name` offers in `ranges` for `floor`.
+/// Chooses the best configuration in `ranges` of the device `name` for `floor`.
 ///
-/// A device without the sample rate that is asked for is refused, unless rates may be converted: then its rate is
-/// the nearest above, or its highest.
+/// A device without the requested sample rate is rejected, unless conversion is allowed: then its rate is the nearest
+/// above, or its highest.
 pub(super) fn choose(
     name: &str,
     ranges: &[SupportedStreamConfigRange],
@@ -65,7 +65,7 @@ pub(super) fn choose(
         Mix::PerActuator | Mix::AsManyAsThereAre => needed.clamp(1, most.into()),
         Mix::Stereo => usize::from(most.min(2)),
     };
-    // No more channels than needed: the others would only have to be filled with silence.
+    // No more channels than needed: the rest would only be filled with silence.
     let channels = playable()
         .map(SupportedStreamConfigRange::channels)
         .filter(|channels| usize::from(*channels) >= wanted)
@@ -102,7 +102,7 @@ pub(super) fn choose(
     Ok(Choice { channels, sample_rate, format: range.sample_format(), buffer_size })
 }
 
-/// The rate that is asked for, or else the one we like best; `None` if the device can't.
+/// Returns the requested rate, or else the preferred one; `None` if the device has no such rate.
 fn pick_rate<'a, I>(fitting: impl Fn() -> I, asked: Option<u32>, resample: bool) -> Option<u32>
 where
     I: Iterator<Item = &'a SupportedStreamConfigRange>,
@@ -122,7 +122,7 @@ where
     }
 }
 
-/// Why a device with so few channels is refused, with the floor's map and the tiles that nobody would feel.
+/// Makes the message for a device with too few channels, with the floor's map and the tiles that it cannot drive.
 fn too_few(name: &str, most: u16, floor: &Floor) -> String {
     let map = ChannelMap::new(floor);
     let (needed, tiles) = (floor.channel_count(), map.beyond(most.into()).count());

@@ -1,4 +1,4 @@
-//! The renderer's channels in the device's channels and format.
+//! Conversion of the renderer's channels to the device's channels and format.
 
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
@@ -9,19 +9,19 @@ use cpal::{FromSample, Sample};
 use super::options::Mix;
 use crate::floor::Floor;
 
-/// Puts the renderer's channels onto those of a device.
+/// Maps the renderer's channels to those of a device.
 #[derive(Debug)]
 pub(super) struct Mixdown {
-    /// Channels that come in.
+    /// Number of input channels.
     width: usize,
-    /// Channels that go out, at least one.
+    /// Number of output channels, at least one.
     device_width: usize,
-    /// How much of each incoming channel goes to the left and to the right; empty if channels go straight through.
+    /// Gains of each input channel to the left and to the right; empty if channels are passed through.
     pans: Vec<[f32; 2]>,
 }
 
 impl Mixdown {
-    /// From `width` channels of `floor` to `device_width` of a device.
+    /// Maps `width` channels of `floor` to `device_width` channels of a device.
     pub(super) fn new(floor: &Floor, mix: Mix, width: usize, device_width: usize) -> Self {
         let pans = match mix {
             Mix::PerActuator | Mix::AsManyAsThereAre => Vec::new(),
@@ -30,7 +30,7 @@ impl Mixdown {
         Self { width, device_width: device_width.max(1), pans }
     }
 
-    /// Channels that go out.
+    /// Returns the number of output channels.
     pub(super) fn device_width(&self) -> usize {
         self.device_width
     }
@@ -68,7 +68,7 @@ impl Mixdown {
     }
 }
 
-/// Where each channel is heard between left and right, by the column of its tile, equally loud everywhere.
+/// Returns the gains to the left and to the right for each channel, by the column of its tile, at constant power.
 fn pans(floor: &Floor, width: usize) -> Vec<[f32; 2]> {
     let (west, columns) = (floor.geometry.first().column, f32::from(floor.geometry.columns()));
     let mut pans = vec![[0.0; 2]; width];

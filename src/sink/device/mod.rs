@@ -1,7 +1,7 @@
 //! Actuators and loudspeakers through the sound card; the only user of cpal.
 //!
-//! `callback`, and what it calls, runs on the device's own thread. Clippy checks there for locks, logs and calls that
-//! wait (`clippy.toml`), and the tests here run every callback under `assert_no_alloc`.
+//! `callback`, and the code that it calls, runs on the device's own thread. Clippy checks that code for locks, logs
+//! and calls that block (`clippy.toml`), and the tests here run every callback under `assert_no_alloc`.
 
 mod block_clock;
 mod callback;
@@ -34,9 +34,9 @@ use crate::feel::{DeviceStatus, Renderer};
 use crate::floor::Floor;
 use crate::units::Instant;
 
-/// A device that was found fit for a floor, and how it will be used; it makes no sound yet.
+/// A device that fits a floor, and its configuration; it makes no sound yet.
 ///
-/// It tells the sample rate that the renderer must be made for.
+/// It gives the sample rate for the renderer.
 pub struct OutputDevice {
     cards: Arc<dyn Cards>,
     card: Card,
@@ -49,11 +49,11 @@ pub struct OutputDevice {
 }
 
 impl OutputDevice {
-    /// Finds the device that `options` ask for, and a way to use it for `floor`.
+    /// Finds the device that `options` request, and a configuration for `floor`.
     ///
     /// # Errors
-    /// [`SinkError::Device`] if there is no such device or it can't do what is
-    /// asked; the message says what it can do, and what to do about it.
+    /// [`SinkError::Device`] if there is no such device or it lacks a requested feature; the message gives its
+    /// features and advice.
     pub fn find(floor: &Floor, options: DeviceOptions) -> Result<Self, SinkError> {
         Self::find_among(System::shared(), floor, options)
     }
@@ -86,7 +86,7 @@ impl OutputDevice {
         &self.name
     }
 
-    /// Samples per second that the renderer must give.
+    /// Returns the samples per second of the renderer.
     #[must_use]
     pub fn sample_rate(&self) -> u32 {
         match self.options.sample_rate {
@@ -95,27 +95,26 @@ impl OutputDevice {
         }
     }
 
-    /// Samples per second of the device itself: another rate only where conversion was asked for.
+    /// Returns the samples per second of the device itself: another rate only with conversion.
     #[must_use]
     pub fn device_rate(&self) -> u32 {
         self.choice.sample_rate
     }
 
-    /// Channels of the device that will be used or kept silent.
+    /// Returns the number of device channels, used or silent.
     #[must_use]
     pub fn channels(&self) -> u16 {
         self.choice.channels
     }
 
-    /// Starts playing what `renderer` gives.
+    /// Starts playing the samples of `renderer`.
     ///
-    /// From now on the device is watched on a thread of its own: when it
-    /// is lost or hangs, it is opened again as soon as it can be, and what
-    /// happened meanwhile is not felt.
+    /// From now on a thread supervises the device: when it is lost or hangs, the thread opens it again as soon as
+    /// possible and discards the cues in between.
     ///
     /// # Errors
-    /// [`SinkError::Device`] if the renderer was made for another sample rate,
-    /// or the device is in use, gone, or can't be played after all.
+    /// [`SinkError::Device`] if the renderer was made for another sample rate, or the device is in use, missing, or
+    /// fails to play.
     pub fn play(self, renderer: Renderer) -> Result<DeviceSink, SinkError> {
         DeviceSink::keep(self.supervise(renderer)?)
     }
@@ -127,7 +126,7 @@ impl OutputDevice {
                 message: format!("{} plays {wanted} samples per second, not {made_for}", self.name),
             });
         }
-        // The renderer can't be made anew when the device comes back.
+        // The renderer stays the same when the device comes back.
         self.options.sample_rate = Some(renderer.sample_rate());
         let player = Player::new(renderer, &self.floor, &self.options, self.choice);
         let Self { cards, card, choice, floor, options, block_is_asked, ask, .. } = self;
@@ -138,16 +137,15 @@ impl OutputDevice {
     }
 }
 
-/// How often a device is watched.
+/// Interval between two checks of a device.
 const TICK: Duration = Duration::from_millis(20);
 
-/// How long the end of the program waits for a device to be closed.
+/// Maximum wait for a device to close at the end of the program.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A floor's actuators, or a designer's loudspeakers, on a sound card.
 ///
-/// The device keeps its own time: its callback renders, and does nothing else.
-/// Dropping the sink stops it.
+/// The device has its own clock: its callback renders, and does nothing else. Dropping the sink stops the device.
 pub struct DeviceSink {
     status: Arc<Mutex<DeviceStatus>>,
     /// `None` only while being dropped.
@@ -166,7 +164,7 @@ impl DeviceSink {
                 supervisor.tick(begun.elapsed());
             }
             drop(supervisor);
-            // Whoever waits may be gone.
+            // The receiver may have stopped waiting.
             let _ = stopping.send(());
         };
         let spawned = thread::Builder::new().name("sound card".into()).spawn(work);
@@ -180,7 +178,7 @@ impl DeviceSink {
 }
 
 impl Drop for DeviceSink {
-    /// Closes the device, but does not wait for ever for one that hangs.
+    /// Closes the device; does not wait indefinitely for one that hangs.
     fn drop(&mut self) {
         self.stop = None;
         if self.stopped.recv_timeout(SHUTDOWN_TIMEOUT).is_err() {
@@ -190,7 +188,7 @@ impl Drop for DeviceSink {
 }
 
 impl ActuatorSink for DeviceSink {
-    /// Does nothing, since the device keeps its own time; one that does not play comes back by itself.
+    /// Does nothing, since the device has its own clock; the supervisor reopens a device that has stopped.
     fn advance(&mut self, _now: Instant) -> Result<(), SinkError> {
         Ok(())
     }

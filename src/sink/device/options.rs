@@ -1,46 +1,47 @@
-//! What is wanted of a sound card.
+//! Options of a sound card.
 
 use crate::sink::LatencyProbe;
 use crate::units::HostClock;
 
-/// How the floor's channels go onto those of the device.
+/// Mapping of the floor's channels to those of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mix {
-    /// One channel per actuator; a device with fewer is refused.
+    /// One channel per actuator; a device with fewer channels is rejected.
     #[default]
     PerActuator,
-    /// One channel per actuator for as many as the device has; the others are not felt.
+    /// One channel per actuator up to the number of device channels; the other actuators stay silent.
     AsManyAsThereAre,
-    /// All tiles on two loudspeakers, placed by their column, so that a designer hears the floor at a desk.
+    /// All tiles on two loudspeakers, placed by their column, so that a designer can hear the floor at a desk.
     Stereo,
 }
 
-/// What is wanted of a device.
+/// Options of a device.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct DeviceOptions {
-    /// The device's name or a part of it, what the system calls it (`hw:1,0`), its identifier
-    /// ([`super::DeviceEntry::id`]), a host (`jack`), or `paced`: a clock that stands in for a card. The
-    /// system's own choice if absent: whatever that is at the start, it is never left for another.
+    /// The device's name or a part of it, its name in the system (`hw:1,0`), its identifier
+    /// ([`super::DeviceEntry::id`]), a host (`jack`), or `paced`: a clock in place of a card. If absent, the system's
+    /// default at the start, which stays in use when the default changes.
     pub name: Option<String>,
     /// Samples per second; 48 or 96 kHz if absent and there is a choice.
     pub sample_rate: Option<u32>,
-    /// Whether samples are converted where the device has not that rate; otherwise it is refused.
+    /// Whether samples are converted if the device lacks that rate; otherwise such a device is rejected.
     pub resample: bool,
-    /// Frames per block, as a wish; a block is the shortest time in which a cue can be answered. If absent, 128
-    /// (64 of `paced`) to begin with, and more when samples come late again and again.
+    /// Preferred number of frames per block; a block is the shortest response time to a cue. If absent, 128 (64 for
+    /// `paced`) at the start, and more after repeated underruns.
     pub block: Option<u32>,
-    /// How the floor's channels go onto those of the device.
+    /// Mapping of the floor's channels to those of the device.
     pub mix: Mix,
-    /// With the clock that stamps cues, each is played exactly the renderer's delay after its cause; without, as soon
-    /// as possible.
+    /// With the clock that stamps cues, each cue is played exactly the renderer's delay after its cause; without, as
+    /// soon as possible.
     pub steady: Option<HostClock>,
-    /// Measures the latency of the cues, if wanted.
+    /// Measures the latency of the cues, if present.
     pub latency: Option<LatencyProbe>,
 }
 
 impl Default for DeviceOptions {
-    /// The system's own choice, as it likes to be played, one channel per actuator, each cue as soon as possible.
+    /// The system's default device in its preferred configuration, one channel per actuator, each cue as soon as
+    /// possible.
     fn default() -> Self {
         Self {
             name: None,
@@ -55,43 +56,43 @@ impl Default for DeviceOptions {
 }
 
 impl DeviceOptions {
-    /// The device that is looked for; the system's own choice if `None`.
+    /// Sets the device to look for; `None` means the system's default.
     #[must_use]
     pub fn with_name(self, name: Option<String>) -> Self {
         Self { name, ..self }
     }
 
-    /// Samples per second; 48 or 96 kHz if `None` and there is a choice.
+    /// Sets the samples per second; `None` means 48 or 96 kHz if there is a choice.
     #[must_use]
     pub fn with_sample_rate(self, sample_rate: Option<u32>) -> Self {
         Self { sample_rate, ..self }
     }
 
-    /// Whether samples are converted where the device has not that rate.
+    /// Sets whether samples are converted if the device lacks that rate.
     #[must_use]
     pub fn with_resample(self, resample: bool) -> Self {
         Self { resample, ..self }
     }
 
-    /// Frames per block, as a wish; grows from 128 by itself if `None`.
+    /// Sets the preferred number of frames per block; `None` starts at 128 and grows after underruns.
     #[must_use]
     pub fn with_block(self, block: Option<u32>) -> Self {
         Self { block, ..self }
     }
 
-    /// How the floor's channels go onto those of the device.
+    /// Sets the mapping of the floor's channels to those of the device.
     #[must_use]
     pub fn with_mix(self, mix: Mix) -> Self {
         Self { mix, ..self }
     }
 
-    /// The clock that stamps cues; without, each is played as soon as possible.
+    /// Sets the clock that stamps cues; without it, each cue is played as soon as possible.
     #[must_use]
     pub fn with_steady(self, steady: Option<HostClock>) -> Self {
         Self { steady, ..self }
     }
 
-    /// `latency` measures the cues.
+    /// Measures the latency of the cues with `latency`.
     #[must_use]
     pub fn with_latency(self, latency: LatencyProbe) -> Self {
         Self { latency: Some(latency), ..self }

@@ -1,4 +1,4 @@
-//! A clock that stands in for a sound card.
+//! A clock in place of a sound card.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,17 +10,17 @@ use cpal::{BufferSize, Error, ErrorKind, SampleFormat, SupportedBufferSize, Supp
 use super::callback::Callback;
 use super::choice::Choice;
 
-/// The name that asks for it.
+/// The device name that selects it.
 pub(super) const PACED: &str = "paced";
 
-/// Frames in a block and samples per second where nobody asks for others: an interface at its quickest.
+/// Default frames in a block and samples per second: those of a fast interface.
 pub(super) const BLOCK: u32 = 64;
 pub(super) const SAMPLE_RATE: u32 = 96_000;
 
-/// A floor of 32 x 32 tiles.
+/// Maximum number of channels: a floor of 32 x 32 tiles.
 const MOST_CHANNELS: u16 = 1024;
 
-/// What a paced clock can be opened with: anything.
+/// All configurations that a paced clock accepts.
 pub(super) fn ranges() -> Vec<SupportedStreamConfigRange> {
     let buffer = SupportedBufferSize::Range { min: 16, max: 8192 };
     (1..=MOST_CHANNELS)
@@ -28,15 +28,14 @@ pub(super) fn ranges() -> Vec<SupportedStreamConfigRange> {
         .collect()
 }
 
-/// How much faster its crystal runs than the machine's, in parts of a million: no two crystals agree, so a real
-/// card's blocks drift through all places between sensor packets, and a clock that follows them has work to do.
+/// How much faster its crystal is than the machine's, in ppm: no two crystals agree, so the blocks of a real card
+/// drift relative to the sensor packets. With this drift the block clock is tested too.
 const CRYSTAL_PPM: u64 = 100;
 
-/// A stand-in for a sound card: a thread that asks for a block whenever a card would.
+/// A substitute for a sound card: a thread that requests blocks at the times of a card.
 ///
-/// Blocks are due on an absolute schedule, however late the thread wakes up,
-/// and each is taken to sound from the moment the next one is due, as with a
-/// card of two buffers. One that is not filled by then is an underrun.
+/// Blocks are due on an absolute schedule, however late the thread wakes up. Each block sounds from the moment when
+/// the next one is due, as on a card with two buffers. A block not filled by then is an underrun.
 pub(super) struct PacedStream {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -67,7 +66,7 @@ impl PacedStream {
                 number += 1;
                 if Instant::now() > sounds {
                     trouble(ErrorKind::Xrun.into());
-                    // As a card does: what was missed is left out, and it goes on with what is due now.
+                    // Like a card, it skips missed blocks and continues with the one due now.
                     number = number.max(period.passed(begun.elapsed()));
                 }
             }
@@ -84,13 +83,13 @@ impl Drop for PacedStream {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Release);
         if let Some(thread) = self.thread.take() {
-            // It has nothing to say, even if it panicked.
+            // The result is ignored, even after a panic.
             let _ = thread.join();
         }
     }
 }
 
-/// What the machine's clock shows while the crystal counts a second.
+/// Nanoseconds on the machine's clock per second of the crystal.
 const NANOS_OF_A_SECOND: u128 = 1_000_000_000 - (CRYSTAL_PPM * 1000) as u128;
 
 /// The time between two blocks.
@@ -101,14 +100,14 @@ struct Period {
 }
 
 impl Period {
-    /// So many of them, without ever adding up errors.
+    /// Returns `number` periods, without accumulated rounding errors.
     fn times(self, number: u64) -> Duration {
         let frames = u128::from(number) * u128::from(self.frames);
         let nanos = frames * NANOS_OF_A_SECOND / u128::from(self.sample_rate.max(1));
         Duration::from_nanos(u64::try_from(nanos).unwrap_or(u64::MAX))
     }
 
-    /// How many of them fit into `span`.
+    /// Returns the number of whole periods in `span`.
     fn passed(self, span: Duration) -> u64 {
         let frames = span.as_nanos() * u128::from(self.sample_rate) / NANOS_OF_A_SECOND;
         let blocks = frames / u128::from(self.frames.max(1));

@@ -1,4 +1,4 @@
-//! What a device plays: renderer, resampler, mixdown.
+//! The signal path of a device: renderer, resampler, mixdown.
 
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
@@ -16,16 +16,16 @@ use crate::floor::Floor;
 use crate::sink::{HandedOn, LatencyProbe};
 use crate::units::{HostClock, Instant};
 
-/// What runs in the device's callback; it outlives the streams it plays on.
+/// Runs in the device's callback and survives a change of the stream.
 pub(super) struct Player {
     renderer: Renderer,
     mixdown: Mixdown,
     steady: Option<(HostClock, BlockClock)>,
     probe: Option<LatencyProbe>,
     resampler: Option<Resampler>,
-    /// One block as the renderer gives it.
+    /// One block of the renderer.
     block: Vec<f32>,
-    /// One block at the device's rate, if that is another one.
+    /// One block at the device's rate, if it differs.
     resampled: Vec<f32>,
 }
 
@@ -45,7 +45,7 @@ impl Player {
         player
     }
 
-    /// Gets ready for a stream of this kind; not while one is played.
+    /// Adapts to another stream; not called while one plays.
     pub(super) fn fit(&mut self, floor: &Floor, options: &DeviceOptions, choice: Choice) {
         let width = self.renderer.channels();
         self.mixdown = Mixdown::new(floor, options.mix, width, choice.channels.into());
@@ -56,7 +56,7 @@ impl Player {
         self.restart();
     }
 
-    /// Forgets what was sent while nothing was played, so that it is not felt all at once.
+    /// Discards the cues sent while nothing was played, so that they do not all start at once.
     pub(super) fn restart(&mut self) {
         self.renderer.restart();
         if let Some((_, blocks)) = &mut self.steady {
@@ -64,7 +64,7 @@ impl Player {
         }
     }
 
-    /// Fills a device buffer of any length, whose first sample sounds in so much time; zero if that is not known.
+    /// Fills a device buffer of any length whose first sample sounds after `sounds_in`, which is zero if unknown.
     ///
     /// # Real-time
     /// No allocation, lock or log; the clocks, if any, are read.
@@ -104,7 +104,7 @@ impl Player {
         }
     }
 
-    /// Fills `frames` frames at the device's rate from as many as that takes at the renderer's.
+    /// Fills `frames` frames at the device's rate from the required number of frames at the renderer's rate.
     fn fill_resampled<T: Sample + FromSample<f32>>(
         &mut self,
         out: &mut [T],

@@ -7,16 +7,16 @@ use std::time::{Duration, Instant};
 use crate::feel::Priority;
 use crate::sink::{Rank, claim_priority};
 
-/// Asks the system to let the calling thread go before everybody else's; what came of it.
+/// Asks the system for real-time priority of the calling thread; returns the result.
 pub(super) type Ask = fn() -> Priority;
 
-/// How long a device must be seen to keep time before its thread is promoted.
+/// Playing time over which a device must keep time before its thread is promoted.
 const PROVEN: Duration = Duration::from_millis(100);
 
-/// Promotes the device's thread, from within, once it has proven that it waits between its calls.
+/// Promotes the device's thread, from within, once it has been seen to wait between its calls.
 ///
-/// Some devices (ALSA's `null` and `file`) call as fast as they can: with
-/// real-time priority such a thread would take the machine from everybody.
+/// Some devices (ALSA's `null` and `file`) call as fast as they can: with real-time priority such a thread would
+/// block all others.
 pub(super) struct Promotion {
     ask: Option<Ask>,
     /// Whether the device is known to wait.
@@ -30,7 +30,7 @@ impl Promotion {
         Self { ask, proven, begun: None, frames: 0 }
     }
 
-    /// To be called in every callback, with the frames it is asked for; gives the answer when there is one.
+    /// Called in every callback with its number of frames; returns the result of the request once it is made.
     ///
     /// # Real-time
     /// Asks the system once, some blocks after the start; before that it reads the clock.
@@ -52,7 +52,7 @@ impl Promotion {
             return None;
         }
         if now().saturating_duration_since(begun) < played / 2 {
-            // It does not keep time. Perhaps it was only filling its buffers.
+            // The device does not keep time; perhaps it is only filling its buffers.
             if played > 20 * PROVEN {
                 self.ask = None;
             }
@@ -63,12 +63,12 @@ impl Promotion {
     }
 }
 
-/// Asks for real-time priority for the calling thread, unless it has it already.
+/// Asks for real-time priority for the calling thread, unless the thread has it already.
 pub(super) fn ask_system() -> Priority {
     claim_priority(Rank::Sound)
 }
 
-/// What to do about a denied priority, in a sentence for whoever set the machine up.
+/// Advice about a denied priority, in a sentence for the person who set up the machine.
 pub(super) const FIX: &str = "the sound card's thread may not have real-time priority, so clicks may come late or \
     break up when the machine is busy: on Linux, put `@audio - rtprio 95` into /etc/security/limits.d/audio.conf, \
     join the group `audio` and log in again";
@@ -84,7 +84,7 @@ mod tests {
         let start = Instant::now();
         let now = Cell::new(start);
         let mut promotion = Promotion::new(Some(|| Priority::RealTime), false);
-        // 64 frames at 64 kHz: a millisecond a block.
+        // 64 frames at 64 kHz: one millisecond per block.
         for block in 0..blocks {
             now.set(start + Duration::from_secs_f64(f64::from(block) * real_ms_per_block * 1e-3));
             if promotion.proceed(64, 64_000, || now.get()).is_some() {
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn a_device_that_keeps_time_is_promoted_once_and_soon() {
         assert_eq!(asked_after(1000, 1.0), Some(99));
-        // One that fills a tenth of a second of buffer at first.
+        // A device that fills a tenth of a second of buffer at first.
         assert!(asked_after(1000, 0.8).is_some());
     }
 

@@ -4,42 +4,43 @@
 
 use std::f64::consts::PI;
 
-/// Neighbours that make up one sample, at the slower of the two rates.
+/// Number of neighbours in one output sample, at the slower of the two rates.
 const TAPS: usize = 32;
 
-/// Places between two samples for which weights are kept; between them they are interpolated.
+/// Number of positions between two samples with stored weights; weights between them are interpolated.
 const PHASES: usize = 256;
 
-/// What is kept of the narrower band: actuators end at 1 kHz, far below, so that all they do passes unchanged.
+/// Pass band as a share of the narrower band: actuators end at 1 kHz, far below, so that their signals pass
+/// unchanged.
 const PASS: f64 = 0.8;
 
-/// Turns frames of one sample rate into frames of another, continuously.
+/// Converts frames from one sample rate to another, continuously.
 ///
-/// Windowed-sinc interpolation; 16 frames of the slower rate as delay. Frames are interleaved.
+/// Windowed-sinc interpolation; the delay is 16 frames of the slower rate. Frames are interleaved.
 ///
 /// # Real-time
-/// All memory is taken when it is made.
+/// Allocates all memory at creation.
 #[derive(Debug)]
 pub(super) struct Resampler {
     channels: usize,
-    /// Frames per second that go out.
+    /// Output frames per second.
     rate: u32,
-    /// Most frames given in one go.
+    /// Maximum number of output frames per call.
     most: usize,
-    /// Frames that come in per frame that goes out.
+    /// Input frames per output frame.
     step: f64,
-    /// Where the next frame's first neighbour is, in frames of `kept`.
+    /// Position of the next output frame's first neighbour, in frames of `kept`.
     position: f64,
-    /// Frames that came in and are still needed.
+    /// Input frames that are still needed.
     kept: Vec<f32>,
-    /// Neighbours that make up one sample: even.
+    /// Number of neighbours in one output sample; even.
     taps: usize,
-    /// The neighbours' weights, place after place.
+    /// Weights of the neighbours, phase after phase.
     weights: Vec<f32>,
 }
 
 impl Resampler {
-    /// From `from` to `to` samples per second, taking at most `most` frames in one go.
+    /// Converts from `from` to `to` samples per second with at most `most` input frames per call.
     pub(super) fn new(channels: usize, from: u32, to: u32, most: usize) -> Self {
         let step = f64::from(from) / f64::from(to.max(1));
         let band = PASS * (1.0 / step).min(1.0);
@@ -48,22 +49,22 @@ impl Resampler {
             (0..=PHASES).flat_map(|phase| weights(phase as f64 / PHASES as f64, band, taps)).collect();
         let mut kept = Vec::with_capacity((2 * taps + most + step.ceil() as usize) * channels);
         kept.resize(taps * channels, 0.0);
-        // A frame less, since the first one may need another neighbour.
+        // One frame less, since the first one may need another neighbour.
         let most = ((most.saturating_sub(1) as f64 / step.max(1.0)) as usize).max(1);
         Self { channels, rate: to, most, step, position: 0.0, kept, taps, weights }
     }
 
-    /// Frames per second that go out.
+    /// Returns the output frames per second.
     pub(super) fn rate(&self) -> u32 {
         self.rate
     }
 
-    /// Most frames that it can give in one go.
+    /// Returns the maximum number of output frames per call.
     pub(super) fn most(&self) -> usize {
         self.most
     }
 
-    /// Frames that must be taken before so many can be given.
+    /// Returns the number of input frames needed before `frames` output frames.
     pub(super) fn needed(&self, frames: usize) -> usize {
         if frames == 0 {
             return 0;
@@ -72,17 +73,17 @@ impl Resampler {
         (last.floor() as usize + self.taps + 1).saturating_sub(self.kept_frames())
     }
 
-    /// How much later than the next frame given the next frame taken is, in frames taken; the delay included.
+    /// Returns the time from the next output frame to the next input frame, in input frames; includes the delay.
     pub(super) fn ahead(&self) -> f64 {
         self.kept_frames() as f64 - (self.position + self.taps as f64 / 2.0 - 1.0)
     }
 
-    /// Takes frames.
+    /// Appends input frames.
     pub(super) fn take(&mut self, frames: &[f32]) {
         self.kept.extend_from_slice(frames);
     }
 
-    /// Gives as many frames as `out` holds; what was not taken in time is silent.
+    /// Fills `out` with output frames; missing input counts as silence.
     pub(super) fn give(&mut self, out: &mut [f32]) {
         let Self { channels, step, position, kept, taps, weights, .. } = self;
         for frame in out.chunks_exact_mut((*channels).max(1)) {
@@ -111,19 +112,20 @@ impl Resampler {
     }
 }
 
-/// What each of the neighbours counts for, for a sample so far between the two in the middle.
+/// Returns the weight of each neighbour for a sample at the fraction `between` of the interval between the middle
+/// two.
 fn weights(between: f64, band: f64, taps: usize) -> Vec<f32> {
     let half = taps as f64 / 2.0;
     let weight = |tap: usize| {
         let x = tap as f64 - (half - 1.0) - between;
         let sinc = if x == 0.0 { band } else { (PI * band * x).sin() / (PI * x) };
-        // Blackman-Harris: what does not belong is 92 dB down.
+        // Blackman-Harris window: side lobes are 92 dB down.
         let phase = PI * (x / half + 1.0);
         let window = 0.358_75 - 0.488_29 * phase.cos() + 0.141_28 * (2.0 * phase).cos()
             - 0.011_68 * (3.0 * phase).cos();
         sinc * window
     };
-    // What stands still stays as it is.
+    // Normalised, so that a constant signal is unchanged.
     let sum: f64 = (0..taps).map(weight).sum();
     (0..taps).map(|tap| (weight(tap) / sum) as f32).collect()
 }
@@ -132,13 +134,13 @@ fn weights(between: f64, band: f64, taps: usize) -> Vec<f32> {
 mod tests {
     use super::*;
 
-    /// How far below the signal the error is, in decibels, of a sine on the second of two channels.
+    /// Returns the ratio of error to signal in decibels, for a sine on the second of two channels.
     fn error_db(from: u32, to: u32, hz: f64) -> f64 {
         let mut resampler = Resampler::new(2, from, to, 64);
         let sine = |n: f64, rate: u32| (n / f64::from(rate) * hz * 2.0 * PI).sin();
         let (mut taken, mut given) = (0, 0);
         let (mut signal, mut error) = (0.0, 0.0);
-        // When the first frame that comes out is due, in frames that come in.
+        // Time of the first output frame, in input frames.
         let delay = resampler.ahead();
         while given < to as usize / 4 {
             // Blocks of uneven length.
@@ -179,7 +181,7 @@ mod tests {
 
     #[test]
     fn what_the_slower_rate_cannot_carry_is_taken_away() {
-        // 30 kHz at 96 kHz would come out as 14 kHz at 44.1 kHz.
+        // Aliasing would turn 30 kHz at 96 kHz into 14 kHz at 44.1 kHz.
         let mut resampler = Resampler::new(1, 96_000, 44_100, 4410);
         let block: Vec<f32> = (0..resampler.needed(4410))
             .map(|n| (n as f64 / 96_000.0 * 30_000.0 * 2.0 * PI).sin() as f32)

@@ -10,7 +10,7 @@ use super::cards::Card;
 use super::choice::Choice;
 use super::paced::PacedStream;
 
-/// A device at work; dropping it stops it.
+/// A running device; dropping it stops the device.
 pub(super) enum Stream {
     System(#[expect(dead_code, reason = "it plays for as long as it is kept")] cpal::Stream),
     Paced(#[expect(dead_code, reason = "it plays for as long as it is kept")] PacedStream),
@@ -46,7 +46,7 @@ pub(super) fn open(
     Ok(Stream::System(stream))
 }
 
-/// How long a host may take to open a device.
+/// Maximum time for a host to open a device.
 const OPENING: Duration = Duration::from_secs(5);
 
 fn build<T: SizedSample + FromSample<f32>>(
@@ -63,7 +63,7 @@ fn build<T: SizedSample + FromSample<f32>>(
     )
 }
 
-/// How long after its callback a block sounds, as the host has it; zero if it does not say.
+/// Returns the time from the callback to the sound of its block, by the host's account; zero if unknown.
 fn sounds_in(info: &OutputCallbackInfo) -> Duration {
     let times = info.timestamp();
     times.playback.saturating_duration_since(times.callback)

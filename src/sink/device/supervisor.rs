@@ -1,4 +1,4 @@
-//! Keeps a device playing.
+//! Keeps a device playing: opens it again after failures.
 
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -20,22 +20,22 @@ use crate::feel::{DeviceState, DeviceStatus, Priority};
 use crate::floor::Floor;
 use crate::sink::SinkError;
 
-/// How often a device that does not play is tried again.
+/// Interval between attempts to reopen a device.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// How often at most the same advice is given.
+/// Minimum time between two pieces of the same advice.
 const QUIET: Duration = Duration::from_secs(600);
 
-/// How long a stream may take to let go of the player before it is given more time from tick to tick.
+/// Maximum wait for a closing stream to return the player; after that each tick checks again.
 const LETTING_GO: Duration = Duration::from_millis(500);
 
-/// Keeps a device playing: notices when it is lost, hangs or stumbles, and opens it anew, always the same one.
+/// Keeps a device playing: detects loss, hangs and repeated underruns, and reopens the same device.
 ///
-/// It is told the time, by whatever clock, so that tests need none.
+/// The caller passes the time, so that tests need no clock.
 pub(super) struct Supervisor {
     cards: Arc<dyn Cards>,
     id: String,
-    /// Whether somebody asked for this length of blocks: then they stay so.
+    /// Whether the user set the block length, which then stays constant.
     block_is_asked: bool,
     floor: Floor,
     options: DeviceOptions,
@@ -43,28 +43,28 @@ pub(super) struct Supervisor {
     stats: Arc<CallbackStats>,
     watch: Watch,
     open: Option<Open>,
-    /// The player while nothing is open; `None` also while a stream has not let go of it.
+    /// The player while no stream is open; `None` also until a closed stream has returned it.
     parked: Option<Player>,
     home: (Sender<Player>, Receiver<Player>),
     retry_at: Duration,
     status: Arc<Mutex<DeviceStatus>>,
-    /// What is told to others next.
+    /// The status to publish next.
     now: DeviceStatus,
     said_denied: bool,
-    /// When it was last said that longer blocks can't be had.
+    /// Time of the last message that longer blocks are impossible.
     said_storm: Option<Duration>,
 }
 
-/// A stream at work.
+/// A running stream.
 struct Open {
     stream: Stream,
     reports: Consumer<Error>,
     choice: Choice,
-    /// Blocks counted before it was opened.
+    /// Block count when it was opened.
     blocks: u64,
 }
 
-/// What a supervisor is to keep playing.
+/// The configuration of a supervisor.
 pub(super) struct SupervisorConfig {
     pub(super) cards: Arc<dyn Cards>,
     pub(super) card: Card,
@@ -110,12 +110,12 @@ impl Supervisor {
         Ok(supervisor)
     }
 
-    /// Where others read how the device is doing.
+    /// Returns the published status of the device.
     pub(super) fn status(&self) -> Arc<Mutex<DeviceStatus>> {
         Arc::clone(&self.status)
     }
 
-    /// Looks after the device; to be called some fifty times a second.
+    /// Checks the device; called about fifty times a second.
     pub(super) fn tick(&mut self, now: Duration) {
         if self.open.is_some() {
             self.look_after(now);
@@ -138,7 +138,7 @@ impl Supervisor {
                     return self.close(now + RETRY, DeviceState::Lost, &error.to_string());
                 }
                 ErrorKind::StreamInvalidated | ErrorKind::DeviceChanged => {
-                    // Whatever the system plays on now: it was not chosen.
+                    // The system may play on another device now, which nobody selected.
                     return self.close(now, DeviceState::Faulty, &error.to_string());
                 }
                 _ => tracing::warn!("{}: {error}", self.now.name),
@@ -158,7 +158,7 @@ impl Supervisor {
         }
     }
 
-    /// Opens the device with blocks of twice the length, if it can have such.
+    /// Reopens the device with blocks of twice the length, if it supports them.
     fn enlarge(&mut self, now: Duration, choice: Choice, frames: u32) {
         let name = &self.now.name;
         let wanted = DeviceOptions { block: Some(frames.saturating_mul(2)), ..self.options.clone() };
@@ -187,7 +187,7 @@ impl Supervisor {
         }
     }
 
-    /// Closes what is open, to be opened again from `retry_at` on.
+    /// Closes the stream; it may be reopened from `retry_at` on.
     fn close(&mut self, retry_at: Duration, state: DeviceState, why: &str) {
         let Some(Open { stream, .. }) = self.open.take() else { return };
         if self.now.state == DeviceState::Playing {
@@ -196,23 +196,23 @@ impl Supervisor {
         (self.now.state, self.now.why) = (state, why.to_string());
         self.retry_at = retry_at;
         self.watch.closed();
-        // Others are to know before a host that hangs is asked to let go.
+        // The status is published first, since closing may hang in the host.
         self.tell();
         let letting_go = std::thread::Builder::new().name("closing".into()).spawn(move || drop(stream));
         if let Err(error) = letting_go {
-            // Then the stream was dropped here.
+            // In that case the stream was dropped here.
             tracing::debug!("no thread to close a device: {error}");
         }
         self.parked = self.home.1.recv_timeout(LETTING_GO).ok();
     }
 
-    /// Tries to open the device again when it is time.
+    /// Tries to reopen the device when it is time.
     fn bring_back(&mut self, now: Duration) {
         if self.parked.is_none() {
             self.parked = self.home.1.try_recv().ok();
         }
         let Some(player) = &mut self.parked else { return };
-        // What happens while nobody hears it is not to be felt later.
+        // Cues sent while no stream is open are discarded.
         player.restart();
         if now < self.retry_at {
             return;
@@ -245,7 +245,7 @@ impl Supervisor {
         (self.now.state, self.now.why) = (state, why.to_string());
     }
 
-    /// A way to use `card`, at the rate that the renderer was made for.
+    /// Chooses a configuration of `card` at the renderer's rate.
     fn choose(&self, card: &Card, options: &DeviceOptions) -> Result<Choice, SinkError> {
         let ranges = card.ranges().map_err(|error| trouble(&card.name(), &error))?;
         choice::choose(&card.name(), &ranges, &self.floor, options)
@@ -275,7 +275,7 @@ impl Supervisor {
         }
     }
 
-    /// Tells others how the device is doing.
+    /// Publishes the status of the device.
     fn tell(&mut self) {
         self.now.blocks = self.stats.blocks.load(Ordering::Relaxed);
         self.now.underruns = self.stats.underruns.load(Ordering::Relaxed);

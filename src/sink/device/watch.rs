@@ -1,52 +1,52 @@
-//! Whether a device asks for samples, and in time.
+//! Checks that a device asks for samples, and in time.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// How long a device that plays may let its callback wait.
+/// Maximum time between two callbacks of a playing device.
 const SILENCE: Duration = Duration::from_millis(200);
 
-/// Blocks that make up that time at least, for devices with long ones.
+/// Minimum of that time in blocks, for devices with long blocks.
 const SILENT_BLOCKS: u32 = 4;
 
-/// The longest that a device is waited for after it was opened: some take their time to start.
+/// Maximum wait for the first callback after opening: some devices start slowly.
 const LONGEST_START: Duration = Duration::from_millis(3200);
 
-/// How long after it was opened underruns mean nothing: buffers are filling, priority is not yet granted.
+/// Time after opening during which underruns are ignored: buffers are filling, priority is pending.
 const STARTING: Duration = Duration::from_secs(1);
 
-/// How many underruns in how much time are too many.
+/// A storm: at least `STORM` underruns within `STORM_SPAN`.
 const STORM: usize = 5;
 const STORM_SPAN: Duration = Duration::from_secs(10);
 
-/// Watches over a device that is supposed to play: whether it goes on calling, and whether samples come in time.
+/// Watches a device that should play: the callbacks must continue, and samples must be in time.
 ///
-/// Pure: it is told the time, by whatever clock, and what was counted.
+/// Pure: the caller passes the time and the counts.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
-    /// Blocks counted when they last grew, and when that was; `None` while nothing is open.
+    /// Block count and time of its last growth; `None` while no device is open.
     grown: Option<(u64, Duration)>,
     opened: Duration,
-    /// Whether a block was played since it was opened.
+    /// Whether a block was played since the device was opened.
     started: bool,
-    /// How long it may take to start; doubles with each attempt in vain.
+    /// Maximum time to the first block; doubles with each failed attempt.
     start_within: Duration,
     underruns: u64,
-    /// When the last underruns were.
+    /// Times of the latest underruns.
     storm: VecDeque<Duration>,
 }
 
-/// What is wrong.
+/// A fault of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Alarm {
-    /// The callback does not come.
+    /// The callbacks have stopped.
     Silent,
-    /// Samples come late again and again: larger blocks would help.
+    /// Repeated underruns: larger blocks would help.
     Storm,
 }
 
 impl Watch {
-    /// A device was opened; so many blocks and underruns had been counted before.
+    /// Records that a device was opened, with the counts of blocks and underruns up to then.
     pub(super) fn opened(&mut self, now: Duration, blocks: u64, underruns: u64) {
         self.grown = Some((blocks, now));
         self.opened = now;
@@ -56,13 +56,13 @@ impl Watch {
         self.storm.clear();
     }
 
-    /// The device was closed.
+    /// Records that the device was closed.
     pub(super) fn closed(&mut self) {
         self.grown = None;
         self.storm.clear();
     }
 
-    /// Looks at what was counted so far; `block` is how long one block takes.
+    /// Checks the present counts; `block` is the duration of one block.
     pub(super) fn look(
         &mut self,
         now: Duration,
@@ -84,7 +84,7 @@ impl Watch {
                 return Some(Alarm::Silent);
             }
         }
-        // However many there were since the last look, more than a storm's worth says nothing new.
+        // Counts at most one storm's worth of underruns per check.
         let fresh = underruns.saturating_sub(self.underruns).min(STORM as u64);
         self.underruns = underruns;
         if now.saturating_sub(self.opened) < STARTING {
@@ -119,7 +119,7 @@ mod tests {
         }
         assert_eq!(watch.look(ms(1180), 990, 0, ms(1)), None);
         assert_eq!(watch.look(ms(1190), 990, 0, ms(1)), Some(Alarm::Silent));
-        // A device with blocks of 100 ms is given four of them.
+        // A device with blocks of 100 ms may be silent for four of them.
         watch.opened(ms(0), 0, 0);
         assert_eq!(watch.look(ms(390), 0, 0, ms(100)), None);
         assert_eq!(watch.look(ms(400), 0, 0, ms(100)), Some(Alarm::Silent));

@@ -1,4 +1,4 @@
-//! What stands in a line of JSON.
+//! The content of a line of JSON.
 
 use serde::Serialize;
 
@@ -101,7 +101,7 @@ enum Body<'a> {
         held: Vec<&'a str>,
         sequence: u32,
     },
-    /// Its name is that of what happened.
+    /// The event's name is the name of its kind.
     #[serde(untagged)]
     Control {
         event: &'static str,
@@ -124,7 +124,7 @@ struct ContactEntry {
     y_velocity_m_s: f32,
 }
 
-/// Least and greatest of a number, or of both numbers of a pair.
+/// Minimum and maximum of a number, or of both numbers of a pair.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum JsonRange {
@@ -141,13 +141,14 @@ struct TroubleEntry {
 }
 
 impl<'a> Line<'a> {
-    /// The line for `job`; `None` for what is not written.
+    /// Returns the line for `job`; `None` for a job without a line.
     pub(super) fn of(job: &'a Job) -> Option<Self> {
         let (at, body) = match job {
             Job::Gap(Gap { at, dropped }) => (*at, Body::Gap { dropped: *dropped }),
             Job::Told(told) => (told.at(), Body::of(told)?),
         };
-        // Divided, not multiplied: so the nearest number to the decimal fraction is written, with six places at most.
+        // A division, not a multiplication: it gives the number nearest to the decimal fraction, with six places at
+        // most.
         Some(Self { t_s: at.micros() as f64 / 1e6, body })
     }
 }

@@ -41,32 +41,29 @@ use crate::wire::LinkState;
 /// {"t_s":9.9,"event":"crack","seed":3,"energy_j":0.4,"x_m":0.61,"y_m":1.2,"skipped":0}
 /// ```
 ///
-/// `value` is a number (of a choice: which, from 0), true or false, two numbers
-/// in a list, the direction of a swipe, or null for events without a value;
-/// `contact` is null if no foot did it. A number that JSON cannot express
-/// (which the engine never gives) is null. Which controls are held is written 50
-/// times a second while any is, and once when none is any longer. Contacts are written on request
-/// ([`JsonSink::with_contacts`]):
+/// `value` is a number (for a choice its index, from 0), true or false, two numbers in a list, the direction of a
+/// swipe, or null for events without a value; `contact` is null if no foot caused the event. A number that JSON
+/// cannot express (the engine never produces one) is null. The held controls are written 50 times a second while
+/// there are any, and once when the last one ends. Contacts are written on request ([`JsonSink::with_contacts`]):
 ///
 /// ```json
 /// {"t_s":9.9,"event":"contacts","contacts":[{"id":3,"x_m":0.61,"y_m":1.2,"force_n":350.0,"x_velocity_m_s":0.0,"y_velocity_m_s":0.0}]}
 /// ```
 ///
-/// A reader that stops reading holds nobody up. Beyond a thousand lines only the latest value and state of
-/// each kind wait for it, and everything that begins or ends a press; where lines were left out stands how many:
-///
+/// A slow reader delays nothing else. Beyond a thousand lines only the latest value and state of each kind wait for
+/// it, and everything that begins or ends a press; a gap line gives the number of lines dropped in its place:
 /// ```json
 /// {"t_s":9.9,"event":"gap","dropped":17}
 /// ```
 #[derive(Debug)]
 pub struct JsonSink {
     worker: Worker<Job>,
-    /// Lines that `out` did not take.
+    /// Count of lines that `out` did not accept.
     unwritten: Arc<AtomicU64>,
     backlog: Backlog<Job, Key>,
-    /// When contacts are written, if they are.
+    /// Times of the contact lines, if contacts are written.
     contacts: Option<PeriodicSender>,
-    /// Whether no frames come, so that nobody else says that nobody is there.
+    /// Whether no frames come, so that the sink itself must report an empty floor.
     lost: bool,
     cracks: CrackRateLimiter,
     waits: bool,
@@ -84,17 +81,17 @@ impl From<Gap> for Job {
     }
 }
 
-/// What one line has to have in common with another to take its place.
+/// Lines with the same key may replace each other.
 #[derive(Clone, Debug, PartialEq)]
 enum Key {
     Event(WidgetId, &'static str),
     Control(WidgetId),
     Area(String),
-    /// Of each other kind of report there is one state only.
+    /// Every other kind of report has only one state.
     State(Discriminant<OwnedReport>),
 }
 
-/// How much a report matters to a reader that has been away.
+/// Returns the importance of a report for a slow reader.
 fn worth(told: &OwnedReport) -> Worth<Key> {
     match told {
         OwnedReport::Event(event) => {
@@ -118,13 +115,13 @@ fn worth(told: &OwnedReport) -> Worth<Key> {
     }
 }
 
-/// How long the end of the program waits for a reader that has stopped to take what has waited for it.
+/// Maximum wait for a slow reader to read the waiting lines at the end of the program.
 const LAST_WAIT: Duration = Duration::from_secs(2);
 
 impl JsonSink {
-    /// A sink that writes to `out`, which lives on a thread of its own from
-    /// now on. Lines are flushed as soon as no other waits. A line that `out`
-    /// does not take is dropped and counted; the first is told, and the next one is tried again.
+    /// A sink that writes to `out` on a thread of its own. It flushes lines as soon as no other line waits. If `out`
+    /// rejects a line, the line is dropped and counted; the first failure is logged, and the next line is tried
+    /// again.
     ///
     /// # Errors
     /// [`SinkError::Output`] if the system gives no thread.
@@ -151,7 +148,7 @@ impl JsonSink {
         self
     }
 
-    /// Holds up whoever reports, for two seconds at most each time, before a line is left out: for floors that are
+    /// Blocks the reporting thread for at most two seconds each time before a line is dropped: for floors that are
     /// not live.
     #[must_use]
     pub fn waiting(mut self) -> Self {
@@ -172,7 +169,7 @@ impl JsonSink {
         }
     }
 
-    /// Waits until the reader has taken what has waited for it.
+    /// Waits until the reader has read the waiting lines.
     fn wait(&mut self) {
         let end = HostInstant::now() + LAST_WAIT;
         while !self.backlog.is_empty() && HostInstant::now() < end {
@@ -181,7 +178,7 @@ impl JsonSink {
         }
     }
 
-    /// Hands on what has waited, as far as there is room.
+    /// Passes waiting lines on as far as there is room.
     fn flush(&mut self) {
         if !self.backlog.is_empty() {
             self.backlog.flush(|job| self.worker.hand(job));
@@ -233,7 +230,7 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
     let (mut is_told, mut is_torn) = (false, false);
     while let Ok(mut job) = jobs.recv() {
         loop {
-            // What a full disk took of the last line must not run into this one.
+            // A fragment of the last line on a full disk must not run into this one.
             let ended = if is_torn { out.write_all(b"\n") } else { Ok(()) };
             let mut written = ended.and_then(|()| write_line(&job, &mut out));
             let next = jobs.try_recv();
@@ -255,23 +252,23 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
     }
 }
 
-/// One event as [`JsonSink`] writes it, without the end of the line.
+/// Returns one event as [`JsonSink`] writes it, without the end of the line.
 #[cfg(feature = "preview")]
 pub(crate) fn event_line(event: &WidgetEvent) -> String {
     let mut line = Vec::new();
-    // A vector takes everything.
+    // Writing to a vector cannot fail.
     let _ = write_line(&Job::Told(OwnedReport::Event(event.clone())), &mut line);
     String::from_utf8_lossy(&line).trim_end().to_owned()
 }
 
-/// How a control is, as the fields of a line that [`JsonSink`] writes; `t_s` is 0.
+/// Returns the state of a control as the fields of a line that [`JsonSink`] writes; `t_s` is 0.
 ///
 /// Numbers are those of the text: 0.1 is 0.1, not the nearest single-precision number.
 #[must_use]
 pub fn control_json(state: &ControlState) -> serde_json::Value {
     let mut line = Vec::new();
     let report = OwnedReport::Control(Instant::START, Box::new(state.clone()));
-    // A vector takes everything, and what was written can be read.
+    // Writing to a vector cannot fail, and the line is valid JSON.
     let _ = write_line(&Job::Told(report), &mut line);
     serde_json::from_slice(&line).unwrap_or_default()
 }

@@ -13,7 +13,7 @@ use crate::sink::HeldReport;
 use crate::units::Newtons;
 use crate::widget::{Direction, Value, WidgetEvent, WidgetId};
 
-/// A writer whose other end tells what was flushed.
+/// A writer that sends the flushed text to its other end.
 struct Pipe {
     pending: Vec<u8>,
     flushed: Sender<String>,
@@ -73,7 +73,7 @@ fn each_event_is_a_line_of_its_own_written_before_the_end() {
     let swiped = EventKind::Swiped(Direction::North);
     tell(&mut sink, &[changed(Value::Pair(Vec2::new(0.5, -1.0))), event(swiped, Some(ContactId(3)))]);
     tell(&mut sink, &[event(EventKind::Cancelled, None)]);
-    // Not without being asked for.
+    // Contacts are off by default.
     sink.report(Report::Contacts(Instant::START, &[Contact::default()]));
     sink.report(Report::Link(Instant::from_millis(9876), LinkState::Lost));
     let sensor = SensorId { tile: crate::floor::TileId::new(2, 1), corner: crate::floor::Corner::SouthWest };
@@ -142,7 +142,7 @@ fn a_device_that_is_lost_says_why() {
     assert!(line.starts_with(start), "{line}");
 }
 
-/// A writer that stands still until it is told to go on.
+/// A writer that blocks until it is released.
 struct Stalled {
     go: std::sync::mpsc::Receiver<()>,
     pipe: Pipe,
@@ -150,7 +150,7 @@ struct Stalled {
 
 impl Write for Stalled {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // Once told, for ever: the sender is gone.
+        // Once released, it never blocks again: the sender is gone.
         let _ = self.go.recv();
         self.pipe.write(bytes)
     }
@@ -166,7 +166,7 @@ fn a_reader_that_stalls_misses_values_but_no_end_and_is_told_where() {
     let (go, stall) = channel::<()>();
     let mut sink = JsonSink::new(Stalled { go: stall, pipe: Pipe { pending: Vec::new(), flushed } }).unwrap();
     let happened = |ms: u64, kind| WidgetEvent { at: Instant::from_millis(ms), ..event(kind, None) };
-    // 27 presses of a second each, with 480 values in each: far more than may wait.
+    // 27 presses of a second each, with 480 values in each: far more than fit into the backlog.
     for press in 0..27 {
         tell(&mut sink, &[happened(1000 * press, EventKind::Pressed)]);
         for value in 1..=480 {

@@ -1,4 +1,4 @@
-//! The files of a recording: the one being written, those that are full, and what becomes of them on a full disk.
+//! The files of a recording: the current one, the full ones, and recovery from a full disk.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -13,19 +13,19 @@ use super::{WavFormat, WavSummary};
 use crate::feel::Renderer;
 use crate::sink::{Disk, SinkError};
 
-/// How often a recording that failed is tried again.
+/// Interval between attempts to continue a failed recording.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// Bytes of samples after which another file is begun: a WAV file's sizes have 32 bits.
+/// Bytes of samples after which another file begins: a WAV file's sizes have 32 bits.
 pub(super) const FILE_BYTES: u64 = u32::MAX as u64 - 4096;
 
-/// The file being written, and those that are full or could not be written on.
+/// The current file, and those that are full or failed.
 pub(super) struct Files {
     first: PathBuf,
     done: Vec<PathBuf>,
     path: PathBuf,
     spec: WavSpec,
-    /// `None` while the disk takes nothing.
+    /// `None` while the disk accepts nothing.
     writer: Option<WavWriter<BufWriter<File>>>,
     disk: Disk,
     /// Bytes before the samples.
@@ -33,9 +33,9 @@ pub(super) struct Files {
     frames_per_file: u64,
     frames_in_file: u64,
     frames: u64,
-    /// Frames that the disk did not take.
+    /// Count of frames that the disk did not accept.
     lost: Arc<AtomicU64>,
-    /// When it was last tried in vain.
+    /// Time of the last failed attempt.
     failed: WallInstant,
     /// The first failure.
     failure: Option<SinkError>,
@@ -53,7 +53,7 @@ impl Files {
             WavFormat::Pcm24 => (24, SampleFormat::Int),
             WavFormat::Float32 => (32, SampleFormat::Float),
         };
-        // The format has 16 bits for the bytes of a frame and 32 for those of a second.
+        // The format has 16 bits for the bytes per frame and 32 for those per second.
         let frame_bytes = renderer.channels() as u64 * u64::from(bits_per_sample / 8);
         let second_bytes = frame_bytes * u64::from(renderer.sample_rate());
         if frame_bytes == 0 || frame_bytes > u64::from(u16::MAX) || second_bytes > u64::from(u32::MAX) {
@@ -92,7 +92,7 @@ impl Files {
         u64::from(self.spec.channels) * u64::from(self.spec.bits_per_sample / 8)
     }
 
-    /// Writes interleaved samples; frames that the disk does not take are counted.
+    /// Writes interleaved samples; counts frames that the disk does not accept.
     pub(super) fn write(&mut self, samples: &[f32]) {
         for frame in samples.chunks_exact(usize::from(self.spec.channels)) {
             if let Err(error) = self.write_frame(frame) {
@@ -124,7 +124,7 @@ impl Files {
         Ok(())
     }
 
-    /// Begins the next file if this one is full.
+    /// Begins the next file if the current one is full.
     fn make_room(&mut self) -> Result<(), SinkError> {
         if self.frames_in_file < self.frames_per_file {
             return Ok(());
@@ -141,7 +141,7 @@ impl Files {
             Ok(writer)
         });
         let writer = begun.inspect_err(|_| {
-            // An empty file beside the others would tell nothing; the error is the writer's.
+            // An empty file beside the others has no use; the error is the writer's.
             let _ = fs::remove_file(&next);
         })?;
         self.writer = Some(writer);
@@ -150,10 +150,10 @@ impl Files {
         Ok(())
     }
 
-    /// Closes what cannot be written on, so that what is on the disk can be read.
+    /// Closes the current file after an error, so that the samples on the disk are readable.
     fn fail(&mut self, error: SinkError) {
         self.failed = WallInstant::now();
-        // Its own attempt to write the rest may fail as well.
+        // The writer's own attempt to write the rest may fail as well.
         self.writer = None;
         let kept = mend(&self.path, self.header_bytes, self.frame_bytes()).unwrap_or(0);
         let missing = self.frames_in_file.saturating_sub(kept);
@@ -166,8 +166,8 @@ impl Files {
         }
     }
 
-    /// Brings everything to the disk, with the file's size in its header, so that a killed process leaves a readable
-    /// file; or tries to go on in another file if there is none.
+    /// Writes everything to the disk, with the file's size in its header, so that a killed process leaves a readable
+    /// file. Without a current file, tries to continue in another one.
     pub(super) fn flush(&mut self) {
         let flushed = match &mut self.writer {
             Some(writer) => writer
@@ -202,7 +202,7 @@ impl Files {
     }
 }
 
-/// Begins a WAV file whose header is on the disk at once; gives a second handle of the file as well.
+/// Begins a WAV file with its header on the disk at once; returns a second handle of the file as well.
 fn open(path: &Path, spec: WavSpec) -> Result<(WavWriter<BufWriter<File>>, File), SinkError> {
     let begin = || {
         let file = File::create(path)?;
@@ -214,7 +214,7 @@ fn open(path: &Path, spec: WavSpec) -> Result<(WavWriter<BufWriter<File>>, File)
     begin().map_err(|error| file_error(path, error))
 }
 
-/// Makes the sizes in a WAV file's header those of its whole frames on the disk, and gives their number.
+/// Sets the sizes in a WAV file's header to those of its whole frames on the disk, and returns the number of frames.
 ///
 /// # Source
 /// Multimedia Programming Interface 1.0 (IBM, Microsoft, 1991): the RIFF chunk's size stands at byte 4, and that of
@@ -267,7 +267,7 @@ mod tests {
         hound::WavReader::open(path).unwrap().samples::<f32>().map(Result::unwrap).collect()
     }
 
-    /// What a process leaves that is killed between two flushes.
+    /// The file that a process leaves if it is killed between two flushes.
     // F5
     #[test]
     fn the_file_is_readable_while_it_is_written() {
@@ -306,7 +306,7 @@ mod tests {
         let mut files = files(path.clone(), FILE_BYTES);
         files.write(&[0.5; 9]);
         files.flush();
-        // Half a frame more, as a full disk leaves it.
+        // Half a frame more, as after a failed write on a full disk.
         OpenOptions::new().append(true).open(&path).unwrap().write_all(&[1; 7]).unwrap();
         files.fail(SinkError::File { path: path.clone(), source: io::ErrorKind::StorageFull.into() });
         files.write(&[0.1; 6]);

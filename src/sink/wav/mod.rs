@@ -17,97 +17,96 @@ use super::{ActuatorSink, HandedOn, LatencyProbe, SinkError};
 use crate::feel::Renderer;
 use crate::units::Instant;
 
-/// Blocks that may wait for the disk: two seconds of them when time passes in milliseconds.
+/// Maximum number of blocks that wait for the disk: two seconds of them at one block per millisecond.
 const WAITING: usize = 2000;
 
-/// How often samples and the file's header go to the disk: what a killed process loses.
+/// Interval between two writes of samples and file header: the maximum loss of a killed process.
 const FLUSH: Duration = Duration::from_millis(100);
 
-/// How samples are written.
+/// Sample format of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WavFormat {
-    /// 24-bit integers, as the paper's converters take them.
+    /// 24-bit integers, as in the paper's converters.
     #[default]
     Pcm24,
     /// 32-bit floating point.
     Float32,
 }
 
-/// What to do when the disk is slower than the floor.
+/// Behaviour when the disk is slower than the floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WhenFull {
-    /// Leave out samples and write silence in their place, so that sensing is never held up: for a live floor.
+    /// Drop samples and write silence in their place, so that sensing never waits: for a live floor.
     #[default]
     LeaveOut,
     /// Wait for the disk: for work faster than real time.
     Wait,
 }
 
-/// How a [`WavSink`] records.
+/// Options of a [`WavSink`].
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct WavOptions {
-    /// When the first sample is, on the floor's sample clock.
+    /// Time of the first sample, on the floor's sample clock.
     pub start: Instant,
-    /// How samples are written.
+    /// Sample format.
     pub format: WavFormat,
-    /// What to do when the disk is too slow.
+    /// Behaviour when the disk is too slow.
     pub when_full: WhenFull,
-    /// Measures the latency of the cues, if wanted.
+    /// Measures the latency of the cues, if present.
     pub latency: Option<LatencyProbe>,
-    /// Counts the frames that the disk did not take.
+    /// Counts the frames that the disk did not accept.
     pub lost: Arc<AtomicU64>,
 }
 
 impl WavOptions {
-    /// The first sample is at `start` on the floor's sample clock.
+    /// Sets the time of the first sample on the floor's sample clock.
     #[must_use]
     pub fn with_start(self, start: Instant) -> Self {
         Self { start, ..self }
     }
 
-    /// Samples are written in `format`.
+    /// Sets the sample format.
     #[must_use]
     pub fn with_format(self, format: WavFormat) -> Self {
         Self { format, ..self }
     }
 
-    /// What is done when the disk is too slow.
+    /// Sets the behaviour when the disk is too slow.
     #[must_use]
     pub fn with_when_full(self, when_full: WhenFull) -> Self {
         Self { when_full, ..self }
     }
 
-    /// `lost` counts the frames that the disk did not take, also those that are found missing at the very end.
+    /// Counts in `lost` the frames that the disk did not accept, including those found missing at the very end.
     #[must_use]
     pub fn with_lost(self, lost: Arc<AtomicU64>) -> Self {
         Self { lost, ..self }
     }
 
-    /// `latency` measures the cues.
+    /// Measures the latency of the cues with `latency`.
     #[must_use]
     pub fn with_latency(self, latency: LatencyProbe) -> Self {
         Self { latency: Some(latency), ..self }
     }
 }
 
-/// What a finished recording consists of.
+/// Summary of a finished recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WavSummary {
     /// The files, in order: more than one if the samples passed 4 GB.
     pub files: Vec<PathBuf>,
-    /// Frames in all of them together.
+    /// Total number of frames.
     pub frames: u64,
-    /// Frames of silence that stand for samples the disk was too slow for.
+    /// Number of silent frames in place of samples that the disk was too slow for.
     pub left_out: u64,
 }
 
 /// Records the actuator channels in a WAV file, written by a thread of its own.
 ///
-/// The file can be read up to the last tenth of a second whatever becomes of the process. When the disk is full, what
-/// it took stays readable, what it doesn't take is counted, and the recording is tried again every second in a file
-/// of its own.
-/// A recording of more than 4 GB goes on in `NAME-2.wav`, `NAME-3.wav` and so on.
+/// The file is readable up to the last tenth of a second even if the process is killed. When the disk is full, the
+/// written part stays readable, further frames are counted as lost, and every second the sink tries to continue in
+/// another file. A recording of more than 4 GB continues in `NAME-2.wav`, `NAME-3.wav` and so on.
 #[derive(Debug)]
 pub struct WavSink {
     lockstep: Lockstep,
@@ -116,24 +115,24 @@ pub struct WavSink {
     probe: Option<LatencyProbe>,
     pieces: Option<SyncSender<Piece>>,
     writer: Option<JoinHandle<Result<WavSummary, SinkError>>>,
-    /// Frames that were left out since the last piece that went through.
+    /// Number of frames dropped since the last piece that was passed on.
     gap: u64,
     left_out: u64,
 }
 
-/// What the writer is handed.
+/// Input of the writer.
 enum Piece {
     /// Interleaved samples.
     Samples(Vec<f32>),
-    /// So many frames of silence.
+    /// A number of frames of silence.
     Gap(u64),
 }
 
 impl WavSink {
-    /// Begins a recording at `path`, replacing what was there.
+    /// Begins a recording at `path` and replaces an existing file.
     ///
     /// # Errors
-    /// [`SinkError::File`] if the file can't be made, or a WAV file can't have that many channels (or none).
+    /// [`SinkError::File`] if the file cannot be created, or a WAV file cannot have that many channels (or none).
     pub fn create(
         path: impl Into<PathBuf>,
         renderer: Renderer,
@@ -158,26 +157,26 @@ impl WavSink {
         })
     }
 
-    /// Ends the recording; the answer says what there is to find where.
+    /// Ends the recording and returns its summary.
     ///
     /// # Errors
-    /// [`SinkError::File`] if the disk did not take all of it: the first failure.
+    /// [`SinkError::File`] if the disk did not accept all of it: the first failure.
     pub fn finish(mut self) -> Result<WavSummary, SinkError> {
         self.close()
     }
 
-    /// The renderer inside, for its rate and counters.
+    /// Returns the renderer, for its rate and counters.
     #[must_use]
     pub fn renderer(&self) -> &Renderer {
         self.lockstep.renderer()
     }
 
-    /// The renderer inside, for its scope.
+    /// Returns the renderer, for its scope.
     pub fn renderer_mut(&mut self) -> &mut Renderer {
         self.lockstep.renderer_mut()
     }
 
-    /// Frames left out so far because the disk was too slow.
+    /// Returns the number of frames dropped so far because the disk was too slow.
     #[must_use]
     pub fn left_out(&self) -> u64 {
         self.left_out
@@ -187,7 +186,7 @@ impl WavSink {
         if let Some(pieces) = self.pieces.take()
             && self.gap > 0
         {
-            // If this fails, so did the writer, and its answer says why.
+            // If this fails, the writer has failed too, and its result gives the reason.
             let _ = pieces.send(Piece::Gap(self.gap));
         }
         let broken = || SinkError::File {
@@ -219,7 +218,7 @@ impl ActuatorSink for WavSink {
         });
         match passed_on {
             Ok(()) => Ok(()),
-            // The writer has stopped: its answer says why.
+            // The writer has stopped: its result gives the reason.
             Err(()) => Err(match self.close() {
                 Err(error) => error,
                 Ok(_) => SinkError::File {
@@ -231,7 +230,7 @@ impl ActuatorSink for WavSink {
     }
 }
 
-/// Hands a block to the writer, after the gap before it, if any; the answer is whether there was room.
+/// Passes a block to the writer, after the gap before it, if any; returns whether there was room.
 fn pass_on(
     pieces: &SyncSender<Piece>,
     when_full: WhenFull,
@@ -265,7 +264,7 @@ impl Drop for WavSink {
     }
 }
 
-/// The writer's whole life: pieces come until the sink lets go.
+/// Runs the writer: receives pieces until the sink closes the channel.
 fn write_all(mut files: Files, pieces: &Receiver<Piece>) -> Result<WavSummary, SinkError> {
     let mut flushed = WallInstant::now();
     loop {

@@ -1,4 +1,4 @@
-//! A host of cpal's that exists only here: its cards play when they are told to, and are pulled out and plugged in.
+//! A fake cpal host: its cards play on request and can be pulled out and plugged in.
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
@@ -25,7 +25,7 @@ type OnError = Box<dyn FnMut(Error) + Send>;
 #[derive(Clone, Default)]
 pub(super) struct FakeHost {
     cards: Arc<Mutex<Vec<FakeCard>>>,
-    /// How often somebody looked what is there.
+    /// Number of searches for devices.
     pub(super) looks: Arc<AtomicUsize>,
 }
 
@@ -36,7 +36,7 @@ impl FakeHost {
         host
     }
 
-    /// The first card is the system's choice.
+    /// Makes the card available; the first card is the system's default.
     pub(super) fn plug_in(&self, card: &FakeCard) {
         self.cards.lock().unwrap().push(card.clone());
     }
@@ -105,15 +105,15 @@ struct State {
     channels: ChannelCount,
     rate: u32,
     format: SampleFormat,
-    /// Longest block.
+    /// Longest supported block.
     longest: u32,
     callbacks: Option<(OnData, OnError)>,
-    /// What it was opened with, each time.
+    /// The configurations it was opened with.
     opened: Vec<StreamConfig>,
 }
 
 impl FakeCard {
-    /// A card at 48 kHz that can be opened with exactly so many channels.
+    /// A card at 48 kHz with exactly this number of channels.
     pub(super) fn new(id: &'static str, channels: ChannelCount, format: SampleFormat) -> Self {
         let state =
             State { channels, rate: 48_000, format, longest: 4096, callbacks: None, opened: Vec::new() };
@@ -132,17 +132,17 @@ impl FakeCard {
         self.state.lock().unwrap().longest = longest;
     }
 
-    /// How often it was opened.
+    /// Returns how often it was opened.
     pub(super) fn opened(&self) -> usize {
         self.state.lock().unwrap().opened.len()
     }
 
-    /// The block that was asked for last.
+    /// Returns the block length requested last.
     pub(super) fn block(&self) -> BufferSize {
         self.state.lock().unwrap().opened.last().unwrap().buffer_size
     }
 
-    /// Asks for a block as the card's driver would; empty if nothing plays. A6: the callback must not allocate.
+    /// Requests a block as the card's driver would; empty if nothing plays. A6: the callback must not allocate.
     pub(super) fn pull<T: SizedSample>(&self, frames: usize) -> Vec<T> {
         let mut state = self.state.lock().unwrap();
         let mut buffer = vec![T::EQUILIBRIUM; frames * usize::from(state.channels)];
@@ -157,7 +157,7 @@ impl FakeCard {
         buffer
     }
 
-    /// Tells of an error as the card's driver would.
+    /// Reports an error as the card's driver would.
     pub(super) fn fail(&self, kind: ErrorKind) {
         let mut state = self.state.lock().unwrap();
         if let Some((_, on_error)) = state.callbacks.as_mut() {
@@ -259,7 +259,7 @@ impl DeviceTrait for FakeCard {
     }
 }
 
-/// A stream that lets go of its callbacks when it is dropped, as all do.
+/// A stream that drops its callbacks when it is dropped, like all streams.
 pub(super) struct FakeStream(FakeCard);
 
 impl Drop for FakeStream {

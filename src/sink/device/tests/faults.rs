@@ -1,4 +1,4 @@
-//! What devices do to us, by the rows of the fault table: A1 to A8 and A10.
+//! Device faults, by the rows of the fault table: A1 to A8 and A10.
 
 use std::sync::atomic::Ordering;
 
@@ -21,7 +21,7 @@ fn a1_a_card_that_is_pulled_out_comes_back_without_a_restart_and_without_a_burst
     assert_eq!(status.state, DeviceState::Lost);
     assert!(status.why.contains("disconnected"), "{}", status.why);
 
-    // Feet go on pressing controls for five seconds; the device is searched for once a second.
+    // Feet press controls for five seconds; the supervisor searches for the device once a second.
     let looks = host.looks.load(Ordering::Relaxed);
     for _ in 0..50 {
         rig.sender.send(&cue(0, Instant::START));
@@ -31,7 +31,7 @@ fn a1_a_card_that_is_pulled_out_comes_back_without_a_restart_and_without_a_burst
     assert!((4..=6).contains(&looks), "looked {looks} times");
     assert_eq!(rig.status().state, DeviceState::Lost);
 
-    // It comes back as the second card: told apart by its identifier.
+    // The device comes back as the second card; its identifier distinguishes it.
     host.plug_in(&FakeCard::new("Another", 36, SampleFormat::F32));
     host.plug_in(&card);
     rig.pass(millis(1100));
@@ -51,7 +51,7 @@ fn a1_the_rest_goes_on_while_the_card_is_lost() {
     host.pull_out(&card);
     card.fail(ErrorKind::DeviceNotAvailable);
     rig.pass(millis(5000));
-    // More cues than can wait: none of them waits for the card, and stop still works.
+    // More cues than the queue holds: none of them waits for the card, and stop still works.
     assert!((0..1000).all(|_| rig.sender.send(&cue(0, Instant::START))));
     rig.sender.silence();
     assert!(!rig.sender.send(&cue(0, Instant::START)));
@@ -99,7 +99,7 @@ fn a2_what_happens_until_a_card_asks_for_its_first_block_again_is_not_felt() {
     rig.play(&card, millis(500));
     rig.pass(millis(300));
     assert_eq!((rig.status().state, card.opened()), (DeviceState::Faulty, 2), "opened, and not yet heard of");
-    // Feet go on for a while before it asks.
+    // Feet press controls for a while before the device asks for samples.
     for _ in 0..5 {
         rig.sender.send(&cue(0, Instant::START));
         rig.pass(TICK);
@@ -201,7 +201,7 @@ fn a4_rates_are_converted_when_that_is_asked() {
     let block = card.pull::<f32>(4410);
     let click: Vec<f32> = block.iter().skip(7).step_by(36).copied().collect();
     let begin = click.iter().position(|sample| sample.abs() > 1e-3).unwrap();
-    // Half the filter's length, 16 frames at 44.1 kHz, and what a click of 200 Hz needs to rise.
+    // Half the filter's length, 16 frames at 44.1 kHz, and the rise time of a click of 200 Hz.
     assert!(begin < 30, "{begin}");
     // 200 Hz is 20 periods in 0.1 s: it crosses zero upwards once in each.
     let crossings = click[begin..].windows(2).filter(|pair| pair[0] <= 0.0 && pair[1] > 0.0).count();
@@ -280,7 +280,7 @@ fn a7_nonsense_becomes_silence_and_is_counted() {
     }
     let counters = rig.sender.counters();
     assert!(counters.refused + counters.not_finite + counters.overloaded >= 7, "{counters:?}");
-    // The voices next to them are still heard.
+    // The other voices still play.
     rig.sender.sustain(&SustainedCues::new());
     (0..10).for_each(|_| _ = card.pull::<f32>(480));
     rig.sender.send(&cue(35, Instant::START));
@@ -305,7 +305,7 @@ fn a8_a_full_queue_gives_up_the_oldest_clicks_and_never_the_stop() {
     assert!(!felt(0) && (1..36).all(felt), "the oldest are evicted");
     (0..300).for_each(|_| _ = rig.sender.send(&cue(0, Instant::START)));
     rig.sender.silence();
-    // 5 ms to fade out.
+    // 5 ms of fade-out.
     card.pull::<f32>(480);
     assert!(is_silent(&card.pull(4800)), "stop works though the queue is full");
 }
@@ -316,18 +316,18 @@ fn a10_another_default_device_is_none_of_our_business() {
     let other = FakeCard::new("Other", 36, SampleFormat::F32);
     let mut rig = Rig::on(&host, DeviceOptions::default());
     rig.play(&card, millis(100));
-    // Somebody plugs in headphones, and the system makes them its choice.
+    // Headphones are plugged in, and the system makes them its default.
     host.pull_out(&card);
     host.plug_in(&other);
     host.plug_in(&card);
     rig.play(&card, millis(2000));
     assert_eq!((card.opened(), other.opened()), (1, 0));
-    // Even if the host has moved our stream there.
+    // The device is reopened even if the host has moved the stream to the new default.
     card.fail(ErrorKind::DeviceChanged);
     rig.pass(TICK * 2);
     rig.play(&card, millis(100));
     assert_eq!((card.opened(), other.opened(), rig.status().name.as_str()), (2, 0, "Card"));
-    // And when ours is gone, silence rather than another one.
+    // When the device is gone, the supervisor stays silent instead of using another one.
     host.pull_out(&card);
     card.fail(ErrorKind::DeviceNotAvailable);
     rig.pass(millis(5000));

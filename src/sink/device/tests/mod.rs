@@ -1,4 +1,4 @@
-//! The sink on a host that exists only here.
+//! The sink on a fake host.
 
 mod fake;
 mod faults;
@@ -14,7 +14,7 @@ use crate::feel::{Click, Cue, CueSender, DeviceState, Mode, RendererConfig, Spot
 use crate::sink::LatencyProbe;
 use crate::units::{HostClock, Newtons};
 
-/// A floor on a device, watched by hand.
+/// A floor on a device, supervised step by step.
 struct Rig {
     sender: CueSender,
     supervisor: Supervisor,
@@ -35,7 +35,7 @@ impl Rig {
         Self { sender, supervisor: device.supervise(renderer).unwrap(), now: Duration::ZERO }
     }
 
-    /// Looks after the device for so long, as its thread would.
+    /// Runs the supervisor for `span`, as its thread would.
     fn pass(&mut self, span: Duration) {
         let end = self.now + span;
         while self.now < end {
@@ -44,7 +44,7 @@ impl Rig {
         }
     }
 
-    /// The same, while the card asks for a block each time.
+    /// Runs the supervisor for `span` while the card asks for a block each time.
     fn play(&mut self, card: &FakeCard, span: Duration) {
         let end = self.now + span;
         while self.now < end {

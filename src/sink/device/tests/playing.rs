@@ -1,4 +1,4 @@
-//! What a device plays when nothing goes wrong.
+//! Output of a device without faults.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,7 +14,7 @@ fn a_cue_starts_with_the_block_it_meets_on_its_tiles_own_channel() {
     let mut rig = Rig::on(&FakeHost::with(&[&card]), options);
     card.pull::<f32>(480);
     rig.sender.send(&cue(35, Instant::from_millis(1000)));
-    // More frames than the renderer takes in one go.
+    // More frames than the maximum block of the renderer.
     let block = card.pull::<f32>(700);
     let channel = |n: usize| block.iter().skip(n).step_by(40).copied().collect::<Vec<f32>>();
     assert!(channel(35)[0] != 0.0 && channel(35).iter().any(|sample| sample.abs() > 0.3));
@@ -47,7 +47,7 @@ fn a_desk_hears_the_west_of_the_floor_on_the_left() {
     assert!(power(0) > 20.0 * power(1) && power(1) > 0.0);
 }
 
-/// A clock that the test sets stands for the host's; the card asks for blocks unevenly.
+/// A test clock in place of the host's; the card asks for blocks at uneven times.
 #[test]
 fn with_a_clock_every_cue_is_equally_late() {
     let (host, card) = one_card();
@@ -61,9 +61,9 @@ fn with_a_clock_every_cue_is_equally_late() {
     for block in 0..6000_u64 {
         // The callback of a 2 ms block runs up to 0.4 ms late.
         now.store(block * 2000 + (block * 37 % 5) * 100, Ordering::Relaxed);
-        // A cue somewhere inside every 50th block, known at once.
+        // A cue somewhere inside every 50th block, sent at once.
         let at = Instant::from_micros(block * 2000 - (block * 53 % 1000).min(block * 2000));
-        // The loop has settled after some seconds.
+        // The loop is settled after some seconds.
         if block % 50 == 49 && block > 2000 {
             rig.sender.send(&cue((block / 50 % 36) as u16, at));
             late.push((frame, at, (block / 50 % 36) as usize));
