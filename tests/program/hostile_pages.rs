@@ -19,7 +19,12 @@ use crate::web::{free_address, stream};
 /// A layout of 290 kB with a problem in each of its controls.
 fn bad_layout() -> String {
     let widget = |n: usize| {
-        format!("(id: \"w{}\", kind: \"buton\", at: ({}, {}), size: (0.5, 0.5)),\n", n % 7, n % 6, n / 6 % 6)
+        format!(
+            "(id: \"w{}\", kind: \"buton\", at: ({}, {}), size: (0.5, 0.5), label: \"one of very many\"),\n",
+            n % 7,
+            n % 6,
+            n / 6 % 6
+        )
     };
     let widgets: String = (0..)
         .map(widget)
