@@ -7,9 +7,9 @@
 //! | shows floor, feet and controls | [`FloorView`]; on a second screen that is thrown onto the floor, [`Projector`] |
 //! | is tried without a floor | `SmallFloor` (feature `sim`), on which the mouse plays a foot |
 //!
-//! What must not happen by accident does not belong here: egui has no guards, knows one pointer and can't take back
-//! what a press began. Such actions are controls of the floor's layout (`Confirm`, `HoldToRun`), and a contact on one
-//! of those never reaches egui: only floor that is free of controls is mapped.
+//! Actions that must not happen by accident do not belong here: egui has no guards, supports one pointer and cannot
+//! undo the beginning of a press. Such actions are controls of the floor's layout (`Confirm`, `HoldToRun`), and a
+//! contact on one of those never reaches egui: only floor without controls is mapped.
 //!
 //! ```no_run
 //! use underfoot::floor::Rect;

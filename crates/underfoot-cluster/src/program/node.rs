@@ -1,4 +1,4 @@
-//! `underfoot-cluster node`: one area is served, and told of.
+//! `underfoot-cluster node`: serves one area and reports to the gateway.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::num::NonZeroUsize;
@@ -31,7 +31,7 @@ use super::teller::{Commander, DATAGRAMS, MESSAGES, Teller};
 use super::worker::Worker;
 use super::{Failure, endpoints, layout, locked, stop_flag};
 
-/// What a node is asked to do.
+/// Options of a node.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// Layout file, or the name of a built-in one; the same on all nodes. Without it the node has no controls until the
@@ -71,16 +71,16 @@ pub(crate) struct Args {
     slow: u32,
 }
 
-/// Where packets arrive unless anything says otherwise.
+/// Default address for packets.
 const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
-/// Senders that are remembered besides the gateways: recordings of earlier starts.
+/// Number of remembered senders besides the gateways: recordings of earlier starts.
 const SPARE_GATEWAYS: usize = 8;
 
-/// Messages that may wait for the thread that sends them: a fifth of a second.
+/// Greatest number of messages that wait for the sending thread: a fifth of a second.
 const WAITING: usize = 100;
 
-/// Serves an area until told to stop.
+/// Serves an area until a stop.
 pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let floor = schema::load_floor(&args.floor)?;
     let area = area(&floor, &args.area)?;
@@ -129,7 +129,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         .start()?;
     let notices = Notices::start();
     made.into_iter().for_each(|made| notices.say(made));
-    // What tells, and Zenoh's threads, which inherit it.
+    // The priority of the sending thread and of Zenoh's threads, which inherit it.
     claim_priority(Rank::Telling);
     let guard = Arc::new(Mutex::new(Guard::new(&args.area)));
     let refused = Arc::<AtomicU64>::default();
@@ -223,7 +223,7 @@ fn area<'f>(floor: &'f Floor, id: &str) -> Result<&'f Area, Failure> {
     })
 }
 
-/// What the floor's end was.
+/// The reason for the end of the floor's session.
 fn ended(session: &Session) -> Result<(), Failure> {
     while let Some(event) = session.next_event_timeout(Duration::from_secs(2)) {
         match event.kind {
