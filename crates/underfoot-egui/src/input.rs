@@ -43,10 +43,9 @@ enum Before {
 ///
 /// A touch begins when a free foot presses with 60 N for 60 ms at a place without a control of the layout; it ends
 /// below 40 N. The touch is cancelled, which neither clicks nor changes a value, when the foot is classified as a
-/// step
-/// or an object, when it leaves the mapped part, when the floor falls silent or ends, and by [`FootInput::cancel`].
-/// An
-/// egui slider keeps the value it has followed until then; a [`crate::FootSlider`] restores the old one.
+/// step or an object, when it leaves the mapped part, when the floor falls silent or ends, and by
+/// [`FootInput::cancel`]. An egui slider keeps the value it has followed until then; a [`crate::FootSlider`] restores
+/// the old one.
 #[derive(Clone, Debug)]
 pub struct FootInput {
     part: floor::Rect,
@@ -85,10 +84,8 @@ impl FootInput {
     /// Adds the touches of `floor` to `raw`; call it for each frame, in `eframe::App::raw_input_hook`.
     ///
     /// With `move || context.request_repaint()` as [`underfoot::runtime::SessionBuilder::wake`], egui draws a frame
-    /// at
-    /// each event of a control; a foot on free floor causes no event, so this method requests the next frame by
-    /// itself
-    /// while there is any contact.
+    /// at each event of a control; a foot on free floor causes no event, so this method requests the next frame by
+    /// itself while there is any contact.
     pub fn follow(&mut self, context: &Context, floor: &Session, raw: &mut RawInput) {
         if floor.has_ended() {
             return self.cancel(context, raw);

@@ -37,8 +37,7 @@ struct Grip {
 
 impl<'a> FootSlider<'a> {
     /// A slider of `value` from the range's start on the left to its end on the right, either of which may be the
-    /// larger
-    /// one. It shows a value that is not finite at the start.
+    /// larger one. It shows a value that is not finite at the start.
     pub fn new(value: &'a mut f32, range: RangeInclusive<f32>) -> Self {
         Self { value, range, text: String::new() }
     }

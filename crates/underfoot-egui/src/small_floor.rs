@@ -68,8 +68,7 @@ impl SmallFloor {
     }
 
     /// Call this in `eframe::App::raw_input_hook` in place of [`FootInput::follow`]: while the mouse acts as the
-    /// foot,
-    /// that foot cannot be a pointer as well, since egui has only one. Other windows of the app have no feet.
+    /// foot, that foot cannot be a pointer as well, since egui has only one. Other windows of the app have no feet.
     pub fn lead(&self, feet: &mut FootInput, session: &Session, context: &Context, raw: &mut RawInput) {
         if raw.viewport_id != ViewportId::ROOT {
             return;

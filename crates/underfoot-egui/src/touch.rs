@@ -49,8 +49,7 @@ impl Touch {
     /// Ends the touch without a click.
     ///
     /// A pointer that has been far away does not click at its release; released at its old place, it leaves sliders
-    /// of
-    /// any direction unchanged. A dragged payload is dropped nowhere.
+    /// of any direction unchanged. A dragged payload is dropped nowhere.
     pub(crate) fn cancel(self, context: &Context, events: &mut Vec<Event>) {
         events.push(self.event(TouchPhase::Cancel));
         if self.is_pointer {

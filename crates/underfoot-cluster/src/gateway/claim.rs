@@ -49,8 +49,7 @@ impl Claims {
     }
 
     /// The node that serves the area. A node that replaces another one holds it; two that alternate dispute it, until
-    /// all
-    /// but one have been silent for a second.
+    /// all but one have been silent for a second.
     pub(super) fn holder(&mut self, now: Instant) -> Holder {
         let latest = self.0.iter().map(|claim| claim.heard).max();
         self.0.retain(|claim| now.since(claim.heard) < CLAIMED_FOR || Some(claim.heard) == latest);

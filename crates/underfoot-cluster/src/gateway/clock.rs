@@ -54,8 +54,7 @@ pub struct NodeClock {
 
 impl NodeClock {
     /// Adds an echo from a message that the node sent at `sent` and the gateway received at `now`. Returns whether
-    /// the clock
-    /// was set in between.
+    /// the clock was set in between.
     pub fn note(&mut self, echo: &Echo, sent: u64, now: Instant) -> bool {
         if self.last.is_some_and(|last| echo.sent <= last) {
             return false;

@@ -22,8 +22,7 @@ pub(super) struct HeldReports {
 
 impl HeldReports {
     /// The report of the controls in `held`, if they have changed or a report is due. `age` is that of the oldest
-    /// frame
-    /// behind it.
+    /// frame behind it.
     pub(super) fn report(&mut self, held: &[&str], age: Duration, now: Instant) -> Option<&HeldReport> {
         let last = &mut self.last;
         let is_news =

@@ -2,8 +2,7 @@
 //!
 //! Nodes report contacts beyond their area too, so that two nodes report a foot near a border. Both reports form one
 //! **joint** contact as soon as both nodes see the foot, long before it crosses. Its number never changes; its
-//! **owner**
-//! is the area whose node provides its position.
+//! **owner** is the area whose node provides its position.
 
 use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
@@ -169,8 +168,7 @@ impl Joiner {
     }
 
     /// Ends the contact `id` of the node of `area`. If that node owns the joint contact and no other node has it in
-    /// its
-    /// own area, the joint contact ends too.
+    /// its own area, the joint contact ends too.
     fn end(&mut self, area: usize, id: u32, at: Instant) {
         let Some(view) = self.views.get_mut(area) else { return };
         let Some(joint) = view.joints.remove(&id) else { return };

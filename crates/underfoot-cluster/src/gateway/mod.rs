@@ -1,8 +1,7 @@
 //! Joins the contacts and events of many areas into one floor's.
 //!
 //! [`Gateway`] is pure: the caller passes messages and the time, and receives reports. They depend on the content of
-//! the
-//! nodes' messages and not on the order of arrival, as long as none is more than [`WINDOW`] late.
+//! the nodes' messages and not on the order of arrival, as long as none is more than [`WINDOW`] late.
 //!
 //! ```text
 //! NodeMessage -claim-> one node an area -clock-> times here -> queue, in time order -> join: contacts' names

@@ -108,8 +108,7 @@ impl NodeEvent {
     }
 
     /// The event as outputs take it, with the time and the contact's number from the gateway; `None` if a control
-    /// cannot
-    /// report it.
+    /// cannot report it.
     #[must_use]
     pub fn event(&self, at: Instant, contact: Option<u32>) -> Option<WidgetEvent> {
         let position = Vec2::from(self.position);

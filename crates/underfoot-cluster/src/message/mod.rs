@@ -1,12 +1,10 @@
 //! Messages of nodes and gateways: one JSON object each, in an envelope of [`crate::auth`].
 //!
 //! The envelope holds sender, number, time and echo of a message, and the JSON does not; these fields are filled in
-//! from
-//! the envelope.
+//! from the envelope.
 //!
 //! Times are whole microseconds on the sender's clock. A node's clock starts with its program; the gateway estimates
-//! the
-//! offset to its own clock.
+//! the offset to its own clock.
 
 mod contact;
 mod event;

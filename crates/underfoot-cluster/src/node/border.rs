@@ -3,9 +3,7 @@
 //! A control on a border belongs to one node. That node sends its cues to each neighbour that shares their tiles, at
 //! once and by UDP, like the packets of boards near the border. A late cue is dropped: a foot would feel it as the
 //! answer to something else. Neighbours compare their clocks, because only then is the age of a cue known. Notes
-//! travel
-//! in envelopes of [`crate::auth`], so that only computers of the floor move its actuators.
-//! in envelopes of [`crate::auth`], so that only computers of the floor move its actuators.
+//! travel in envelopes of [`crate::auth`], so that only computers of the floor move its actuators.
 
 use std::collections::HashSet;
 use std::net::SocketAddr;
@@ -170,8 +168,7 @@ pub struct Border {
 
 impl Border {
     /// The areas with which the node of `area` exchanges notes, in the order of their numbers: those on whose tiles
-    /// it
-    /// senses feet, and those with which it exchanges packets of boards. Areas without an address to listen on are
+    /// it senses feet, and those with which it exchanges packets of boards. Areas without an address to listen on are
     /// left out.
     #[must_use]
     pub fn neighbours<'f>(floor: &'f Floor, area: &Area) -> Vec<&'f Area> {

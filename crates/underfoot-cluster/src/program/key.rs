@@ -37,12 +37,10 @@ pub(super) struct KeyArgs {
 
 impl KeyArgs {
     /// The key of `floor`, whose file is at `path`, for a program that connects these `endpoints` and receives
-    /// packets at
-    /// `listens`; with a notice if it has just been made.
+    /// packets at `listens`; with a notice if it has just been made.
     ///
     /// A floor without a key that lies on this computer alone gets one beside its file at its first start, which
-    /// excludes
-    /// other users of the computer.
+    /// excludes other users of the computer.
     pub(super) fn find(
         &self,
         (floor, path): (&Floor, &Path),

@@ -1,6 +1,5 @@
 //! A node's source in slow motion, so that more nodes than a machine can run can be measured on it: each millisecond
-//! of
-//! the floor takes several of the machine.
+//! of the floor takes several of the machine.
 
 use std::net::SocketAddr;
 use std::sync::Arc;

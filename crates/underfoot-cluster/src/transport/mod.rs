@@ -63,8 +63,7 @@ fn node_key(area: &str) -> String {
 
 impl Transport {
     /// A gateway's end, which listens on `endpoints` for the nodes of `areas` that have the same `key`; it calls
-    /// `hear`
-    /// with their messages, on threads of its own.
+    /// `hear` with their messages, on threads of its own.
     ///
     /// # Errors
     /// [`TransportError::Endpoints`] if it can't listen there.
@@ -78,8 +77,7 @@ impl Transport {
     }
 
     /// The end of the node of `area`, which connects to gateways at `endpoints` that have the same `key`, now or when
-    /// they
-    /// start; it calls `hear` with their messages, on threads of its own.
+    /// they start; it calls `hear` with their messages, on threads of its own.
     ///
     /// # Errors
     /// [`TransportError::Endpoints`] if one of them can't be an endpoint.
