@@ -1,4 +1,4 @@
-/* Prints what feet do, and stops with the floor. */
+/* Prints the events of a floor, and stops with it. */
 #include <stdio.h>
 #include <string.h>
 #include <underfoot.h>
