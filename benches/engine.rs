@@ -18,7 +18,7 @@ use underfoot::sim::{self, FootDriver, Performance, Person, Scenario, Script, Si
 use underfoot::units::Instant;
 use underfoot::wire::{Batch, Decoder, SensorEncoder, SensorFormat, SensorPacket};
 
-/// Two people who walk up and down the floor for longer than the measurement.
+/// Two walkers, up and down the floor for longer than the measurement.
 const WALKERS: &str = r#"
 Scenario(
     title: "Two walkers",
@@ -136,7 +136,7 @@ fn page_of(controls: usize, geometry: &Geometry) -> Layout {
     schema::parse_layout(&text, "bench", &Kinds::builtin(), geometry).unwrap().layout
 }
 
-/// Ten people who walk over 24 x 24 tiles with 20 and with 500 controls: the same frames for both.
+/// Ten walkers on 24 x 24 tiles with 20 and with 500 controls: the same frames for both.
 fn large(criterion: &mut Criterion) {
     let geometry = Geometry::of_paper_tiles(SIDE, SIDE).unwrap();
     let cast = (0..PEOPLE).map(|number| {

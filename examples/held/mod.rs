@@ -1,8 +1,8 @@
 //! The controls held by feet, with the time-out that an app must apply.
 //!
 //! The floor repeats the held controls every 20 ms. An app that has received no report of a hold for 100 ms treats
-//! the control as released, whatever the last report said: the floor, the network or the cable may have failed, and
-//! none of them can report that.
+//! the control as released, for any last report: the floor, the network or the cable may have failed, and none of
+//! them can report that.
 
 use std::collections::HashMap;
 use std::time::{Duration, Instant};

@@ -18,7 +18,7 @@ use rand_pcg::Pcg64Mcg;
 
 use targets::Target;
 
-/// Greatest time for one input: unnoticeable for a user who waits for a file of this size.
+/// Greatest time for one input: unnoticeable for a user with a file of this size.
 const SLOW: Duration = Duration::from_millis(500);
 
 fn main() -> ExitCode {

@@ -1,4 +1,4 @@
-//! Walks of people who set up a floor: from board to board, and over every tile.
+//! Walks for setting up a floor: from board to board, and over every tile.
 
 use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::glam::Vec2;
@@ -28,7 +28,7 @@ fn rewired(packet: &SensorPacket, wires: [u16; 2]) -> SensorPacket {
     SensorPacket { board: wires[usize::from(packet.board)], ..packet.clone() }
 }
 
-/// A person who follows the walk's tasks; with `astray`, one who steps on the first tile each time.
+/// Follows the walk's tasks; with `astray`, steps on the first tile each time.
 fn walk(wires: [u16; 2], astray: bool) -> (WiringWalk, Floor) {
     let floor = small_floor();
     let mut sim = simulated(&floor);
@@ -97,7 +97,7 @@ fn nothing_is_asked_before_every_board_has_been_heard_and_silent_ones_are_named(
     assert_eq!(walk.felt().map(|felt| felt.tile), Some(TileId::new(2, 1)));
 }
 
-/// A person who steps on each tile, near its middle and near two of its corners.
+/// Steps on each tile, near its middle and near two of its corners.
 fn walk_over(sim: &mut SimFloor, floor: &Floor, test: &mut WalkTest) {
     pass(sim, 400, &[], |packet| test.take(packet));
     for index in 0..floor.geometry.tile_count() {

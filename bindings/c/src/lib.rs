@@ -47,7 +47,7 @@ unsafe fn text<'a>(text: *const c_char) -> Option<&'a str> {
 /// Calls `what` with one control.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 unsafe fn with_control(
     session: *const UfSession,
     id: *const c_char,
@@ -68,7 +68,7 @@ unsafe fn with_control(
 /// Starts a floor; see `underfoot.h`.
 ///
 /// # Safety
-/// The texts are null or end with 0, `options` is null or of the size it says, `error` is null or has `error_size`
+/// The texts are null or end with 0, `options` is null or of its declared size, `error` is null or has `error_size`
 /// bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_session_listen(
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn uf_session_listen(
 /// Starts a replay of a recorded floor; see `underfoot.h`.
 ///
 /// # Safety
-/// `recording` is null or ends with 0, `options` is null or of the size it says, `error` is null or has `error_size`
+/// `recording` is null or ends with 0, `options` is null or of its declared size, `error` is null or has `error_size`
 /// bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_session_replay(
@@ -165,7 +165,7 @@ unsafe fn put_at(place: *mut c_char, size: usize, text: &str) {
 /// Takes the next event; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `event` is null or of the size it says.
+/// `session` is null or valid, `event` is null or of its declared size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_next(session: *mut UfSession, event: *mut UfEvent, timeout_ms: c_int) -> c_int {
     contained(PANIC, || {
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn uf_next(session: *mut UfSession, event: *mut UfEvent, t
 /// Whether a foot holds a control now; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_held(session: *const UfSession, id: *const c_char) -> c_int {
     contained(0, || {
@@ -217,7 +217,7 @@ pub unsafe extern "C" fn uf_held(session: *const UfSession, id: *const c_char) -
 /// Whether the layout has a control of this name; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_has(session: *const UfSession, id: *const c_char) -> c_int {
     // SAFETY: as the caller promises.
@@ -227,7 +227,7 @@ pub unsafe extern "C" fn uf_has(session: *const UfSession, id: *const c_char) ->
 /// The reason why a control is off; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text, `text` is null or has `text_size` bytes.
+/// `session` is null or valid, `id` is null or a text, `text` is null or has `text_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_off(
     session: *const UfSession,
@@ -261,7 +261,7 @@ pub extern "C" fn uf_off_name(reason: c_int) -> *const c_char {
 /// The number of controls; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives.
+/// `session` is null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_control_count(session: *const UfSession) -> c_int {
     contained(PANIC, || {
@@ -274,7 +274,7 @@ pub unsafe extern "C" fn uf_control_count(session: *const UfSession) -> c_int {
 /// The name of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or has `id_size` bytes.
+/// `session` is null or valid, `id` is null or has `id_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_control_id(
     session: *const UfSession,
@@ -299,7 +299,7 @@ pub unsafe extern "C" fn uf_control_id(
 /// The address for boards; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `address` is null or has `address_size` bytes.
+/// `session` is null or valid, `address` is null or has `address_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_address(
     session: *const UfSession,
@@ -325,7 +325,7 @@ pub extern "C" fn uf_last_error() -> *const c_char {
 /// A descriptor to poll; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives.
+/// `session` is null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_fd(session: *const UfSession) -> c_int {
     // SAFETY: as the caller promises.
@@ -335,7 +335,7 @@ pub unsafe extern "C" fn uf_fd(session: *const UfSession) -> c_int {
 /// The value of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text, `value` is null or of the size it says.
+/// `session` is null or valid, `id` is null or a text, `value` is null or of its declared size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_get(session: *const UfSession, id: *const c_char, value: *mut UfValue) -> c_int {
     contained(PANIC, || {
@@ -360,7 +360,7 @@ pub unsafe extern "C" fn uf_get(session: *const UfSession, id: *const c_char, va
 /// The feet on the floor; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `contacts` has `capacity` elements of `element_size` bytes.
+/// `session` is null or valid, `contacts` has `capacity` elements of `element_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_contacts(
     session: *const UfSession,
@@ -391,7 +391,7 @@ pub unsafe extern "C" fn uf_contacts(
 /// The reason why boards that send give no usable frame; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `text` is null or has `size` bytes.
+/// `session` is null or valid, `text` is null or has `size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_link_cause(session: *const UfSession, text: *mut c_char, size: usize) -> c_int {
     contained(PANIC, || {
@@ -410,7 +410,7 @@ pub unsafe extern "C" fn uf_link_cause(session: *const UfSession, text: *mut c_c
 /// Number of dropped events; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives.
+/// `session` is null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_dropped(session: *const UfSession) -> u64 {
     // SAFETY: as the caller promises.
@@ -420,7 +420,7 @@ pub unsafe extern "C" fn uf_dropped(session: *const UfSession) -> u64 {
 /// Sets a control to a number; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_number(session: *mut UfSession, id: *const c_char, value: f32) -> c_int {
     // SAFETY: as the caller promises.
@@ -430,7 +430,7 @@ pub unsafe extern "C" fn uf_set_number(session: *mut UfSession, id: *const c_cha
 /// Sets a pad to two numbers; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_pair(
     session: *mut UfSession,
@@ -445,7 +445,7 @@ pub unsafe extern "C" fn uf_set_pair(
 /// Sets the range of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_range(
     session: *mut UfSession,
@@ -460,7 +460,7 @@ pub unsafe extern "C" fn uf_set_range(
 /// Sets the label of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, the texts are null or end with 0.
+/// `session` is null or valid, the texts are null or end with 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_label(
     session: *mut UfSession,
@@ -476,7 +476,7 @@ pub unsafe extern "C" fn uf_set_label(
 /// Sets the indicator of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, the texts are null or end with 0.
+/// `session` is null or valid, the texts are null or end with 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_indicator(
     session: *mut UfSession,
@@ -495,7 +495,7 @@ pub unsafe extern "C" fn uf_set_indicator(
 /// Enables or disables a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_enabled(session: *mut UfSession, id: *const c_char, enabled: c_int) -> c_int {
     // SAFETY: as the caller promises.
@@ -505,7 +505,7 @@ pub unsafe extern "C" fn uf_set_enabled(session: *mut UfSession, id: *const c_ch
 /// Locks or unlocks the value of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_locked(session: *mut UfSession, id: *const c_char, locked: c_int) -> c_int {
     // SAFETY: as the caller promises.
@@ -515,7 +515,7 @@ pub unsafe extern "C" fn uf_set_locked(session: *mut UfSession, id: *const c_cha
 /// Shows another page; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `page` is null or a text.
+/// `session` is null or valid, `page` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_page(session: *mut UfSession, page: *const c_char) -> c_int {
     contained(PANIC, || {
@@ -532,7 +532,7 @@ pub unsafe extern "C" fn uf_set_page(session: *mut UfSession, page: *const c_cha
 /// Ends the floor; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives.
+/// `session` is null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_stop(session: *mut UfSession) {
     // SAFETY: as the caller promises.

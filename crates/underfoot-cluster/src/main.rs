@@ -1,6 +1,6 @@
 //! The program `underfoot-cluster`: a node or the gateway of a floor that several computers serve.
 //!
-//! Exit status 0: done; 1: the work failed (standard error says why); 2: wrong usage.
+//! Exit status 0: done; 1: the work failed (the reason is on standard error); 2: wrong usage.
 
 mod program;
 

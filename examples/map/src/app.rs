@@ -135,7 +135,7 @@ impl eframe::App for App {
         self.small.lead(&mut self.feet, &self.guide.floor, context, raw);
     }
 
-    /// In `logic` and not in `ui`, since a fully covered window does not call `ui`: time goes on.
+    /// In `logic` and not in `ui`, since a fully covered window does not call `ui` while its time advances.
     fn logic(&mut self, context: &Context, _: &mut eframe::Frame) {
         let before = self.guide.state.camera;
         self.guide.turn(std::mem::take(&mut self.drag), std::mem::take(&mut self.levels));

@@ -38,7 +38,7 @@ impl Camera {
         TILE * self.zoom.exp2()
     }
 
-    /// Moves the visible part by so many points, east and south.
+    /// Moves the visible part by these points, east and south.
     pub fn pan(&mut self, by: Vec2) {
         let [x, y] = project(self.lon, self.lat);
         let (lon, lat) = unproject([x + f64::from(by.x) / self.scale(), y + f64::from(by.y) / self.scale()]);

@@ -288,7 +288,7 @@ impl State {
         }
     }
 
-    /// Turns by so many slices, for mouse and keys; stops at the first one and the last one.
+    /// Turns by this number of slices, for mouse and keys; stops at the first one and the last one.
     pub fn step(&mut self, slices: f64) {
         self.turn_to(self.view().slice as f64 + 1.0 + slices);
         self.still_s = 0.0;

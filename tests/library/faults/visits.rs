@@ -240,7 +240,7 @@ fn s9_people_on_a_floor_nobody_calibrated() {
 
 #[test]
 fn s11_people_whose_feet_share_tiles_and_lie_over_four() {
-    // Persons who stand with their feet 15 to 20 cm apart: often on one tile.
+    // Persons standing with their feet 15 to 20 cm apart: often on one tile.
     let narrow =
         (1..60).filter(|&seed| Visit::of(seed, &Geometry::default()).unwrap().person().stand_width_m < 0.2);
     for seed in narrow.take(2) {

@@ -6,7 +6,7 @@ use super::session::session;
 use super::tape::events;
 use crate::end_to_end::{said, underfoot};
 
-/// A person who walks up to the page's south side and does `steps`.
+/// One person's scenario: an approach from the page's south side, then `steps`.
 fn somebody(steps: &str) -> String {
     format!(
         "Scenario(title: \"Somebody\", person: (mass_kg: 70, foot_m: 0.27), \
@@ -43,7 +43,7 @@ const STRIPS: &str = r#"Layout(version: 1,
 const MEANT: &str = "Point(at: (2.5, 2.45), force_n: 140, hold_ms: 1500), Wait(ms: 500), WalkTo(at: (2.2, 3.2)), \
     Point(at: (2.5, 4.65), force_n: 140, hold_ms: 500), Wait(ms: 500), Point(at: (2.5, 4.65), force_n: 140, hold_ms: 500)";
 
-/// Four people, one after the other, who walk over both strips and along each.
+/// Four walkers, one after the other, over both strips and along each.
 const WALKERS: &str = r#"Scenario(title: "Walking over", person: (mass_kg: 70, foot_m: 0.27, speed_m_s: 1.2),
     steps: [Wait(ms: 1200), Enter(from: South, at: (2.2, 5.5)), Leave(to: North)],
     others: [

@@ -53,7 +53,7 @@ fn s2_a_stamp_beyond_the_range_presses_nothing_while_it_lasts_or_lightens() {
     assert_eq!(stamped(200.0).0.events(), [CLICK, CLICK].concat(), "in its range it would have pressed");
 }
 
-/// Parts whose range ends at 123 N.
+/// Parts that end at 123 N.
 fn weak() -> Sensing {
     let nominal = Exponential { a_n: 0.5, b_per_volt: 1.1 };
     Sensing::Counts(PartConfig { nominal, ..PartConfig::default() })

@@ -154,7 +154,7 @@ impl Tape {
     }
 }
 
-/// A foot whose centre of pressure is at `at`.
+/// A foot with its centre of pressure at `at`.
 pub fn foot(at: Vec2, force: f32) -> Foot {
     let mut foot = Foot {
         position: Vec2::ZERO,

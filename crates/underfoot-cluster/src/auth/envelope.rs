@@ -82,7 +82,7 @@ impl Parts<'_> {
     }
 }
 
-/// Writes a message into `out`, whose content it replaces.
+/// Writes a message into `out`, replacing its content.
 pub(super) fn write(
     (kind, key): (Kind, &[u8; TAG]),
     head: &Head,

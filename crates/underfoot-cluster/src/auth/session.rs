@@ -124,7 +124,7 @@ impl Session {
         self.refusals
     }
 
-    /// Writes a message with this `body`, sent at `now`, into `out`, whose content it replaces. Packets of boards carry
+    /// Writes a message with this `body`, sent at `now`, into `out`, replacing its content. Packets of boards carry
     /// no answers.
     pub fn seal(&mut self, kind: Kind, body: &[u8], now: Instant, out: &mut Vec<u8>) {
         self.counter += 1;
@@ -190,8 +190,8 @@ impl Session {
         self.peers.get_mut(index).ok_or(Refusal::Malformed)
     }
 
-    /// Forgets one sender if there is no room for another: the one that has been silent for longest, of those without an
-    /// answer if there are any.
+    /// Forgets one sender if there is no room for another: the one that has been silent for longest, of those without
+    /// an answer if there are any.
     fn make_room(&mut self) {
         if self.peers.len() < self.most_peers {
             return;
@@ -486,7 +486,7 @@ mod tests {
 
     #[derive(Clone, Debug)]
     enum Step {
-        /// So many milliseconds pass.
+        /// Time passes, in milliseconds.
         Wait(u64),
         /// The node or the gateway sends; the message arrives at once, or is held back.
         Tell { by_node: bool, arrives: bool },

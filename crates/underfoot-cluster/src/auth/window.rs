@@ -35,7 +35,8 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// The window of a sender whose first message has this `counter`; `None` beyond the greatest counter of any sender.
+    /// The window after a sender's first message with this `counter`; `None` beyond the greatest counter of any
+    /// sender.
     pub(super) fn beginning(counter: u64) -> Option<Self> {
         (counter <= GREATEST).then_some(Self { newest: counter, seen: 1 })
     }

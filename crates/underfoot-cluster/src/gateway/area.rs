@@ -13,7 +13,7 @@ use crate::message::{LayoutStanding, NodeMessage, Standing};
 /// age. All holds of the area are cancelled then.
 pub const LOST_AFTER: Duration = Duration::from_millis(100);
 
-/// Greatest time by which a frame may lie in the future: the uncertainty of a clock whose offset is known to within a
+/// Greatest time by which a frame may lie in the future: the uncertainty of a clock with an offset known to within a
 /// round trip. A frame further ahead comes from a clock that was set, which the next echo reveals.
 const AHEAD: Duration = Duration::from_millis(20);
 

@@ -1,8 +1,8 @@
 //! Joins the contacts of several areas into contacts of one floor.
 //!
 //! Nodes report contacts beyond their area too, so that two nodes report a foot near a border. Both reports form one
-//! **joint** contact as soon as both nodes see the foot, long before it crosses. Its number never changes; its
-//! **owner** is the area whose node provides its position.
+//! **joint** contact as soon as both nodes see the foot, long before it crosses. Its number never changes; the node
+//! of its **owner** area provides its position.
 
 use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
@@ -142,7 +142,7 @@ impl Joiner {
         self.views.get(area)?.joints.get(&id).copied()
     }
 
-    /// Drops all contacts of `area`, whose node is no longer used, from `at` on.
+    /// Drops all contacts of `area`, which is not live any more, from `at` on.
     pub(super) fn lose(&mut self, area: usize, at: Instant) {
         let Some(view) = self.views.get_mut(area) else { return };
         *view = View::default();

@@ -31,7 +31,7 @@ pub(super) struct Presses {
     open: BTreeMap<String, Press>,
     armed: BTreeSet<String>,
     values: BTreeMap<String, Value>,
-    /// Controls whose last press has ended: a click may follow some time later.
+    /// Controls after the end of their last press: a click may follow some time later.
     let_go: BTreeSet<String>,
     /// Controls without reports until no foot holds them.
     shut: BTreeSet<String>,

@@ -39,7 +39,7 @@ struct Open {
     asked: Instant,
 }
 
-/// A request that all nodes have answered, or whose time-out has passed.
+/// A request that all nodes have answered, or that has reached its time-out.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Answered {
     pub(super) asker: Asker,

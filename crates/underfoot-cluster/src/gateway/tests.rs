@@ -19,7 +19,7 @@ fn hall() -> Floor {
 
 const BORDER_M: f32 = 6.0 * 0.304;
 
-/// A node whose clock is far from the gateway's.
+/// A node with a clock far from the gateway's.
 #[derive(Clone, Debug)]
 struct Node {
     area: &'static str,
@@ -244,7 +244,7 @@ fn what_the_owner_ends_is_over_and_what_it_sees_there_next_is_another_foot() {
 fn events_of_all_areas_come_in_time_order_with_joint_names() {
     let mut stage = Stage::new();
     let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
-    // A control on the border that east decides, under a foot whose centre is in west.
+    // A control on the border that east decides, under a foot with its centre in west.
     let foot = (BORDER_M - 0.03, 1.0);
     for step in 0..20_u64 {
         let at = START + step * 4000;

@@ -66,7 +66,7 @@ pub struct Counters {
     pub messages: u64,
     /// Messages of another version, another floor, an unknown area, or with invalid numbers.
     pub refused: u64,
-    /// Messages whose newest frame was more than 100 ms old, or lay in the future.
+    /// Messages with a newest frame more than 100 ms old, or in the future.
     pub stale: u64,
     /// Events from times at which their area was not live, or of presses already reported as cancelled.
     pub withheld: u64,

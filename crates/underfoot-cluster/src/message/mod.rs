@@ -197,7 +197,7 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, BadMessage> {
 
 /// A hash of the positions of the floor's tiles and areas: equal on all computers with the same floor file.
 ///
-/// It leaves out the calibration: each node has that of its own sensors.
+/// It leaves out the calibration, which differs between nodes.
 #[must_use]
 pub fn fingerprint(floor: &Floor) -> u64 {
     let geometry = &floor.geometry;

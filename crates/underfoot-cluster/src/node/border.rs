@@ -500,8 +500,8 @@ mod tests {
 
     #[test]
     fn computers_that_exchange_packets_exchange_notes() {
-        // Areas of six columns in a row. The board of the second one covers all of the third as well, whose tiles the
-        // fourth senses; the fourth is too far from the second to sense the second's own tiles.
+        // Areas of six columns in a row. The board of the second one covers all of the third as well. The fourth
+        // senses tiles of the third, but is too far from the second to sense the second's own tiles.
         let area = |id: &str, number: u16| Area {
             listen: Some(([127, 0, 0, 1], 9000 + number).into()),
             ..Area::new(id, TileBlock { first: TileId::new(6 * number, 0), columns: 6, rows: 1 })

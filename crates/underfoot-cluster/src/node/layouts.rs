@@ -23,7 +23,7 @@ pub struct NodeLayouts<L> {
     ready: Option<(LayoutName, L)>,
     /// The time from which it is to run.
     due: Option<Instant>,
-    /// The gateway whose layouts count, and the time of its last message.
+    /// The gateway that decides about layouts, and the time of its last message.
     leader: Option<(u64, Instant)>,
 }
 
@@ -41,7 +41,7 @@ impl<L> NodeLayouts<L> {
         &self.standing
     }
 
-    /// Whether `gateway`, whose message arrived at `now`, is the one whose layouts count.
+    /// Whether `gateway`, heard at `now`, is the one that decides about layouts.
     pub fn follows(&mut self, gateway: u64, now: Instant) -> bool {
         let others = self.leader.filter(|(leader, _)| *leader != gateway);
         if others.is_some_and(|(_, heard)| now.since(heard) < LEADS_FOR) {

@@ -34,7 +34,7 @@ impl NodeSink {
         Self { out, draft, has_frame: false, sent: Instant::START, held_up }
     }
 
-    /// How often the sending thread was too slow, which delays events and leaves out contacts.
+    /// Number of times that the sending thread was too slow, which delays events and leaves out contacts.
     #[must_use]
     pub fn held_up(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.held_up)

@@ -40,17 +40,17 @@ pub(crate) struct Args {
     /// Floor file with `areas`; the same on all nodes.
     #[arg(long, value_name = "FILE")]
     floor: PathBuf,
-    /// Where nodes connect; may be given several times, for several network cards. Without it, as the floor file says,
+    /// Endpoint for nodes; may be given several times, for several network cards. Without it, that of the floor file,
     /// and else tcp/127.0.0.1:7447.
     #[arg(long, value_name = "ENDPOINT")]
     listen: Vec<String>,
-    /// Where apps' requests arrive as OSC; without it, none are taken.
+    /// Address for apps' requests as OSC; without it, requests are refused.
     #[arg(long, value_name = "ADDR", requires = "layout", value_parser = read_address)]
     commands: Option<SocketAddr>,
-    /// Take requests from this address or range; several may be given. Without it, from this machine only.
+    /// Accept requests from this address or range; several may be given. Without it, from this machine only.
     #[arg(long, value_name = "CIDR", requires = "commands")]
     allow_commands: Vec<Network>,
-    /// Where events and contacts are sent as OSC; may be given several times.
+    /// Target for events and contacts as OSC; may be given several times.
     #[arg(long, value_name = "HOST:PORT", value_parser = read_address)]
     osc: Vec<SocketAddr>,
     /// Prefix of OSC addresses.
@@ -70,10 +70,10 @@ pub(crate) struct Args {
     json_contacts: bool,
     #[command(flatten)]
     key: KeyArgs,
-    /// Stop after so many seconds.
+    /// Stop after this many seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
-    /// For measurements: the gateway's clock goes so many times slower.
+    /// For measurements: slow the gateway's clock down by this factor.
     #[arg(long, hide = true, default_value_t = 1)]
     slow: u32,
 }

@@ -34,8 +34,8 @@ use super::{Failure, endpoints, layout, locked, stop_flag};
 /// Options of a node.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Layout file, or the name of a built-in one; the same on all nodes. Without it the node has no controls until the
-    /// gateway gives it a layout; a gateway that has one gives it in any case.
+    /// Layout file, or the name of a built-in one; the same on all nodes. Without it the node has no controls until
+    /// the gateway sends a layout; a gateway with a layout sends it in any case.
     #[arg(value_name = "LAYOUT")]
     layout: Option<PathBuf>,
     /// Floor file with `areas`; the same on all nodes and the gateway, but for calibration.
@@ -44,29 +44,29 @@ pub(crate) struct Args {
     /// The area that this node serves.
     #[arg(long, value_name = "NAME")]
     area: String,
-    /// Where the boards' packets arrive: an address of this machine and a port. Without it, as the floor file says, and
+    /// Address for the boards' packets: one of this machine, with a port. Without it, that of the floor file, and
     /// else 127.0.0.1:9000.
     #[arg(long, value_name = "ADDR", value_parser = read_address)]
     listen: Option<SocketAddr>,
-    /// Where the gateway listens; may be given several times, for a second gateway beside the first. Without it, as the
-    /// floor file says, and else tcp/127.0.0.1:7447.
+    /// Endpoint of the gateway; may be given several times, for a second gateway beside the first. Without it, that
+    /// of the floor file, and else tcp/127.0.0.1:7447.
     #[arg(long, value_name = "ENDPOINT")]
     gateway: Vec<String>,
     #[command(flatten)]
     key: KeyArgs,
     #[command(flatten)]
     sound: SoundArgs,
-    /// On how many threads the feet of a crowd are sensed. Those beyond the first sleep while fewer than a hundred feet
+    /// Number of threads that sense the feet of a crowd. Those beyond the first sleep while fewer than a hundred feet
     /// are in the area, and keep a core busy each while there are more.
     #[arg(long, value_name = "N", default_value_t = NonZeroUsize::MIN)]
     sensing_threads: NonZeroUsize,
-    /// Stop after so many seconds.
+    /// Stop after this many seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
     /// For tests: SIGUSR1 sets this node's clock forward by a second.
     #[arg(long, hide = true)]
     step_clock: bool,
-    /// For measurements: this node's clock goes so many times slower.
+    /// For measurements: slow this node's clock down by this factor.
     #[arg(long, hide = true, default_value_t = 1)]
     slow: u32,
 }

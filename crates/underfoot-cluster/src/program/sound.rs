@@ -13,7 +13,7 @@ use underfoot::units::Instant;
 #[derive(Args, Clone, Debug, Default)]
 pub(super) struct SoundArgs {
     /// The sound card that plays the area's actuators, a channel each: its name or a part of it (`underfoot rack
-    /// devices` lists them), or `paced`, a clock that stands in for one. Without it nothing is felt.
+    /// devices` lists them), or `paced`, a clock that stands in for one. Without it there are no haptics.
     #[cfg(feature = "audio")]
     #[arg(long, value_name = "NAME")]
     device: Option<String>,

@@ -8,7 +8,7 @@ use crate::lines::Line;
 /// Longest time from a fault until an app reads that the hold is over.
 const LIMIT: Duration = Duration::from_millis(150);
 
-/// A person who holds the control on the border repeatedly; the south-east's node decides it.
+/// Repeated holds of the control on the border by one person; the south-east's node decides the control.
 pub(crate) fn holding(times: usize) -> String {
     let hold = "Wait(ms: 500), Press(widget: \"drive\", force_n: 110, hold_ms: 2500),".repeat(times);
     format!(

@@ -91,7 +91,7 @@ fn a_board_that_sends_to_both_is_sensed_once() {
 #[test]
 fn a_control_works_while_the_neighbour_that_senses_the_other_half_of_it_is_dead() {
     let hall = Hall::open();
-    // No node serves the south-west, whose border is near.
+    // No node serves the south-west, which is near the border.
     let _nodes: Vec<_> = AREAS.iter().filter(|area| **area != "sw").map(|area| hall.node(area)).collect();
     let press = r#"Scenario(title: "Drive", steps: [Wait(ms: 1500), Enter(from: East, at: (9.4, 8.2)),
         Press(widget: "door", force_n: 140, hold_ms: 300), Leave(to: East)])"#;

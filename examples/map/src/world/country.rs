@@ -30,7 +30,7 @@ fn arc_index(arc: i64) -> usize {
     (if arc < 0 { !arc } else { arc }) as usize
 }
 
-/// The countries that use each of so many arcs.
+/// The countries that use each of the first `arcs` arcs.
 pub fn users(shapes: &[CountryShape], arcs: usize) -> Vec<Vec<usize>> {
     let mut users: Vec<Vec<usize>> = vec![Vec::new(); arcs];
     for (country, shape) in shapes.iter().enumerate() {

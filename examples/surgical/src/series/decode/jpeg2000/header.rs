@@ -53,7 +53,7 @@ impl Header {
         let mut part = None;
         while let Some(&[0xff, mark]) = stream.get(at..at + 2) {
             if mark == DATA {
-                // Continues behind the part's data, whose length is in its header; 0 means to the end.
+                // Continues behind the part's data; its length is in its header, where 0 means to the end.
                 let Some((start, length)) = part.take() else { break };
                 if length == 0 {
                     break;
