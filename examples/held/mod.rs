@@ -25,7 +25,7 @@ pub struct Held {
 }
 
 impl Held {
-    /// Processes a message `…/widget/<id>/held <0 or 1> <sequence>` that arrived at `now`; returns whether it is one.
+    /// Processes a message `…/widget/<id>/held <0 or 1> <sequence>` that arrived at `now`. Returns whether it is one.
     ///
     /// A message of an older report that a newer one has overtaken changes nothing.
     pub fn take(&mut self, message: &OscMessage, now: Instant) -> bool {

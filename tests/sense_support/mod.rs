@@ -240,8 +240,8 @@ pub fn stand(seed: u64, sensors: Sensors) -> Scene {
 /// The west edge of the region that [`tap`] taps into, in metres.
 pub const REGION_WEST: f32 = 6.0 * 0.304;
 
-/// A stance foot of 350 to 700 N stands 0 to 15 cm beside a region; the other foot taps and slides in it with 30 to 150
-/// N.
+/// A stance foot of 350 to 700 N stands 0 to 15 cm beside a region; the other foot taps and slides in it with 30 to
+/// 150 N.
 pub fn tap(seed: u64, sensors: Sensors) -> Scene {
     let mut rng = Pcg64Mcg::seed_from_u64(seed + 5000);
     let stance = rng.random_range(350.0..700.0_f32);

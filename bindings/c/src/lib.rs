@@ -377,8 +377,8 @@ pub unsafe extern "C" fn uf_contacts(
         }
         let feet = session.floor.snapshot().floor.contacts;
         for (index, foot) in feet.iter().enumerate().take(capacity) {
-            // SAFETY: within `capacity` elements, each of this version's size at least; aligned as the first one is, or
-            // not, in a later version.
+            // SAFETY: within `capacity` elements, each of this version's size at least; aligned as the first one is,
+            // or not, in a later version.
             unsafe {
                 let place = contacts.byte_add(index * element_size);
                 ptr::write_unaligned(place, UfContact::of(foot, size));

@@ -4,8 +4,8 @@
 //! |---|---|
 //! | has its own buttons, sliders and maps pressed by feet | [`FootInput`], fed in `eframe::App::raw_input_hook` |
 //! | has several sliders dragged by several feet at once | [`FootSlider`] |
-//! | shows floor, feet and controls | [`FloorView`]; on a second screen that is thrown onto the floor, [`Projector`] |
-//! | is tried without a floor | `SmallFloor` (feature `sim`), on which the mouse plays a foot |
+//! | shows floor, feet and controls | [`FloorView`]; [`Projector`] for a projector above the floor |
+//! | is tried without a floor | `SmallFloor` (feature `sim`), on which the mouse acts as a foot |
 //!
 //! Actions that must not happen by accident do not belong here: egui has no guards, supports one pointer and cannot
 //! undo the beginning of a press. Such actions are controls of the floor's layout (`Confirm`, `HoldToRun`), and a

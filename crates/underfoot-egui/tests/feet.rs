@@ -25,7 +25,7 @@ const PICTURE_S: f32 = 0.05;
 #[derive(Default)]
 struct App {
     clicks: u32,
-    /// A lying slider, a standing one, and two for feet.
+    /// A horizontal slider, a vertical one, and two for feet.
     values: [f32; 4],
 }
 

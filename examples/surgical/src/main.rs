@@ -42,8 +42,8 @@ const UNSEEN: Rect = Rect { min: pos2(0.0, 34.0), max: pos2(908.0, 800.0) };
 
 /// DICOM images read with the feet, while both hands are busy. NOT A MEDICAL DEVICE: an example of a user interface.
 ///
-/// Without a folder it shows a phantom. Without a floor, the small one in the window is a simulated one: press it with
-/// the mouse.
+/// Without a folder it shows a phantom. Without a floor, the small one in the window is a simulated one: press it
+/// with the mouse.
 #[derive(Parser, Debug)]
 #[command(args_conflicts_with_subcommands = true)]
 struct Args {

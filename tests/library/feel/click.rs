@@ -163,7 +163,7 @@ fn newtons_become_full_scales_by_each_actuators_own_measure() {
     sender.send(&cue(millis(10), &[(0, 1.0), (1, 1.0)], &click));
     sink.advance(millis(30)).unwrap();
     let peak = |channel: usize| sink.channel(channel).iter().fold(0.0_f32, |a, b| a.max(b.abs()));
-    // 4 N are a tenth of 40 N and four tenths of 10 N; the direct-current block takes a few percent.
+    // 4 N are a tenth of 40 N and four tenths of 10 N; the DC blocker takes a few percent.
     assert!((peak(0) - 0.1).abs() < 0.005, "{}", peak(0));
     assert!((peak(30) - 0.4).abs() < 0.02, "{}", peak(30));
     assert_eq!(peak(1), 0.0);

@@ -133,7 +133,7 @@ pub enum BoardFault {
     OneSilent,
     /// The converters repeat their readings while the packets continue.
     Frozen,
-    /// A row reads 60,000 counts from one millisecond to the next.
+    /// A row jumps to 60,000 counts within a millisecond.
     Jumped,
     /// Two corners of the plate under the pedal repeat, and the foot leaves.
     TwoCorners,

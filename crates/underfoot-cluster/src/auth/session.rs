@@ -10,8 +10,8 @@ use super::key::Key;
 use super::refusals::{Refusal, Refusals};
 use super::window::{Novelty, Window};
 
-/// Greatest age of the message that another one answers: nodes wait 150 ms for a gateway, and a message that was on its
-/// way for 100 ms is too late for a hold.
+/// Greatest age of the message that another one answers: nodes wait 150 ms for a gateway, and a message that was on
+/// its way for 100 ms is too late for a hold.
 const FRESH: Duration = Duration::from_millis(250);
 
 /// Time for which a silent sender is remembered; it must be longer than [`FRESH`].
@@ -41,9 +41,9 @@ impl Role {
 /// Proof of a message's age: its sender wrote it after it had received the message that it answers.
 #[derive(Clone, Copy, Debug)]
 struct Proof {
-    /// When this program sent the answered message.
+    /// Time at which this program sent the answered message.
     answered: Instant,
-    /// When the sender sent its answer, in microseconds of its clock.
+    /// Time at which the sender sent its answer, in microseconds of its clock.
     sent: u64,
 }
 
@@ -79,7 +79,7 @@ struct Peer {
     proof: Option<Proof>,
     /// Messages rejected before its first answer.
     unanswered: u64,
-    /// When its counter jumped. An answer to a message after that begins a new window.
+    /// Time at which its counter jumped. An answer to a later message begins a new window.
     jumped: Option<Instant>,
 }
 
@@ -97,8 +97,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session with the floor's `key`. `nonce` must be random and new for each session; `most_peers` is the number of
-    /// other programs that are remembered, at least one.
+    /// A session with the floor's `key`. `nonce` must be random and new for each session; `most_peers` is the number
+    /// of other programs that are remembered, at least one.
     #[must_use]
     pub fn new(role: Role, key: &Key, nonce: u64, most_peers: usize) -> Self {
         Self {

@@ -3,8 +3,8 @@
 /// Distance behind the greatest counter at which one is still accepted: datagrams overtake each other on a network.
 const BEHIND: u64 = 64;
 
-/// Greatest step of the counter: as many messages as a node sends in half an hour, so that a node that was cut off for
-/// that long is accepted at once.
+/// Greatest step of the counter: as many messages as a node sends in half an hour, so that a node that was cut off
+/// for that long is accepted at once.
 const AHEAD: u64 = 1 << 20;
 
 /// Greatest counter of any sender: a million messages a second for 290,000 years.
@@ -19,7 +19,7 @@ pub(super) enum Novelty {
     Overtaken,
     /// It has come, or lies behind the window.
     Repeated,
-    /// It is further beyond them than a sender gets.
+    /// It is further beyond them than any sender's counter gets.
     Jumped,
 }
 

@@ -9,8 +9,8 @@ use super::clock::NodeClock;
 use super::presses::Presses;
 use crate::message::{LayoutStanding, NodeMessage, Standing};
 
-/// Greatest age of an area's newest frame, by the gateway's own clock: the uncertainty of the node's clock adds to the
-/// age. All holds of the area are cancelled then.
+/// Greatest age of an area's newest frame, by the gateway's own clock: the uncertainty of the node's clock adds to
+/// the age. Beyond it, the gateway cancels all holds of the area.
 pub const LOST_AFTER: Duration = Duration::from_millis(100);
 
 /// Greatest time by which a frame may lie in the future: the uncertainty of a clock with an offset known to within a

@@ -35,7 +35,7 @@ pub(super) struct Presses {
     let_go: BTreeSet<String>,
     /// Controls without reports until no foot holds them.
     shut: BTreeSet<String>,
-    /// Held controls by the node's last list: pressed, and not shut.
+    /// Held controls by the node's last list: pressed, and not without reports.
     held: BTreeSet<String>,
     /// Controls in that list that were not pressed.
     unpressed: BTreeSet<String>,

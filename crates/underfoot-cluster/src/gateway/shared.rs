@@ -61,7 +61,7 @@ impl Shared {
         self.page = self.page.take().filter(|page| self.pages.contains(page));
     }
 
-    /// The area of the control called `id`.
+    /// The area of the control `id`.
     pub(super) fn owner(&self, id: &str) -> Option<usize> {
         self.controls.get(id).copied()
     }

@@ -90,7 +90,7 @@ const MESSAGES: &str = "messages to the gateway";
 /// Time without a message after which the gateway advances anyway.
 const PATIENCE: Duration = Duration::from_millis(2);
 
-/// Time between two messages to all nodes.
+/// Interval between two messages to all nodes.
 const TELL_EVERY: Duration = Duration::from_millis(50);
 
 /// Joins the nodes' reports until a stop.

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::hall::{AREAS, Hall, Program, say};
 use crate::lines::Line;
 
-/// Four people who together cross each border in both directions and work each control, `rounds` times.
+/// Four people who together cross each border in both directions and operate each control, `rounds` times.
 pub(crate) fn crowd(rounds: usize) -> String {
     let steps = |enter: &str, round: &str, leave: &str| {
         format!("Wait(ms: 1500), {enter} {} {leave}", round.repeat(rounds))

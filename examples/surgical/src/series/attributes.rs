@@ -16,7 +16,7 @@ pub struct Attributes<'a>(&'a InMemDicomObject);
 /// Reads the elements that a [guard](super::guard) has let pass.
 ///
 /// # Errors
-/// They contradict themselves.
+/// They are contradictory.
 pub fn parse(known: &[u8], encoding: Encoding) -> Result<InMemDicomObject, Unfit> {
     let read = InMemDicomObject::read_dataset_with_ts(known, &encoding.transfer_syntax());
     read.map_err(|error| Unfit::Damaged(chain(&error)))

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Largest file that is read, in bytes: beyond the largest series of a day's imaging in one file.
+/// Largest file that is read, in bytes: larger than the largest series of a day's imaging in one file.
 pub const LARGEST_FILE: u64 = 1 << 30;
 
 /// Greatest number of pixels kept at once, of all series: a gibibyte of them.
