@@ -1,4 +1,4 @@
-/* Prints the events of a floor, and stops with it. */
+/* Prints what feet do, and stops with the floor. */
 #include <stdio.h>
 #include <string.h>
 #include <underfoot.h>

@@ -1,4 +1,4 @@
-"""Prints the events of a floor: python follow.py 127.0.0.1:9000 map.ron, and elsewhere `underfoot simulate`."""
+"""Prints what feet do: python follow.py 127.0.0.1:9000 map.ron, and elsewhere `underfoot simulate`."""
 import sys, underfoot
 
 with underfoot.listen(*sys.argv[1:3]) as floor:
@@ -9,4 +9,4 @@ with underfoot.listen(*sys.argv[1:3]) as floor:
             case underfoot.ControlEvent(id, name):
                 print(id, name)
             case underfoot.LinkEvent(state):
-                print("boards:", state)  # "lost" has cancelled all holds; "live" comes by itself
+                print("boards:", state)  # "lost" has cancelled what was held; "live" comes by itself
