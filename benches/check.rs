@@ -1,4 +1,4 @@
-//! How long a layout takes to be read and judged: what somebody waits for who saves a file.
+//! The time for reading and checking a layout, for which a user waits after saving a file.
 
 use std::hint::black_box;
 
@@ -7,7 +7,7 @@ use underfoot::ergonomics;
 use underfoot::floor::{Floor, Geometry};
 use underfoot::schema::{Kinds, parse_layout};
 
-/// A layout of 500 controls on 24 x 24 tiles, each written by itself; `wrong` makes something wrong with each.
+/// A layout of 500 controls on 24 x 24 tiles, each in an entry of its own; `wrong` puts an error into each.
 fn page(wrong: bool) -> String {
     let kinds = ["button", "heavy_button", "round_button", "soft_button", "slider", "fader", "switch"];
     let mut text =
@@ -24,7 +24,7 @@ fn page(wrong: bool) -> String {
     text + "])\n"
 }
 
-/// Everything that `underfoot check` does with one file that has been read.
+/// The work of `underfoot check` on one file after reading it.
 fn check(text: &str, kinds: &Kinds, floor: &Floor) -> usize {
     match parse_layout(text, "page.ron", kinds, &floor.geometry) {
         Ok(loaded) => {

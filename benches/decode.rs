@@ -1,4 +1,4 @@
-//! What packets cost on their way from datagram to frame, and what hostile ones cost.
+//! The cost of packets on their way from datagram to frame, and the cost of hostile ones.
 //!
 //! `cargo bench --bench decode --no-default-features --features lab`
 
@@ -55,7 +55,7 @@ fn decode(c: &mut Criterion) {
 
 fn refuse(c: &mut Criterion) {
     let decoder = Decoder::new(&Floor::default());
-    // As large as the limits let through to the walk itself, and far larger.
+    // As large as the limits allow, so that the walk itself runs, and far larger.
     let roomy = Limits { bytes: 65_507, tags: 65_507, address: 65_507, ..Limits::SENSORS };
     let mut group = c.benchmark_group("refuse");
     let bombs = [
@@ -79,7 +79,7 @@ fn refuse(c: &mut Criterion) {
     group.finish();
 }
 
-/// Packets that are made before they are taken.
+/// Number of packets that are made before the measurement.
 const PACKETS_AHEAD: usize = 1500;
 
 fn assemble(c: &mut Criterion) {
@@ -88,8 +88,8 @@ fn assemble(c: &mut Criterion) {
         let floor = Floor::of(Geometry::of_paper_tiles(columns, rows).unwrap());
         let mut assembler = Assembler::new(&floor);
         let mut ms = 0;
-        // A decoder hands each packet on as soon as it is written. So no more milliseconds are made ahead than stay in a
-        // processor's own cache (half a megabyte), and what is measured is not how fast packets come from memory.
+        // A decoder passes each packet on as soon as it is written. So the packets made ahead stay within a
+        // processor's own cache (half a megabyte), and the result does not depend on the speed of the memory.
         let ahead = (PACKETS_AHEAD / floor.boards.len()).max(1) as u64;
         group.bench_function(format!("assemble {columns} x {rows}"), |b| {
             b.iter_batched_ref(
@@ -109,7 +109,8 @@ fn assemble(c: &mut Criterion) {
 }
 
 fn receive(c: &mut Criterion) {
-    // A sender may send twice what the boards of the floor do: with so many of them, more than it can here.
+    // A sender may send twice as many packets as the floor's boards do; with so many boards, the limit is never
+    // reached.
     let floor = Geometry::of_paper_tiles(6, 250).map(Floor::of).unwrap();
     let mut source = UdpSource::bind("127.0.0.1:0".parse().unwrap(), &floor).unwrap();
     let sender = UdpSocket::bind("127.0.0.1:0").unwrap();

@@ -1,8 +1,8 @@
-//! What one frame costs: `cargo bench --bench engine --no-default-features --features lab`.
+//! The cost of one frame: `cargo bench --bench engine --no-default-features --features lab`.
 //!
-//! Also what 500 controls cost against 20, on a floor of 24 x 24 tiles with ten people. Elsewhere
-//! two people walk on the paper's floor with the map layout; frames are recorded first, so that only the engine is
-//! measured. The whole path adds decoding six datagrams and assembling them.
+//! Also the cost of 500 controls against that of 20, on a floor of 24 x 24 tiles with ten people. Elsewhere two
+//! people walk on the paper's floor with the map layout; the frames are recorded first, so that the bench measures
+//! the engine only. The whole path adds decoding six datagrams and assembling them.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::hint::black_box;
@@ -18,7 +18,7 @@ use underfoot::sim::{self, FootDriver, Performance, Person, Scenario, Script, Si
 use underfoot::units::Instant;
 use underfoot::wire::{Batch, Decoder, SensorEncoder, SensorFormat, SensorPacket};
 
-/// Two people who walk up and down the floor for longer than is measured.
+/// Two walkers, up and down the floor for longer than the measurement.
 const WALKERS: &str = r#"
 Scenario(
     title: "Two walkers",
@@ -112,19 +112,20 @@ fn engine(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Tiles each way of the large floor, people on it, and milliseconds of their walk.
+/// Tiles each way of the large floor, number of people on it, and milliseconds of their walk.
 const SIDE: u16 = 24;
 const PEOPLE: usize = 10;
 const WALKED_MS: u32 = 3000;
 
-/// Buttons of six tenths of a tile in rows over the whole floor, so many of them, all in one region of each contact.
+/// The given number of buttons of six tenths of a tile in rows over the whole floor, all in one region of each
+/// contact.
 fn page_of(controls: usize, geometry: &Geometry) -> Layout {
     let mut text = format!(
         "Layout(version: 1, title: \"{controls} controls\",
          regions: [(id: \"all\", at: (0, 0), size: ({SIDE}, {SIDE}), cursor: Each)], widgets: ["
     );
     for number in 0..controls {
-        // Spread over the floor's tiles, the same density everywhere.
+        // Spread over the floor's tiles, with the same density everywhere.
         let tile = number * usize::from(SIDE) * usize::from(SIDE) / controls;
         let (column, row) = (tile % usize::from(SIDE), tile / usize::from(SIDE));
         text.push_str(&format!(
@@ -135,7 +136,7 @@ fn page_of(controls: usize, geometry: &Geometry) -> Layout {
     schema::parse_layout(&text, "bench", &Kinds::builtin(), geometry).unwrap().layout
 }
 
-/// Ten people who walk over 24 x 24 tiles with 20 and with 500 controls: the same frames for both.
+/// Ten walkers on 24 x 24 tiles with 20 and with 500 controls: the same frames for both.
 fn large(criterion: &mut Criterion) {
     let geometry = Geometry::of_paper_tiles(SIDE, SIDE).unwrap();
     let cast = (0..PEOPLE).map(|number| {

@@ -1,4 +1,4 @@
-//! The ground's part of a frame, of a snapshot and of a picture, on a pond with 2,000 pieces of crack.
+//! The ground's part of a frame, of a snapshot and of a drawing, on a pond with 2,000 pieces of crack.
 
 use std::hint::black_box;
 
@@ -14,7 +14,7 @@ use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 use underfoot::sense::{Contact, ContactId, ForceFrame, TileLoad};
 use underfoot::units::{Instant, Newtons};
 
-/// Somebody who stamps all over the pond until it has this many pieces of crack.
+/// Number of pieces of crack at which the stamping ends.
 const PIECES: usize = 2000;
 
 struct Stamper {
@@ -61,7 +61,7 @@ fn ground(criterion: &mut Criterion) {
     let mut stamper = Stamper { grounds, geometry, before: frame.clone(), frame, millis: 0 };
     let mut snapshot = Snapshot::default();
     let pieces = |snapshot: &Snapshot| snapshot.grounds.first().map_or(0, |state| state.cracks.len());
-    // Within the time that ice takes to heal.
+    // Within the time in which ice heals.
     while pieces(&snapshot) < PIECES && stamper.millis < 80_000 {
         (0..200).for_each(|_| stamper.step());
         stamper.grounds.show(&mut snapshot.grounds);

@@ -1,4 +1,4 @@
-//! How much faster than real time the renderer is, on one core: the loads of `underfoot capacity`.
+//! The speed of the renderer relative to real time, on one core, with the loads of `underfoot capacity`.
 //!
 //! Each iteration renders one second, so criterion's "elem/s" is the real-time
 //! factor, and 100 divided by it is the share of a core in percent.
@@ -31,7 +31,7 @@ fn whole_renderer(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The banks alone, to memory: what other synthesis systems were measured by.
+/// The banks alone, into memory, as in measurements of other synthesis systems.
 fn banks_alone(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("banks alone, 36 channels, 96 kHz");
     group.throughput(Throughput::Elements(1));

@@ -14,7 +14,7 @@ use sense_support::{Crowd, Moment};
 use underfoot::parallel::ThreadPool;
 use underfoot::sense::{ForceFrame, Method, Sensing};
 
-/// Senses a frame for each of `moments`.
+/// Senses one frame for each of `moments`.
 fn sense(sensing: &mut Sensing, frame: &mut ForceFrame, moments: &[Moment]) {
     let mut before = None;
     for moment in moments {
@@ -45,7 +45,7 @@ fn frames(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The densest crowd on as many threads as there are cores, and on half of them, beside one.
+/// The densest crowd on as many threads as there are cores, on half of them, and on one.
 fn thread_pools(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("sense on several threads");
     let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);

@@ -1,4 +1,4 @@
-//! How much faster than real time what lasts is rendered, on one core: 36 voices of each model, one on every tile.
+//! The speed of sustained voices relative to real time, on one core: 36 voices of each model, one on every tile.
 //!
 //! Each iteration renders one second, so criterion's "elem/s" is the real-time factor.
 

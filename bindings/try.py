@@ -1,4 +1,4 @@
-r"""Programs in other languages hear what JSON lines say, and believe no hold for long.
+r"""Programs in other languages receive the same events as JSON lines, and end each hold in time.
 
     python3 bindings/try.py [--rounds N] [--at-once N] [--strict] UNDERFOOT LAYOUT \
         --own NAME COMMAND... [--web NAME COMMAND...] [--browser NAME COMMAND...]
@@ -46,13 +46,13 @@ HOLD = """Scenario(
         Press(widget: "beam", force_n: 160, hold_ms: 60000),
     ],
 )"""
-# What a program may still believe after the packets have stopped, in seconds.
+# Time after the last packet within which a program must end a hold, in seconds.
 SOON = 0.150
 TRIES = 5
 
 
 class Relay:
-    """Passes what comes to each of `targets`, until it is cut."""
+    """Forwards packets to each of `targets`, until it is cut."""
 
     def __init__(self, targets):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -108,12 +108,12 @@ class Reader:
         self.thread.join()
 
     def complaint(self):
-        """The end of what it said to people."""
+        """The end of its standard error."""
         self.errors.seek(0)
         return self.errors.read().decode(errors="replace")[-2000:] or "it says nothing"
 
     def events(self):
-        """What happened to controls, and of each drag the last value.
+        """The events of controls, with only the last value of each drag.
 
         Each program assembles the packets itself: where the system lost or delayed one, forces differ a little."""
         told = []
@@ -134,7 +134,7 @@ class Reader:
             time.sleep(0.005)
 
     def wait_held(self, held, since=0.0):
-        """When the program first said that the control is held or not, after `since`; None if it does not in 20 s."""
+        """First time after `since` at which the program printed that the control is held or not; None after 20 s."""
         end = time.monotonic() + 20
         while time.monotonic() < end:
             for line in list(self.lines):
@@ -156,7 +156,7 @@ def alike(one, other):
     return len(one) == len(other) and all(map(same, one, other))
 
 
-# Below the ports that the system hands out by itself: none of these is taken between the look and its use.
+# Below the ports that the system assigns by itself: none of these is taken between the check and its use.
 PORTS = itertools.count(random.randrange(10_000, 20_000))
 
 
@@ -176,10 +176,10 @@ def said(address):
 
 
 class Trial:
-    """A program that listens, with the floor that tells it where it has none of its own, and the feet.
+    """A listening program, with a floor that reports to it if it has none of its own, and the feet.
 
-    The feet send to it themselves unless what they send `is_relayed`: a relay may lag behind them on a busy machine, and
-    passes on what waits in it when they have gone."""
+    The feet send to it directly unless their packets are relayed (`is_relayed`): a relay may lag behind on a busy
+    machine, and forwards its backlog after they have gone."""
 
     def __init__(self, underfoot, layout, way, command, control, folder, floor=(), is_relayed=True):
         self.underfoot, self.layout, self.folder = underfoot, layout, Path(tempfile.mkdtemp(dir=folder))
@@ -230,7 +230,7 @@ def wait_open(address, floor):
 
 def same_events(underfoot, layout, way, name, command, folder):
     trial = Trial(underfoot, layout, way, command, "home", folder)
-    # The program says so to people only.
+    # The program reports that on standard error only.
     time.sleep(1)
     trial.walk(VISIT, layout)
     trial.feet.wait()
@@ -273,7 +273,7 @@ ENDS_OF["--browser"] = ENDS_OF["--web"]
 
 
 def believed_for(underfoot, way, command, folder, what):
-    """For how long a program believes that the control is held, once `what` has ended that."""
+    """The time for which a program keeps a hold after `what` has ended it."""
     page, floor = Path(folder) / "beam.ron", Path(folder) / "floor.ron"
     for _ in range(TRIES):
         trial = Trial(underfoot, str(page), way, command, "beam", folder, [str(floor)], what == CUT)
@@ -281,12 +281,12 @@ def believed_for(underfoot, way, command, folder, what):
         held = trial.reader.wait_held(True)
         if held:
             break
-        # A machine that stopped the packets for 100 ms: the foot that presses then must lift first.
+        # The machine stopped the packets for 100 ms: a foot that presses then must lift first.
         print("%s: the hold did not begin, and is walked again" % " ".join(command), flush=True)
         trial.end()
     else:
         raise trial.reader.never_says(True)
-    # Held for long enough that nothing of the beginning is still on its way.
+    # After this time no message of the beginning is still on its way.
     time.sleep(0.2)
     ended_at = time.monotonic()
     ENDS_OF[way][what](trial)
@@ -299,7 +299,7 @@ def believed_for(underfoot, way, command, folder, what):
 
 def believed(underfoot, way, name, command, folder, args):
     good = True
-    # Several browsers take the processor from the feet, and the floor is lost before they press.
+    # Several browsers would use up the processor, and the floor would be lost before the feet press.
     with ThreadPoolExecutor(1 if way == "--browser" else args.at_once) as pool:
         def begin(what):
             return pool.submit(believed_for, underfoot, way, command, folder, what)
@@ -308,7 +308,7 @@ def believed(underfoot, way, name, command, folder, args):
             times = [one.result() for one in begun]
             print("%s: %s, believed for %.0f ms (median of %d), %.0f ms at most"
                   % (name, what, 1000 * statistics.median(times), args.rounds, 1000 * max(times)), flush=True)
-            # A machine that has something else to do delays a round; a rule that is broken delays all of them.
+            # A busy machine delays one round; an error in a program delays all of them.
             good &= (max if args.strict else min)(times) <= SOON
     return good
 
@@ -324,7 +324,7 @@ def programs_of(own):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--rounds", type=int, default=2)
-    # Nearly all of a round is waiting for the feet.
+    # Most of a round is spent waiting for the feet.
     parser.add_argument("--at-once", type=int, default=4)
     parser.add_argument("--strict", action="store_true")
     parser.add_argument("underfoot")
@@ -334,11 +334,11 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         good = True
         (Path(folder) / "beam.ron").write_text(PAGE)
-        # What a lab would find out about the simulated floor.
+        # The calibration that a lab would measure on the simulated floor.
         subprocess.run([args.underfoot, "simulate", "--seconds", "0.1", "--send", said(free_address(socket.SOCK_DGRAM)),
                         "--write-floor", str(Path(folder) / "floor.ron")], check=True, capture_output=True)
         for way, name, command in programs:
-            # A machine that stops for 100 ms takes the link from both, and not in the same moment.
+            # A machine that stops for 100 ms interrupts both links, but not at the same time.
             good &= any(same_events(args.underfoot, args.layout, way, name, command, folder) for _ in range(TRIES))
             good &= believed(args.underfoot, way, name, command, folder, args)
     sys.exit(not good)

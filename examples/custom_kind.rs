@@ -1,4 +1,4 @@
-//! A control kind of one's own, in RON: a stiff pedal that clicks deeply. Needs no hardware.
+//! A custom control kind, in RON: a stiff pedal that clicks deeply. Needs no hardware.
 
 use underfoot::engine::Engine;
 use underfoot::floor::Floor;
@@ -6,7 +6,7 @@ use underfoot::schema::{self, Kinds};
 use underfoot::sense::{ForceFrame, Method};
 use underfoot::units::{Instant, Newtons};
 
-/// What a stiff pedal does, feels like and looks like; a file in a `widgets` folder would do as well.
+/// Behaviour, feel and look of a stiff pedal; a file in a `widgets` folder works as well.
 const STIFF_PEDAL: &str = r##"
 Kind(
     name: "stiff_pedal",
@@ -29,7 +29,7 @@ Layout(
 )
 "#;
 
-/// Leans on the pedal and prints what comes of it.
+/// Leans on the pedal and prints the events.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let geometry = Floor::default().geometry;
     let mut kinds = Kinds::builtin();
@@ -38,7 +38,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pedal = layout.widgets[0].area.centre();
     let mut engine = Engine::new(geometry, layout, Method::Tracker);
 
-    // A foot leans on the pedal ever harder for a second, then lets go.
+    // A foot leans on the pedal ever harder for a second, then releases it.
     for millis in 0..1500_u16 {
         let mut frame = ForceFrame::empty(&geometry);
         frame.at = Instant::from_millis(millis.into());

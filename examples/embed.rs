@@ -7,7 +7,7 @@ use underfoot::sense::{ForceFrame, Method};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value};
 
-/// Presses the light and prints what the app hears.
+/// Presses the light and prints the events.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A floor from a layout.
     let floor = Floor::default();
@@ -16,7 +16,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let light = layout.widgets[layout.widget_index("light").ok_or("no light here")?].area.centre();
     let mut engine = Engine::new(floor.geometry, layout, Method::Tracker);
 
-    // Frames in, one a millisecond, from whatever measures them. Here 150 N lie on the light for a fifth of a second.
+    // Frames in, one a millisecond, from any source. Here 150 N lie on the light for a fifth of a second.
     for millis in 0..1000 {
         let mut frame = ForceFrame::empty(&floor.geometry);
         frame.at = Instant::from_millis(millis);

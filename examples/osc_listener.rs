@@ -16,7 +16,7 @@ use held::Held;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let socket = UdpSocket::bind("127.0.0.1:9001")?;
-    // Silence ends what is held, so it must be noticed.
+    // Silence ends holds, so the loop must not block.
     socket.set_read_timeout(Some(Duration::from_millis(20)))?;
     println!("Listening on {}; Ctrl-C ends it.", socket.local_addr()?);
     let (mut held, mut before) = (Held::default(), Vec::new());
@@ -32,10 +32,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// Waits for one datagram and gives what it says of controls; resets the zoom whenever `home` is clicked.
+/// Waits for one datagram and returns its reports about controls; resets the zoom at each click on `home`.
 ///
 /// # Errors
-/// What the socket says, or that the datagram is not OSC.
+/// An error of the socket, or a datagram that is not OSC.
 pub fn listen(socket: &UdpSocket, floor: &str, held: &mut Held) -> Result<Vec<String>, Box<dyn Error>> {
     let mut bytes = [0; 1536];
     let length = match socket.recv(&mut bytes) {
@@ -66,7 +66,7 @@ pub fn listen(socket: &UdpSocket, floor: &str, held: &mut Held) -> Result<Vec<St
     Ok(lines)
 }
 
-/// The messages of a packet, bundles unwrapped.
+/// The messages of a packet, with bundles unpacked.
 fn messages(packet: OscPacket) -> Vec<OscMessage> {
     match packet {
         OscPacket::Message(message) => vec![message],

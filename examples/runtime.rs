@@ -1,4 +1,4 @@
-//! An app that feet drive. Start it, then send it a floor: `underfoot simulate --send 127.0.0.1:9000`.
+//! An app operated with the feet. Start it, then send it a floor: `underfoot simulate --send 127.0.0.1:9000`.
 
 use std::error::Error;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-/* Checks the library for C: ./check RECORDING LAYOUT. Prints what is wrong, and ends with 1 then. */
+/* Checks the library for C: ./check RECORDING LAYOUT. Prints each failure, and then ends with 1. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +10,7 @@ static int wrong;
 
 static char error[1024];
 
-/* A recording is played in one line, with the same events, to its end. */
+/* One call replays a recording, with the same events, to its end. */
 static void replays(const char *recording)
 {
     uf_options options = { .size = sizeof options, .every_change = 1, .floor_path = NULL };
@@ -57,7 +57,7 @@ static void controls(uf_session *floor)
     CHECK(uf_control_id(floor, -1, id, sizeof id) == UF_UNKNOWN);
 }
 
-/* A misspelt name is refused, with the nearest one; asked whether it is held, 0 is safe. */
+/* A misspelt name is refused, with the nearest one; uf_held returns 0 for it, which is safe. */
 static void names(uf_session *floor)
 {
     static const char expected[] = "there is no control \"zom\"; did you mean \"zoom\"?";
@@ -72,7 +72,7 @@ static void names(uf_session *floor)
     CHECK(uf_held(floor, "home") == 0);
 }
 
-/* A number beyond the range becomes the nearest end of it; what is no number is refused. */
+/* A number beyond the range becomes the nearest end of it; NaN is refused. */
 static void values(uf_session *floor)
 {
     CHECK(uf_set_number(floor, "zoom", 7) == UF_OK && number(floor, "zoom") == 1);
@@ -81,7 +81,7 @@ static void values(uf_session *floor)
     CHECK(!strcmp(uf_last_error(), "zoom: the value is not a finite number"));
 }
 
-/* A control that is off says why. */
+/* A control that is off has a reason. */
 static void reasons(uf_session *floor)
 {
     char text[UF_TEXT_SIZE];
@@ -111,7 +111,7 @@ int main(int argc, char **argv)
     char address[64];
     CHECK(uf_address(floor, address, sizeof address) == (int)strlen(address));
     CHECK(!strncmp(address, "127.0.0.1:", 10) && strcmp(address, "127.0.0.1:0"));
-    /* Where it listens already nobody else can; that names no option of a program. */
+    /* The address is in use; the message names no option of a program. */
     CHECK(!uf_session_listen(address, argv[2], NULL, error, sizeof error) && !strstr(error, "--"));
     controls(floor);
     names(floor);

@@ -1,10 +1,10 @@
-/* Prints what feet do on a floor as JSON lines, until Ctrl-C.
+/* Prints the events of a floor as JSON lines, until Ctrl-C.
  *
  *   gcc demo.c $(pkg-config --cflags --libs underfoot) -o demo && ./demo 127.0.0.1:9000 map.ron
  *
- * A third argument names a control: whenever it begins or ends to be held, a line says so with the machine's clock.
- * A fourth is the floor file. SIGTERM ends the floor as Ctrl-C does, SIGUSR1 makes this program fail, and SIGUSR2 closes
- * the floor. */
+ * A third argument names a control: each beginning and end of a hold prints a line with the machine's clock. A fourth
+ * is the floor file. SIGTERM ends the floor like Ctrl-C, SIGUSR1 makes this program fail, and SIGUSR2 closes the
+ * floor. */
 #include <inttypes.h>
 #include <poll.h>
 #include <setjmp.h>
@@ -21,7 +21,7 @@ static void note(int signal)
     asked = signal;
 }
 
-/* Ids are as their layout's author wrote them: what JSON does not take is escaped. */
+/* Ids come from the layout unchanged: characters that JSON does not allow are escaped. */
 static void print_text(const char *text)
 {
     putchar('"');
@@ -54,7 +54,7 @@ static void print_event(const uf_event *event)
     else printf("%" PRId64 "}\n", event->contact);
 }
 
-/* Says so when the control begins or ends to be held; nothing is held on a floor that is closed. */
+/* Prints a line when the hold of the control begins or ends; a closed floor has no holds. */
 static void look(const uf_session *floor, const char *id)
 {
     static int was_held;
@@ -69,8 +69,8 @@ static void look(const uf_session *floor, const char *id)
     was_held = held;
 }
 
-/* Follows the floor until it is over. Code of one's own may leave it as here, as code does that ends in an error of Lua
- * or libpng: functions of the library have returned then. */
+/* Follows the floor until it is over. A program may leave this function by longjmp, as errors of Lua or libpng do: no
+ * function of the library is active then. */
 static int follow(uf_session *floor, const char *watched)
 {
     int status;

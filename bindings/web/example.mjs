@@ -1,4 +1,4 @@
-// The example page in headless Chromium goes on after its floor was gone for a moment.
+// The example page in headless Chromium continues after its floor was gone for a moment.
 //
 //     node example.mjs CHROMIUM UNDERFOOT
 import { spawn } from "node:child_process";
@@ -18,7 +18,7 @@ async function listening(server) {
   return server.address().port;
 }
 
-// A port that was free a moment ago, and that the floor takes again each time.
+// A port that was free just before, and that each floor uses again.
 const probe = createServer();
 const address = `127.0.0.1:${await listening(probe)}`;
 probe.close();
@@ -40,7 +40,7 @@ try {
   await page.goto(`http://127.0.0.1:${port}/page.html?floor=${address}`);
   const says = (id, text) =>
     page.waitForFunction((id, text) => document.getElementById(id)?.textContent.includes(text), {}, id, text);
-  // The range stands in the first line.
+  // The first line holds the range.
   await says("controls", "0 to 1");
   for (const end of ["SIGKILL", "SIGTERM"]) {
     floor.kill(end);

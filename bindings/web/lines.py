@@ -1,8 +1,8 @@
-"""The floor over WebSocket, without a browser: prints its events, and when a control begins and ends to be held.
+"""The floor over WebSocket, without a browser: prints its events, and the beginning and end of each hold of a control.
 
     python3 lines.py 127.0.0.1:9002 beam
 
-It goes by the rule of the floor's own page: what was not said to be held for 100 ms is not held. SIGTERM ends it, SIGUSR1
+Like the floor's own page, it ends a hold after 100 ms without a report of it. SIGTERM ends it, SIGUSR1
 makes it fail at each message, and SIGUSR2 closes its connection.
 """
 
@@ -41,7 +41,7 @@ for name in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGTERM):
 
 
 def frames():
-    """Takes the whole frames out of what has come: RFC 6455, 5.2. A server does not mask."""
+    """Takes the whole frames out of the received bytes: RFC 6455, 5.2. A server does not mask."""
     global waiting
     while len(waiting) >= 2:
         opcode, length, begin = waiting[0] & 15, waiting[1] & 127, 2
@@ -80,7 +80,7 @@ while signal.SIGTERM not in asked:
     if signal.SIGUSR2 in asked and floor:
         floor = floor.close()
     if not floor:
-        # Nobody is there any more; the page would try again.
+        # The server is gone; the page would try again.
         time.sleep(0.01)
     elif select.select([floor], [], [], 0.01)[0]:
         try:
@@ -98,6 +98,6 @@ while signal.SIGTERM not in asked:
             try:
                 take(json.loads(payload))
             except RuntimeError as error:
-                # As in a browser, where a message is lost and the page goes on.
+                # Like in a browser: the message is lost and the page continues.
                 print(error, file=sys.stderr)
     look()

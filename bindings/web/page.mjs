@@ -1,9 +1,10 @@
-// The floor's page in headless Chromium: prints the lines that it hears, and when it shows a control as held.
+// The floor's page in headless Chromium: prints the lines that it receives, and the times at which it shows a
+// control as held.
 //
 //     node page.mjs CHROMIUM 127.0.0.1:9002 beam [SCREENSHOT]
 //
-// SIGTERM ends it, after a picture of the page if one is wanted; SIGUSR1 makes the page fail at each message, and SIGUSR2
-// closes its connection.
+// SIGTERM ends it, after a screenshot of the page if SCREENSHOT is given; SIGUSR1 makes the page fail at each
+// message, and SIGUSR2 closes its connection.
 import puppeteer from "puppeteer-core";
 
 const [executablePath, address, watched, picture] = process.argv.slice(2);
@@ -35,7 +36,7 @@ wire.on("Network.webSocketFrameReceived", ({ response }) => {
   const line = JSON.parse(response.payloadData);
   if (line.id && line.event !== "state") print(line);
 });
-// What a person sees, by the clock that all programs of this machine share.
+// The visible state, by the clock that all programs of this machine share.
 await page.exposeFunction("sayHeld", (held) => {
   const now_s = Number(process.hrtime.bigint()) / 1e9;
   print({ now_s, id: watched, held });
@@ -43,7 +44,7 @@ await page.exposeFunction("sayHeld", (held) => {
 await page.goto(`http://${address}/`);
 await page.waitForSelector("#row-" + watched);
 if (await page.$("#row-zoom input")) {
-  // Somebody sets a control on the page.
+  // A user sets a control on the page.
   await page.evaluate(() => {
     const input = document.querySelector("#row-zoom input");
     input.value = 0.5;
@@ -58,7 +59,7 @@ await page.evaluate((id) => {
     if (held !== was) sayHeld(held);
     was = held;
   };
-  // The rows are made anew with each layout.
+  // Each layout creates new rows.
   new MutationObserver(look).observe(document.querySelector("#controls"), { childList: true, subtree: true });
   look();
 }, watched);

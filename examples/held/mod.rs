@@ -1,33 +1,33 @@
-//! What feet hold, as far as an app may believe it.
+//! The controls held by feet, with the time-out that an app must apply.
 //!
-//! The floor repeats every 20 ms what is held. An app that has not heard for 100 ms that a control
-//! is held takes it for released, whatever it heard last: the floor, the network or the cable may
-//! be gone, and none of them can say so.
+//! The floor repeats the held controls every 20 ms. An app that has received no report of a hold for 100 ms treats
+//! the control as released, for any last report: the floor, the network or the cable may have failed, and none of
+//! them can report that.
 
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use rosc::{OscMessage, OscType};
 
-/// How long a control that was said to be held is believed to be.
+/// Time after its last report at which a hold expires.
 pub const BELIEVED_FOR: Duration = Duration::from_millis(100);
 
-/// After so long without a number a floor that counts from the beginning again is believed.
+/// Time without a report after which a floor that restarts its sequence numbers is accepted.
 const FORGOTTEN_AFTER: Duration = Duration::from_secs(1);
 
-/// The controls that feet hold.
+/// The controls held by feet.
 #[derive(Debug, Default)]
 pub struct Held {
-    /// When each was last said to be held.
+    /// Time of the last report that each is held.
     heard: HashMap<String, Instant>,
-    /// The number of the newest report, and when it came.
+    /// The sequence number of the newest report, and the time of its arrival.
     newest: Option<(i32, Instant)>,
 }
 
 impl Held {
-    /// Takes in a message `…/widget/<id>/held <0 or 1> <sequence>` that came at `now`; true if it is one.
+    /// Processes a message `…/widget/<id>/held <0 or 1> <sequence>` that arrived at `now`. Returns whether it is one.
     ///
-    /// One that an older report has sent, and a newer one has overtaken, changes nothing.
+    /// A message of an older report that a newer one has overtaken changes nothing.
     pub fn take(&mut self, message: &OscMessage, now: Instant) -> bool {
         let widget = message.addr.split_once("/widget/").map(|(_, widget)| widget);
         let Some(id) = widget.and_then(|widget| widget.strip_suffix("/held")) else { return false };
@@ -47,7 +47,7 @@ impl Held {
         true
     }
 
-    /// The controls that are held at `now`; to be asked at least every 20 ms, for silence says nothing.
+    /// The controls that are held at `now`; call it at least every 20 ms, since holds expire in silence.
     pub fn at(&mut self, now: Instant) -> Vec<String> {
         self.heard.retain(|_, heard| now.duration_since(*heard) < BELIEVED_FOR);
         let mut held: Vec<String> = self.heard.keys().cloned().collect();

@@ -1,4 +1,4 @@
-//! What inputs are made from.
+//! The inputs from which the mutator starts.
 
 use std::path::Path;
 
@@ -25,12 +25,12 @@ pub fn of(target: &str) -> Vec<Vec<u8>> {
         _ => {}
     }
     files(&format!("corpus/{target}"), &mut inputs);
-    // Which input a seed makes must not depend on how a folder lists its files.
+    // The input of a seed must not depend on the order in which a folder lists its files.
     inputs.sort();
     inputs
 }
 
-/// The files of a folder of this repository, if it is there; messages beside broken layouts left out.
+/// The files of a folder of this repository, if it is there, without the messages beside broken layouts.
 fn files(folder: &str, inputs: &mut Vec<Vec<u8>>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     for entry in folder.read_dir().into_iter().flatten().flatten() {
@@ -41,7 +41,7 @@ fn files(folder: &str, inputs: &mut Vec<Vec<u8>>) {
     }
 }
 
-/// What boards send in each format, as messages and bundled, and what apps ask.
+/// The packets of boards in each format, as messages and bundled, and the requests of apps.
 fn datagrams() -> Vec<Vec<u8>> {
     let floor = Floor::default();
     let sim = SimFloor::new(&floor, SimConfig::default(), 1);
@@ -81,7 +81,7 @@ fn datagrams() -> Vec<Vec<u8>> {
     datagrams
 }
 
-/// Floor files as they are written: plain, and calibrated.
+/// Floor files, plain and calibrated.
 fn floors() -> Vec<Vec<u8>> {
     let wired =
         Floor::of(underfoot::floor::Geometry::of_paper_tiles(3, 2).unwrap_or(Floor::default().geometry));
@@ -94,7 +94,7 @@ fn floors() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Tables of a laboratory, cut short, and of forces.
+/// Tables of a laboratory, shortened, and of forces.
 fn tables() -> Vec<Vec<u8>> {
     let floor = Floor::default();
     let sim = SimFloor::new(&floor, SimConfig::default(), 1);

@@ -1,8 +1,8 @@
 //! Damaged inputs for every reader: `cargo run --release -- TARGET COUNT [SEED]`.
 //!
-//! Inputs are made from a corpus (the files that are shipped, those under `corpus/`, and packets of a simulated floor)
-//! by a mutator with a seed. A reader may refuse whatever it is given; it may not panic, and it may not take longer
-//! than [`SLOW`]. What does is kept under `found/`, and the status is 1.
+//! A mutator with a seed makes inputs from a corpus: the shipped files, those under `corpus/`, and packets of a
+//! simulated floor. A reader may refuse any input; it may not panic, and it may not take longer than [`SLOW`]. An
+//! input that causes either is saved under `found/`, and the exit status is 1.
 
 mod corpus;
 mod mutate;
@@ -18,7 +18,7 @@ use rand_pcg::Pcg64Mcg;
 
 use targets::Target;
 
-/// How long one input may take: a person who waits for a file of these sizes does not notice.
+/// Greatest time for one input: unnoticeable for a user with a file of this size.
 const SLOW: Duration = Duration::from_millis(500);
 
 fn main() -> ExitCode {
@@ -48,7 +48,7 @@ fn run(target: &mut Target, count: u64, seed: u64) -> ExitCode {
         bytes += input.len() as u64;
         let mut took = Duration::MAX;
         let mut read = Ok(false);
-        // A machine that is busy with something else is slow once, a reader every time.
+        // A busy machine is slow once, a slow reader every time.
         for _ in 0..4 {
             let started = Instant::now();
             read = panic::catch_unwind(AssertUnwindSafe(|| target.read(&input)));

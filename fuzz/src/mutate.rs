@@ -1,9 +1,9 @@
-//! Inputs made from others: cut, repeated, mixed, with bits, numbers and words where they do not belong.
+//! Makes inputs from others: cut, repeated, mixed, with misplaced bits, numbers and words.
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// What readers of text and numbers stumble over.
+/// Words with a meaning for readers of text and numbers.
 const WORDS: [&[u8]; 40] = [
     b"(",
     b")",
@@ -47,10 +47,10 @@ const WORDS: [&[u8]; 40] = [
     b"\x7f\xff\xff\xff",
 ];
 
-/// Most changes of one input.
+/// Greatest number of changes in one input.
 const MOST: u32 = 8;
 
-/// Makes an input of `corpus`, one in fifty of nothing.
+/// Makes an input from `corpus`; one in fifty is random.
 pub fn make(corpus: &[Vec<u8>], most_bytes: usize, rng: &mut Pcg64Mcg, input: &mut Vec<u8>) {
     input.clear();
     if corpus.is_empty() || rng.random_range(0..50) == 0 {
@@ -65,7 +65,7 @@ pub fn make(corpus: &[Vec<u8>], most_bytes: usize, rng: &mut Pcg64Mcg, input: &m
     input.truncate(most_bytes);
 }
 
-/// A stretch of `length` bytes, short ones more often.
+/// A range within `length` bytes, short ones more often.
 fn stretch(length: usize, rng: &mut Pcg64Mcg) -> std::ops::Range<usize> {
     if length == 0 {
         return 0..0;
@@ -100,14 +100,14 @@ fn change(corpus: &[Vec<u8>], rng: &mut Pcg64Mcg, input: &mut Vec<u8>) {
             }
         }
         7 => {
-            // A digit becomes another one, or many.
+            // Replaces a digit by another one, or by many.
             if let Some(found) = (at..input.len()).find(|&place| input[place].is_ascii_digit()) {
                 let digits = b"0987654321".repeat(rng.random_range(0..4));
                 input.splice(found..=found, digits.into_iter().chain([b'0' + rng.random_range(0..10_u8)]));
             }
         }
         8 => {
-            // A 32-bit number, as OSC has them.
+            // A 32-bit number, as in OSC.
             let number = [0_u32, 1, u32::MAX, i32::MAX as u32, 0x8000_0000, rng.random()];
             let bytes = number[rng.random_range(0..number.len())].to_be_bytes();
             let place = at & !3;

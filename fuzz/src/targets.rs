@@ -9,11 +9,11 @@ use underfoot::source::Faults;
 use underfoot::units::Instant;
 use underfoot::wire::{Batch, Decoder};
 
-/// What can be tried.
+/// The names of the targets.
 pub const NAMES: [&str; 8] =
     ["datagrams", "layouts", "effects", "floors", "scenarios", "csv", "ahap", "faults"];
 
-/// A reader with what it needs.
+/// A reader with its dependencies.
 pub struct Target {
     name: &'static str,
     floor: Floor,
@@ -22,7 +22,7 @@ pub struct Target {
     decoder: Decoder,
     assembler: Assembler,
     batch: Batch,
-    /// Datagrams so far: they come a tenth of a millisecond apart.
+    /// Number of datagrams so far; they come a tenth of a millisecond apart.
     count: u64,
 }
 
@@ -49,18 +49,18 @@ impl Target {
         self.name
     }
 
-    /// The longest input: what a datagram carries, or a file that is read in a moment.
+    /// Length of the longest input: that of a datagram, or of a file that is read at once.
     pub fn most_bytes(&self) -> usize {
         if self.name == "datagrams" { 65_507 } else { 32 << 10 }
     }
 
-    /// Reads `input`; whether it was taken.
+    /// Reads `input`; returns whether the reader accepted it.
     pub fn read(&mut self, input: &[u8]) -> bool {
         if self.name == "datagrams" {
             return self.take(input);
         }
         let Ok(text) = std::str::from_utf8(input) else {
-            // Files that are not UTF-8 are refused before anything else.
+            // Readers of files refuse everything that is not UTF-8 first.
             return false;
         };
         let geometry = &self.floor.geometry;
@@ -92,7 +92,7 @@ impl Target {
         }
     }
 
-    /// Everything behind the socket.
+    /// Processes a datagram like the code behind the socket.
     fn take(&mut self, input: &[u8]) -> bool {
         self.count += 1;
         let now = Instant::from_micros(self.count * 100);
@@ -109,7 +109,7 @@ impl Target {
     }
 }
 
-/// Whether every row of a force table is good; what it says is finite.
+/// Whether every row of a force table is valid and all its numbers are finite.
 fn is_force_table(text: &str, geometry: &Geometry) -> bool {
     let Ok(mut table) = ForceTable::new(text.as_bytes(), *geometry) else { return false };
     let mut frame = ForceFrame::empty(geometry);

@@ -25,7 +25,8 @@ fn simulated_parts_come_back_within_one_percent_through_two_percent_of_noise() {
     let noise = Normal::new(1.0, 0.02).unwrap();
     for clean in &table.sensors {
         let truth = clean.judge().fit.unwrap().calibration.numbers();
-        // Eight seconds of a slow press at 1 kHz: each load 200 times, the load cell off by 2 % each time.
+        // Eight seconds of a slow press at 1 kHz: each load 200 times, with an error of the load cell of 2 % each
+        // time.
         let points = clean.points.iter().flat_map(|point| std::iter::repeat_n(*point, 200));
         let points: Vec<_> =
             points.map(|point| LoadPoint::new(point.volts, point.force * noise.sample(&mut rng))).collect();
@@ -42,7 +43,7 @@ fn simulated_parts_come_back_within_one_percent_through_two_percent_of_noise() {
 fn tables_of_a_simulated_floor_calibrate_and_map_it() {
     let nominal = small_floor();
     let sim = simulated(&nominal);
-    // The tare was measured through slightly other curves; it follows the new ones.
+    // The tare was measured with slightly different curves; it follows the new ones.
     let mut floor = sim::calibrated(&nominal, &sim, 2).unwrap();
     let table = LoadTable::read(sim::load_table(&sim, 1).as_bytes(), &floor.geometry).unwrap();
     for loads in &table.sensors {
@@ -61,7 +62,7 @@ fn tables_of_a_simulated_floor_calibrate_and_map_it() {
 
 #[test]
 fn places_alone_teach_the_part_of_the_distortion_that_no_force_changes() {
-    // A plate that bends: everything is seen a tenth too far inside, and a little to the east.
+    // A plate that bends: all estimates lie a tenth too far inside, and a little to the east.
     let floor = small_floor();
     let mut text = String::from("true_x_m,true_y_m,est_x_m,est_y_m\n");
     let centre = floor.geometry.centre(TileId::new(1, 1));
@@ -80,7 +81,7 @@ fn places_alone_teach_the_part_of_the_distortion_that_no_force_changes() {
 fn a_part_beyond_repair_is_named() {
     let floor = small_floor();
     let text = sim::load_table(&simulated(&floor), 1);
-    // Its wires are swapped: volts fall as the load grows.
+    // Its wires are swapped: volts fall with increasing load.
     let broken: Vec<String> = text
         .lines()
         .map(|line| match line.strip_prefix("1,1,nw,").and_then(|rest| rest.split_once(',')) {
@@ -157,7 +158,7 @@ fn boards_that_send_nothing_and_broken_sensors_are_named() {
     let sim = simulated(&floor);
     let calibrated = sim::calibrated(&floor, &sim, 1).unwrap();
     let mut source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
-    // Only the southern row's board is plugged in.
+    // Only the southern row's board is connected.
     let southern = Floor { boards: floor.boards[..1].to_vec(), ..floor.clone() };
     let half = SimFloor::new(&southern, SimConfig::default(), 7);
     let sender = Sender::start(&southern, half, source.local_addr().unwrap(), |sim, _| {
@@ -186,7 +187,7 @@ fn a_press_is_measured_over_real_packets() {
     let calibrated = sim::calibrated(&floor, &sim, 1).unwrap();
     let mut source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
     let at = floor.geometry.centre(TileId::new(1, 1));
-    // Half a second empty, then 200 N in the middle of a tile for as long as anybody looks.
+    // Half a second empty, then 200 N in the middle of a tile until the end.
     let _sender = Sender::start(&floor, sim, source.local_addr().unwrap(), move |sim, millis| {
         let press = Load { print: Print::Point, position: at, heading: 0.0, force: Newtons(200.0) };
         sim.step_under((millis >= 500).then_some(press));

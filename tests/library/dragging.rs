@@ -1,4 +1,4 @@
-//! Simulated people drag controls and the free floor as their scenarios say: through packets, contacts and controls.
+//! Simulated people drag controls and the free floor by scenarios: through packets, contacts and controls.
 
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ const CONTROLS: &str = r#"Layout(version: 1, title: "Controls to drag",
         (id: "arc", kind: "arc_slider", at: (4.2, 1.8), size: (1.5, 0.9), min: 0, max: 1, step: 0),
     ])"#;
 
-/// What the controls held at the end, and the ways of free feet that pressed with 40 to 150 N.
+/// The values of the controls at the end, and the paths of free feet that pressed with 40 to 150 N.
 fn play(steps: &str) -> (impl Fn(&str) -> Value, Vec<Vec2>) {
     let wired = Floor::default();
     let sim = SimFloor::new(&wired, SimConfig::default(), 3);

@@ -1,4 +1,4 @@
-//! The examples run, and do what they say.
+//! The examples run and behave as documented.
 
 use std::net::UdpSocket;
 use std::time::Duration;
@@ -77,11 +77,11 @@ fn an_app_believes_that_a_control_is_held_for_100_ms_and_no_number_twice() {
     };
     assert!(held.take(&report(1, i32::MAX), at(0)));
     assert_eq!((held.at(at(99)), held.at(at(100))), (vec!["drive".to_string()], vec![]));
-    // The number goes on below zero; the one before it comes late.
+    // The number wraps to below zero; the one before it comes late.
     held.take(&report(0, i32::MIN), at(110));
     held.take(&report(1, i32::MAX), at(120));
     assert_eq!(held.at(at(120)), Vec::<String>::new(), "overtaken");
-    // A floor that was started anew counts from one.
+    // A restarted floor counts from one.
     held.take(&report(1, 1), at(1200));
     assert_eq!(held.at(at(1210)), ["drive"]);
     assert!(!held.take(&OscMessage { addr: "/underfoot/alive".into(), args: vec![] }, at(1210)));

@@ -1,4 +1,4 @@
-//! Walks of people who set a floor up: from board to board, and over every tile.
+//! Walks for setting up a floor: from board to board, and over every tile.
 
 use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::glam::Vec2;
@@ -9,7 +9,7 @@ use underfoot::wire::SensorPacket;
 
 use crate::sender::{simulated, small_floor, standing};
 
-/// Lets so many milliseconds pass with `feet` on the floor, whose boards send to `take`.
+/// Advances by `ms` milliseconds with `feet` on the floor, and passes the boards' packets to `take`.
 fn pass(sim: &mut SimFloor, ms: u32, feet: &[Foot], mut take: impl FnMut(&SensorPacket)) {
     for sequence in 0..ms {
         for (board, readings) in (0..).zip(sim.step(feet)) {
@@ -23,12 +23,12 @@ fn middle(floor: &Floor, tile: TileId) -> Vec2 {
     floor.geometry.plate(tile).centre()
 }
 
-/// Where a packet comes from, if the boards' cables are as `wires` says: the place of each.
+/// The packet as it arrives if the boards' cables are connected by `wires`: the place of each.
 fn rewired(packet: &SensorPacket, wires: [u16; 2]) -> SensorPacket {
     SensorPacket { board: wires[usize::from(packet.board)], ..packet.clone() }
 }
 
-/// Somebody who does what the walk asks; `astray` steps on the first tile each time.
+/// Follows the walk's tasks; with `astray`, steps on the first tile each time.
 fn walk(wires: [u16; 2], astray: bool) -> (WiringWalk, Floor) {
     let floor = small_floor();
     let mut sim = simulated(&floor);
@@ -97,7 +97,7 @@ fn nothing_is_asked_before_every_board_has_been_heard_and_silent_ones_are_named(
     assert_eq!(walk.felt().map(|felt| felt.tile), Some(TileId::new(2, 1)));
 }
 
-/// Somebody who steps on each tile, near its middle and near two of its corners.
+/// Steps on each tile, near its middle and near two of its corners.
 fn walk_over(sim: &mut SimFloor, floor: &Floor, test: &mut WalkTest) {
     pass(sim, 400, &[], |packet| test.take(packet));
     for index in 0..floor.geometry.tile_count() {

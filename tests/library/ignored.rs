@@ -1,4 +1,4 @@
-//! A press that no control answers says why.
+//! A press without an answer of a control has a reason.
 
 use underfoot::engine::Ignored;
 use underfoot::glam::Vec2;
@@ -6,7 +6,7 @@ use underfoot::units::Newtons;
 
 use crate::support::{Walker, layout, page};
 
-/// A walker whose floor has been empty for long enough.
+/// A walker on a floor that has been empty for long enough.
 fn ready(name: &str) -> Walker {
     let mut walker = Walker::on(layout(name));
     walker.wait(100);
@@ -35,7 +35,7 @@ fn a_press_that_is_answered_is_not_ignored() {
 #[test]
 fn how_hard_a_control_was_pressed_is_told_press_by_press() {
     let mut walker = ready("map");
-    // 150 N, let go to 25 N (below the 40 N at which it lets go) without leaving, then 100 N.
+    // 150 N, reduced to 25 N (below the release threshold of 40 N) without leaving, then 100 N.
     walker.step_onto("home", Newtons(150.0));
     walker.wait(100);
     assert_eq!(walker.answered(), [], "it is still held");
@@ -47,7 +47,7 @@ fn how_hard_a_control_was_pressed_is_told_press_by_press() {
     let told = walker.answered();
     assert!(told.iter().all(|(id, _)| id == "home"), "{told:?}");
     let forces: Vec<f32> = told.iter().map(|(_, force)| force.0).collect();
-    // Parts that nobody has calibrated differ by a quarter; one to the other the presses are told right.
+    // Uncalibrated parts differ by a quarter; the ratio of the presses is right.
     assert!(
         matches!(forces[..], [first, second] if (first / 150.0 - 1.0).abs() < 0.25 && (first / second - 1.5).abs() < 0.1),
         "{forces:?}"
@@ -59,7 +59,7 @@ fn a_cancelled_press_tells_no_force() {
     let mut walker = ready("map");
     walker.step_onto("home", Newtons(150.0));
     walker.wait(100);
-    // A tile away from it: slid off, which cancels.
+    // A tile away from it: the foot slid off, which cancels.
     walker.slide_to(Vec2::new(0.15, 1.2), 0.5);
     assert_eq!(why(&mut walker), []);
     assert_eq!(walker.answered(), []);
@@ -84,7 +84,7 @@ fn a_foot_that_carries_a_body() {
     walker.wait(400);
     let told = why(&mut walker);
     assert!(told.is_empty() || told == one("home", Ignored::Step), "{told:?}");
-    // It was a press for its first 30 ms, or a step from the start; the next foot there steps as well.
+    // It counted as a press for its first 30 ms, or as a step from the start; the next foot there steps as well.
     let mut walker = ready("map");
     walker.step_at(Vec2::new(0.15, 1.2), Newtons(650.0));
     walker.wait(400);
@@ -134,7 +134,7 @@ fn a_foot_in_a_stance_zone_or_outside_of_the_region() {
 )"#
         )
     };
-    // Where the foot presses the control lies in the stance zone.
+    // The place of the press on the control lies in the stance zone.
     let mut walker = Walker::on(page(&text("(at: (1, 3.2), size: (3, 1))", "(6, 1.2)")));
     walker.wait(100);
     walker.step_at(Vec2::new(2.5, 3.35) * 0.304, Newtons(150.0));

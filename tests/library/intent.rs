@@ -1,4 +1,5 @@
-//! Whether controls do what feet meant, in small: `underfoot experiment intent` counts twenty thousand.
+//! Whether controls follow the intent of feet, on a small scale: `underfoot experiment intent` counts twenty
+//! thousand.
 
 use underfoot::experiment::{Figure, Guarded, IntentEffort, IntentSweep, IntentTable};
 
@@ -17,7 +18,7 @@ fn people_who_cross_and_use_every_shipped_layout_get_what_they_mean() {
         let score = table.whole(guard);
         assert!(table.steps(guard) >= 60 && score.intended >= 18, "{guard:?}");
         assert_eq!((score.false_activations, score.wrong), (0, 0), "{guard:?}");
-        // One of thirty-six is below any rate that can be told apart here; the full run counts thousands.
+        // One of thirty-six is below any measurable rate here; the full run counts thousands.
         assert!(score.missed <= 1, "{guard:?}: {score:?}");
     }
     assert_eq!(table.csv().lines().count(), 1 + table.lines().count());

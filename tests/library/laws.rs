@@ -1,4 +1,4 @@
-//! Parts of other laws than the paper's: named, fitted and used.
+//! Parts with other laws than the paper's: named, fitted and used.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, Normal};
@@ -9,21 +9,21 @@ use underfoot::sim::{self, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Readings, SensorPacket};
 
-/// How the loads of a bench are spaced.
+/// The spacing of a bench's loads.
 #[derive(Clone, Copy, Debug)]
 enum Loads {
-    /// Weight upon weight, all the same.
+    /// Equal weights, one on another.
     Even,
-    /// Each a share heavier than the one before: as light as a hundredth of the heaviest.
+    /// Each heavier than the one before by a constant ratio, from a hundredth of the heaviest.
     Geometric,
-    /// A screw that is turned until the voltage has grown by a step.
+    /// A screw, turned until the voltage has grown by a step.
     ByVoltage,
 }
 
-/// A part with numbers as parts of this law have them: 80 to 800 N at the end of a 5 V converter.
+/// A part with typical parameters of this law: 80 to 800 N at the end of a 5 V converter.
 fn part(kind: LawKind, rng: &mut Pcg64Mcg) -> Calibration {
     match kind {
-        // A quarter and a twentieth around the nominal part, or any conditioning.
+        // A quarter and a twentieth around the nominal part, or any signal conditioning.
         LawKind::Exponential if rng.random_bool(0.5) => {
             Calibration::exponential(rng.random_range(0.375..0.625), rng.random_range(1.27..1.41))
         }
@@ -40,7 +40,7 @@ fn part(kind: LawKind, rng: &mut Pcg64Mcg) -> Calibration {
             let supply = if rng.random_bool(0.8) { 5.0 } else { 3.3 } * rng.random_range(0.95..1.05f32);
             Calibration::of(kind, [rng.random_range(10.0..80.0), supply])
         }
-        // A zero up to half a volt from nothing; one in five has none.
+        // A zero of up to half a volt; one in five has none.
         LawKind::Linear => {
             let zero = if rng.random_bool(0.2) { 0.0 } else { rng.random_range(0.0..0.5) };
             Calibration::of(kind, [rng.random_range(20.0..160.0), zero])
@@ -48,7 +48,7 @@ fn part(kind: LawKind, rng: &mut Pcg64Mcg) -> Calibration {
     }
 }
 
-/// What a bench with an error of 2 % of each load reads.
+/// The readings of a bench with an error of 2 % of each load.
 fn table(part: Calibration, loads: Loads, count: usize, rng: &mut Pcg64Mcg) -> Vec<LoadPoint> {
     let noise = Normal::new(1.0, 0.02).unwrap();
     let end = match part {
@@ -67,12 +67,12 @@ fn table(part: Calibration, loads: Loads, count: usize, rng: &mut Pcg64Mcg) -> V
                     part.force_at(start + (end - start) * share)
                 }
             };
-            // Below what an exponential part reads at no voltage there is nothing to measure.
+            // Forces below that of an exponential part at zero voltage cannot be measured.
             let force = force.max(part.force_at(0.0) * 1.001);
             let volts = Calibration::volts(counts(part.volts_at(force)));
             LoadPoint::new(volts, force * noise.sample(rng))
         })
-        // What the empty bench reads: a linear part its zero, the others nothing.
+        // The reading of the empty bench: a linear part's zero, otherwise 0 V.
         .chain([LoadPoint::new(part.volts_at(Newtons::ZERO).max(0.0), Newtons::ZERO)])
         .collect()
 }
@@ -81,7 +81,7 @@ fn counts(volts: f32) -> u16 {
     (volts / Calibration::FULL_SCALE_VOLTS * 65_535.0).round() as u16
 }
 
-/// Parts out of 400 of this law that get another one's name.
+/// Number of parts out of 400 of this law that the fit assigns to another law.
 fn misnamed(kind: LawKind, loads: Loads, count: usize) -> usize {
     // Ten parts for each of 40 seeds.
     let parts = (0..40).flat_map(|seed| {
@@ -141,7 +141,7 @@ fn counts_become_newtons_by_the_sensor_s_own_law() {
     for (corner, law) in laws.into_iter().enumerate() {
         assert!((forces[corner] / law.force(sent[corner]).0 - 1.0).abs() < 1e-6, "{law}: {forces:?}");
     }
-    // Half a percent below its 3.3 V the divider is at its end, though the converter is not.
+    // Half a percent below its 3.3 V the divider is at its end, although the converter is not.
     assert_eq!(quality[2], Quality::Degraded);
     assert_eq!(quality[3], Quality::Live);
     assert!(forces[3] < 0.0, "a linear part below its zero: {forces:?}");

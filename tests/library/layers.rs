@@ -1,11 +1,11 @@
-//! No module of the library imports from a layer above its own: the order is the one that ARCHITECTURE.md draws.
+//! No module of the library imports from a layer above its own: ARCHITECTURE.md draws the order.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The modules of each layer, lowest first: the words before the first two spaces of each line of the block
-/// ` ```layers ` in ARCHITECTURE.md.
+/// The modules of each layer, lowest first: the words before the first two spaces of each line of the block `
+/// ```layers ` in ARCHITECTURE.md.
 fn layers(architecture: &str) -> BTreeMap<&str, usize> {
     let lines = architecture.lines().skip_while(|line| *line != "```layers").skip(1);
     lines
@@ -37,8 +37,8 @@ fn sources(folder: &Path) -> Vec<(String, PathBuf)> {
     found
 }
 
-/// The lines of `text` with their numbers, without comments and items under `#[cfg(test)]`; beside them the
-/// modules that are only compiled for tests and have files of their own.
+/// The lines of `text` with their numbers, without comments and items under `#[cfg(test)]`; and the modules that have
+/// files of their own and are only compiled for tests.
 fn code(text: &str) -> (Vec<(usize, &str)>, Vec<&str>) {
     let (mut lines, mut test_modules) = (Vec::new(), Vec::new());
     let mut rest = (1..).zip(text.lines().map(|line| line.split("//").next().unwrap_or_default()));
@@ -66,7 +66,7 @@ fn code(text: &str) -> (Vec<(usize, &str)>, Vec<&str>) {
     (lines, test_modules)
 }
 
-/// The modules that `line` names behind `crate::`, also those of a group in braces.
+/// The modules that `line` names behind `crate::`, including those of a group in braces.
 fn imports(line: &str) -> Vec<&str> {
     let is_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
     let first = |path: &str| path.find(|letter| !is_name(letter)).unwrap_or(path.len());

@@ -1,4 +1,4 @@
-//! All that underfoot does as a library, on simulated floors, files and loopback sockets.
+//! All features of the underfoot library, on simulated floors, files and loopback sockets.
 //!
 //! One test program for all: linking a program for each file would take minutes and gigabytes.
 #![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]

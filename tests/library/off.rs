@@ -1,4 +1,4 @@
-//! A control that is off says why, whatever switched it off.
+//! A control that is off has a reason, in all cases.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use underfoot::wire::{Readings, SensorPacket};
 
 use crate::support::{Walker, page};
 
-/// Two controls that act while they are held, on tiles of their own, and a button.
+/// Two controls that act while they are held, on separate tiles, and a button.
 fn controls() -> Layout {
     page(
         r#"Layout(version: 1,
@@ -49,7 +49,7 @@ fn controls_that_feet_can_press_have_no_reason() {
     assert_eq!(reasons(&walker.engine, ALL), [None; 3]);
     walker.stand(Newtons(600.0));
     walker.step_onto("drive", Newtons(150.0));
-    // Long enough for a foot that means it to have settled, and for the dwell.
+    // Time for a deliberate foot to settle, plus the dwell.
     walker.wait(600);
     assert!(walker.engine.control("drive").unwrap().is_engaged());
     assert_eq!(reasons(&walker.engine, ["drive", "home", "drive"]), [None; 3]);
@@ -88,7 +88,7 @@ fn boards_that_fall_silent_are_the_reason_until_they_are_heard_again() {
 fn a_tile_with_two_broken_sensors_switches_its_own_controls_off() {
     let mut walker = Walker::on(controls());
     let tile = walker.geometry().tile_under(walker.engine.layout().widgets[0].area.centre()).unwrap();
-    // With three sensors a plate goes on, with two nobody knows where a foot is.
+    // A plate with three sensors still works; with two, the position of a foot is unknown.
     for corner in [Corner::SouthWest, Corner::NorthEast] {
         walker.sim.set_fault(SensorId { tile, corner }, Some(SensorFault::Open));
     }
@@ -101,7 +101,7 @@ fn only_one_control_that_acts_while_it_is_held_is_on_while_it_is_held() {
     let mut walker = Walker::on(controls());
     walker.stand(Newtons(600.0));
     walker.step_onto("drive", Newtons(150.0));
-    // Long enough for a foot that means it to have settled, and for the dwell.
+    // Time for a deliberate foot to settle, plus the dwell.
     walker.wait(600);
     assert!(walker.engine.control("drive").unwrap().is_engaged());
     assert_eq!(reasons(&walker.engine, ALL), [None, Some(OffReason::OtherHeld), None]);
@@ -166,7 +166,7 @@ fn a_press_on_a_control_that_is_off_is_ignored_for_that_reason() {
     assert_eq!(walker.ignored(), [("home".into(), Ignored::Off(OffReason::Disabled))]);
 }
 
-/// A floor without calibration whose boards send `readings`, one list for each millisecond.
+/// An uncalibrated floor with boards that send `readings`, one list for each millisecond.
 fn fault_after(readings: &[Vec<Readings>]) -> Option<CalibrationFault> {
     let floor = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
     let mut assembler = Assembler::with_tare(&floor, Tare::FromFloor);
@@ -218,7 +218,7 @@ fn a_simulated_floor_that_went_through_the_lab_lacks_nothing() {
     }
 }
 
-/// A reason that is missing somewhere would be told there by a word or a number that nobody knows.
+/// A reason missing from one of them would appear there as an unknown word or number.
 #[test]
 fn every_reason_stands_in_the_page_and_in_the_bindings() {
     let read =

@@ -1,5 +1,5 @@
-//! What README.md and the pages under docs/ show is true: their files are good, and what they name is there; each
-//! source file says what it is.
+//! README.md and the pages under docs/ are correct: their files are valid, and the things that they name exist; each
+//! source file begins with a description.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::pages::{Page, pages};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// What is wrong with a block of RON, if anything is; kinds may be made from those of earlier blocks.
+/// The error in a block of RON, if any; kinds may be made from those of earlier blocks.
 fn problem(block: &str, page: &Page, kinds: &mut Kinds) -> Option<String> {
     let geometry = Floor::default().geometry;
     let name = page.name.as_str();
@@ -71,14 +71,14 @@ fn every_link_leads_somewhere() {
     }
 }
 
-/// How a heading is linked to.
+/// The anchor of a heading, for links.
 fn anchor(line: &str) -> String {
     let Some(title) = line.strip_prefix('#') else { return String::new() };
     let kept = title.trim_start_matches('#').trim().to_lowercase();
     kept.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).collect::<String>().replace(' ', "-")
 }
 
-/// Every page is reached from the README's table.
+/// The README's table lists every page.
 #[test]
 fn every_page_is_listed() {
     let pages = pages();

@@ -32,7 +32,7 @@ impl Floor {
         floor
     }
 
-    /// Lets time pass under these feet, whose forces come on within 20 ms of each other's.
+    /// Advances time under these feet; their forces rise within 20 ms of each other's.
     fn stand(&mut self, feet: &[((f32, f32), f32)], millis: u64) {
         for _ in 0..millis {
             self.now = self.now + Duration::from_millis(1);
@@ -63,7 +63,7 @@ impl Floor {
     }
 }
 
-/// Two buttons in one region whose cursor rule is to be filled in.
+/// Two buttons in one region, with this cursor rule.
 fn buttons(rule: &str) -> String {
     format!(
         r#"Layout(version: 1, title: "Two", regions: [(id: "all", at: (0, 0), size: (6, 6){rule})], widgets: [
@@ -76,7 +76,7 @@ fn buttons(rule: &str) -> String {
 const WEST: (f32, f32) = (1.5, 3.5);
 const EAST: (f32, f32) = (4.5, 3.5);
 
-/// Somebody of 70 kg who stands in the middle of the region, outside of both buttons.
+/// A person of 70 kg who stands in the middle of the region, outside of both buttons.
 const STANDING: ((f32, f32), f32) = ((2.8, 1.5), 600.0);
 
 #[test]
@@ -105,7 +105,7 @@ fn a_working_cursor_is_a_foot_on_a_control_whoever_stands_beside_it() {
 #[test]
 fn each_foot_is_a_cursor_of_its_own_where_the_region_says_so() {
     let mut floor = Floor::with(&buttons(", cursor: Each"));
-    // Somebody who sits, a foot on either button.
+    // A seated person with a foot on either button.
     floor.stand(&[(WEST, 90.0)], 200);
     floor.stand(&[(WEST, 90.0), (EAST, 80.0)], 200);
     let snapshot = floor.snapshot();
@@ -119,7 +119,7 @@ fn each_foot_is_a_cursor_of_its_own_where_the_region_says_so() {
 
 #[test]
 fn a_control_is_held_by_one_foot_and_the_next_one_needs_a_fresh_press() {
-    // A button as wide as two tiles.
+    // A button three tiles wide.
     let page = buttons(", cursor: Each").replace("at: (1, 3), size: (1, 1)", "at: (0, 3), size: (3, 1)");
     let mut floor = Floor::with(&page);
     let (first, beside) = (((0.4, 3.5), 90.0), ((2.6, 3.5), 100.0));
@@ -167,7 +167,7 @@ fn two_people_work_in_two_regions_at_once_and_each_is_weighed() {
     };
     let weights: Vec<f32> = from_west(&floor).iter().map(|foot| foot.weight.unwrap().0.round()).collect();
     assert_eq!(weights, [600.0, 800.0]);
-    // Both press; one lets go while the other goes on.
+    // Both press; one releases while the other continues.
     let pressing = [((1.0, 0.5), 500.0), ((5.0, 0.5), 650.0), ((1.0, 3.0), 100.0), ((5.0, 3.0), 150.0)];
     floor.stand(&pressing, 200);
     assert!(floor.snapshot().widgets.iter().all(|widget| widget.pressed));
@@ -201,7 +201,7 @@ fn a_click_shows_another_page_once_every_foot_has_let_go() {
     floor.stand(&[], 100);
     assert_eq!(floor.pages, ["back"]);
     assert_eq!(floor.clicked(), ["more"]);
-    // The same place is another control now, and one of both pages is still there.
+    // Another control has the same place now, and one that is on both pages is still there.
     for (place, id) in [(EAST, "hello"), ((0.5, 5.5), "always"), (WEST, "close")] {
         floor.stand(&[(place, 100.0)], 200);
         floor.stand(&[], 100);
@@ -222,7 +222,7 @@ fn pages_never_swap_under_a_foot_and_what_appears_under_one_needs_a_lift() {
     floor.stand(&[], 100);
     assert_eq!(floor.engine.page(), Some("back"));
     assert_eq!(floor.take().len(), 3, "pressed, released, changed: a page is no reason to lose a press");
-    // A foot stands where there is no control, and one appears there.
+    // A foot stands at a place without a control, and a control appears there.
     let stays = PAGES.replace(
         r#"(id: "light", kind: "switch", at: (4, 3)"#,
         r#"(id: "light", kind: "switch", at: (4, 4)"#,

@@ -1,4 +1,4 @@
-//! A session as an app has it: what it hears, sees, asks for and is refused.
+//! A session from the view of an app: its events, state, requests and refusals.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -15,7 +15,7 @@ use underfoot::wire::SensorPacket;
 
 use crate::support::layout;
 
-/// Nothing comes for as long as it is asked.
+/// Sends no packet until it is stopped.
 struct Silence(Arc<AtomicBool>);
 
 impl SensorSource for Silence {
@@ -43,7 +43,7 @@ fn silent(name: &str) -> SessionBuilder {
     Session::source(Box::new(Silence(Arc::default())), no_clock()).layout(layout(name))
 }
 
-/// The built-in session as fast as it can be computed.
+/// The built-in session, as fast as possible.
 fn visit() -> SessionBuilder {
     let wired = Floor::default();
     let sim = SimFloor::new(&wired, SimConfig::default(), 1);
@@ -147,7 +147,7 @@ fn another_layout_keeps_what_apps_have_set_and_is_shown_with_its_own_names() {
     let mut next = layout("map");
     next.widgets.reverse();
     let revision = session.set_layout(next);
-    // The answer comes behind the layout.
+    // The answer comes after the layout.
     session.control("zoom").unwrap().set(90).unwrap();
     let snapshot = session.snapshot();
     assert_eq!(snapshot.floor.layout_revision, revision);
@@ -251,7 +251,7 @@ fn a_session_knows_the_port_that_the_system_chose() {
     assert!(within.local_addr().unwrap().is_ipv4(), "an IPv4 address within IPv6 is the IPv4 address");
 }
 
-/// What a control that acts while it is held says of itself after a second of this floor.
+/// The reason of a control that acts while it is held, after a second of this floor.
 fn off_after_a_second(floor: Floor, sim: SimFloor) -> Option<underfoot::engine::Off> {
     let stand = "Scenario(title: \"nobody\", steps: [Wait(ms: 1000)])";
     let page = layout("all_controls");

@@ -1,4 +1,5 @@
-//! From frames to events nothing is allocated once the floor runs: people, steps, weights, regions and guards included.
+//! Between frames and events a running floor allocates no memory: including people, steps, weights, regions and
+//! guards.
 
 use std::time::Duration;
 
@@ -12,7 +13,7 @@ use underfoot::sense::{ForceFrame, Method, Quality};
 use underfoot::sim::Foot;
 use underfoot::units::Instant;
 
-/// The frames of one person's visit, `times` as heavy, and how many milliseconds it lasts.
+/// The frames of one person's visit, `times` as heavy, and its length in milliseconds.
 fn visit(geometry: Geometry, times: f32) -> (Vec<ForceFrame>, u64) {
     let visit = Visit::of(3, &geometry).unwrap();
     let mut rig = Rig::ideal(geometry);
@@ -48,7 +49,7 @@ fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
             events += engine.step(frame).events.len();
             engine.snapshot(&mut snapshot);
         };
-        // Twice over: once for warming up.
+        // Two passes, of which the first is for warming up.
         frames.iter_mut().for_each(|frame| pass(0, frame));
         let before = violation_count();
         for frame in &mut frames {
@@ -65,7 +66,7 @@ fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
 #[test]
 fn grounds_allocate_nothing_while_they_crack_and_heal() {
     let geometry = Geometry::default();
-    // A giant, so that much gives way.
+    // A giant, so that there are many ground events.
     let (frames, length) = visit(geometry, 3.0);
     for name in ["pond", "winter_walk"] {
         let text = builtin_layout(name).unwrap();

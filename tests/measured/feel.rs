@@ -1,4 +1,4 @@
-//! Nothing in the audio callback asks for memory.
+//! The audio callback allocates no memory.
 
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use underfoot::feel::{
@@ -46,7 +46,7 @@ fn the_busiest_ten_seconds_do_not_allocate() {
     assert!(renderer.counters().stolen > 0, "voices were never stolen: not busy at all");
 }
 
-/// A floor with everything: plates that were measured, and eight loudspeakers.
+/// A floor with all features: measured plates, and eight loudspeakers.
 fn whole_floor() -> Floor {
     let mut floor = Floor::default();
     let response = Response::of(vec![(40.0, -12.0), (70.0, 9.0), (300.0, -6.0), (800.0, -15.0)]);
@@ -64,7 +64,7 @@ fn spots(first: u64) -> impl Iterator<Item = Spot> {
 }
 
 fn cue(n: u64, at: Instant) -> Cue {
-    // Ever other frequencies, so that every click needs slots of its own.
+    // Always other frequencies, so that every click needs slots of its own.
     let modes = (0..8_u64)
         .map(|mode| Mode {
             frequency_hz: 50.0 + ((n * 8 + mode) * 7 % 900) as f32,
@@ -85,12 +85,12 @@ fn cue(n: u64, at: Instant) -> Cue {
         }),
         manner: Manner { duck_db: 6.0, ..Manner::PLAIN },
         audio_gain: 0.5,
-        // Every third is heard from a place of its own, as what cracks underfoot.
+        // Every third one sounds at a place of its own, like a ground event.
         heard_at: n.is_multiple_of(3).then(|| Vec2::new((n % 18) as f32 * 0.1, 0.9)),
     }
 }
 
-/// Every model in turn: noise, sticking and slipping, ridges, grains, a hum.
+/// Every model in turn: noise, stick-slip, ridges, grains, a hum.
 fn lasting(effects: &Effects, n: u64) -> Lasting {
     let names = ["smooth", "rubber", "grating", "gravel", "leather"];
     let named = effects.get(names[n as usize % names.len()]).unwrap();
@@ -100,7 +100,7 @@ fn lasting(effects: &Effects, n: u64) -> Lasting {
 
 fn sustained_cue(effects: &Effects, foot: u32, n: u64) -> SustainedCue {
     SustainedCue {
-        // Now and then a foot lifts and another lands.
+        // Sometimes a foot lifts and another lands.
         key: foot + 40 * (n / 100 % 3) as u32,
         spots: spots(u64::from(foot) + n / 50).collect(),
         effect: lasting(effects, u64::from(foot) + n / 100 % 3),

@@ -1,5 +1,4 @@
-//! What a test measures of its own process: that nothing is allocated where nothing may be, and that memory stays
-//! level.
+//! Measurements of the test's own process: no allocation where none is allowed, and constant memory.
 #![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use assert_no_alloc::AllocDisabler;

@@ -1,4 +1,4 @@
-//! Ten minutes of a visited floor with rubbish on its network: nothing happens that would not have happened anyway.
+//! Ten minutes of a visited floor with rubbish on its network: the events are the same as without it.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use underfoot::wire::{Batch, Decoder, LinkCounters, SensorEncoder, SensorFormat,
 /// Ten simulated minutes.
 const MILLIS: u32 = 600_000;
 
-/// One listening side: what a server does with each datagram, without the socket.
+/// One receiving side: a server's processing of each datagram, without the socket.
 struct Listener {
     decoder: Decoder,
     assembler: Assembler,
@@ -51,7 +51,7 @@ impl Listener {
     }
 }
 
-/// The built-in session again and again.
+/// The built-in session, repeated.
 struct Visits {
     script: Script,
     begun: Instant,
@@ -97,7 +97,7 @@ fn ten_minutes_with_rubbish_on_the_network_give_the_same_events() {
             let datagram = encoder.encode(&packet).unwrap().to_vec();
             clean.hear(&datagram, now);
             noisy.hear(&datagram, now);
-            // About one datagram in three is rubbish, made from what was sent a millisecond ago.
+            // About one datagram in three is rubbish, derived from one sent a millisecond ago.
             if dice.random_bool(0.5)
                 && let Some(model) = before.get(usize::from(board))
             {
@@ -106,7 +106,7 @@ fn ten_minutes_with_rubbish_on_the_network_give_the_same_events() {
             }
             sent.push(datagram);
         }
-        // After a minute everything has its size.
+        // After a minute all memory has reached its size.
         if millis == 60_000 {
             memory = resident_kib();
         }
@@ -128,7 +128,7 @@ fn ten_minutes_with_rubbish_on_the_network_give_the_same_events() {
     }
 }
 
-/// Memory of this process, where the system tells.
+/// Memory of this process, if the system reports it.
 fn resident_kib() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?.split_whitespace().next()?.parse().ok()

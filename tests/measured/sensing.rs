@@ -1,4 +1,4 @@
-//! From packets to contacts nothing is allocated once the floor runs, whatever breaks meanwhile: it may run for months.
+//! Between packets and contacts a running floor allocates no memory, with any faults: it may run for months.
 
 #[cfg(feature = "threads")]
 use std::num::NonZeroUsize;
@@ -36,7 +36,7 @@ fn people_on_a_mapped_floor_whose_sensors_break_allocate_nothing() {
     ];
     let (mut sequence, mut frames, mut feet) = (0, 0, Vec::<Foot>::new());
     let length = visit.script().duration().as_millis() as u64;
-    // Twice over: once for warming up.
+    // Two passes, of which the first is for warming up.
     for ms in 1..2 * length {
         feet.clear();
         visit.script().feet_at(Instant::from_millis(ms % length), &mut feet);
@@ -105,7 +105,7 @@ fn a_crowd_on_several_cores_allocates_nothing_on_the_sensing_thread() {
         let mut sensing = Sensing::new(crowd.geometry, Method::Tracker);
         let mut frame = ForceFrame::empty(&crowd.geometry);
         let (mut before, mut most, mut watched) = (None, 0, 0);
-        // To and fro, so that nobody jumps.
+        // To and fro, so that no foot jumps.
         let times = || crowd.moments.iter().chain(crowd.moments.iter().rev());
         for (ms, moment) in (0..).zip(times().chain(times())) {
             moment.show(&mut frame, before.replace(moment));
@@ -116,7 +116,7 @@ fn a_crowd_on_several_cores_allocates_nothing_on_the_sensing_thread() {
             } else {
                 assert_no_alloc(|| sensing.update(&frame).len())
             };
-            // Only a floor fuller than ever takes memory.
+            // Only a fuller floor than ever before allocates memory.
             if !is_first && contacts <= most {
                 assert_eq!(violation_count(), counted, "{ms} ms");
                 watched += 1;

@@ -1,4 +1,4 @@
-//! The path from packet to frame takes no memory once it runs: it may run for months.
+//! The path from packet to frame allocates no memory once it runs: it may run for months.
 
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use underfoot::floor::Floor;
@@ -27,7 +27,7 @@ fn assembling_frames_allocates_nothing() {
             }
         }
     };
-    // Losses, an outage and a reboot are as much part of steady running as the rest.
+    // Losses, an outage and a reboot are part of normal operation.
     assert_no_alloc(|| {
         run(0, 500, |_, _| false);
         run(500, 1000, |board, ms| board == 2 && ms % 3 == 0);

@@ -1,4 +1,4 @@
-//! A hall whose two areas are served by two processes, each of them a computer in the field.
+//! A hall with two areas, served by two processes like two computers in the field.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -18,7 +18,7 @@ const HALL: &str = r#"Floor(
     areas: [(id: "west", at: (0, 0), size: (6, 6)), (id: "east", at: (6, 0), size: (6, 6))],
 )"#;
 
-/// One button in each area and one over their border, whose middle is in the east.
+/// One button in each area and one on their border, with its centre in the east.
 const BUTTONS: &str = r#"Layout(
     version: 1,
     title: "Hall",
@@ -48,9 +48,9 @@ const VISIT: &str = r#"Scenario(
 struct Computer {
     process: Served,
     address: String,
-    /// Reads what it tells, all the time.
+    /// Reads its lines all the time.
     reader: JoinHandle<Vec<Value>>,
-    /// Kept open, or what it says would fail.
+    /// Kept open; otherwise writing to standard error would fail.
     _chatter: BufReader<ChildStderr>,
 }
 
@@ -77,14 +77,14 @@ impl Computer {
         Self { process, address, reader, _chatter: chatter }
     }
 
-    /// Ends it; the answer is all it told.
+    /// Ends it and returns all its lines.
     fn told(self) -> Vec<Value> {
         terminate(&self.process.0);
         self.reader.join().unwrap()
     }
 }
 
-/// What controls did, in order.
+/// The events of controls, in order.
 fn done(told: &[Value]) -> Vec<String> {
     let event = |line: &Value| Some(format!("{} {}", line["id"].as_str()?, line["event"].as_str()?));
     told.iter().filter_map(event).collect()
@@ -100,7 +100,7 @@ fn two_computers_serve_a_hall_between_them() {
     let areas: [&[&str]; 3] = [&["--area", "west"], &["--area", "east"], &[]];
     let computers = areas.map(|area| Computer::start(folder, area));
     let addresses: Vec<&str> = computers.iter().map(|computer| computer.address.as_str()).collect();
-    // Boards send to whom it concerns; these send to all, as a switch would.
+    // Boards send to the computers concerned; these send to all, as through a switch.
     let simulated = underfoot()
         .args(["simulate", "hall_buttons.ron", "--floor", "hall.ron", "--scenario", "visit.ron"])
         .args(["--send", &addresses.join(",")])
@@ -117,7 +117,7 @@ fn two_computers_serve_a_hall_between_them() {
     assert_eq!(done(&east), [of("border"), of("door")].concat());
     assert_eq!(done(&whole), [of("ticket"), of("border"), of("door")].concat());
 
-    // Each tells of the feet in its own area, by their place on the whole floor.
+    // Each reports the feet in its own area, with their positions on the whole floor.
     let border_m = 6.0 * 0.304;
     let places = |told: &[Value]| -> Vec<f64> {
         let contacts = told.iter().filter_map(|line| line["contacts"].as_array()).flatten();

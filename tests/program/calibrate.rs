@@ -115,7 +115,7 @@ fn maps_are_kept_and_taken_away_when_the_curves_change() {
 #[test]
 fn f3_a_full_disk_leaves_the_old_floor_and_says_so() {
     let (folder, _) = site();
-    // Files of this process may have 512 bytes, as on a disk with no more room.
+    // Files of this process may have 512 bytes, as on a disk without more room.
     let limited = "ulimit -f 1; trap '' XFSZ; exec \"$0\" calibrate curves loads.csv --floor floor.ron";
     let output = Command::new("sh")
         .args(["-c", limited, env!("CARGO_BIN_EXE_underfoot")])
@@ -128,7 +128,7 @@ fn f3_a_full_disk_leaves_the_old_floor_and_says_so() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "no half of a file is left");
 }
 
-/// Fault F2: the power goes at any system call of the save. Passed over where there is no strace.
+/// Fault F2: a power failure at any system call of the save. Skipped without strace.
 #[cfg(target_os = "linux")]
 #[test]
 fn f2_a_save_that_is_killed_leaves_the_old_floor_or_the_new_one() {
@@ -172,7 +172,7 @@ fn f2_a_save_that_is_killed_leaves_the_old_floor_or_the_new_one() {
     assert!(old_ones >= 5 && new_ones >= 1, "{kills} kills: {old_ones} old, {new_ones} new");
 }
 
-/// A port that was free a moment ago.
+/// A port that was free just before.
 fn free_port() -> SocketAddr {
     UdpSocket::bind(ANY_PORT).unwrap().local_addr().unwrap()
 }
@@ -216,7 +216,7 @@ fn tare_and_measure_take_packets_from_a_floor() {
     assert!(answer["tiles"][3]["sensors"]["nw"]["greatest_n"].as_f64().unwrap() < 1.0, "{answer}");
 }
 
-/// Somebody saves the floor file in an editor while `underfoot` waits for packets to take the tare from.
+/// A user saves the floor file in an editor while `underfoot` waits for packets to measure the tare.
 // F8
 #[test]
 fn a_floor_file_that_another_program_changed_meanwhile_is_left_to_it() {

@@ -1,6 +1,6 @@
-"""Other people's clients on a real floor: python-osc and python-tuio against the program itself.
+"""Independent clients on a real floor: python-osc and python-tuio against the program itself.
 
-Usage: clients.py PROGRAM LAYOUT. Exit status 0: all well; 1: something is wrong, said on standard error;
+Usage: clients.py PROGRAM LAYOUT. Exit status 0: success; 1: a failure, described on standard error;
 77: a client library is missing, nothing was tried.
 """
 
@@ -33,7 +33,7 @@ def free_port():
 
 
 def wait_until(what, happened, seconds=30.0):
-    """Waits for something that is bound to happen."""
+    """Waits for an event that must happen."""
     end = time.monotonic() + seconds
     while not happened():
         if time.monotonic() > end:
@@ -42,7 +42,7 @@ def wait_until(what, happened, seconds=30.0):
 
 
 class Osc(threading.Thread):
-    """What python-osc makes of datagrams: addresses and arguments, in order, with the time they came."""
+    """Datagrams as python-osc decodes them: addresses and arguments, in order, with the time of arrival."""
 
     def __init__(self):
         super().__init__(daemon=True)
@@ -64,7 +64,7 @@ class Osc(threading.Thread):
 
 
 class Cursors(TuioListener):
-    """What python-tuio calls: cursors and blobs that come, move and go."""
+    """The callbacks of python-tuio: cursors and blobs that come, move and leave."""
 
     def __init__(self):
         self.seen = {"cursor": [], "blob": []}
@@ -97,7 +97,7 @@ def listen_to_tuio(port):
 
 
 class Tap(threading.Thread):
-    """Passes datagrams on to a client and notes how large they are."""
+    """Forwards datagrams to a client and records their sizes."""
 
     def __init__(self, target):
         super().__init__(daemon=True)
@@ -116,7 +116,7 @@ class Tap(threading.Thread):
 
 
 class App:
-    """An app that asks the floor, and hears its answers on the same socket."""
+    """An app that sends requests to the floor, and receives the answers on the same socket."""
 
     def __init__(self, port):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -157,12 +157,12 @@ def play(program, layout):
         stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
     simulate = None
     try:
-        # The sound system may have something to say first.
+        # The sound system may print a message first.
         expect(any(b"Listening" in line for line in run.stderr), "the program does not listen")
         simulate = subprocess.Popen([program, "simulate", "--send", f"{LOOPBACK}:{floor}"],
                                     stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 
-        # An app drives controls while nobody is on them.
+        # An app drives controls while there is no foot on them.
         wait_until("the boards are heard", lambda: any(args[0] == "live" for args in osc.of("/lab/health")))
         app = App(floor)
         app.send("/lab/widget/satellite/set", 1)
@@ -192,7 +192,7 @@ def play(program, layout):
         wait_until("the other hears it as well", lambda: other.of("/lab/widget/home/clicked"))
         wait_until("a pointer", lambda: pointers.of("/tuio2/ptr"))
 
-        # Somebody asks the program to end while a foot is down.
+        # The program is ended while a foot is down.
         wait_until("cursors", lambda: client.cursors and client.blobs)
         run.send_signal(signal.SIGTERM)
         expect(run.wait(timeout=10) == 0, "the program did not end well")
@@ -216,7 +216,7 @@ def check_streams(osc, pointers, cursors, sizes):
         expect(len(added) >= 3 and len(added) == len(set(added)), f"each {kind} is added once: {events}")
         expect(sorted(added) == sorted(removed), f"each {kind} is removed: {events}")
     expect(all(0.0 <= x <= 1.0 and 0.0 <= y <= 1.0 for x, y in cursors.places), "places within the floor")
-    # TUIO counts from the north: who stands in the south has a large y.
+    # TUIO counts from the north: a person in the south has a large y.
     expect(any(y > 0.6 for _, y in cursors.places), "nobody in the south")
     for args in pointers.of("/tuio2/ptr"):
         expect(len(args) == 14, args)
@@ -224,7 +224,7 @@ def check_streams(osc, pointers, cursors, sizes):
         expect(isinstance(session, int) and 0.0 <= x <= 1.0 and 0.0 <= y <= 1.0 and 0.0 < press <= 1.0, args)
     frames = [args[0] for args in pointers.of("/tuio2/frm")]
     expect(frames == sorted(frames) and len(frames) > 100, "frames are in order")
-    # 100 Hz: within any second at most a hundred reports, and a few that were held up.
+    # 100 Hz: within any second at most a hundred reports, and a few delayed ones.
     times = [when for when, address, _ in osc.heard if address == "/lab/contacts"]
     busiest = max(sum(1 for other in times if begun <= other < begun + 1.0) for begun in times[::20])
     changes = [when for when, address, _ in osc.heard if address == "/lab/widget/zoom/changed"]

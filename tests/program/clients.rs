@@ -1,11 +1,11 @@
-//! Programs not ours read what we send, and drive controls: python-osc and python-tuio, if they are there.
+//! Independent programs read our output and drive controls: python-osc and python-tuio, if they are installed.
 
 use std::process::Command;
 
-/// Exit status of the script where a library is missing.
+/// Exit status of the script without a library.
 const NOT_RUN: i32 = 77;
 
-/// `./dev test` says beforehand whether this will be tried: `pip install python-osc python-tuio`.
+/// `./dev test` prints beforehand whether this test will run: `pip install python-osc python-tuio`.
 #[test]
 fn python_clients_understand_everything_and_see_everybody_leave() {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/program/clients.py");

@@ -1,4 +1,4 @@
-//! The operator's console, as a terminal shows it.
+//! The operator's console in a terminal.
 #![cfg(target_os = "linux")]
 
 use std::io::Read;
@@ -8,14 +8,14 @@ use std::time::{Duration, Instant};
 
 use super::holds::site::{BoardFault, Boards, Site};
 
-/// A program at work in a terminal of its own.
+/// A program that runs in a terminal of its own.
 struct Terminal {
     child: Child,
     bytes: Arc<Mutex<Vec<u8>>>,
 }
 
 impl Terminal {
-    /// Runs `command` in `script`, which gives it a terminal and passes on what that shows; `None` where there is none.
+    /// Runs `command` in `script`, which gives it a terminal and forwards the output; `None` without `script`.
     fn run(site: &Site, command: &str) -> Option<Self> {
         let spawned = Command::new("script")
             .args(["--quiet", "--flush", "--return", "--command", command, "/dev/null"])
@@ -44,7 +44,7 @@ impl Terminal {
         Some(Self { child, bytes })
     }
 
-    /// Every line that was shown, those that were drawn over included, without what only moves the cursor or colours.
+    /// Every line of output, including overwritten ones, without codes for the cursor and colours.
     fn lines(&self) -> Vec<String> {
         let text = String::from_utf8_lossy(&self.bytes.lock().unwrap()).into_owned();
         let mut plain = String::new();
@@ -59,7 +59,7 @@ impl Terminal {
         lines.map(str::to_owned).collect()
     }
 
-    /// Waits for a line with all of `parts` after the first `after` lines; how many lines there are up to it.
+    /// Waits for a line with all of `parts` after the first `after` lines; returns the number of lines up to it.
     fn until(&self, after: usize, parts: &[&str]) -> usize {
         let end = Instant::now() + Duration::from_secs(30);
         loop {
@@ -81,14 +81,14 @@ impl Terminal {
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// A start without boards, boards that come, a foot that holds, a board that dies, a link that is cut and comes back.
-/// What was shown is printed: `--no-capture` makes a recording of it.
+/// A start without boards, boards that appear, a foot that holds, a board that fails, a link that is cut and comes
+/// back. The test prints the output: `--no-capture` makes a recording of it.
 // N3, N10
 #[test]
 fn one_line_on_a_terminal_tells_what_the_floor_does() {
@@ -112,7 +112,7 @@ fn one_line_on_a_terminal_tells_what_the_floor_does() {
     println!("{shown}");
 }
 
-/// In a pipe there is no line that changes: only what is said once.
+/// A pipe gets no changing line, only messages that are printed once.
 #[test]
 fn a_pipe_gets_no_line_that_changes() {
     let address = format!("127.0.0.1:{}", crate::ports::free_port());

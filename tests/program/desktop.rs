@@ -1,5 +1,5 @@
-//! The window by real keys, beside other programs, on a display of its own. Not run where Xvfb, openbox, xdotool or
-//! xclip is missing.
+//! The window with real keys, beside other programs, on a separate display. Skipped without Xvfb, openbox, xdotool or
+//! xclip.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -9,7 +9,7 @@ use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// What is waited for takes a second or two; a busy machine gets a hundred times that.
+/// Time-out of a wait: normally a second or two; a busy machine gets a hundred times that.
 const LONGEST: Duration = Duration::from_secs(180);
 const PAUSE: Duration = Duration::from_millis(100);
 
@@ -39,7 +39,7 @@ struct Desk {
     _server: Ended,
 }
 
-/// Whether all programs are here that these tests need.
+/// Whether all programs that these tests need are installed.
 fn can_run() -> bool {
     let is_here = |program: &&str| {
         let path = std::env::var_os("PATH").unwrap_or_default();
@@ -52,7 +52,7 @@ fn can_run() -> bool {
     missing.is_empty()
 }
 
-/// Asks again and again until `look` finds something.
+/// Calls `look` repeatedly until it finds something.
 fn until<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();
     loop {
@@ -65,7 +65,7 @@ fn until<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
 }
 
 impl Desk {
-    /// `None` where something is missing.
+    /// `None` without one of the programs.
     fn open() -> Option<Self> {
         if !can_run() {
             return None;
@@ -136,7 +136,7 @@ impl Desk {
         fs::read_to_string(self.folder.path().join("mine.ron")).unwrap()
     }
 
-    /// Copies `text` as another program.
+    /// Copies `text` in another program.
     fn copy_elsewhere(&self, text: &str) -> Ended {
         let mut other = Command::new("xclip")
             .args(["-selection", "clipboard", "-in", "-quiet"])
@@ -152,7 +152,7 @@ impl Desk {
         other
     }
 
-    /// What another program would paste.
+    /// The text that another program would paste.
     fn pasted_elsewhere(&self) -> String {
         let output = self.run("timeout", &["5", "xclip", "-selection", "clipboard", "-out"]);
         String::from_utf8_lossy(&output.stdout).into_owned()
@@ -185,7 +185,7 @@ fn controls_go_to_other_programs_and_come_from_them_by_the_systems_clipboard() {
         Some(desk.pasted_elsewhere()).filter(|text| text.contains("first"))
     });
     assert!(copied.contains("from_editor"), "{copied}");
-    // What is no control changes nothing.
+    // A text that is not a control changes nothing.
     let saved = desk.file();
     let _other = desk.copy_elsewhere("Dear all, see you at five (room B).");
     desk.keys(&["ctrl+v", "ctrl+s", "F2"]);
@@ -209,7 +209,7 @@ fn a_window_with_changes_asks_before_alt_f4_and_ctrl_q_close_it() {
     desk.keys(&["Escape"]);
     sleep(Duration::from_secs(1));
     assert!(desk.window.0.try_wait().unwrap().is_none() && desk.file() == before);
-    // Tried by feet, asked all the same; Enter saves.
+    // After a test with feet it asks as well; Enter saves.
     desk.keys(&["F2", "ctrl+q"]);
     sleep(Duration::from_secs(2));
     assert!(desk.window.0.try_wait().unwrap().is_none(), "it asks");

@@ -12,7 +12,7 @@ use underfoot::schema::{Kinds, load_floor, parse_layout, write_floor, write_layo
 
 use super::end_to_end::{said, underfoot};
 
-/// A folder of files that commit 84a7726 wrote.
+/// A folder of files from commit 84a7726.
 fn fixtures(folder: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/84a7726").join(folder)
 }
@@ -39,7 +39,7 @@ fn unpack(path: &Path, folder: &Path) -> PathBuf {
     unpacked
 }
 
-/// What an app acts on: events of controls with their times, values, forces, places and contacts, and the link.
+/// The data that an app uses: events of controls with their times, values, forces, places and contacts, and the link.
 ///
 /// Later versions may add fields, and lines of other kinds.
 fn events(lines: &[String]) -> Vec<Vec<Value>> {
@@ -114,7 +114,7 @@ fn a_layout_of_an_earlier_version_is_written_as_it_was() {
         assert_eq!(then.len(), now.len(), "{}", name(&file));
         for (then, now) in then.into_iter().zip(now) {
             let is_same = match (then.parse::<f32>(), now.parse::<f32>()) {
-                // A place is written in metres, and its last digit may be another one each time.
+                // Places are written in metres, and the last digit may vary.
                 (Ok(then), Ok(now)) => (then - now).abs() <= 1e-6,
                 _ => then == now,
             };

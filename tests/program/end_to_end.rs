@@ -88,25 +88,25 @@ fn without_a_display_the_program_leaves_a_picture_a_sound_and_a_log() {
     let later = peak(&home[sample(pressed_at + 0.15)..sample(pressed_at + 0.25)]);
     assert!(click > 0.05, "the press is felt: {click}");
     assert!(later < 0.01 * click, "and decays: {later}");
-    // A foot is a tile long; nothing further away may move.
+    // A foot is a tile long; actuators further away must not move.
     for far in [0, 3, 15, 35] {
         let moved = peak(&channels[far][sample(pressed_at)..sample(pressed_at + 0.25)]);
         assert_eq!(moved, 0.0, "tile {far} is far from the foot");
     }
 }
 
-/// A child process that is ended with the test, however that ends.
+/// A child process that ends with the test in any case.
 pub(super) struct Served(pub(super) Child);
 
 impl Drop for Served {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Asks a process politely to end, as `kill` does.
+/// Sends SIGTERM to a process, as `kill` does.
 pub(super) fn terminate(child: &Child) {
     let status = Command::new("kill").arg(child.id().to_string()).status().unwrap();
     assert!(status.success());
@@ -146,8 +146,8 @@ fn two_processes_over_udp_give_the_same_events_as_one() {
     assert!(session.status.success(), "{}", said(&session));
     let alone = events(&std::fs::read_to_string(folder.path().join("events.jsonl")).unwrap());
     let apart = events(&lines);
-    // On a starved machine packets are held up and dropped, which may cost the slider a step or two
-    // on its way; otherwise the events are equal one by one and 0.01 ms apart.
+    // On a starved machine packets are delayed and dropped, which may cost the slider a step or two on its way;
+    // otherwise the events are equal one by one and 0.01 ms apart.
     let told = |events: Vec<(f64, String, String, Value)>| {
         let mut told: Vec<_> =
             events.into_iter().map(|(t_s, id, kind, _)| (t_s, format!("{id} {kind}"))).collect();
@@ -157,7 +157,7 @@ fn two_processes_over_udp_give_the_same_events_as_one() {
     let (apart, alone) = (told(apart), told(alone));
     let names = |events: &[(f64, String)]| events.iter().map(|(_, name)| name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&apart), names(&alone));
-    // The server's clock starts with the server, so times are taken from the first event on.
+    // The server's clock starts with the server, so times count from the first event.
     for (apart_event, alone_event) in apart.iter().zip(&alone) {
         let difference = (apart_event.0 - apart[0].0) - (alone_event.0 - alone[0].0);
         assert!(difference.abs() < 0.02, "{difference} s apart: {apart_event:?}");
@@ -236,7 +236,7 @@ fn saving_the_layout_changes_the_floor_and_a_bad_one_is_refused() {
     assert!(server.0.wait().unwrap().success());
 }
 
-/// A server whose layout is reached through `path`, which `change` makes another; gives its log, beside the layout.
+/// A server with its layout at `path`, which `change` replaces; returns its log, beside the layout.
 #[cfg(unix)]
 fn log_of_a_change(folder: &Path, path: &Path, change: impl FnOnce()) -> String {
     let log = folder.join("log.txt");
@@ -304,7 +304,7 @@ fn a_layout_is_drawn_without_a_display() {
         assert!(output.status.success(), "{}", said(&output));
         assert!(std::fs::metadata(&path).unwrap().len() > 2000);
     }
-    // At rest, which is not the moment after the program was started.
+    // In the resting state, not that just after the start of the program.
     let drawn = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
     assert!(drawn.contains("Satellite") && !drawn.contains("lift foot"));
 }

@@ -1,4 +1,4 @@
-//! Pages that take what they can: layouts over and over, requests without an end, all places, answers that nobody reads.
+//! Pages that exhaust resources: repeated layouts, endless requests, all connections, unread answers.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -36,7 +36,7 @@ fn bad_layout() -> String {
     format!("Layout(version: 1, regions: [(id: \"all\", at: (0, 0), size: (6, 6))], widgets: [\n{widgets}])")
 }
 
-/// Clients that ask as fast as they can, until dropped.
+/// Clients that send requests as fast as they can, until dropped.
 struct Hostile {
     over: Arc<AtomicBool>,
     asked: Arc<AtomicU64>,
@@ -44,7 +44,7 @@ struct Hostile {
 }
 
 impl Hostile {
-    /// So many clients at `path`, each of which repeats `request`.
+    /// Starts `clients` clients at `path`, each of which repeats `request`.
     fn start(web: SocketAddr, path: &str, clients: usize, request: &Value) -> Self {
         let (over, asked) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
         let repeat = |_| {
@@ -54,7 +54,7 @@ impl Hostile {
                 while !over.load(Ordering::Relaxed) {
                     let request_of = url.as_str().into_client_request().unwrap();
                     let Ok((mut socket, _)) = client(request_of, stream(web)) else { continue };
-                    // It reads now and then, or it would be dropped.
+                    // It reads sometimes; otherwise the server would drop it.
                     socket.get_ref().set_read_timeout(Some(Duration::from_millis(1))).unwrap();
                     socket.get_ref().set_write_timeout(Some(Duration::from_millis(100))).unwrap();
                     while !over.load(Ordering::Relaxed) {
@@ -87,12 +87,12 @@ impl Drop for Hostile {
     }
 }
 
-/// What a server was told of feet and packets while a session was played on its floor.
+/// The result of playing a session on a server's floor.
 #[derive(Debug)]
 struct Played {
     /// Control and kind of each event.
     events: Vec<String>,
-    /// Packets that it lost, and that the system dropped.
+    /// Number of packets that it lost, and that the system dropped.
     lost: u64,
     /// Memory at the beginning and at the end, in bytes.
     memory: [usize; 2],
@@ -103,7 +103,7 @@ fn resident(child: &Child) -> usize {
     4096 * statm.split(' ').nth(1).and_then(|pages| pages.parse::<usize>().ok()).unwrap_or_default()
 }
 
-/// Plays the built-in session on a floor that is served with `--web-layouts`, beside what `hostile` starts.
+/// Plays the built-in session on a floor that is served with `--web-layouts`, beside the clients of `hostile`.
 fn play(hostile: impl Fn(SocketAddr) -> Option<Hostile>) -> Played {
     let (web, sensors) = (free_address(), format!("127.0.0.1:{}", free_port()));
     let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/layouts/map.ron");
@@ -142,13 +142,13 @@ fn play(hostile: impl Fn(SocketAddr) -> Option<Hostile>) -> Played {
         .filter(|line| line["id"].is_string() && line["force_n"].is_number())
         .map(|line| format!("{} {}", line["id"].as_str().unwrap(), line["event"].as_str().unwrap()))
         .collect();
-    // How often a slider is told on its way depends on the moment.
+    // The number of intermediate values of a slider depends on timing.
     events.dedup();
     let said = said.join().unwrap();
     Played { events, lost: lost(&said), memory: [before, after] }
 }
 
-/// Packets that the report at the end calls lost, and those that the system dropped.
+/// Numbers of lost packets and of packets dropped by the system, in the final report.
 fn lost(said: &[String]) -> u64 {
     let number = |line: &String, word: &str| {
         let at = line.find(word)?;
@@ -157,7 +157,7 @@ fn lost(said: &[String]) -> u64 {
     said.iter().filter_map(|line| number(line, " lost ")).sum()
 }
 
-/// For a machine with nothing else to do: eight pages that repeat a layout of 290 kB which is refused.
+/// For an idle machine: eight pages that repeat a layout of 290 kB, which is refused.
 #[test]
 #[ignore = "takes a minute of an idle machine"]
 fn eight_pages_that_repeat_a_refused_layout_cost_a_session_nothing() {
@@ -171,7 +171,7 @@ fn eight_pages_that_repeat_a_refused_layout_cost_a_session_nothing() {
     assert!(after < before + (16 << 20), "{} KiB more", after.saturating_sub(before) >> 10);
 }
 
-/// The same with eight pages that ask for everything without an end.
+/// The same with eight pages that request everything endlessly.
 #[test]
 #[ignore = "takes a minute of an idle machine"]
 fn eight_pages_that_ask_for_everything_cost_a_session_nothing() {
@@ -182,7 +182,7 @@ fn eight_pages_that_ask_for_everything_cost_a_session_nothing() {
     assert!(beside.lost <= 50, "{} packets", beside.lost);
 }
 
-/// A layout is checked once a second for each client, whatever that sends.
+/// A layout is checked at most once a second for each client, at any rate of requests.
 #[test]
 fn a_page_that_repeats_a_layout_is_told_so_and_served_all_the_same() {
     let web = free_address();
@@ -219,7 +219,7 @@ fn a_page_that_repeats_a_layout_is_told_so_and_served_all_the_same() {
     drop(server);
 }
 
-/// Whoever is turned away and does not read it holds up nobody who comes later.
+/// A refused client that does not read the refusal delays no later client.
 #[test]
 fn places_that_are_taken_are_refused_at_once_and_free_again_when_somebody_goes() {
     let web = free_address();
@@ -244,7 +244,7 @@ fn places_that_are_taken_are_refused_at_once_and_free_again_when_somebody_goes()
             Ok((socket, _)) => break inside.push(socket),
             Err(_) => assert!(begun.elapsed() < Duration::from_secs(30), "nobody is let in any more"),
         }
-        // The others stay, as pages do.
+        // The others stay, like pages.
         for socket in &mut inside {
             let _ = socket.get_ref().set_nonblocking(true);
             while socket.read().is_ok() {}

@@ -1,4 +1,4 @@
-//! What the program is given: files and numbers that are not valid.
+//! Invalid files and numbers as input of the program.
 
 use std::path::Path;
 use std::process::{Child, Output, Stdio};
@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 use super::end_to_end::{said, underfoot};
 
-/// Longest that a command may take before it counts as hanging.
+/// Longest time of a command before it counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// What a command says and how it ends; a panic if it does not end.
+/// The output and status of a command; panics if it does not end.
 fn ended(arguments: &[&str], folder: &Path) -> Output {
     let mut child: Child = underfoot()
         .args(arguments)
@@ -30,7 +30,7 @@ fn ended(arguments: &[&str], folder: &Path) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// Every reader, with `FILE` where its file stands.
+/// Every reader, with `FILE` in place of its file.
 const READERS: [&[&str]; 11] = [
     &["check", "FILE"],
     &["run", "FILE", "--seconds", "1"],
@@ -45,7 +45,7 @@ const READERS: [&[&str]; 11] = [
     &["calibrate", "map", "FILE"],
 ];
 
-/// A window that shows a floor of elsewhere puts nothing out from here, and says so of every option that would.
+/// A window that shows a remote floor has no outputs here, and reports so for every option of an output.
 #[cfg(feature = "preview")]
 #[test]
 fn a_floor_of_elsewhere_is_not_served_here() {
@@ -76,7 +76,7 @@ fn a_floor_of_elsewhere_is_not_served_here() {
     }
 }
 
-/// A device that never ends and a pipe that nobody writes to are refused; neither is read.
+/// A device that never ends and a pipe without a writer are refused; neither is read.
 #[cfg(unix)]
 #[test]
 fn devices_and_pipes_are_refused_by_every_reader() {
@@ -101,7 +101,7 @@ fn devices_and_pipes_are_refused_by_every_reader() {
     }
 }
 
-/// A file of a gigabyte that takes no room on the disk is refused before it is read.
+/// A sparse file of a gigabyte is refused before it is read.
 #[test]
 fn files_that_are_too_large_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -116,7 +116,7 @@ fn files_that_are_too_large_are_refused() {
     }
 }
 
-/// No option takes what is not a finite number, or one that no floor needs.
+/// No option accepts a value that is not a finite number, or one outside the range of floors.
 #[test]
 fn numbers_are_finite_and_in_range() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,10 +1,10 @@
-//! Labels in other scripts, on computers with fonts for them and without.
+//! Labels in other scripts, on computers with and without fonts for them.
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// A layout whose controls are called so.
+/// A layout of controls with these labels.
 fn layout(folder: &Path, labels: &[&str]) {
     let widgets: String = labels
         .iter()
@@ -22,7 +22,7 @@ fn layout(folder: &Path, labels: &[&str]) {
     fs::write(folder.join("it.ron"), text).unwrap();
 }
 
-/// The program on a computer that has the fonts in `fonts` and no others.
+/// The program on a computer that has only the fonts in `fonts`.
 fn underfoot(folder: &Path, fonts: &Path, arguments: &[&str]) -> Output {
     let config = folder.join("fonts.conf");
     let text = format!("<?xml version=\"1.0\"?>\n<fontconfig><dir>{}</dir></fontconfig>\n", fonts.display());

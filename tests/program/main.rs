@@ -1,4 +1,4 @@
-//! The program `underfoot` itself: processes, sockets, files, and what the pages for people say of it.
+//! The program `underfoot` itself: processes, sockets, files, and its description in the pages.
 #![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "../support/pages.rs"]

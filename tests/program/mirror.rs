@@ -1,4 +1,4 @@
-//! Windows that join a server: what they sense, what becomes of them when it is gone, and whom it lets do what.
+//! Windows that join a server: sensing, the loss of the server, and permissions.
 
 use std::io::{self, BufRead, BufReader, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
@@ -28,10 +28,10 @@ use crate::holds::client::Client as OtherClient;
 use crate::holds::site::{Boards, Run, Site};
 use crate::ports::free_port;
 
-/// How long something that is bound to happen may take.
+/// Time-out for an event that must happen.
 const AT_LAST: Duration = Duration::from_secs(30);
 
-/// As often as a server checks a layout of one client, and a little more.
+/// Interval at which a server checks layouts of one client, and a little more.
 const A_SECOND: Duration = Duration::from_millis(1050);
 
 fn wait_until(what: &str, mut happened: impl FnMut() -> bool) {
@@ -63,7 +63,7 @@ impl Lines {
     }
 }
 
-/// A floor that has joined a server, as a window does, with what it tells.
+/// A floor that has joined a server, as a window does, with its reports.
 struct Joined {
     greeting: Box<Greeting>,
     session: Session,
@@ -95,14 +95,14 @@ impl Joined {
         self.session.snapshot().floor.link
     }
 
-    /// Ends it and gives all that it told.
+    /// Ends it and returns all its reports.
     fn end(self) -> Vec<Value> {
         drop(self.session);
         self.lines.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect()
     }
 }
 
-/// The next that is joined.
+/// The next joined floor.
 fn joined(news: &Receiver<MirrorNews>) -> Joined {
     let end = Instant::now() + AT_LAST;
     loop {
@@ -123,13 +123,13 @@ fn run_at(site: &Site, web: SocketAddr, more: &[&str]) -> Run {
     site.run(&OtherClient::new(), &[&["--web", &web.to_string()], more].concat())
 }
 
-/// What controls did: when, which, what, and with which value and force.
+/// The events of controls: time, control, kind, value and force.
 fn about_controls(lines: Vec<Value>) -> Vec<Value> {
     lines.into_iter().filter(|line| line["force_n"].is_number() && line["id"].is_string()).collect()
 }
 
-/// Whether both say that the same happened. A layout that is read again may differ by a rounding, and a busy server
-/// looks at its clock at other moments: so may numbers, and times by some microseconds.
+/// Whether both report the same event. A layout that is read again may differ by a rounding, and a busy server reads
+/// its clock at other times: so numbers may differ, and times by some microseconds.
 fn is_same(there: &Value, here: &Value) -> bool {
     let same = |field: &str| there[field] == here[field];
     let near = |field: &str, tolerance: f64| match (there[field].as_f64(), here[field].as_f64()) {
@@ -146,12 +146,12 @@ fn is_same(there: &Value, here: &Value) -> bool {
         && near("y_m", 1e-3)
 }
 
-/// Whether the same happened here, as far as both tell of it.
+/// Whether both report the same events, as far as both lists go.
 fn begin_alike(there: &[Value], here: &[Value]) -> bool {
     there.iter().zip(here).all(|(there, here)| is_same(there, here))
 }
 
-/// A layout in which nothing has to be held.
+/// A layout without controls that act while they are held.
 const HARMLESS: &str = r#"Layout(
     version: 1,
     regions: [(id: "all", at: (0, 0), size: (3, 2))],
@@ -172,7 +172,7 @@ fn a_window_that_joins_senses_what_the_server_tells_and_loses_it_with_the_server
     wait_until("both are held here", || window.held() == ["drive", "zoom"]);
     wait_until("two feet", || window.session.snapshot().floor.contacts.len() == 2);
 
-    // Killed: no goodbye.
+    // Killed, without a closing message.
     signal(&run, "KILL");
     wait_until("the link is lost", || window.link() == LinkState::Lost);
     assert!(window.held().is_empty() && window.session.snapshot().floor.contacts.is_empty());
@@ -184,7 +184,7 @@ fn a_window_that_joins_senses_what_the_server_tells_and_loses_it_with_the_server
     let (there, here) = (about_controls(told), about_controls(window.end()));
     let pressed = there.iter().filter(|line| line["event"] == "pressed").count();
     assert!(pressed == 2 && there.len() > 3, "{there:?}");
-    // What was held when the server was gone is cancelled here.
+    // Holds at the time of the server's end are cancelled here.
     let same = there.len().min(here.len());
     assert!(same > 3 && begin_alike(&there, &here), "{there:#?}\n{here:#?}");
     assert!(
@@ -192,7 +192,7 @@ fn a_window_that_joins_senses_what_the_server_tells_and_loses_it_with_the_server
         "{here:#?}"
     );
 
-    // Started again, it is joined again by itself.
+    // After a restart, the window joins again by itself.
     let run = run_at(&site, web, &[]);
     drop(boards);
     let _boards = Boards::start(&site, run.address);
@@ -242,7 +242,7 @@ fn a_window_that_does_not_read_is_dropped_and_counted_and_others_go_on() {
     let stalled = raw(web);
     let (_link, _news, window) = join(web);
     let _boards = Boards::start(&site, run.address);
-    // A page that hears how many there are.
+    // A page that receives the number of clients.
     let mut page = client(format!("ws://{web}/"), stream(web)).unwrap().0;
     let end = Instant::now() + AT_LAST;
     loop {
@@ -262,7 +262,7 @@ fn a_window_that_does_not_read_is_dropped_and_counted_and_others_go_on() {
     drop(stalled);
 }
 
-/// What the server refuses, and why.
+/// The server's refusal and its reason.
 fn refused(news: &Receiver<MirrorNews>) -> String {
     let end = Instant::now() + AT_LAST;
     loop {
@@ -288,7 +288,7 @@ fn a_layout_from_a_window_is_checked_and_taken_only_where_that_is_allowed() {
     assert!(refused(&news).contains("--web-layouts"));
     drop((window, link, run));
 
-    // A layout with a dead man's pedal is not for others to change, nor to bring.
+    // Others may neither change nor bring a layout with a dead man's pedal.
     let run = run_at(&site, web, &["--web-layouts"]);
     let (link, news, window) = join(web);
     link.ask("layout", std::slice::from_ref(&other));
@@ -337,7 +337,7 @@ fn pages_from_elsewhere_can_t_join_and_a_window_may_keep_controls_off_while_it_i
     let (checking, _told, other) = join(web);
     checking.ask("controls_off", &[json!(true)]);
     wait_until("they are off", || off() == [true, true]);
-    // However it goes.
+    // In any way of leaving.
     drop((checking, other));
     wait_until("they are on again", || off() == [false, false]);
     link.ask("widget/zoom/set", &[json!(0.25)]);
@@ -347,15 +347,15 @@ fn pages_from_elsewhere_can_t_join_and_a_window_may_keep_controls_off_while_it_i
     });
 }
 
-/// What this process has in memory, in bytes.
+/// Resident memory of this process, in bytes.
 #[cfg(target_os = "linux")]
 fn resident() -> usize {
     let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
     4096 * pages.split(' ').nth(1).unwrap().parse::<usize>().unwrap()
 }
 
-/// A server that greets as one of this program does, and then says whatever takes memory, until nobody reads or so many
-/// bytes were said: controls that no layout has, texts without an end, lists, frames that are not.
+/// A server that greets like one of this program, and then sends data that takes memory, until the reader is gone or
+/// `most` bytes are sent: unknown controls, endless texts, lists, invalid frames.
 #[cfg(target_os = "linux")]
 fn hostile(greeting: String, most: usize) -> (SocketAddr, thread::JoinHandle<usize>) {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
@@ -390,7 +390,7 @@ fn hostile(greeting: String, most: usize) -> (SocketAddr, thread::JoinHandle<usi
     (address, thread::spawn(serve))
 }
 
-/// A window keeps what its own layout has, whatever its server says.
+/// A window keeps only the state of its own layout, for any messages of its server.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_hostile_server_takes_no_memory_of_a_window_that_joins_it() {
@@ -421,7 +421,7 @@ fn a_hostile_server_takes_no_memory_of_a_window_that_joins_it() {
     assert!(most - before < 48 << 20, "{} KiB", (most - before) >> 10);
 }
 
-/// How much later packets are here than they were sent, through the server; and how much it takes. For an idle machine.
+/// The delay of packets through the server, and its load. For an idle machine.
 #[test]
 #[ignore = "a measurement"]
 fn what_a_mirror_of_the_papers_floor_takes() {
@@ -486,7 +486,7 @@ fn what_a_mirror_of_the_papers_floor_takes() {
     );
 }
 
-/// How long it takes until the floor of a server that was killed is lost here. For an idle machine.
+/// The time until the floor of a killed server is lost here. For an idle machine.
 #[test]
 #[ignore = "a measurement"]
 fn how_soon_a_killed_server_is_lost() {

@@ -1,4 +1,4 @@
-//! What the program says where nobody takes it: a full disk, a reader that has gone or stalls.
+//! The program's output without a reader: a full disk, a reader that has gone or stalls.
 #![cfg(unix)]
 
 use std::fs::OpenOptions;
@@ -10,19 +10,19 @@ use std::time::{Duration, Instant};
 use super::end_to_end::{Served, terminate, underfoot};
 use crate::ports::free_port;
 
-/// A file on a disk that is always full, as Linux has one.
+/// A file on a disk that is always full, from Linux.
 fn full() -> Option<Stdio> {
     OpenOptions::new().write(true).open("/dev/full").ok().map(Stdio::from)
 }
 
-/// A pipe whose reader has gone.
+/// A pipe with a closed reader.
 fn closed() -> Stdio {
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
     writer.into()
 }
 
-/// Runs a command with these outputs: its exit status and what it said on standard error, if that is `None`.
+/// Runs a command with these outputs; returns its exit status and its standard error, if `err` is `None`.
 fn status(arguments: &[&str], folder: &Path, out: Stdio, err: Option<Stdio>) -> (Option<i32>, String) {
     let mut command: Command = underfoot();
     command.args(arguments).current_dir(folder).stdin(Stdio::null()).stdout(out);
@@ -92,7 +92,7 @@ fn standard_error_that_takes_nothing_fails_and_is_no_panic() {
     }
 }
 
-/// A floor of 6 x 6 whose sensors read what an empty floor does, and one request that cannot be met each time.
+/// Packets of an empty floor of 6 x 6, and one request each time that is refused.
 fn flood(address: &str, until: Instant) -> u64 {
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     let refused = b"/underfoot/widget/nobody/get\0\0\0\0,\0\0\0";
@@ -105,7 +105,7 @@ fn flood(address: &str, until: Instant) -> u64 {
     sent
 }
 
-/// The server's own answer to a request: it senses and answers still.
+/// Whether the server answers a request: then it still senses and answers.
 fn answers(address: &str) -> bool {
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     socket.set_read_timeout(Some(Duration::from_millis(200))).unwrap();
@@ -116,7 +116,7 @@ fn answers(address: &str) -> bool {
     })
 }
 
-/// A server whose standard error is `err`.
+/// A server with the standard error `err`.
 fn serve(err: Stdio) -> (Served, String) {
     let address = format!("127.0.0.1:{}", free_port());
     let server = underfoot()
@@ -130,7 +130,7 @@ fn serve(err: Stdio) -> (Served, String) {
     (server, address)
 }
 
-/// Ends the server politely and gives its exit status.
+/// Ends the server by SIGTERM and returns its exit status.
 pub(super) fn ended(mut server: Served) -> Option<i32> {
     terminate(&server.0);
     server.0.wait().unwrap().code()
@@ -152,7 +152,7 @@ fn a_flood_of_refused_requests_and_rubbish_leaves_a_short_log() {
     assert!(!log.contains('\u{1b}'), "a pipe gets no colours: {log}");
 }
 
-/// The memory that a process has, in kB.
+/// The memory of a process, in kB.
 #[cfg(target_os = "linux")]
 pub(super) fn memory_kb(process: &str) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap();
@@ -160,7 +160,7 @@ pub(super) fn memory_kb(process: &str) -> u64 {
     memory.trim().trim_end_matches(" kB").parse().unwrap()
 }
 
-/// What a process has used of memory, in kB, and of the processors, in ticks of the kernel.
+/// The memory of a process, in kB, and its processor time, in ticks of the kernel.
 #[cfg(target_os = "linux")]
 fn used(process: &Child) -> (u64, u64) {
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.id())).unwrap();
@@ -168,8 +168,8 @@ fn used(process: &Child) -> (u64, u64) {
     (memory_kb(&process.id().to_string()), ticks.map(|ticks| ticks.parse::<u64>().unwrap()).sum())
 }
 
-/// Row R4. A minute of whatever one sender gets out, beside nothing else: for an idle machine, in release form. With
-/// the log in a pipe, on a full disk, and with standard error closed.
+/// Row R4. A minute of the packets that one sender can send, and no others: for an idle machine, in a release build.
+/// With the log in a pipe, on a full disk, and with standard error closed.
 #[test]
 #[ignore = "takes three minutes"]
 #[cfg(target_os = "linux")]
@@ -200,7 +200,7 @@ fn a_minute_of_floods_takes_no_memory_and_half_a_core() {
     }
 }
 
-/// Whatever becomes of standard error, the server senses on and its exit status tells.
+/// With any standard error, the server continues sensing, and its exit status reports the failure.
 #[test]
 fn a_server_outlives_its_log() {
     for err in [Some(closed()), full()].into_iter().flatten() {
@@ -212,11 +212,11 @@ fn a_server_outlives_its_log() {
     }
 }
 
-/// A reader that stalls with the pipe full holds up nothing.
+/// A reader that stalls with a full pipe does not delay the server.
 #[test]
 fn a_reader_of_the_log_that_stalls_holds_up_nothing() {
     let (reader, writer) = std::io::pipe().unwrap();
-    // Fills the pipe, so that the server's first word finds it full.
+    // Fills the pipe, so that the server's first message finds it full.
     let mut filler: Child = Command::new("sh")
         .args(["-c", "head -c 100000 /dev/zero"])
         .stdout(Stdio::from(writer.try_clone().unwrap()))
@@ -232,7 +232,7 @@ fn a_reader_of_the_log_that_stalls_holds_up_nothing() {
     filler.wait().unwrap();
 }
 
-/// Events that a full disk does not take are told, and the exit status tells; the server goes on.
+/// Events that do not fit on a full disk are reported, and so in the exit status; the server continues.
 // F4
 #[test]
 fn events_on_a_full_disk_are_told_and_fail() {
@@ -246,7 +246,7 @@ fn events_on_a_full_disk_are_told_and_fail() {
         .map(Served)
         .unwrap();
     assert!(answers(&address));
-    // The link's state is an event.
+    // A change of the link's state is an event.
     for sequence in 1..20 {
         super::senders::packets(sequence).iter().for_each(|packet| {
             UdpSocket::bind("127.0.0.1:0").unwrap().send_to(packet, &address).unwrap();

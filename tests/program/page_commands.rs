@@ -6,7 +6,7 @@ use std::process::Command;
 use super::end_to_end::{said, underfoot};
 use crate::pages::pages;
 
-/// What the commands of some pages leave in their folder.
+/// The files that the commands of some pages leave in their folder.
 const MADE: [(&str, &[&str]); 5] = [
     ("docs/first-floor.md", &["map.png"]),
     ("docs/effects.md", &["rubber.wav", "rubber.png", "double_click.ahap", "double_click.ron"]),
@@ -15,7 +15,7 @@ const MADE: [(&str, &[&str]); 5] = [
     ("docs/simulator.md", &["visit/floor.png", "visit/events.jsonl", "figures/figure8.png"]),
 ];
 
-/// The commands of one page run one after the other, in a folder of their own with the shipped layouts in it.
+/// The commands of one page run in sequence, in a folder of their own with the shipped layouts in it.
 #[test]
 fn every_command_runs() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -54,7 +54,7 @@ fn every_command_runs() {
     assert_eq!(made, MADE.iter().map(|(_, files)| files.len()).sum::<usize>());
 }
 
-/// `underfoot this --that` in a sentence: there is such a command, and its help knows the option.
+/// `underfoot this --that` in a sentence: the command exists, and its help lists the option.
 #[test]
 fn every_command_in_a_sentence_exists() {
     let mut count = 0;

@@ -1,10 +1,10 @@
-//! How many computers a floor takes, as the program says it.
+//! The program's forecast of the number of computers for a floor.
 
 use serde_json::Value;
 
 use crate::end_to_end::{said, underfoot};
 
-/// Constants of a computer of round numbers.
+/// Constants of a computer, in round numbers.
 const CONSTANTS: &str = r#"{"cores":2,"base_us":20,"packet_us":1,"forward_us":0.5,"wake_us":3,"assemble_tile_us":0.1,"sense_tile_us":0.1,
     "person_us":10,"channel_us":1,"active_channel_us":2,"channels":64,"link_mbit":1000}"#;
 

@@ -8,7 +8,7 @@ use super::end_to_end::{channels, peak, said, underfoot};
 fn the_walk_clicks_every_tile_on_its_own_channel_one_after_the_other() {
     let folder = tempfile::tempdir().unwrap();
     let (floor, wav) = (folder.path().join("floor.ron"), folder.path().join("walk.wav"));
-    // Three tiles, wired the wrong way round; the one in the middle has no actuator.
+    // Three tiles with swapped wires; the one in the middle has no actuator.
     let actuators = "(tile: (0, 0), channel: 2), (tile: (2, 0), channel: 0)";
     std::fs::write(&floor, format!("Floor(version: 1, columns: 3, rows: 1, actuators: [{actuators}])"))
         .unwrap();
@@ -28,7 +28,7 @@ fn the_walk_clicks_every_tile_on_its_own_channel_one_after_the_other() {
     assert_eq!(walked, ["0.20 s  tile (0, 0)  channel 2", "0.40 s  tile (2, 0)  channel 0"]);
     let (rate, channels) = channels(&wav);
     let begins = |channel: &[f32]| channel.iter().position(|sample| *sample != 0.0);
-    // The very sample of 0.2 s and 0.4 s, or the one after: a sine begins at zero.
+    // The exact sample of 0.2 s and 0.4 s, or the one after: a sine begins at zero.
     for (channel, seconds) in [(2, 0.2), (0, 0.4)] {
         let due = (seconds * f64::from(rate)) as usize;
         let found = begins(&channels[channel]).unwrap();
@@ -61,13 +61,13 @@ fn devices_are_listed_with_what_they_can_do() {
     let output = underfoot().args(["rack", "devices", "--json"]).output().unwrap();
     assert!(output.status.success(), "{}", said(&output));
     let devices: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
-    // Whatever cards the machine has: the clock that stands in for one is always there.
+    // The clock that stands in for a card is always there, with any cards of the machine.
     let paced = devices.iter().find(|device| device["id"] == "paced").unwrap();
     assert_eq!((paced["channels"].as_u64(), &paced["rates"][0][1]), (Some(1024), &Value::from(192_000)));
 }
 
-/// Twenty floors' worth of one step: the stages are there, and add up to more than nothing; how long they take is for
-/// a quiet machine to say.
+/// Twenty floors' worth of one step: the stages are there, and their sum is positive; only an idle machine can
+/// measure their durations.
 #[cfg(feature = "audio")]
 #[test]
 fn the_latency_of_clicks_on_a_paced_device_is_told_stage_by_stage() {

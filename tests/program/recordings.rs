@@ -17,7 +17,7 @@ use super::end_to_end::{said, underfoot};
 #[cfg(unix)]
 use crate::ports::free_port;
 
-/// The built-in session, or what somebody does on one of the example apps' floors: layout and scenario.
+/// Records the built-in session, or a scenario on one of the example apps' floors: layout and scenario.
 fn record(folder: &Path, app: Option<[&str; 2]>) -> (Vec<u8>, String) {
     let file = folder.join("visit.mcap");
     let mut session = underfoot();
@@ -44,7 +44,7 @@ fn a_recorded_session_gives_the_same_events_to_the_byte() {
         None,
         Some(["map/atlas.ron", "map/tour.ron"]),
         Some(["surgical/console.ron", "surgical/reading.ron"]),
-        // The floor falls silent in it, and comes back.
+        // In this one the floor falls silent and comes back.
         Some(["surgical/console.ron", "surgical/imaging.ron"]),
     ];
     for app in apps {
@@ -107,7 +107,7 @@ fn a_file_cut_anywhere_replays_up_to_there() {
         let lines = String::from_utf8(output.stdout).unwrap();
         let lines: Vec<&str> = lines.lines().collect();
         let same = lines.iter().zip(&whole_lines).take_while(|(one, other)| one == other).count();
-        // What was held where it breaks off is cancelled and its value restored; then nothing is held.
+        // Holds at the end of the recording are cancelled and their values restored; then nothing is held.
         for line in &lines[same..] {
             let ends = ["\"cancelled\"", "\"changed\"", "\"held\":[]", "\"released\"", "\"disarmed\""];
             assert!(ends.iter().any(|end| line.contains(end)), "cut at {cut}: {line}");
@@ -117,13 +117,13 @@ fn a_file_cut_anywhere_replays_up_to_there() {
     assert!(longest > whole_lines.len() / 2, "{longest} of {}", whole_lines.len());
 }
 
-/// Lines of a replay that the whole recording has as well, from its beginning.
+/// Number of lines of a replay that agree with the whole recording, from its beginning.
 fn common(replayed: &Output, whole: &str) -> usize {
     let lines = String::from_utf8_lossy(&replayed.stdout);
     lines.lines().zip(whole.lines()).take_while(|(one, other)| one == other).count()
 }
 
-/// A file may not grow beyond 4 MB of some 13, which is told to the program as a full disk is.
+/// A limit of 4 MB for a file of some 13, which the system reports like a full disk.
 // F4
 #[cfg(unix)]
 #[test]
@@ -145,11 +145,11 @@ fn a_disk_that_fills_while_a_session_is_recorded_leaves_what_it_took() {
     let full = folder.path().join("full.mcap");
     let share = std::fs::metadata(&full).unwrap().len() as f64 / whole.len() as f64;
     let lines = common(&replay(&full), &events);
-    // A third of the bytes has 29 lines: most happens later.
+    // A third of the bytes has 29 lines: most events come later.
     assert!(share > 0.25 && lines > 20, "{share} {lines}");
 }
 
-/// What a process leaves that is killed.
+/// The file of a killed process.
 // F5
 #[test]
 fn a_killed_recording_replays_up_to_its_last_moments() {
@@ -185,8 +185,8 @@ fn a_file_that_is_no_recording_is_refused() {
     assert!(said(&output).contains("no recording of a floor begins there"), "{}", said(&output));
 }
 
-/// A recording of 84a7726, and the same written anew by the MCAP library for Python: by zstd, and by lz4 in small chunks
-/// with the attachments behind the messages.
+/// A recording of 84a7726, and copies rewritten by the MCAP library for Python: with zstd, and with lz4 in small
+/// chunks with the attachments behind the messages.
 #[test]
 fn recordings_of_the_first_version_replay_unchanged_whichever_tool_wrote_them_anew() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings");
@@ -233,7 +233,7 @@ fn send(signal: &str, process: &std::process::Child) {
     assert!(kill.unwrap().success());
 }
 
-/// Waits until the recording at `path` has so many bytes.
+/// Waits until the recording at `path` has `bytes` bytes.
 #[cfg(unix)]
 fn await_bytes(path: &Path, bytes: u64, process: &mut std::process::Child) {
     while std::fs::metadata(path).map_or(0, |file| file.len()) < bytes {
@@ -291,7 +291,7 @@ fn a_signal_ends_the_recording_of_a_served_floor_whole() {
     }
 }
 
-/// Whoever looks at a recording stops it, goes on and leaps ahead; what happens in it is the same.
+/// A viewer of a recording pauses, resumes and skips; its events stay the same.
 #[test]
 fn a_replay_that_is_led_to_and_fro_gives_the_same_events() {
     let folder = tempfile::tempdir().unwrap();
@@ -310,7 +310,7 @@ fn a_replay_that_is_led_to_and_fro_gives_the_same_events() {
                 let pause = Duration::from_millis(rng.random_range(0..40));
                 transport.set_paused(rng.random());
                 std::thread::sleep(pause);
-                // A second ahead at most, so that it is also played at its speed.
+                // A second ahead at most, so that parts are also played at normal speed.
                 let ahead = Duration::from_millis(rng.random_range(0..1000));
                 transport.hurry_to(progress.now() + ahead);
             }

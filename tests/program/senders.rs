@@ -1,4 +1,4 @@
-//! Who may send what to a running floor: loopback has many addresses, so that one machine plays several.
+//! Permissions of senders to a running floor: loopback has many addresses, so that one machine acts as several.
 #![cfg(target_os = "linux")]
 
 use std::net::UdpSocket;
@@ -28,7 +28,7 @@ fn message(address: &str, argument: Option<i32>) -> Vec<u8> {
     bytes
 }
 
-/// What `socket` is answered from `port`; empty if nothing.
+/// The answer to `socket` from `port`; empty without one.
 fn asked(socket: &UdpSocket, port: u16, request: &[u8]) -> Vec<u8> {
     socket.send_to(request, ("127.0.0.1", port)).unwrap();
     let mut answer = [0; 512];
@@ -56,7 +56,7 @@ struct Floored {
     requests: u16,
 }
 
-/// A served floor with these options, which has answered from its requests' port.
+/// A served floor with these options, which has answered from its port for requests.
 fn serve(options: &[&str], app: &str, own_port: bool) -> Floored {
     let (sensors, requests) = (free_port(), free_port());
     let mut command = underfoot();
@@ -74,7 +74,7 @@ fn serve(options: &[&str], app: &str, own_port: bool) -> Floored {
 }
 
 impl Floored {
-    /// Ends the floor and gives all that it said.
+    /// Ends the floor and returns its standard error.
     fn ended(mut self) -> String {
         terminate(&self.served.0);
         assert_eq!(self.served.0.wait().unwrap().code(), Some(0));
@@ -99,7 +99,7 @@ fn a_sender_that_is_not_allowed_has_no_effect_and_is_named() {
         let socket = at(sender);
         assert_eq!(asked(&socket, port, &mute), nothing, "{sender} to {port}");
         assert_eq!(asked(&socket, port, &get), nothing, "{sender} to {port}");
-        // What is asked wrongly is not answered either.
+        // An invalid request has no answer either.
         assert_eq!(asked(&socket, port, &message("/underfoot/mute/set", None)), nothing);
     }
     let answer = asked(&at("127.0.0.3"), floor.requests, &get);
@@ -112,7 +112,7 @@ fn a_sender_that_is_not_allowed_has_no_effect_and_is_named() {
     std::thread::sleep(Duration::from_millis(200));
     let said = floor.ended();
     assert!(said.contains("0 packets, 0 frames"), "{said}");
-    // 13 requests that came to one of both ports, and 12 packets; two that were malformed on a port where they may ask.
+    // 13 requests to either port, and 12 packets; two malformed requests on a port where their sender is allowed.
     let count = said.split("may not send ").nth(1).unwrap().split(',').next().unwrap();
     assert!(count.parse::<u32>().unwrap() >= 25, "{said}");
     for named in ["127.0.0.1", "127.0.0.2", "127.0.0.3"] {
@@ -147,7 +147,7 @@ fn a_pinned_board_is_taken_from_where_it_was_first_heard() {
         }
         std::thread::sleep(Duration::from_millis(20));
     }
-    // Answered behind all of them.
+    // This answer comes after all of them.
     assert!(!asked(&first, floor.requests, &message("/underfoot/mute/get", None)).is_empty());
     let said = floor.ended();
     let count = |before: &str, after: &str| -> u32 {
@@ -155,7 +155,7 @@ fn a_pinned_board_is_taken_from_where_it_was_first_heard() {
         rest.split(after).next().unwrap().trim().parse().unwrap()
     };
     let packets = said.lines().find_map(|line| line.split_once(" packets, ")).unwrap().0;
-    // A machine that is busy lets packets lie until they are late.
+    // On a busy machine packets wait until they are late.
     assert_eq!(packets.parse::<u32>().unwrap() + count("late ", ","), 12, "{said}");
     assert_eq!(count("may not send ", ","), 6, "{said}");
     assert!(said.contains("was first heard from 127.0.0.1"), "{said}");
@@ -168,7 +168,7 @@ fn one_sender_s_flood_takes_nothing_from_another() {
     let (loud, quiet) = (at("127.0.0.1"), at("127.0.0.1"));
     let get = message("/underfoot/widget/nobody/get", None);
     for _ in 0..20_000 {
-        // A full receive buffer makes the kernel drop.
+        // A full receive buffer makes the kernel drop packets.
         let _ = loud.send_to(&get, ("127.0.0.1", floor.requests));
     }
     let mute = message("/underfoot/mute/get", None);

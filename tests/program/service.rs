@@ -1,4 +1,4 @@
-//! The program under a service manager, and on a computer that starts before its network does.
+//! The program under a service manager, and on a computer that starts before its network.
 #![cfg(unix)]
 
 use std::io::{BufRead, BufReader, Write};
@@ -15,7 +15,7 @@ fn signal(served: &Served, name: &str) {
     assert!(status.success());
 }
 
-/// Row R2. systemd is told that the program is ready and lives, by the thread that senses; one that hangs says nothing.
+/// Row R2. The sensing thread notifies systemd that the program is ready and alive; a hanging one sends nothing.
 #[test]
 fn a_service_manager_hears_signs_of_life_and_none_of_a_program_that_hangs() {
     let folder = tempfile::tempdir().unwrap();
@@ -41,7 +41,7 @@ fn a_service_manager_hears_signs_of_life_and_none_of_a_program_that_hangs() {
     }
     assert!(begun.elapsed() >= Duration::from_millis(1900), "half a second apart: {:?}", begun.elapsed());
     signal(&served, "STOP");
-    // What was on its way.
+    // Messages that were on their way.
     manager.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
     while hear().is_ok() {}
     signal(&served, "CONT");
@@ -53,7 +53,7 @@ fn a_service_manager_hears_signs_of_life_and_none_of_a_program_that_hangs() {
     assert!(rest.iter().all(|said| said == "WATCHDOG=1"), "{rest:?}");
 }
 
-/// Row N15. An address that this machine does not have (RFC 5737) may yet come.
+/// Row N15. An address that this machine does not have (RFC 5737) may still appear.
 #[test]
 fn an_address_that_is_not_there_yet_is_waited_for() {
     let mut served = underfoot()
@@ -69,8 +69,8 @@ fn an_address_that_is_not_there_yet_is_waited_for() {
     assert_eq!(ended(served), Some(1), "stopped before it could begin");
 }
 
-/// How a network of its own is made here: as root, or by a user who is root in it; `None`, with the reason printed, where
-/// neither works.
+/// The way to make a separate network here: as root, or as a user with root rights in it; `None`, with the reason
+/// printed, if neither works.
 #[cfg(target_os = "linux")]
 fn own_network() -> Option<Vec<&'static str>> {
     let ways = [vec!["--net"], vec!["--user", "--map-root-user", "--net"]];
@@ -87,7 +87,7 @@ fn own_network() -> Option<Vec<&'static str>> {
     None
 }
 
-/// Row N15. In a network of its own the address comes while the program waits for it, and then boards send to it.
+/// Row N15. In a separate network the address appears while the program waits for it, and then boards send to it.
 #[test]
 #[cfg(target_os = "linux")]
 fn an_address_that_comes_later_is_served_from_then_on() {
@@ -104,7 +104,7 @@ fn an_address_that_comes_later_is_served_from_then_on() {
     let Some(way) = own_network() else { return };
     let mut script = Command::new("unshare")
         .args(way)
-        // What runs inside ends with it.
+        // Processes inside end with it.
         .args(["--pid", "--fork", "--kill-child", "bash", "-mec", SCRIPT, env!("CARGO_BIN_EXE_underfoot")])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

@@ -1,4 +1,5 @@
-//! `underfoot simulate` and the program that serves its packets: the floor file between them, and what is off without it.
+//! `underfoot simulate` and the program that serves its packets: the floor file between them, and controls without
+//! it.
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -20,7 +21,7 @@ const PAGE: &str = r#"Layout(
     widgets: [(id: "beam", kind: "dead_man", at: (0.2, 2.2), size: (0.6, 0.6))],
 )"#;
 
-/// Somebody holds the beam for longer than a test waits.
+/// A person who holds the beam for longer than a test waits.
 const HOLD: &str = r#"Scenario(
     title: "A hold",
     person: (mass_kg: 70, foot_m: 0.27),
@@ -31,10 +32,10 @@ const HOLD: &str = r#"Scenario(
     ],
 )"#;
 
-/// How long a person may take to walk in and press, on a busy machine.
+/// Time within which a person walks in and presses, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// What a simulated floor says that nobody hears.
+/// The output of a simulated floor without a receiver.
 fn simulate(folder: &Path, more: &[&str]) -> Output {
     let to = format!("127.0.0.1:{}", free_port());
     underfoot()
@@ -103,25 +104,25 @@ fn a_named_floor_file_is_written_there_and_fits_from_then_on() {
 #[test]
 fn a_state_folder_that_cannot_be_written_stops_no_simulation() {
     let folder = tempfile::tempdir().unwrap();
-    // A file where the folder should be.
+    // A file in place of the folder.
     std::fs::write(folder.path().join("state"), "").unwrap();
     let output = simulate(folder.path(), &[]);
     assert!(output.status.success(), "{}", said(&output));
     assert!(said(&output).contains("--write-floor") && said(&output).contains(" packets sent to "));
 }
 
-/// Ends with the test, however that ends.
+/// Ends with the test in any case.
 struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// The first line of JSON of a served floor that `is_wanted`, while somebody steps onto the beam.
+/// The first line of JSON of a served floor for which `is_wanted` holds, while a person steps onto the beam.
 fn served(folder: &Path, floor: Option<&Path>, is_wanted: impl Fn(&Value) -> bool) -> Option<Value> {
     std::fs::write(folder.join("page.ron"), PAGE).unwrap();
     std::fs::write(folder.join("hold.ron"), HOLD).unwrap();
@@ -196,7 +197,7 @@ fn check_takes_the_names_of_built_in_layouts() {
     assert!(output.status.success(), "{}", said(&output));
     let output = underfoot().current_dir(folder.path()).args(["check", "mapp"]).output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
-    // A file of that name comes first.
+    // A file of that name has priority.
     std::fs::write(folder.path().join("map"), "Layout(").unwrap();
     let output = underfoot().current_dir(folder.path()).args(["check", "map"]).output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));

@@ -1,4 +1,4 @@
-//! A floor at work for long: what it takes of the machine does not grow.
+//! A floor that runs for a long time: its use of the machine does not grow.
 #![cfg(target_os = "linux")]
 
 use std::fs::File;
@@ -17,7 +17,7 @@ use super::end_to_end::{Served, underfoot};
 use super::output::{ended, memory_kb};
 use crate::ports::free_port;
 
-/// What a process has of the machine.
+/// The resources of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Holdings {
     memory_kb: u64,
@@ -33,16 +33,17 @@ impl Holdings {
     }
 }
 
-/// What there was at the end of each part, the first of which is for warming up.
+/// Compares the resources at the end of each part, of which the first is for warming up.
 fn expect_flat(parts: &[Holdings]) {
     let (first, last) = (parts[0], parts[parts.len() - 1]);
     println!("first {first:?}, last {last:?}, {} parts", parts.len());
-    // A megabyte: far less than one allocation per frame would make in a minute, more than what the allocator moves.
+    // A megabyte: far less than one allocation per frame would add in a minute, more than the allocator's own
+    // variation.
     assert!(last.memory_kb <= first.memory_kb + 1024, "{parts:?}");
     assert_eq!((last.descriptors, last.threads), (first.descriptors, first.threads), "{parts:?}");
 }
 
-/// A script that begins anew when it is over, for so many seconds of the floor's time.
+/// A script that restarts at its end, up to a time on the floor's clock.
 struct Repeated {
     script: Script,
     until: Instant,
@@ -60,7 +61,7 @@ impl FootDriver for Repeated {
     }
 }
 
-/// The shipped session again and again, `hours` of it in the floor's own time; what there was after each hour.
+/// The shipped session, repeated for `hours` in the floor's own time; returns the resources after each hour.
 fn hours_of_floor_time(hours: u64) -> Vec<Holdings> {
     const HOUR_S: u64 = 3600;
     let floor = Floor::default();
@@ -92,13 +93,13 @@ fn ten_hours_of_floor_time_take_no_more_than_one() {
     expect_flat(&hours_of_floor_time(10));
 }
 
-/// Row R4. An hour of real time: the real program, real packets, two outputs, and a fault now and then.
+/// Row R4. An hour of real time: the real program, real packets, two outputs, and occasional faults.
 #[test]
 #[ignore = "takes an hour"]
 fn an_hour_of_packets_takes_no_more_than_its_first_five_minutes() {
     const MINUTES: u64 = 60;
     const VISITS: usize = 200;
-    /// Minutes until buffers have grown to what they need: most of it comes in the second one.
+    /// Minutes until buffers have reached their size: most of the growth comes in the second one.
     const WARM_UP: usize = 5;
     let folder = tempfile::tempdir().unwrap();
     let (scenario, told) = (folder.path().join("hour.ron"), folder.path().join("told.jsonl"));

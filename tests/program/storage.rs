@@ -1,4 +1,4 @@
-//! What is on the disk where it is full, or where the program is killed.
+//! The files on a full disk, or of a killed program.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::end_to_end::{Served, peak, underfoot};
 use crate::ports::free_port;
 
-/// The bytes of samples that a WAV file's header tells of, and those that are there.
+/// The bytes of samples by a WAV file's header, and those in the file.
 fn samples(path: &Path) -> Option<(u64, u64)> {
     let bytes = std::fs::read(path).ok()?;
     let data = bytes.windows(4).position(|four| four == b"data")?;
@@ -19,8 +19,8 @@ fn samples(path: &Path) -> Option<(u64, u64)> {
 /// Bytes of one second of the built-in floor: 36 channels of 24 bits at 48 kHz.
 const SECOND: u64 = 36 * 3 * 48_000;
 
-/// A file may not grow beyond 4 MB, which is told to the program as a full disk is: what it has is readable, the
-/// recording goes on in the next file, and the exit status tells.
+/// A limit of 4 MB for a file, which the system reports like a full disk: its content is readable, the recording
+/// continues in the next file, and the exit status reports the failure.
 // F4
 #[test]
 fn a_recording_on_a_full_disk_is_tried_again_and_fails() {
@@ -47,7 +47,7 @@ fn a_recording_on_a_full_disk_is_tried_again_and_fails() {
     }
 }
 
-/// What a process leaves that is killed: a file whose header is a flush behind at most.
+/// The file of a killed process: its header is at most one flush behind.
 // F5
 #[test]
 fn a_killed_recording_is_readable_to_the_last_flush() {

@@ -1,4 +1,4 @@
-//! Boards as strangers build them: what the program says of them in the log, as JSON and over OSC.
+//! Boards with deviations from the protocol: the program's reports about them in the log, as JSON and over OSC.
 
 use std::io::{BufRead, BufReader};
 use std::net::UdpSocket;
@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use crate::end_to_end::{Served, underfoot};
 
-/// How long something that is bound to happen may take on a busy machine.
+/// Time-out for an event that must happen, on a busy machine.
 const AT_LAST: Duration = Duration::from_secs(40);
 
 /// One tile, one board, one button on all of it.
@@ -23,8 +23,8 @@ fn message(address: &str, args: Vec<OscType>) -> OscPacket {
     OscPacket::Message(OscMessage { addr: address.into(), args })
 }
 
-/// Four counts on a converter of so many counts a unit: an empty tile of 120 units, and 560 more under a foot that comes
-/// after four seconds and leaves after seven. Noise is a third of a unit.
+/// Four counts on a converter of `unit` counts a unit: an empty tile of 120 units, and 560 more under a foot from
+/// second four to second seven. Noise is a third of a unit.
 fn counts(ms: u64, unit: f32) -> [i32; 4] {
     let seconds = ms as f32 / 1000.0;
     let load = ((seconds - 4.0) / 0.12).min((7.0 - seconds) / 0.12).clamp(0.0, 1.0);
@@ -40,7 +40,7 @@ fn readings(sequence: u64, values: impl IntoIterator<Item = OscType>) -> OscPack
     message("/underfoot/board/0", std::iter::once(sequence).chain(values).collect())
 }
 
-/// The program on that floor, and what it says.
+/// The program on that floor, and its outputs.
 struct Run {
     _server: Served,
     out: std::sync::mpsc::Receiver<Value>,
@@ -76,11 +76,11 @@ impl Run {
         Self { _server: server, out, log, osc, board, begun: Instant::now(), _folder: folder }
     }
 
-    /// Sends what `make` gives for each packet, `hz` a second, until a line of JSON fits.
+    /// Sends the result of `make` for each packet, `hz` a second, until `fits` holds for a line of JSON.
     fn until(&self, hz: u64, make: impl Fn(u64) -> Vec<u8>, fits: impl Fn(&Value) -> bool) -> Value {
         let begun = Instant::now();
         for n in 0.. {
-            // Whoever listened may have ended.
+            // The receiver may have ended.
             let _ = self.board.send(&make(n));
             while let Ok(line) = self.out.try_recv() {
                 if fits(&line) {
@@ -97,7 +97,7 @@ impl Run {
         unreachable!("the loop ends with what it waits for")
     }
 
-    /// The cause that is told of boards that send so: its line of JSON, having checked that the log and OSC say the same.
+    /// The reported cause for boards that send these: its line of JSON, after checking that the log and OSC agree.
     fn cause(&self, hz: u64, make: impl Fn(u64) -> Vec<u8>) -> Value {
         let line = self.until(hz, make, |line| line["event"] == "link_cause");
         let (name, why) = (line["cause"].as_str().unwrap(), line["why"].as_str().unwrap());
@@ -116,7 +116,7 @@ impl Run {
         line
     }
 
-    /// Whether `/underfoot/health` has this text among its arguments; reads what has come.
+    /// Whether `/underfoot/health` has this text among its arguments; reads the received messages.
     fn has_heard(&self, text: &str) -> bool {
         let mut buffer = [0; 4096];
         while let Ok(length) = self.osc.recv(&mut buffer) {
@@ -131,7 +131,7 @@ impl Run {
     }
 }
 
-/// What `make` makes of each line of a pipe, read on a thread of its own.
+/// The results of `make` for each line of a pipe, read on a thread of its own.
 fn lines<T: Send + 'static>(
     pipe: impl std::io::Read + Send + 'static,
     make: impl Fn(String) -> Option<T> + Send + 'static,

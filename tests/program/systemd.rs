@@ -1,7 +1,7 @@
 //! The shipped unit under a real systemd, as process 1 of namespaces of its own: sandbox, watchdog and restarts.
 //!
-//! That takes root (or `sudo` without a password), Linux's namespaces and Debian's packages `systemd` and `iproute2`; where
-//! one of them lacks, the test prints which and passes.
+//! This needs root (or `sudo` without a password), Linux's namespaces and Debian's packages `systemd` and `iproute2`;
+//! without one of them, the test prints its name and passes.
 #![cfg(target_os = "linux")]
 
 use std::path::Path;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use crate::units::Unit;
 
-/// How long something that is bound to happen may take.
+/// Time-out for an event that must happen.
 const AT_LAST: Duration = Duration::from_secs(60);
 
 /// An address for documentation (RFC 5737), which the box gets while the program waits for it.
@@ -18,7 +18,7 @@ const LATER: &str = "192.0.2.1";
 
 const UNIT: &str = "underfoot.service";
 
-/// A systemd that knows nothing but the unit.
+/// A systemd with only this unit.
 struct Machine {
     folder: tempfile::TempDir,
     script: Child,
@@ -36,7 +36,7 @@ fn as_root(program: &str) -> Command {
     sudo
 }
 
-/// Why no systemd can be started here.
+/// The reason why no systemd can be started here.
 fn missing() -> Option<String> {
     let runs = |command: &mut Command| {
         let status = command.stdout(Stdio::null()).stderr(Stdio::null()).status();
@@ -124,7 +124,7 @@ impl Machine {
         }
     }
 
-    /// Waits until the program serves again, as another process than `before`; the number of the new one.
+    /// Waits until the program serves again, as another process than `before`; returns the number of the new one.
     fn wait_until_another_serves(&self, what: &str, before: &str) -> String {
         let is_other = || !["0", "", before].contains(&self.property("MainPID").as_str());
         self.wait_until(what, || is_other() && self.property("ActiveState") == "active");
@@ -139,7 +139,7 @@ impl Machine {
 
 impl Drop for Machine {
     fn drop(&mut self) {
-        // The script ends its systemd, and all that runs there, when its input ends.
+        // The script ends its systemd, and all processes there, when its input ends.
         drop(self.script.stdin.take());
         let _ = self.script.wait();
     }
@@ -163,7 +163,7 @@ fn systemd_starts_the_unit_locked_up_and_again_whatever_becomes_of_it() {
     let recording = inside.say("stat -c %a /var/lib/underfoot/visit.mcap");
     assert_eq!(recording, "600", "{}", inside.say("ls -lR /var/lib"));
 
-    // Six deaths in a row: by systemd's own rule (five starts in ten seconds) it would have given up.
+    // Six crashes in a row: by systemd's default rule (five starts in ten seconds) it would not start again.
     let mut process = first;
     for _ in 0..6 {
         inside.signal(&process, "KILL");
@@ -173,7 +173,7 @@ fn systemd_starts_the_unit_locked_up_and_again_whatever_becomes_of_it() {
     let process = inside.wait_until_another_serves("it serves again after it hung", &process);
     assert_eq!(inside.property("NRestarts"), "7");
 
-    // A network card that comes later.
+    // A network card that appears later.
     let options = format!("UNDERFOOT_OPTIONS=--listen {LATER}:9000 --device paced");
     std::fs::write(inside.folder.path().join("options"), options).unwrap();
     let mut tee = inside.command("tee /etc/underfoot/options");

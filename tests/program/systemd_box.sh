@@ -1,8 +1,8 @@
 #!/bin/bash
 # A systemd of its own, as process 1 of new namespaces: systemd_box.sh FOLDER PROGRAM UNIT
-# Its files are those of this machine, read-only, but for /etc, /run, /tmp and /var, which it has for itself; so has it its
-# network, its processes and its control groups. It knows no unit but UNIT and what that needs, and ends with this script.
-# FOLDER gets the process number of systemd (`init`) and, inside, what the unit says (`/run/said`).
+# Its files are those of this machine, read-only, except for private /etc, /run, /tmp and /var; its network, processes and
+# control groups are private too. It has only UNIT and the dependencies of UNIT, and ends with this script.
+# FOLDER gets the process number of systemd (`init`) and, inside, the output of the unit (`/run/said`).
 set -eu
 folder=$1 program=$2 unit=$3
 groups=$(awk '$3 == "cgroup2" { print $2; exit }' /proc/mounts)
@@ -54,7 +54,7 @@ pivot_root . old
 umount -l /old
 init=/usr/lib/systemd/systemd
 [ -x $init ] || init=/lib/systemd/systemd
-# Without a unit path of its own it would start what this machine starts.
+# Without a unit path of its own it would start the units of this machine.
 exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin container=test SYSTEMD_UNIT_PATH=/etc/systemd/system \
     $init --system --unit=box.target --log-target=console --show-status=no </dev/null
 BOX
@@ -66,7 +66,7 @@ while ! child=$(pgrep -P "$waiter"); do
     sleep 0.05
 done
 echo "$child" >"$folder/init"
-# The test closes this input when it ends, however that is.
+# The test closes this input when it ends in any way.
 cat >/dev/null || true
 kill -KILL "$child" 2>/dev/null || true
 wait "$waiter" || true

@@ -1,11 +1,11 @@
-//! Tables as people bring them, read by the program.
+//! Tables in the formats of users, read by the program.
 
 use std::fs;
 use std::path::Path;
 
 use super::end_to_end::{said, underfoot};
 
-/// Five instants of one load, written so.
+/// Five rows of one load, in this format.
 fn table(header: &str, end: &str, separator: char) -> String {
     let rows = (0..5).map(|step| {
         let fields = [format!("{:.2}", 0.01 * f64::from(step)), "1,1,100,100,100,100".into()].join(",");
@@ -15,7 +15,7 @@ fn table(header: &str, end: &str, separator: char) -> String {
     std::iter::once(format!("{header}{end}")).chain(rows).collect()
 }
 
-/// What `underfoot sense` prints of a table, its messages and its exit status.
+/// The output of `underfoot sense` for a table, its messages and its exit status.
 fn sense(folder: &Path, text: &str) -> (String, String, Option<i32>) {
     let path = folder.join("table.csv");
     fs::write(&path, text).unwrap();

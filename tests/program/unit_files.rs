@@ -1,4 +1,4 @@
-//! The units for systemd: what they promise, what systemd says of them, and whether their command serves a floor.
+//! The units for systemd: their settings, systemd's verdict on them, and whether their command serves a floor.
 #![cfg(unix)]
 
 use std::os::unix::net::UnixDatagram;
@@ -11,10 +11,10 @@ use super::output::ended;
 use crate::ports::free_port;
 use crate::units::{Unit, folder};
 
-/// The highest exposure level, as `systemd-analyze security` counts it, in tenths.
+/// The highest allowed exposure level of `systemd-analyze security`, in tenths.
 const MOST_EXPOSED: u32 = 30;
 
-/// `systemd-analyze`, or `None`, which is printed, where there is none.
+/// `systemd-analyze`, or `None`, with a printed message, without it.
 fn analyze(arguments: &[&str], file: &Path) -> Option<Output> {
     let output = Command::new("systemd-analyze").args(arguments).arg(file).output();
     if output.is_err() {
@@ -39,7 +39,7 @@ fn a_unit_never_gives_up_and_watches_its_program() {
     }
 }
 
-/// Sound and what is specific to a program apart, the units are locked up alike.
+/// Except for sound and settings of one program, all units have the same restrictions.
 #[test]
 fn all_units_have_the_same_sandbox() {
     const OF_ONE: [&str; 3] = ["PrivateDevices", "DeviceAllow", "SupplementaryGroups"];
@@ -62,7 +62,7 @@ fn all_units_have_the_same_sandbox() {
     }
 }
 
-/// systemd reads a copy whose command is a program that exists; it names every line that it does not know.
+/// systemd reads a copy with the command of an existing program; it names every unknown line.
 #[test]
 fn systemd_knows_every_line_of_the_units() {
     let copies = tempfile::tempdir().unwrap();
@@ -74,7 +74,7 @@ fn systemd_knows_every_line_of_the_units() {
         std::fs::write(&copy, &text).unwrap();
         let Some(output) = analyze(&["verify", "--man=no"], &copy) else { return };
         assert!(output.status.success() && said(&output).is_empty(), "{}: {}", unit.name, said(&output));
-        // It would have said so.
+        // A misspelt line would be reported.
         std::fs::write(&copy, text.replace("NoNewPrivileges", "NoNewPrivilege")).unwrap();
         let misspelt = said(&analyze(&["verify", "--man=no"], &copy).unwrap());
         assert!(misspelt.contains("NoNewPrivilege"), "{misspelt}");
@@ -94,7 +94,7 @@ fn the_units_are_locked_up_well() {
     }
 }
 
-/// The unit's own command, with its files elsewhere: it serves the floor and tells the manager so.
+/// The unit's own command, with its files elsewhere: it serves the floor and notifies the manager.
 #[test]
 fn the_command_of_the_unit_serves_a_floor() {
     let site = tempfile::tempdir().unwrap();
@@ -123,7 +123,7 @@ fn the_command_of_the_unit_serves_a_floor() {
     assert_eq!(ended(served), Some(0));
 }
 
-/// Options that a unit begins with, and those that its comment shows, are options of its program.
+/// The options in a unit's command, and those in its comment, are options of its program.
 #[test]
 fn the_options_in_the_unit_exist() {
     let unit = Unit::named("underfoot.service");
@@ -137,7 +137,7 @@ fn the_options_in_the_unit_exist() {
     assert!(count >= 5, "{count}");
 }
 
-/// The page for people on site leads to the units, names their files and repeats none of them.
+/// The page for operators on site links to the units, names their files and repeats none of them.
 #[test]
 fn the_page_says_where_the_unit_keeps_its_files() {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/on-site.md")).unwrap();

@@ -1,4 +1,4 @@
-//! The server for web pages, over real sockets: what is told, who is let in, and what becomes of who does not read.
+//! The server for web pages, over real sockets: its reports, admission, and clients that do not read.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -14,14 +14,14 @@ use crate::holds::client::Client as OtherClient;
 use crate::holds::site::{Boards, Run, Site};
 use crate::ports::free_port;
 
-/// How long something that is bound to happen may take.
+/// Time-out for an event that must happen.
 const AT_LAST: Duration = Duration::from_secs(30);
 
-/// How long what was said to be held is believed, and how long that may take in all.
+/// Time after its last report at which a hold expires, and the greatest allowed time in all.
 const BELIEVED_FOR: Duration = Duration::from_millis(100);
 const SOON: Duration = Duration::from_millis(150);
 
-/// How often it is tried again on a machine that had something else to do.
+/// Number of attempts on a machine that may be busy.
 const TRIES: usize = 6;
 
 pub(super) fn free_address() -> SocketAddr {
@@ -144,7 +144,7 @@ pub(super) fn signal(run: &Run, name: &str) {
     assert!(status.success());
 }
 
-/// How long a page believes that something is held after the program was killed.
+/// Time for which a page keeps a hold after the program was killed.
 fn believed_for(site: &Site) -> Duration {
     let (run, web) = run(site, &[]);
     let mut page = Page::open(web);
@@ -169,7 +169,7 @@ fn a_page_believes_no_hold_for_long_after_the_program_was_killed() {
     assert!(times.last().is_some_and(|&took| took <= SOON), "{times:?}");
 }
 
-/// For an idle machine; figures of one that is busy say nothing.
+/// For an idle machine; figures of a busy one are meaningless.
 #[test]
 #[ignore = "takes two minutes"]
 fn twenty_rounds_of_kill() {
@@ -223,14 +223,14 @@ fn a_page_sees_the_layout_sets_a_control_and_is_told_why_it_may_not() {
     assert!(
         floor["width_m"].as_f64().unwrap() > 0.5 && floor["controls"][1]["width_m"].as_f64().unwrap() > 0.1
     );
-    // A page draws a control and limits its inputs by what the first line says.
+    // A page draws a control and limits its inputs by the first line.
     assert_eq!(floor["controls"][1]["range"], json!([0.0, 1.0]));
     assert_eq!(
         (&floor["controls"][1]["options"], &floor["controls"][1]["enabled"]),
         (&json!(null), &json!(true))
     );
     assert_eq!(floor["controls"][0]["off"], json!("waiting"), "no packet has come");
-    // What lies beyond the range becomes its nearest end.
+    // A value beyond the range becomes its nearest end.
     page.ask("widget/zoom/set", &json!([7]));
     page.wait_until("it is at the end", |page| page.has_heard("state", "value", &json!(1.0)));
     page.ask("widget/zoom/set", &json!([0.25]));

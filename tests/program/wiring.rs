@@ -1,4 +1,4 @@
-//! Boards that have changed places: the walk that finds them.
+//! Swapped boards: the walk that finds them.
 
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
@@ -11,8 +11,8 @@ use super::end_to_end::underfoot;
 use super::sender::{Sender, simulated, small_floor, standing};
 use crate::ports::free_port;
 
-/// The floor whose two boards send under each other's address, and somebody who steps on the first tile of the first
-/// row and then on that of the second, for half a second each, again and again.
+/// The floor with two boards that send under each other's address, and a person who steps on the first tile of the
+/// first row and then on that of the second, for half a second each, repeatedly.
 fn walk(sim: &mut SimFloor, ms: u32) {
     let pitch = 0.304;
     let feet = match ms % 4000 {

@@ -1,7 +1,7 @@
-//! People on a floor, made up from a seed, and how well contacts follow them.
+//! People on a floor, generated from a seed, and the accuracy with which contacts follow them.
 //!
-//! The soles here are made of heel, arch, ball and toes that take and leave load
-//! one after the other; nothing of it is shared with what the tracker assumes.
+//! The soles here consist of heel, arch, ball and toes that are loaded and unloaded in sequence; they share no model
+//! with the tracker.
 #![allow(dead_code, unreachable_pub, reason = "each test and bench uses its own part")]
 #![allow(clippy::expect_used, reason = "a scene that cannot be made fails its test")]
 
@@ -16,16 +16,16 @@ use underfoot::glam::Vec2;
 use underfoot::sense::{Contact, ForceFrame, Method, Sensing, SensingConfig, SensorUncertainty};
 use underfoot::units::Instant;
 
-/// Where one foot truly is at one instant.
+/// The true place of one foot at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
-    /// Which step of the scene.
+    /// The number of the step in the scene.
     pub foot: usize,
     pub force: f32,
     pub centre: Vec2,
 }
 
-/// Frames at 1 kHz and what they were made from.
+/// Frames at 1 kHz and the truth from which they were made.
 pub struct Scene {
     pub name: String,
     pub geometry: Geometry,
@@ -33,7 +33,7 @@ pub struct Scene {
     pub truth: Vec<Vec<Truth>>,
 }
 
-/// What the sensors get wrong.
+/// Errors of the sensors.
 #[derive(Clone, Copy, Debug)]
 pub struct Sensors {
     /// Standard deviation of the gain left after calibration.
@@ -44,7 +44,7 @@ pub struct Sensors {
 
 impl Sensors {
     pub const PERFECT: Self = Self { gain: 0.0, offset_n: 0.0 };
-    /// What a calibration leaves: 5 % and half a newton.
+    /// The errors after a calibration: 5 % and half a newton.
     pub const CALIBRATED: Self = Self { gain: 0.05, offset_n: 0.5 };
 }
 
@@ -61,7 +61,7 @@ struct Step<'a> {
     load: Box<dyn Fn(f32) -> (f32, Vec2) + 'a>,
 }
 
-/// From 0 to 1 between `from` and `to`, smoothly.
+/// Smooth step from 0 to 1: `u^2 (3 - 2 u)` with `u = (x - from) / (to - from)`, clamped.
 fn ease(x: f32, from: f32, to: f32) -> f32 {
     let u = ((x - from) / (to - from)).clamp(0.0, 1.0);
     u * u * (3.0 - 2.0 * u)
@@ -86,7 +86,7 @@ fn sole(length: f32, phase: Option<f32>, points: &mut Vec<(Vec2, f32)>) {
         ],
     };
     points.clear();
-    // Middle along (share of the length) and across, extent along and across (m), points a side.
+    // Middle along (share of the length) and across, extent along and across (m), points per side.
     let parts = [
         (heel, 0.12, 0.0, 0.05, 0.05, 4),
         (arch, 0.42, -0.012, 0.07, 0.04, 3),
@@ -171,7 +171,7 @@ fn play(
     scene
 }
 
-/// Somebody of 45 to 120 kg walks eight steps at 0.8 to 1.8 m/s; one in three turns while walking.
+/// A person of 45 to 120 kg walks eight steps at 0.8 to 1.8 m/s; one in three turns while walking.
 pub fn walk(seed: u64, sensors: Sensors) -> Scene {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let speed = rng.random_range(0.8..1.8_f32);
@@ -207,7 +207,7 @@ pub fn walk(seed: u64, sensors: Sensors) -> Scene {
     play(format!("walk {seed} at {speed:.1} m/s"), geometry, length_s, &steps, sensors, seed)
 }
 
-/// Somebody steps onto the floor, one foot after the other, 15 to 60 cm apart, and sways for five seconds.
+/// A person steps onto the floor, one foot after the other, 15 to 60 cm apart, and sways for five seconds.
 pub fn stand(seed: u64, sensors: Sensors) -> Scene {
     let mut rng = Pcg64Mcg::seed_from_u64(seed + 1000);
     let weight = rng.random_range(45.0..120.0_f32) * 9.81;
@@ -240,8 +240,8 @@ pub fn stand(seed: u64, sensors: Sensors) -> Scene {
 /// The west edge of the region that [`tap`] taps into, in metres.
 pub const REGION_WEST: f32 = 6.0 * 0.304;
 
-/// A stance foot of 350 to 700 N stands 0 to 15 cm beside a region; the other foot taps and slides in it with 30 to 150
-/// N.
+/// A stance foot of 350 to 700 N stands 0 to 15 cm beside a region; the other foot taps and slides in it with 30 to
+/// 150 N.
 pub fn tap(seed: u64, sensors: Sensors) -> Scene {
     let mut rng = Pcg64Mcg::seed_from_u64(seed + 5000);
     let stance = rng.random_range(350.0..700.0_f32);
@@ -292,7 +292,7 @@ pub fn tap(seed: u64, sensors: Sensors) -> Scene {
     play(format!("tap {seed} with {tapping:.0} N"), geometry, 8.0, &steps, sensors, seed)
 }
 
-/// People on a large floor, two on each stretch of 6 x 6 tiles, no two stretches in step.
+/// People on a large floor, two on each block of 6 x 6 tiles, no two blocks in phase.
 pub struct Crowd {
     pub geometry: Geometry,
     pub moments: Vec<Moment>,
@@ -301,12 +301,12 @@ pub struct Crowd {
 /// One millisecond of a crowd.
 pub struct Moment {
     at: Instant,
-    /// What the loaded tiles read.
+    /// The readings of the loaded tiles.
     loads: Vec<(usize, [f32; 4])>,
 }
 
 impl Moment {
-    /// Brings `frame` up to date, in which `before` is shown, as the assembler does: where something changes.
+    /// Updates `frame`, which shows `before`, like the assembler: only where a reading changes.
     pub fn show(&self, frame: &mut ForceFrame, before: Option<&Self>) {
         let loads = before.map_or(&[][..], |before| &before.loads);
         loads.iter().for_each(|(index, _)| frame.forces[*index] = [0.0; 4]);
@@ -316,7 +316,7 @@ impl Moment {
 }
 
 impl Crowd {
-    /// A floor of `side` x `side` tiles on which `walkers` people walk for so many milliseconds.
+    /// A floor of `side` x `side` tiles on which `walkers` people walk for `millis` milliseconds.
     pub fn of(side: u16, walkers: u16, millis: usize) -> Self {
         let geometry = Geometry::of_paper_tiles(side, side).expect("a square floor");
         let people = [walk(1, Sensors::PERFECT), walk(4, Sensors::PERFECT)];
@@ -348,7 +348,7 @@ impl Crowd {
     }
 }
 
-/// How well contacts followed people, at 100 Hz.
+/// The accuracy with which contacts followed people, at 100 Hz.
 #[derive(Clone, Debug, Default)]
 pub struct Score {
     /// Errors in cm of a foot alone, of feet while two are down, and of the lighter one then.
@@ -371,9 +371,9 @@ pub struct Score {
 const LIGHT_N: f32 = 30.0;
 
 impl Score {
-    /// Runs `method` over `scene` and adds what comes out.
+    /// Runs `method` over `scene` and adds the result.
     pub fn add(&mut self, scene: &Scene, method: Method) {
-        // What is known of these sensors is how they were made.
+        // The uncertainty of these sensors is that with which they were made.
         let uncertainty =
             SensorUncertainty { offset_n: 0.5, gain: 0.05, ..SensorUncertainty::without_memory() };
         let config = SensingConfig { uncertainty, ..SensingConfig::default() };
@@ -443,7 +443,7 @@ impl Score {
         )
     }
 
-    /// What the columns of [`Score::line`] are.
+    /// The columns of [`Score::line`].
     pub const HEAD: &str = "               one foot    two feet    lighter     both   missed extra  ids     in 95 %\n\
          cm              50    95    50    95    50    95  <5 cm %     %      % /steps ellipse";
 }

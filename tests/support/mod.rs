@@ -16,10 +16,10 @@ use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, WidgetEvent};
 use underfoot::wire::SensorPacket;
 
-/// How long a foot takes to put its force on or off: quick, but a foot.
+/// Time in which a foot applies or removes its force: fast, but possible for a foot.
 const RAMP_MS: u64 = 40;
 
-/// Where in a shoe the working foot presses: the ball.
+/// Place of the working foot's pressure in its shoe: the ball.
 const ROLL: f32 = 0.65;
 
 /// A shipped layout, on the paper's floor.
@@ -28,7 +28,7 @@ pub fn layout(name: &str) -> Layout {
     page(text)
 }
 
-/// A layout as written, on the paper's floor.
+/// A layout from `text`, on the paper's floor.
 pub fn page(text: &str) -> Layout {
     match schema::parse_layout(text, "test page", &Kinds::builtin(), &Floor::default().geometry) {
         Ok(loaded) => loaded.layout,
@@ -40,20 +40,20 @@ pub fn page(text: &str) -> Layout {
 pub struct Walker {
     pub engine: Engine,
     pub assembler: Assembler,
-    /// The parts, to be broken.
+    /// The simulated parts, in which tests cause faults.
     pub sim: SimFloor,
     sequence: u32,
     now: Instant,
     stance: Option<Foot>,
     foot: Option<Foot>,
-    /// Whether boards are heard.
+    /// Whether the boards' packets arrive.
     pub connected: bool,
-    /// Whether no tile's forces may be believed.
+    /// Whether the forces of all tiles are marked as unusable.
     pub untrusted: bool,
-    /// Whether what boards send is kept back on its way, until it is released.
+    /// Whether the boards' packets are held back, until they are released.
     pub hold_back: bool,
     held_back: Vec<SensorPacket>,
-    /// Whether somebody looks at the floor all the time.
+    /// Whether a snapshot is taken at each frame.
     pub watched: bool,
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
@@ -62,7 +62,7 @@ pub struct Walker {
 }
 
 impl Walker {
-    /// Nobody on a floor of the paper's parts (25 % spread, 2 mV of noise), calibrated as a lab does it.
+    /// An empty floor of the paper's parts (25 % spread, 2 mV of noise), calibrated as in a laboratory.
     pub fn on(layout: Layout) -> Self {
         Self::on_floor(layout, SimConfig::default(), Method::default())
     }
@@ -71,7 +71,7 @@ impl Walker {
         Self::on_parts(layout, config, method, 7)
     }
 
-    /// As [`Walker::on`], with other parts out of the box.
+    /// Like [`Walker::on`], with other random parts.
     pub fn on_seed(layout: Layout, seed: u64) -> Self {
         Self::on_parts(layout, SimConfig::default(), Method::default(), seed)
     }
@@ -116,13 +116,13 @@ impl Walker {
         self.ramp(|walker, share| walker.stance.as_mut().unwrap().force = weight * share);
     }
 
-    /// Puts the other foot down at `point` too, as who sits can do.
+    /// Puts the other foot down at `point` too, as a seated person can.
     pub fn also_at(&mut self, point: Vec2, force: Newtons) {
         self.stance = Some(foot_at(point));
         self.ramp(|walker, share| walker.stance.as_mut().unwrap().force = force * share);
     }
 
-    /// Takes all weight off both feet within so many milliseconds, and the feet off the floor.
+    /// Takes all weight off both feet within `millis` milliseconds, and the feet off the floor.
     pub fn leave_floor(&mut self, millis: u64) {
         let before = [self.stance, self.foot].map(|foot| foot.map_or(Newtons::ZERO, |foot| foot.force));
         for step in 1..=millis {
@@ -137,7 +137,7 @@ impl Walker {
         (self.stance, self.foot) = (None, None);
     }
 
-    /// Lets through, all at once and now, what was held back.
+    /// Delivers the packets that were held back, all at once.
     pub fn release_packets(&mut self) {
         self.hold_back = false;
         for packet in std::mem::take(&mut self.held_back) {
@@ -169,7 +169,7 @@ impl Walker {
         });
     }
 
-    /// Lets a millisecond pass with the working foot's force at `force`.
+    /// Advances by a millisecond with the working foot's force at `force`.
     pub fn press_now(&mut self, force: Newtons) {
         self.foot.as_mut().unwrap().force = force;
         self.tick();
@@ -199,21 +199,21 @@ impl Walker {
         }
     }
 
-    /// The latest presses that no control answered: control and reason.
+    /// The latest presses without an answer of a control: control and reason.
     pub fn ignored(&self) -> Vec<(String, Ignored)> {
         let mut snapshot = Snapshot::default();
         self.engine.snapshot(&mut snapshot);
         snapshot.ignored.into_iter().map(|press| (press.id.to_string(), press.why)).collect()
     }
 
-    /// The presses that were answered so far: control and greatest force.
+    /// The presses with an answer so far: control and greatest force.
     pub fn answered(&self) -> Vec<(String, Newtons)> {
         let mut snapshot = Snapshot::default();
         self.engine.snapshot(&mut snapshot);
         snapshot.answered.into_iter().map(|press| (press.id.to_string(), press.force)).collect()
     }
 
-    /// What happened since the last call: control and kind.
+    /// The events since the last call: control and kind.
     pub fn take_events(&mut self) -> Vec<(String, EventKind)> {
         self.events.drain(..).map(|event| (event.id.to_string(), event.kind)).collect()
     }
@@ -222,7 +222,7 @@ impl Walker {
         std::mem::take(&mut self.cues)
     }
 
-    /// What lasted in each frame since the last call, while somebody looked.
+    /// The sustained cues of each frame since the last call, while the floor was watched.
     pub fn take_sustained(&mut self) -> Vec<SustainedCue> {
         std::mem::take(&mut self.sustained)
     }
@@ -260,7 +260,7 @@ impl Walker {
         }
     }
 
-    /// One millisecond.
+    /// Advances by one millisecond.
     fn tick(&mut self) {
         self.now = self.now + Duration::from_millis(1);
         self.sequence = self.sequence.wrapping_add(1);
@@ -313,7 +313,7 @@ fn take(
     step.sustained.clone()
 }
 
-/// A foot in the air whose centre of pressure is at `point`, toes pointing north.
+/// A foot in the air with its centre of pressure at `point`, toes pointing north.
 fn foot_at(point: Vec2) -> Foot {
     let mut foot = Foot {
         position: Vec2::ZERO,

@@ -1,4 +1,4 @@
-//! The pages for people: `README.md`, those under `docs/`, and the two for who works on the code.
+//! The pages for readers: `README.md`, those under `docs/`, and the two for developers.
 #![allow(dead_code)]
 
 use std::path::Path;
@@ -10,8 +10,7 @@ pub struct Page {
     pub text: String,
 }
 
-/// What a fenced block may be, and who tries it: `ron`, `sh` and `layers` are tested, `rust` is a doctest, the others
-/// are shown.
+/// Languages of fenced blocks: `ron`, `sh` and `layers` are tested, `rust` is a doctest, the others are only shown.
 const LANGUAGES: [&str; 11] =
     ["ron", "sh", "layers", "rust", "json", "toml", "console", "text", "c", "js", "python"];
 
@@ -37,7 +36,7 @@ impl Page {
         fenced.map(|(_, text)| text).collect()
     }
 
-    /// What stands in backquotes outside of fenced blocks.
+    /// The texts in backquotes outside of fenced blocks.
     pub fn code(&self) -> Vec<String> {
         let prose = self.parts().into_iter().filter(|(fence, _)| fence.is_none());
         let spans = |(_, text): (_, String)| {

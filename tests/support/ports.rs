@@ -3,8 +3,8 @@
 use std::net::{TcpListener, UdpSocket};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A port that is free for UDP and TCP, and that nothing takes by chance until it is used: it lies below those that the
-/// system hands out by itself (32768 on Linux), and each test process begins its search somewhere else.
+/// A port that is free for UDP and TCP, and that no program takes by chance before its use: it lies below those that
+/// the system assigns by itself (32768 on Linux), and each test process begins its search at another port.
 pub(crate) fn free_port() -> u16 {
     static NEXT: AtomicU32 = AtomicU32::new(0);
     (0..20_000)

@@ -13,27 +13,27 @@ use underfoot::sim::{Foot, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{SensorEncoder, SensorFormat, SensorPacket};
 
-/// Whatever port is free.
+/// Any free port.
 pub const ANY_PORT: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
 
-/// Three columns and two rows, so two boards: small enough to be calibrated in a moment.
+/// Three columns and two rows, so two boards: small enough for a quick calibration.
 pub fn small_floor() -> Floor {
     Floor::of(Geometry::of_paper_tiles(3, 2).unwrap())
 }
 
-/// `floor` with parts of its own.
+/// `floor` with random parts.
 pub fn simulated(floor: &Floor) -> SimFloor {
     SimFloor::new(floor, SimConfig::default(), 7)
 }
 
-/// A simulated floor that sends real datagrams, a millisecond's every millisecond, until dropped.
+/// A simulated floor that sends real datagrams, a millisecond's packets every millisecond, until dropped.
 pub struct Sender {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Sender {
-    /// Sends to `target`; `step` moves the floor by the millisecond given.
+    /// Sends to `target`; `step` advances the floor to the given millisecond.
     pub fn start(
         floor: &Floor,
         mut sim: SimFloor,
@@ -54,7 +54,7 @@ impl Sender {
                 for (board, readings) in (0..).zip(sim.readings()) {
                     let readings = readings.clone();
                     let packet = SensorPacket { board, sequence, received: Instant::START, readings };
-                    // Whoever listened may be gone.
+                    // The receiver may be gone.
                     let _ = socket.send_to(encoder.encode(&packet).unwrap(), target);
                 }
                 let due = Duration::from_millis(u64::from(sequence) + 1);

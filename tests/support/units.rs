@@ -53,7 +53,7 @@ impl Unit {
         all
     }
 
-    /// The value of a setting that stands in the unit once.
+    /// The value of a setting that occurs once in the unit.
     pub fn value(&self, key: &str) -> &str {
         let settings = self.settings();
         let found: Vec<&str> =

@@ -1,4 +1,4 @@
-//! Why the last call on this thread failed, in words.
+//! The text of the last failed call on each thread.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
@@ -7,15 +7,15 @@ thread_local! {
     static LAST: RefCell<CString> = RefCell::default();
 }
 
-/// Keeps `text` for `uf_last_error` on this thread; what stands behind a 0 is lost.
+/// Stores `text` for `uf_last_error` on this thread, cut at its first 0.
 pub(crate) fn keep(text: &str) {
     let text = text.split('\0').next().unwrap_or_default();
     let text = CString::new(text).unwrap_or_default();
-    // At the end of a thread nobody asks any more.
+    // At the end of a thread the text is no longer needed.
     let _ = LAST.try_with(|last| last.replace(text));
 }
 
-/// The text that was kept last on this thread; it lasts until the next failure there.
+/// The text stored last on this thread; it is valid until the next failure there.
 pub(crate) fn last() -> *const c_char {
     LAST.try_with(|last| last.borrow().as_ptr()).unwrap_or(CStr::as_ptr(c""))
 }

@@ -1,6 +1,6 @@
-//! The runtime for programs in C: `underfoot.h` says what each function does.
+//! The runtime for programs in C; `underfoot.h` describes each function.
 //!
-//! Each function checks its pointers and texts, and catches what panics.
+//! Each function checks its pointers and texts, and catches panics.
 
 mod last_error;
 mod session;
@@ -21,10 +21,10 @@ use status::{OK, ON, OVER, PANIC, TIMEOUT, bad_argument, of_reason, of_refusal};
 pub use structs::{UfContact, UfEvent, UfOptions, UfValue};
 use structs::{put, sized};
 
-/// How long one wait without an end lasts before the next one.
+/// Length of one wait in a loop without a time-out.
 const HOUR: Duration = Duration::from_secs(3600);
 
-/// Calls `f`; `fallen` if it panics.
+/// Calls `f`; returns `fallen` if it panics.
 fn contained<T>(fallen: T, f: impl FnOnce() -> T) -> T {
     catch_unwind(AssertUnwindSafe(f)).unwrap_or_else(|_| {
         last_error::keep("a fault of the library");
@@ -32,7 +32,7 @@ fn contained<T>(fallen: T, f: impl FnOnce() -> T) -> T {
     })
 }
 
-/// The text at `text`; `None` for null and for what is not UTF-8.
+/// The text at `text`; `None` for null and for bytes that are not UTF-8.
 ///
 /// # Safety
 /// `text` is null or ends with a 0 and stays as it is for `'a`.
@@ -44,10 +44,10 @@ unsafe fn text<'a>(text: *const c_char) -> Option<&'a str> {
     unsafe { CStr::from_ptr(text) }.to_str().ok()
 }
 
-/// Does `what` with one control.
+/// Calls `what` with one control.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 unsafe fn with_control(
     session: *const UfSession,
     id: *const c_char,
@@ -68,7 +68,7 @@ unsafe fn with_control(
 /// Starts a floor; see `underfoot.h`.
 ///
 /// # Safety
-/// The texts are null or end with 0, `options` is null or of the size it says, `error` is null or has `error_size`
+/// The texts are null or end with 0, `options` is null or of its declared size, `error` is null or has `error_size`
 /// bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_session_listen(
@@ -98,10 +98,10 @@ pub unsafe extern "C" fn uf_session_listen(
     unsafe { handed_out(started, error, error_size) }
 }
 
-/// Starts a floor of the past; see `underfoot.h`.
+/// Starts a replay of a recorded floor; see `underfoot.h`.
 ///
 /// # Safety
-/// `recording` is null or ends with 0, `options` is null or of the size it says, `error` is null or has `error_size`
+/// `recording` is null or ends with 0, `options` is null or of its declared size, `error` is null or has `error_size`
 /// bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_session_replay(
@@ -121,7 +121,7 @@ pub unsafe extern "C" fn uf_session_replay(
     unsafe { handed_out(started, error, error_size) }
 }
 
-/// Whether the options ask for every value.
+/// Whether the options request every value.
 fn every_change(options: Option<&UfOptions>) -> Result<bool, String> {
     match options {
         Some(options) if !sized::<UfOptions>(options.size) => {
@@ -131,7 +131,7 @@ fn every_change(options: Option<&UfOptions>) -> Result<bool, String> {
     }
 }
 
-/// The handle of a session, or null and the reason in `error` and for `uf_last_error`.
+/// The handle of a session; on failure null, with the reason in `error` and for `uf_last_error`.
 ///
 /// # Safety
 /// `error` is null or has `error_size` bytes.
@@ -151,7 +151,7 @@ unsafe fn handed_out(
     }
 }
 
-/// Writes `text` to `place`, cut to `size` bytes with the closing 0; nowhere if that is null or empty.
+/// Writes `text` to `place`, cut to `size` bytes with the closing 0; writes nothing if `place` is null or empty.
 ///
 /// # Safety
 /// `place` is null or has `size` bytes.
@@ -165,7 +165,7 @@ unsafe fn put_at(place: *mut c_char, size: usize, text: &str) {
 /// Takes the next event; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `event` is null or of the size it says.
+/// `session` is null or valid, `event` is null or of its declared size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_next(session: *mut UfSession, event: *mut UfEvent, timeout_ms: c_int) -> c_int {
     contained(PANIC, || {
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn uf_next(session: *mut UfSession, event: *mut UfEvent, t
 /// Whether a foot holds a control now; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_held(session: *const UfSession, id: *const c_char) -> c_int {
     contained(0, || {
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn uf_held(session: *const UfSession, id: *const c_char) -
         let (Some(session), Some(id)) = (unsafe { session.as_ref() }, unsafe { text(id) }) else { return 0 };
         match session.floor.held(id) {
             Ok(held) => c_int::from(held.is_fresh()),
-            // Not the number of a failure: a program that takes all but 0 for held would go on for ever.
+            // Not the number of a failure: a program that treats all but 0 as held would never stop.
             Err(refusal) => {
                 of_refusal(&refusal);
                 0
@@ -214,20 +214,20 @@ pub unsafe extern "C" fn uf_held(session: *const UfSession, id: *const c_char) -
     })
 }
 
-/// Whether there is a control of this name; see `underfoot.h`.
+/// Whether the layout has a control of this name; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_has(session: *const UfSession, id: *const c_char) -> c_int {
     // SAFETY: as the caller promises.
     unsafe { with_control(session, id, |_| Ok(())) }
 }
 
-/// Why a control is off; see `underfoot.h`.
+/// The reason why a control is off; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text, `text` is null or has `text_size` bytes.
+/// `session` is null or valid, `id` is null or a text, `text` is null or has `text_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_off(
     session: *const UfSession,
@@ -261,7 +261,7 @@ pub extern "C" fn uf_off_name(reason: c_int) -> *const c_char {
 /// The number of controls; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives.
+/// `session` is null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_control_count(session: *const UfSession) -> c_int {
     contained(PANIC, || {
@@ -274,7 +274,7 @@ pub unsafe extern "C" fn uf_control_count(session: *const UfSession) -> c_int {
 /// The name of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or has `id_size` bytes.
+/// `session` is null or valid, `id` is null or has `id_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_control_id(
     session: *const UfSession,
@@ -296,10 +296,10 @@ pub unsafe extern "C" fn uf_control_id(
     })
 }
 
-/// Where boards send to; see `underfoot.h`.
+/// The address for boards; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `address` is null or has `address_size` bytes.
+/// `session` is null or valid, `address` is null or has `address_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_address(
     session: *const UfSession,
@@ -316,7 +316,7 @@ pub unsafe extern "C" fn uf_address(
     })
 }
 
-/// Why the last call failed; see `underfoot.h`.
+/// The text of the last failed call; see `underfoot.h`.
 #[unsafe(no_mangle)]
 pub extern "C" fn uf_last_error() -> *const c_char {
     last_error::last()
@@ -325,17 +325,17 @@ pub extern "C" fn uf_last_error() -> *const c_char {
 /// A descriptor to poll; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives.
+/// `session` is null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_fd(session: *const UfSession) -> c_int {
     // SAFETY: as the caller promises.
     contained(PANIC, || unsafe { session.as_ref() }.map_or_else(bad_argument, UfSession::descriptor))
 }
 
-/// What a control holds; see `underfoot.h`.
+/// The value of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text, `value` is null or of the size it says.
+/// `session` is null or valid, `id` is null or a text, `value` is null or of its declared size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_get(session: *const UfSession, id: *const c_char, value: *mut UfValue) -> c_int {
     contained(PANIC, || {
@@ -360,7 +360,7 @@ pub unsafe extern "C" fn uf_get(session: *const UfSession, id: *const c_char, va
 /// The feet on the floor; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `contacts` has `capacity` elements of `element_size` bytes.
+/// `session` is null or valid, `contacts` has `capacity` elements of `element_size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_contacts(
     session: *const UfSession,
@@ -377,8 +377,8 @@ pub unsafe extern "C" fn uf_contacts(
         }
         let feet = session.floor.snapshot().floor.contacts;
         for (index, foot) in feet.iter().enumerate().take(capacity) {
-            // SAFETY: within `capacity` elements, each of this version's size at least; aligned as the first one is, or
-            // not, in a later version.
+            // SAFETY: within `capacity` elements, each of this version's size at least; aligned as the first one is,
+            // or not, in a later version.
             unsafe {
                 let place = contacts.byte_add(index * element_size);
                 ptr::write_unaligned(place, UfContact::of(foot, size));
@@ -388,10 +388,10 @@ pub unsafe extern "C" fn uf_contacts(
     })
 }
 
-/// Why boards that send give no usable frame; see `underfoot.h`.
+/// The reason why boards that send give no usable frame; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `text` is null or has `size` bytes.
+/// `session` is null or valid, `text` is null or has `size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_link_cause(session: *const UfSession, text: *mut c_char, size: usize) -> c_int {
     contained(PANIC, || {
@@ -407,30 +407,30 @@ pub unsafe extern "C" fn uf_link_cause(session: *const UfSession, text: *mut c_c
     })
 }
 
-/// Events that were dropped; see `underfoot.h`.
+/// Number of dropped events; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives.
+/// `session` is null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_dropped(session: *const UfSession) -> u64 {
     // SAFETY: as the caller promises.
     contained(0, || unsafe { session.as_ref() }.map_or(0, |session| session.floor.dropped()))
 }
 
-/// Gives a control a number; see `underfoot.h`.
+/// Sets a control to a number; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_number(session: *mut UfSession, id: *const c_char, value: f32) -> c_int {
     // SAFETY: as the caller promises.
     unsafe { with_control(session, id, |control| control.set(value)) }
 }
 
-/// Gives a pad two numbers; see `underfoot.h`.
+/// Sets a pad to two numbers; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_pair(
     session: *mut UfSession,
@@ -442,10 +442,10 @@ pub unsafe extern "C" fn uf_set_pair(
     unsafe { with_control(session, id, |control| control.set(Value::Pair(Vec2::new(east, north)))) }
 }
 
-/// Gives a control another range; see `underfoot.h`.
+/// Sets the range of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_range(
     session: *mut UfSession,
@@ -457,10 +457,10 @@ pub unsafe extern "C" fn uf_set_range(
     unsafe { with_control(session, id, |control| control.set_range(least..=greatest)) }
 }
 
-/// Writes another label on a control; see `underfoot.h`.
+/// Sets the label of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, the texts are null or end with 0.
+/// `session` is null or valid, the texts are null or end with 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_label(
     session: *mut UfSession,
@@ -473,10 +473,10 @@ pub unsafe extern "C" fn uf_set_label(
     unsafe { with_control(session, id, |control| control.set_label(label)) }
 }
 
-/// Switches a control's lamp; see `underfoot.h`.
+/// Sets the indicator of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, the texts are null or end with 0.
+/// `session` is null or valid, the texts are null or end with 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_indicator(
     session: *mut UfSession,
@@ -492,20 +492,20 @@ pub unsafe extern "C" fn uf_set_indicator(
     unsafe { with_control(session, id, |control| control.set_indicator(lamp)) }
 }
 
-/// Lets a control react to feet, or no more; see `underfoot.h`.
+/// Enables or disables a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_enabled(session: *mut UfSession, id: *const c_char, enabled: c_int) -> c_int {
     // SAFETY: as the caller promises.
     unsafe { with_control(session, id, |control| control.set_enabled(enabled != 0)) }
 }
 
-/// Lets a control keep its value, or no more; see `underfoot.h`.
+/// Locks or unlocks the value of a control; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `id` is null or a text.
+/// `session` is null or valid, `id` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_locked(session: *mut UfSession, id: *const c_char, locked: c_int) -> c_int {
     // SAFETY: as the caller promises.
@@ -515,7 +515,7 @@ pub unsafe extern "C" fn uf_set_locked(session: *mut UfSession, id: *const c_cha
 /// Shows another page; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives, `page` is null or a text.
+/// `session` is null or valid, `page` is null or a text.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_set_page(session: *mut UfSession, page: *const c_char) -> c_int {
     contained(PANIC, || {
@@ -532,7 +532,7 @@ pub unsafe extern "C" fn uf_set_page(session: *mut UfSession, page: *const c_cha
 /// Ends the floor; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null or lives.
+/// `session` is null or valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_stop(session: *mut UfSession) {
     // SAFETY: as the caller promises.
@@ -542,7 +542,7 @@ pub unsafe extern "C" fn uf_stop(session: *mut UfSession) {
 /// Ends the floor and frees the session; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null, or was given by `uf_session_listen` and is used by nobody else.
+/// `session` is null, or was returned by `uf_session_listen` and is in use nowhere else.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_close(session: *mut UfSession) {
     if !session.is_null() {
@@ -551,7 +551,7 @@ pub unsafe extern "C" fn uf_close(session: *mut UfSession) {
     }
 }
 
-/// A status in words; see `underfoot.h`.
+/// The text of a status; see `underfoot.h`.
 #[unsafe(no_mangle)]
 pub extern "C" fn uf_status_text(status: c_int) -> *const c_char {
     status::text(status).as_ptr()

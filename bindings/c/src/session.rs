@@ -13,13 +13,13 @@ use underfoot::runtime::{Event, Kind, Session, SessionBuilder};
 
 use crate::structs::ID_SIZE;
 
-/// What `uf_session` is.
+/// The content of `uf_session`.
 #[derive(Debug)]
 pub struct UfSession {
     pub(crate) floor: Session,
-    /// Whether the last event was taken.
+    /// Whether the caller has taken the last event.
     over: AtomicBool,
-    /// Has a byte whenever events may wait.
+    /// Has a byte whenever there may be events.
     #[cfg(unix)]
     woken: UnixStream,
 }
@@ -39,7 +39,7 @@ impl UfSession {
         Self::start(builder, every_change)
     }
 
-    /// Plays a recording, `speed` times as fast as it came; 0 plays it as fast as can be.
+    /// Plays a recording at `speed` times its original speed; 0 plays it as fast as possible.
     pub(crate) fn replay(recording: &str, speed: f64, every_change: bool) -> Result<Self, String> {
         let speed = match speed {
             0.0 => Speed::Max,
@@ -60,7 +60,7 @@ impl UfSession {
                 let (mut wake, woken) = UnixStream::pair()?;
                 wake.set_nonblocking(true)?;
                 woken.set_nonblocking(true)?;
-                // A full pipe has been readable for long.
+                // A full pipe is readable already.
                 Ok((move || drop(wake.write(&[1])), woken))
             };
             let (wake, woken) = pair().map_err(|error| format!("the system gives no pipe: {error}"))?;
@@ -81,8 +81,8 @@ impl UfSession {
         })
     }
 
-    /// The next event within `patience`. The descriptor is emptied before the last look into the queue: what comes
-    /// later makes it readable anew.
+    /// The next event within `patience`. The descriptor is emptied before the last look into the queue, so that each
+    /// later event makes it readable again.
     pub(crate) fn next(&self, patience: Duration) -> Option<Event> {
         let event = self.floor.next_event().or_else(|| {
             #[cfg(unix)]
@@ -95,7 +95,7 @@ impl UfSession {
         Some(event)
     }
 
-    /// Whether the last event was taken.
+    /// Whether the caller has taken the last event.
     pub(crate) fn is_over(&self) -> bool {
         self.over.load(Ordering::Acquire)
     }

@@ -1,4 +1,4 @@
-//! What functions answer, by the numbers in `underfoot.h`.
+//! The results of functions, by the numbers in `underfoot.h`.
 
 use std::ffi::{CStr, c_int};
 
@@ -14,13 +14,13 @@ pub(crate) const BAD_ARGUMENT: c_int = -1;
 pub(crate) const UNKNOWN: c_int = -2;
 pub(crate) const PANIC: c_int = -13;
 
-/// `UF_BAD_ARGUMENT`, whose words are kept for `uf_last_error`.
+/// `UF_BAD_ARGUMENT`; stores its text for `uf_last_error`.
 pub(crate) fn bad_argument() -> c_int {
     last_error::keep(&text(BAD_ARGUMENT).to_string_lossy());
     BAD_ARGUMENT
 }
 
-/// The number of a refusal, whose words are kept for `uf_last_error`.
+/// The number of a refusal; stores its text for `uf_last_error`.
 pub(crate) fn of_refusal(refusal: &Refusal) -> c_int {
     last_error::keep(&refusal.to_string());
     match refusal {
@@ -44,14 +44,14 @@ pub(crate) fn of_refusal(refusal: &Refusal) -> c_int {
 /// `UF_ON`.
 pub(crate) const ON: c_int = 0;
 
-/// The number of a reason, as in `underfoot.h`: its place in [`OffReason::ALL`], from 1; 100 for one that this library
-/// has no number for.
+/// The number of a reason, as in `underfoot.h`: its place in [`OffReason::ALL`], from 1; 100 for one without a number
+/// in this library.
 pub(crate) fn of_reason(reason: OffReason) -> c_int {
     let place = OffReason::ALL.iter().position(|other| *other == reason);
     place.and_then(|place| c_int::try_from(place + 1).ok()).unwrap_or(100)
 }
 
-/// The word for a reason, as in JSON lines; empty for `UF_ON` and for what is no reason.
+/// The word for a reason, as in JSON lines; empty for `UF_ON` and for other numbers.
 pub(crate) fn reason_name(number: c_int) -> &'static CStr {
     match number {
         1 => c"disabled",
@@ -68,7 +68,7 @@ pub(crate) fn reason_name(number: c_int) -> &'static CStr {
     }
 }
 
-/// A number in words.
+/// The text of a number.
 pub(crate) fn text(status: c_int) -> &'static CStr {
     match status {
         OK => c"done",

@@ -62,8 +62,8 @@ pub struct UfContact {
     y_velocity_m_s: f32,
 }
 
-/// Whether a struct that says it has `size` bytes has room for this version of `T`: a program compiled for a later
-/// version may use this library, which leaves its newer fields alone.
+/// Whether a struct of the declared `size` in bytes has room for this version of `T`: a program compiled for a later
+/// version may use this library, which leaves its newer fields unchanged.
 pub(crate) const fn sized<T>(size: u32) -> bool {
     size as usize >= size_of::<T>() && size <= 1 << 16
 }
@@ -71,7 +71,7 @@ pub(crate) const fn sized<T>(size: u32) -> bool {
 /// Writes `text` with a closing 0, cut at a character if there is no room.
 pub(crate) fn put(place: &mut [c_char], text: &str) {
     let Some(room) = place.len().checked_sub(1) else { return };
-    // What comes behind a 0 is nothing to C.
+    // C ignores the part behind a 0.
     let text = text.split('\0').next().unwrap_or_default();
     let text = &text[..text.floor_char_boundary(room)];
     place.iter_mut().zip(text.bytes().chain([0])).for_each(|(place, byte)| *place = byte as c_char);
@@ -137,7 +137,7 @@ impl UfContact {
 
 const NOTHING: (u32, [f32; 2]) = (0, [0.0; 2]);
 
-/// The value that an event of a control tells.
+/// The value in an event of a control.
 fn happened(kind: EventKind) -> (u32, [f32; 2]) {
     match kind {
         EventKind::Changed(value) => numbers(value),

@@ -1,4 +1,4 @@
-"""Prints events as JSON lines, and when a control begins and ends to be held.
+"""Prints events as JSON lines, and the beginning and end of each hold of a control.
 
     python json_lines.py 127.0.0.1:9000 map.ron home [floor.ron]
 
@@ -42,5 +42,5 @@ try:
                 print(json.dumps({"event": event.name, **line}), flush=True)
             look()
 finally:
-    # However it ended.
+    # After any kind of end.
     look()

@@ -1,4 +1,4 @@
-//! What happened, as a tuple that `underfoot._types` makes an event of.
+//! An event as a tuple, from which `underfoot._types` makes an event.
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -6,7 +6,8 @@ use pyo3::{IntoPyObject, IntoPyObjectExt};
 use underfoot::runtime::{self, Kind};
 use underfoot::widget::{EventKind, Value};
 
-/// The event's fields in the order of `underfoot._types.event_of`: kind, name, id, value, text, when, force, place, foot.
+/// The event's fields in the order of `underfoot._types.event_of`: kind, name, id, value, text, when, force, place,
+/// foot.
 pub(crate) fn fields<'py>(py: Python<'py>, event: &runtime::Event) -> PyResult<Bound<'py, PyTuple>> {
     let kind = if matches!(event.kind, Kind::Control(_)) { "control" } else { event.kind.name() };
     let value = match event.kind {

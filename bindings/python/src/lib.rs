@@ -1,6 +1,6 @@
-//! The runtime for programs in Python; `underfoot/__init__.pyi` says what each name does.
+//! The runtime for programs in Python; `underfoot/__init__.pyi` describes each name.
 //!
-//! While it waits, other Python threads run, and signals are looked after every 50 ms. No lock is held meanwhile.
+//! During a wait other Python threads run, no lock is held, and signals are checked every 50 ms.
 
 mod event;
 
@@ -27,20 +27,20 @@ create_exception!(
     "The floor does not do what was asked; nothing has changed."
 );
 
-/// How long a wait lasts before signals are looked after.
+/// Interval between two checks for signals during a wait.
 const SLICE: Duration = Duration::from_millis(50);
 
-/// A floor at work.
+/// A running floor.
 #[pyclass(frozen, subclass, name = "Session", module = "underfoot._underfoot")]
 struct PySession {
     /// `None` once it is closed.
     floor: Mutex<Option<Session>>,
-    /// Whether the last event was taken.
+    /// Whether the caller has taken the last event.
     over: AtomicBool,
 }
 
 impl PySession {
-    /// A handle of its own, so that nobody waits for a lock.
+    /// A handle of its own, so that no thread waits for a lock.
     fn handle(&self) -> Option<Session> {
         self.floor.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -53,12 +53,12 @@ impl PySession {
         Ok(self.open()?.snapshot())
     }
 
-    /// How one control is.
+    /// The state of one control.
     fn known(&self, id: &str) -> PyResult<ControlState> {
         self.open()?.control(id).and_then(|control| control.state()).map_err(|refusal| refused(&refusal))
     }
 
-    /// Does `what` with one control, while other threads run.
+    /// Calls `what` with one control, while other threads run.
     fn with_control(
         &self,
         py: Python<'_>,
@@ -106,7 +106,7 @@ fn replaying(recording: std::path::PathBuf, speed: Option<f64>) -> PyResult<Sess
     Session::replay(recording, speed).map_err(|error| PyOSError::new_err(error.to_string()))
 }
 
-/// How a control is, as a dictionary; `off` as a tuple of reason and text.
+/// The state of a control, as a dictionary; `off` as a tuple of reason and text.
 fn state<'py>(py: Python<'py>, state: &ControlState) -> PyResult<Bound<'py, PyDict>> {
     let ends = |scale: &underfoot::widget::Scale| (scale.min, scale.max);
     let dict = PyDict::new(py);
@@ -180,7 +180,7 @@ impl PySession {
         Ok(Self { floor: Mutex::new(Some(started)), over: AtomicBool::new(false) })
     }
 
-    /// The next event within `timeout` seconds; without a number, whenever it comes. `None` when there is none.
+    /// The next event within `timeout` seconds; without a number, waits for ever. `None` when there is none.
     #[pyo3(signature = (timeout=None))]
     fn next_event<'py>(
         &self,
@@ -196,7 +196,7 @@ impl PySession {
         loop {
             let Some(floor) = self.handle() else { return Ok(None) };
             let left = patience.saturating_sub(begun.elapsed());
-            // The handle goes here as well: as the last one it waits for the floor's thread.
+            // The handle is dropped here as well: the last one waits for the floor's thread.
             if let Some(event) = py.detach(move || floor.next_event_timeout(left.min(SLICE))) {
                 if matches!(event.kind, Kind::Ended(_)) {
                     self.over.store(true, Ordering::Release);
@@ -210,7 +210,7 @@ impl PySession {
         }
     }
 
-    /// Whether the last event was taken, or the session is closed.
+    /// Whether the caller has taken the last event, or the session is closed.
     #[getter]
     fn over(&self) -> bool {
         self.over.load(Ordering::Acquire) || self.handle().is_none()
@@ -237,7 +237,7 @@ impl PySession {
     fn close(&self, py: Python<'_>) {
         let floor = self.floor.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(floor) = floor {
-            // Whoever waits for an event has a handle and gives it back then.
+            // A thread that waits for an event has a handle and drops it then.
             floor.stop();
             py.detach(move || drop(floor));
         }
@@ -248,7 +248,7 @@ impl PySession {
         Ok(floor.held(id).map_err(|refusal| refused(&refusal))?.is_fresh())
     }
 
-    /// Where boards send to.
+    /// The address for boards.
     #[getter]
     fn address(&self) -> PyResult<Option<String>> {
         Ok(self.open()?.local_addr().map(|address| address.to_string()))
@@ -326,7 +326,7 @@ impl PySession {
         Ok(self.snapshot()?.floor.link.name())
     }
 
-    /// Name and sentence of the cause for which boards that send give no usable frame.
+    /// Name and sentence of the reason why boards that send give no usable frame.
     #[getter]
     fn link_cause(&self) -> PyResult<Option<(&'static str, String)>> {
         Ok(self.snapshot()?.floor.link_cause.map(|cause| (cause.name(), cause.to_string())))

@@ -17,7 +17,7 @@ RECORDING, LAYOUT = os.environ["RECORDING"], os.environ["LAYOUT"]
 
 
 def visit():
-    """Every event of the visit, as fast as can be."""
+    """Every event of the visit, as fast as possible."""
     with underfoot.replay(RECORDING, speed=None, every_change=True) as floor:
         return list(floor)
 
@@ -34,7 +34,7 @@ class Replay(unittest.TestCase):
         self.assertEqual((last.kind, last.reason, last.text), ("ended", "source_ended", "source_ended"))
 
     def test_the_same_recording_gives_the_same_events(self):
-        # When the end was noticed is this computer's time, not the recording's.
+        # The time of the end is this computer's and not the recording's.
         self.assertEqual(visit()[:-1], self.events[:-1])
 
     def test_events_come_back_from_a_pickle_as_they_were(self):

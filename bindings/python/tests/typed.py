@@ -1,5 +1,5 @@
-"""What type checkers know of events: `mypy --strict` passes this file, and each of its comments that silences an error is
-needed. It is checked, not run."""
+"""The types of events for type checkers: `mypy --strict` passes this file, and needs each of its comments that
+silence an error. It is checked and never run."""
 
 from typing import Literal, assert_never, assert_type
 
@@ -38,7 +38,7 @@ def by_class(event: AnyEvent) -> str:
             assert_type(reason, Literal["stopped", "source_ended", "failed", "panicked"])
             return reason + message
         case _:
-            # Nothing is left.
+            # No case is left.
             assert_never(event)
 
 

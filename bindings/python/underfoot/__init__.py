@@ -1,4 +1,4 @@
-"""User interfaces on a force-sensing floor; the types and what they do stand in __init__.pyi and _types.py."""
+"""User interfaces on a force-sensing floor; __init__.pyi and _types.py describe the types."""
 
 import asyncio
 
@@ -47,7 +47,7 @@ __all__ = [
     "replay",
 ]
 
-# How often `async for` looks for events, in seconds: as often as the floor renews what it shows.
+# Interval at which `async for` looks for events, in seconds: that of the floor's snapshots.
 _LOOK_EVERY = 0.005
 
 

@@ -32,12 +32,12 @@ from ._types import Value as Value
 __version__: str
 
 class Refused(Exception):
-    """The floor does not do what was asked: locked, in use by a foot, only for feet, not a number, or over."""
+    """The floor refuses: the control is locked, in use or for feet only, the value is NaN, or the floor ended."""
 
 class Floor:
-    """A floor at work on a thread of its own. Ends with `with`, with `close`, and when nobody has it any more.
+    """A floor that runs on a thread of its own. It ends with `with`, with `close`, and when it is garbage-collected.
 
-    KeyError is a control that the layout does not have, with the nearest name; or a page, with the names of all."""
+    KeyError names a control that the layout lacks, with the nearest name; or a page, with the names of all."""
 
     def __init__(
         self,
@@ -66,43 +66,43 @@ class Floor:
         Other threads run meanwhile, and Ctrl-C ends it."""
     @property
     def over(self) -> bool:
-        """Whether the last event, "ended", was taken, or the floor is closed."""
+        """Whether the program has taken the last event, "ended", or the floor is closed."""
     def stop(self) -> None:
-        """Ends the floor: what is held is cancelled and "ended" follows. Does not wait."""
+        """Ends the floor: cancels all holds, and "ended" follows. Does not wait."""
     def close(self) -> None:
         """Ends the floor and waits for it."""
     def held(self, id: str) -> bool:
-        """Whether a foot holds the control now, and the floor has said so within the last 100 ms.
+        """Whether a foot holds the control now, and the floor has reported that within the last 100 ms.
 
-        To be asked at least every 20 ms while something acts: silence means released. Not a safety function. False on a
-        floor that is closed; KeyError for a control that the layout does not have, which would never be held."""
+        Call it at least every 20 ms while something acts: silence means released. Not a safety function. False on a
+        closed floor; KeyError for a control that the layout lacks, which would never be held."""
     @property
     def address(self) -> str | None:
-        """Where boards send to, with the port that the system chose for port 0; None for a recording."""
+        """The address for boards, with the port that the system chose for port 0; None for a recording."""
     @property
     def dropped(self) -> int:
-        """Events that were dropped because nobody took them."""
+        """Number of events that were dropped because the program did not take them."""
     @property
     def page(self) -> str | None: ...
     @property
     def link(self) -> LinkName: ...
     @property
     def link_cause(self) -> tuple[str, str] | None:
-        """Why boards that send give no usable frame, or why no load was ever seen: a name that never changes, such as
-        "rate_low", and a sentence. None if all is well or nothing is sent."""
+        """The reason why boards that send give no usable frame, or why no load was ever seen: a stable name, such as
+        "rate_low", and a sentence. None if all is well or no board sends."""
     def __getitem__(self, id: str) -> Value | None:
-        """What the control holds; None for a button."""
+        """The value of the control; None for a button."""
     def __setitem__(self, id: str, value: Value) -> None:
-        """A number beyond the control's range becomes the nearest end of the range, one between two steps the nearer
-        step. KeyError, TypeError or Refused say why it stays as it was; NaN is refused, and so is a choice that a
-        selector does not have."""
+        """Sets the value. A number beyond the control's range becomes the nearest end of the range, and one between two
+        steps the nearer step. KeyError, TypeError or Refused give the reason why it stays unchanged; NaN is refused,
+        and so is a choice that a selector lacks."""
     def __contains__(self, id: str) -> bool: ...
     def ids(self) -> list[str]: ...
     def controls(self) -> dict[str, State]:
-        """How each control is, in the order of the layout."""
+        """The state of each control, in the order of the layout."""
     def state(self, id: str) -> State: ...
     def off(self, id: str) -> Off | None:
-        """Why no foot can press the control; None if one can."""
+        """The reason why no foot can press the control; None if one can."""
     def set_range(self, id: str, least: float, greatest: float) -> None: ...
     def set_label(self, id: str, label: str) -> None: ...
     def set_indicator(self, id: str, lamp: Lamp) -> None: ...
@@ -124,13 +124,13 @@ def listen(
     floor: str | PathLike[str] | None = None,
     every_change: bool = False,
 ) -> Floor:
-    """A floor whose boards send to `address`, with the page of controls in the file `layout`.
+    """Starts a floor with boards that send to `address`, and the page of controls in the file `layout`.
 
     `floor` is the floor file; without it, the paper's floor of 6 x 6 tiles. With `every_change` no value of a control
-    is left out when the program is slow. ValueError says what is wrong with a file, OSError with the address."""
+    is left out when the program is slow. ValueError describes an error in a file, OSError one of the address."""
 
 def replay(
     recording: str | PathLike[str], *, speed: float | None = 1.0, every_change: bool = False
 ) -> Floor:
-    """A floor that was recorded, with its layout: the same events again, `speed` times as fast as they came, or with
-    None as fast as can be. It ends with the recording. OSError says why there is none to be read."""
+    """Replays a recorded floor, with its layout: the same events, at `speed` times the original speed, or with None as
+    fast as possible. It ends with the recording. OSError gives the reason why the recording cannot be read."""

@@ -1,4 +1,4 @@
-"""What a floor tells: events, controls, feet. Metres, newtons, seconds; x east and y north from the south-west corner.
+"""The data of a floor: events, controls, feet. Metres, newtons, seconds; x east and y north from the south-west corner.
 
 An event is one of the classes of `AnyEvent`, a union that `match` and `event.kind` narrow:
 
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple, TypedDict, Union
 
 Value = Union[bool, float, int, tuple[float, float]]
-"""What a control holds: True or False, a number, the number of a choice, or two numbers."""
+"""The value of a control: True or False, a number, the number of a choice, or two numbers."""
 
 OffName = Literal[
     "disabled",
@@ -29,7 +29,7 @@ OffName = Literal[
     "coarse_readings",
     "other_held",
 ]
-"""Why no foot can press a control."""
+"""The reason why no foot can press a control."""
 
 ControlName = Literal[
     "pressed",
@@ -46,7 +46,7 @@ ControlName = Literal[
     "warned",
     "refused",
 ]
-"""What a foot did to a control, where nothing else is told of it."""
+"""The word for a foot's action on a control, for events without further data."""
 
 LinkName = Literal["waiting", "live", "partial", "lost"]
 Lamp = Literal["off", "on", "busy", "attention"]
@@ -64,15 +64,15 @@ class Contact(NamedTuple):
 
 
 class Off(NamedTuple):
-    """Why no foot can press a control."""
+    """The reason why no foot can press a control."""
 
     reason: OffName
     text: str
-    """The reason in a sentence, with the floor file that it is about."""
+    """The reason in a sentence, with the floor file concerned."""
 
 
 class State(TypedDict):
-    """How a control is."""
+    """The state of a control."""
 
     value: Value | None
     label: str
@@ -94,34 +94,34 @@ class State(TypedDict):
 
 @dataclass(frozen=True)
 class Event:
-    """One thing that happened: what all events have. `case Event(id, name, value)` matches each of them."""
+    """The fields of all events. `case Event(id, name, value)` matches each of them."""
 
     __match_args__: ClassVar[tuple[str, ...]] = ("id", "name", "value")
 
     t_s: float
-    """When, on the floor's sample clock."""
+    """Time of the event, on the floor's sample clock."""
     kind: Literal[
         "control", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "ended"
     ]
     name: str
-    """The word for what happened, as in JSON lines: of a control "pressed", "released", "changed" and so on."""
+    """The word for the event, as in JSON lines: of a control "pressed", "released", "changed" and so on."""
     id: str
-    """The control or page it is about; empty where it is about the floor."""
+    """The control or page of the event; empty for an event of the floor."""
     value: Value | str | None
-    """The new value of "changed", the direction of "swiped"; None of all others."""
+    """The new value of "changed", the direction of "swiped"; None for all others."""
     force_n: float
     x_m: float
     y_m: float
     contact: int | None
-    """Which foot did it; None if none did."""
+    """The number of the foot that caused it; None if no foot did."""
     text: str
     """Of a link "waiting", "live", "partial" or "lost"; of its cause a name, a colon and a sentence, empty when it is
-    over; of the end why; empty otherwise."""
+    over; of the end the reason; empty otherwise."""
 
 
 @dataclass(frozen=True)
 class ChangedEvent(Event):
-    """A foot gave a control another value."""
+    """A foot changed the value of a control."""
 
     __match_args__ = ("id", "value")
     kind: Literal["control"]
@@ -131,7 +131,7 @@ class ChangedEvent(Event):
 
 @dataclass(frozen=True)
 class SwipedEvent(Event):
-    """A foot swiped over a control; `value` is where to."""
+    """A foot swiped over a control; `value` is the direction."""
 
     __match_args__ = ("id", "value")
     kind: Literal["control"]
@@ -141,7 +141,7 @@ class SwipedEvent(Event):
 
 @dataclass(frozen=True)
 class ControlEvent(Event):
-    """A foot did something else to a control: `name` says what."""
+    """A foot did something else to a control: `name` is the word for it."""
 
     __match_args__ = ("id", "name")
     kind: Literal["control"]
@@ -151,7 +151,7 @@ class ControlEvent(Event):
 
 @dataclass(frozen=True)
 class StateEvent(Event):
-    """The control `id` is in another state: an app changed or asked for it, or a guarded control went off or on."""
+    """The state of the control `id`: an app changed or asked for it, or a guarded control went off or on."""
 
     __match_args__ = ("id",)
     kind: Literal["state"]
@@ -171,7 +171,7 @@ class PageEvent(Event):
 
 @dataclass(frozen=True)
 class LinkEvent(Event):
-    """Whether packets arrive; "lost" has cancelled what was held."""
+    """Whether packets arrive; "lost" has cancelled all holds."""
 
     __match_args__ = ("text",)
     kind: Literal["link"]
@@ -182,21 +182,21 @@ class LinkEvent(Event):
 
 @dataclass(frozen=True)
 class LinkCauseEvent(Event):
-    """Boards that send give no usable frame, or no load was ever seen: why, or that it is over."""
+    """The reason why boards that send give no usable frame, or why no load was ever seen; or its end."""
 
     __match_args__ = ("cause", "message")
     kind: Literal["link_cause"]
     name: Literal["link_cause"]
     value: None
     cause: str | None
-    """A name that never changes, such as "rate_low"; None when it is over."""
+    """A stable name, such as "rate_low"; None when it is over."""
     message: str
     """The cause in a sentence; empty when it is over."""
 
 
 @dataclass(frozen=True)
 class FloorEvent(Event):
-    """The sensors, the device that moves the actuators, or what is muted is in another state."""
+    """The state of the sensors, of the device that moves the actuators, or of the muted set has changed."""
 
     __match_args__ = ("name",)
     kind: Literal["health", "device", "mute"]
@@ -218,7 +218,7 @@ class CrackEvent(Event):
 
 @dataclass(frozen=True)
 class EndedEvent(Event):
-    """The last event: nothing is held, and nothing more comes."""
+    """The last event: nothing is held any more, and no event follows."""
 
     __match_args__ = ("reason", "message")
     kind: Literal["ended"]
@@ -226,7 +226,7 @@ class EndedEvent(Event):
     value: None
     reason: Literal["stopped", "source_ended", "failed", "panicked"]
     message: str
-    """What was said where it failed; empty otherwise."""
+    """The message of the failure; empty otherwise."""
 
 
 AnyEvent = Union[
@@ -244,7 +244,7 @@ AnyEvent = Union[
 
 
 def event_of(kind, name, id, value, text, message, when_and_where):  # type: ignore[no-untyped-def]
-    """The event of these fields, as the library gives them."""
+    """The event with these fields, which come from the library."""
     t_s, force_n, x_m, y_m, contact = when_and_where
     seen = dict(t_s=t_s, name=name, id=id, force_n=force_n, x_m=x_m, y_m=y_m, contact=contact)
     if kind == "control":

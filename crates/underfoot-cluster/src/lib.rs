@@ -1,17 +1,18 @@
 //! One floor served by several computers.
 //!
-//! A floor file names the floor's *areas*. Each is served by a **node**: a computer that senses the area and somewhat
-//! beyond, decides its controls and moves its actuators, so that nothing on the way from foot to click crosses the
-//! network. One **gateway** joins what the nodes tell into what a single floor would tell, so that an app sees no
-//! difference.
+//! A floor file names the floor's *areas*. Each is served by a **node**: a computer that senses the area and a margin
+//! around it, decides its controls and moves its actuators, so that no step between foot and click crosses the
+//! network.
+//! One **gateway** joins the reports of the nodes into those of a single floor, so that an app sees no difference.
 //!
-//! | module | what is in it |
+//! | module | contents |
 //! |---|---|
-//! | [`auth`] | which messages are of this floor, and new; pure |
-//! | [`message`] | what nodes and gateway tell each other |
-//! | [`gateway`] | many areas' contacts and events into one floor's; pure: time is handed in, no I/O |
-//! | [`node`] | what a node tells of its floor |
-//! | [`transport`] | messages through Zenoh; the only module that knows it |
+//! | [`auth`] | authentication and replay protection of messages; pure |
+//! | [`message`] | the messages that nodes and gateway exchange |
+//! | [`gateway`] | joins the contacts and events of many areas into one floor's; pure: the caller passes the time, no
+//! I/O |
+//! | [`node`] | the reports of a node, and its behaviour without a gateway |
+//! | [`transport`] | messages through Zenoh; the only module that uses it |
 
 pub mod auth;
 pub mod gateway;

@@ -1,6 +1,6 @@
 //! The program `underfoot-cluster`: a node or the gateway of a floor that several computers serve.
 //!
-//! Exit status 0: done; 1: the work failed (standard error says why); 2: wrong usage.
+//! Exit status 0: done; 1: the work failed (the reason is on standard error); 2: wrong usage.
 
 mod program;
 
@@ -20,16 +20,16 @@ use program::Failure;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Say more on standard error (-v: what happens, -vv: everything).
+    /// Say more on standard error (-v: events, -vv: everything).
     #[arg(short, long, action = clap::ArgAction::Count, global = true)]
     verbose: u8,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Serve one area: sensor packets in, actuator samples out, and what happens to the gateway.
+    /// Serve one area: sensor packets in, actuator samples out, and reports to the gateway.
     Node(program::node::Args),
-    /// Join what the nodes tell, and tell it as one floor.
+    /// Join the reports of the nodes into those of one floor.
     Gateway(program::gateway::Args),
     /// Make a key for a floor: a file that only its owner can read, the same for all computers of the floor.
     Key(program::key::Args),

@@ -12,46 +12,47 @@ use underfoot::wire::LinkState;
 
 use crate::touch::Touch;
 
-/// Force from which on a foot touches, and below which it lets go: those of the shipped buttons.
+/// Force at which a foot touches, and below which it releases: those of the shipped buttons.
 const PRESS: Newtons = Newtons(60.0);
 const RELEASE: Newtons = Newtons(40.0);
 
-/// How long a foot must press before it touches, in seconds: one that walks across is mostly known for a step by then.
+/// Time in seconds that a foot must press before it touches: a walking foot is mostly classified as a step by then.
 const DWELL_S: f64 = 0.06;
 
-/// How old a snapshot may be, in seconds: beyond it, its feet may have moved or left.
+/// Greatest age of a snapshot, in seconds: after it, its feet may have moved or left.
 const STALE_S: f64 = 0.15;
 
-/// How far a press may roll and still click, in points; how long it may last, in seconds. egui's own are for
+/// Greatest distance, in points, and duration, in seconds, of a press that still clicks. egui's own limits are for
 /// fingers: 6 points, 0.8 s. A foot rolls by some centimetres and needs a second.
 const CLICK_DISTANCE: f32 = 40.0;
 const CLICK_S: f64 = 5.0;
 
-/// A foot that has not touched (yet).
+/// A foot without a touch (yet).
 #[derive(Clone, Copy, Debug)]
 enum Before {
-    /// It presses since then, in seconds of egui's clock.
+    /// It has pressed since this time, in seconds of egui's clock.
     Presses(f64),
-    /// It came from elsewhere, or was cancelled: it must let go first.
+    /// It came from elsewhere, or was cancelled: it must lift first.
     MustLift,
 }
 
 /// Contacts on a part of the floor as touches, and the first of them as egui's one pointer.
 ///
 /// Each foot is a touch with an id of its own, for [`crate::FootSlider`] and egui's gestures of several fingers. The
-/// first is the pointer as well, until it lets go; a foot that came later does not take its place.
+/// first is the pointer as well, until it lifts; a later foot does not replace it.
 ///
-/// A touch begins when a free foot presses with 60 N for 60 ms, where no control of the layout is; it ends below 40 N.
-/// It is cancelled, which neither clicks nor changes a value, when the foot turns out to take a step or to be an
-/// object, when it leaves the mapped part, when the floor falls silent or ends, and by [`FootInput::cancel`].
-/// What an egui slider has followed until then it keeps; a [`crate::FootSlider`] takes it back.
+/// A touch begins when a free foot presses with 60 N for 60 ms at a place without a control of the layout; it ends
+/// below 40 N. The touch is cancelled, which neither clicks nor changes a value, when the foot is classified as a
+/// step or an object, when it leaves the mapped part, when the floor falls silent or ends, and by
+/// [`FootInput::cancel`]. An egui slider keeps the value it has followed until then; a [`crate::FootSlider`] restores
+/// the old one.
 #[derive(Clone, Debug)]
 pub struct FootInput {
     part: floor::Rect,
     target: Option<Rect>,
     touches: Vec<Touch>,
     others: Vec<(ContactId, Before)>,
-    /// The latest snapshot's time, and when it came, in seconds of egui's clock.
+    /// The latest snapshot's time, and the time of its arrival in seconds of egui's clock.
     seen: Option<(Instant, f64)>,
 }
 
@@ -69,10 +70,10 @@ impl FootInput {
         self.target = Some(target);
     }
 
-    /// Lets presses of `context` roll and last as those of feet do, before they no longer count as clicks: by 40
-    /// points, for 5 s.
+    /// Sets the click limits of `context` to those of feet: a press may move by 40 points and last for 5 s and still
+    /// click.
     ///
-    /// The same holds for the mouse of this app then; egui has one limit for all pointers.
+    /// The limits then hold for the mouse of this app as well, since egui has one limit for all pointers.
     pub fn tune(context: &Context) {
         context.options_mut(|options| {
             options.input_options.max_click_dist = CLICK_DISTANCE;
@@ -80,11 +81,11 @@ impl FootInput {
         });
     }
 
-    /// Puts into `raw` what the feet of `floor` do; to be called for each picture, in `eframe::App::raw_input_hook`.
+    /// Adds the touches of `floor` to `raw`; call it for each frame, in `eframe::App::raw_input_hook`.
     ///
-    /// With `move || context.request_repaint()` as [`underfoot::runtime::SessionBuilder::wake`] pictures come when
-    /// controls are pressed; a foot on free floor makes no event, so this asks for the next picture by itself while
-    /// anything stands on the floor.
+    /// With `move || context.request_repaint()` as [`underfoot::runtime::SessionBuilder::wake`], egui draws a frame
+    /// at each event of a control; a foot on free floor causes no event, so this method requests the next frame by
+    /// itself while there is any contact.
     pub fn follow(&mut self, context: &Context, floor: &Session, raw: &mut RawInput) {
         if floor.has_ended() {
             return self.cancel(context, raw);
@@ -96,7 +97,7 @@ impl FootInput {
         }
     }
 
-    /// As [`FootInput::follow`], from a snapshot and the layout that it belongs to.
+    /// Like [`FootInput::follow`], from a snapshot and its layout.
     pub fn feed(&mut self, context: &Context, layout: &Layout, floor: &Snapshot, raw: &mut RawInput) {
         let now = raw.time.unwrap_or_else(|| context.input(|input| input.time));
         let since = match self.seen {
@@ -113,7 +114,7 @@ impl FootInput {
         self.find_touches(layout, floor, target, now, &mut raw.events);
     }
 
-    /// Cancels all touches; feet that are down must let go before they touch again.
+    /// Cancels all touches; feet on the floor must lift before they touch again.
     pub fn cancel(&mut self, context: &Context, raw: &mut RawInput) {
         for touch in self.touches.drain(..) {
             touch.cancel(context, &mut raw.events);
@@ -121,7 +122,7 @@ impl FootInput {
         }
     }
 
-    /// How many feet touch.
+    /// Number of feet that touch.
     #[must_use]
     pub fn touches(&self) -> usize {
         self.touches.len()
@@ -146,7 +147,7 @@ impl FootInput {
                 return false;
             };
             touch.force = contact.force;
-            // A foot that is about to let go rolls: what it pointed at is where it last pressed.
+            // A foot that is about to lift rolls: its target is the place where it last pressed.
             if contact.force >= PRESS && at != touch.at {
                 touch.at = at;
                 touch.moved(events);
@@ -189,7 +190,7 @@ impl FootInput {
         }
     }
 
-    /// Where a free foot points, if it is on the mapped part and on no control.
+    /// The point at which a free foot aims, if it is on the mapped part and not on a control.
     fn free_place(&self, layout: &Layout, floor: &Snapshot, target: Rect, contact: &Contact) -> Option<Pos2> {
         let is_free = role(floor, contact.id) == FootRole::Free
             && layout.widget_at(floor.page, contact.centroid).is_none();
@@ -197,7 +198,7 @@ impl FootInput {
     }
 }
 
-/// Where in `target` a place on `part` of the floor is; `None` beside it, and where either has no area.
+/// The point in `target` of a place on `part` of the floor; `None` outside it, and where either has no area.
 fn place(part: floor::Rect, target: Rect, at: Vec2) -> Option<Pos2> {
     if !part.contains(at) {
         return None;
@@ -207,7 +208,7 @@ fn place(part: floor::Rect, target: Rect, at: Vec2) -> Option<Pos2> {
     (at.x.is_finite() && at.y.is_finite()).then_some(at)
 }
 
-/// What a contact is taken for; free where nothing is known of it.
+/// The role of a contact; free if the floor has none for it.
 fn role(floor: &Snapshot, contact: ContactId) -> FootRole {
     floor.feet.iter().find(|foot| foot.contact == contact).map_or(FootRole::Free, |foot| foot.role)
 }

@@ -4,12 +4,12 @@
 //! |---|---|
 //! | has its own buttons, sliders and maps pressed by feet | [`FootInput`], fed in `eframe::App::raw_input_hook` |
 //! | has several sliders dragged by several feet at once | [`FootSlider`] |
-//! | shows floor, feet and controls | [`FloorView`]; on a second screen that is thrown onto the floor, [`Projector`] |
-//! | is tried without a floor | `SmallFloor` (feature `sim`), on which the mouse plays a foot |
+//! | shows floor, feet and controls | [`FloorView`]; [`Projector`] for a projector above the floor |
+//! | is tried without a floor | `SmallFloor` (feature `sim`), on which the mouse acts as a foot |
 //!
-//! What must not happen by accident does not belong here: egui has no guards, knows one pointer and can't take back
-//! what a press began. Such actions are controls of the floor's layout (`Confirm`, `HoldToRun`), and a contact on one
-//! of those never reaches egui: only floor that is free of controls is mapped.
+//! Actions that must not happen by accident do not belong here: egui has no guards, supports one pointer and cannot
+//! undo the beginning of a press. Such actions are controls of the floor's layout (`Confirm`, `HoldToRun`), and a
+//! contact on one of those never reaches egui: only floor without controls is mapped.
 //!
 //! ```no_run
 //! use underfoot::floor::Rect;

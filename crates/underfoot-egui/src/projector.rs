@@ -7,7 +7,7 @@ use underfoot::scene::{Show, Theme};
 
 use crate::FloorView;
 
-/// What a projector throws onto the floor: controls and their states, on black, in a window of its own.
+/// The image for a projector above the floor: controls and their states, on black, in a window of its own.
 #[derive(Debug)]
 pub struct Projector {
     view: FloorView,
@@ -26,7 +26,7 @@ impl Projector {
         self.is_on = !self.is_on;
     }
 
-    /// Draws the window while it is on; it goes off when somebody closes it. To be called with each picture of the app.
+    /// Draws the window while it is on; closing the window turns it off. Call it with each frame of the app.
     pub fn show(&mut self, context: &Context, geometry: &Geometry, snapshot: &Snapshot) {
         if !self.is_on {
             return;

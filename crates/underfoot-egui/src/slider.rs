@@ -1,4 +1,4 @@
-//! A slider for feet: several can be dragged at once, and a cancel takes back what the foot did.
+//! A slider for feet: several can be dragged at once, and a cancel restores the value.
 
 use std::ops::RangeInclusive;
 
@@ -9,18 +9,18 @@ use egui::{
 
 use crate::touch::DEVICE;
 
-/// How high it is, and how wide without more room, in points: a foot's ball is as wide.
+/// Its height, and its width without more room, in points: a foot's ball is as wide.
 const HEIGHT: f32 = 48.0;
 const WIDTH: f32 = 260.0;
 
-/// How wide its knob is, in points.
+/// Width of its knob, in points.
 const KNOB: f32 = 26.0;
 
-/// A horizontal slider for feet: as large as they need it, several can be dragged at once, and a cancelled press takes
-/// back what it did.
+/// A horizontal slider for feet: as large as they need it, several can be dragged at once, and a cancelled press
+/// restores the value.
 ///
-/// egui has one pointer, so of several feet on its own sliders only the first drags. This one listens to touches
-/// itself: the foot that lands on it keeps it until it lets go. A mouse drags it as any slider.
+/// egui has one pointer, so of several feet on its own sliders only the first drags. This one reads touches itself:
+/// the foot that lands on it keeps it until it lifts. A mouse drags it like any slider.
 #[must_use = "it is shown by `ui.add`"]
 pub struct FootSlider<'a> {
     value: &'a mut f32,
@@ -28,7 +28,7 @@ pub struct FootSlider<'a> {
     text: String,
 }
 
-/// The foot that drags it, and the value that a cancel gives back.
+/// The foot that drags it, and the value that a cancel restores.
 #[derive(Clone, Copy, Debug)]
 struct Grip {
     touch: TouchId,
@@ -37,12 +37,12 @@ struct Grip {
 
 impl<'a> FootSlider<'a> {
     /// A slider of `value` from the range's start on the left to its end on the right, either of which may be the
-    /// larger one. A value that is not finite is shown at the start.
+    /// larger one. It shows a value that is not finite at the start.
     pub fn new(value: &'a mut f32, range: RangeInclusive<f32>) -> Self {
         Self { value, range, text: String::new() }
     }
 
-    /// What is written on it; also what screen readers call it.
+    /// The text on it, which is also its name for screen readers.
     pub fn text(mut self, text: impl Into<String>) -> Self {
         self.text = text.into();
         self
@@ -76,7 +76,7 @@ impl Widget for FootSlider<'_> {
                 }
             }
         }
-        // The pointer of the foot that drags it says no more than its touch.
+        // The pointer of the foot that drags it only repeats its touch.
         let is_gripped = grip.is_some();
         if let (false, false, true, Some(at)) =
             (was_gripped, is_gripped, response.dragged(), response.interact_pointer_pos())
@@ -127,7 +127,7 @@ impl FootSlider<'_> {
     }
 }
 
-/// What feet did since the last picture.
+/// The touches of feet since the last frame.
 fn touches(ui: &Ui) -> Vec<(TouchId, TouchPhase, Pos2)> {
     ui.input(|input| {
         let touch = |event: &Event| match event {
@@ -138,13 +138,13 @@ fn touches(ui: &Ui) -> Vec<(TouchId, TouchPhase, Pos2)> {
     })
 }
 
-/// Whether a touch at `at` lands on it, and not on what lies over it.
+/// Whether a touch at `at` lands on it, and not on a layer above it.
 fn is_hit(ui: &Ui, response: &Response, at: Pos2) -> bool {
     response.interact_rect.contains(at)
         && ui.ctx().layer_id_at(at).is_none_or(|layer| layer == response.layer_id)
 }
 
-/// The track that the knob's middle keeps to.
+/// The track of the knob's centre.
 fn track(rect: Rect) -> Rect {
     rect.shrink2(Vec2::new(0.5 * KNOB, 0.0))
 }

@@ -1,4 +1,4 @@
-//! The floor as a widget on which the mouse plays a foot.
+//! The floor as a widget on which the mouse acts as a foot.
 
 use egui::{Context, RawInput, Sense, Ui, ViewportId};
 use underfoot::floor::Geometry;
@@ -11,13 +11,13 @@ use underfoot::wire::LinkState;
 
 use crate::{FloorView, FootInput};
 
-/// What the mouse presses with: enough for the heaviest of the built-in kinds.
+/// Force of the mouse's foot: enough for the built-in kind with the greatest threshold.
 const PRESS: Newtons = Newtons(140.0);
 
 /// Length of the mouse's foot in metres.
 const FOOT_M: f32 = 0.27;
 
-/// A small picture of the floor in a corner of an app; where the floor is a simulated one, the mouse presses it.
+/// A small image of the floor in a corner of an app; on a simulated floor, the mouse presses it.
 #[derive(Debug)]
 pub struct SmallFloor {
     view: FloorView,
@@ -26,8 +26,8 @@ pub struct SmallFloor {
 }
 
 impl SmallFloor {
-    /// A small floor in these colours. `hand` moves the foot of a simulated floor
-    /// ([`underfoot::sim::feet_by_hand`]); without one the floor is only shown.
+    /// A small floor in these colours. `hand` moves the foot of a simulated floor ([`underfoot::sim::feet_by_hand`]);
+    /// without it, this only shows the floor.
     #[must_use]
     pub fn new(theme: Theme, hand: Option<FootHandle>) -> Self {
         let show = Show { sensors: false, loads: false, ruler: false, ..Show::WINDOW };
@@ -40,7 +40,7 @@ impl SmallFloor {
         self.hand.is_some()
     }
 
-    /// What somebody who sees no foot on it should know; `None` while someone stands on a floor that works.
+    /// Advice for a user of a floor without feet; `None` while there are contacts on a working floor.
     #[must_use]
     pub fn advice(&self, session: &Session, snapshot: &Snapshot) -> Option<&'static str> {
         Some(match (snapshot.floor.link, snapshot.floor.contacts.is_empty()) {
@@ -53,7 +53,7 @@ impl SmallFloor {
         })
     }
 
-    /// Fills the room that is left in `ui` with the floor, upright and as large as it goes, and leads the mouse's foot.
+    /// Fills the remaining room in `ui` with the floor, upright and as large as possible, and moves the mouse's foot.
     pub fn ui(&mut self, ui: &mut Ui, geometry: &Geometry, snapshot: &Snapshot) {
         let (response, map) = self.view.ui(ui, geometry, &snapshot.layout, &snapshot.floor);
         let Some(hand) = &mut self.hand else { return };
@@ -67,8 +67,8 @@ impl SmallFloor {
         }
     }
 
-    /// What an app calls in `eframe::App::raw_input_hook` in place of [`FootInput::follow`]: while the mouse plays the
-    /// foot, that foot can't be a pointer as well, since egui has but one. Other windows of the app have no feet.
+    /// Call this in `eframe::App::raw_input_hook` in place of [`FootInput::follow`]: while the mouse acts as the
+    /// foot, that foot cannot be a pointer as well, since egui has only one. Other windows of the app have no feet.
     pub fn lead(&self, feet: &mut FootInput, session: &Session, context: &Context, raw: &mut RawInput) {
         if raw.viewport_id != ViewportId::ROOT {
             return;
@@ -81,7 +81,7 @@ impl SmallFloor {
     }
 }
 
-/// A foot that looks north and presses at `place`, on its ball.
+/// A foot that points north and presses at `place` with its ball.
 fn foot_at(place: Vec2) -> Foot {
     let foot = Foot { position: place, heading: 0.0, length_m: FOOT_M, force: PRESS, roll: 0.7, left: false };
     Foot { position: place - (foot.centre_of_pressure() - place), ..foot }

@@ -1,16 +1,16 @@
-//! One foot as egui hears of it.
+//! One foot as a touch in egui.
 
 use egui::{Context, DragAndDrop, Event, Modifiers, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use underfoot::sense::ContactId;
 use underfoot::units::Newtons;
 
-/// The device that touches of feet come from: "feet".
+/// The device id of feet's touches: "feet".
 pub(crate) const DEVICE: TouchDeviceId = TouchDeviceId(0x6665_6574);
 
-/// What is told to egui as a force of 1: a person who stands on one foot.
+/// Force that egui receives as 1: a person on one foot.
 const FULL: Newtons = Newtons(800.0);
 
-/// How far away a pointer goes for a moment so that its release is not a click, in points.
+/// Distance in points to which a pointer jumps before its release, so that the release does not click.
 const AWAY: f32 = 100_000.0;
 
 /// A foot that touches.
@@ -38,7 +38,7 @@ impl Touch {
         }
     }
 
-    /// The foot let go; the press counts.
+    /// Ends the touch by a release; the press counts.
     pub(crate) fn end(self, events: &mut Vec<Event>) {
         events.push(self.event(TouchPhase::End));
         if self.is_pointer {
@@ -46,10 +46,10 @@ impl Touch {
         }
     }
 
-    /// The press does not count.
+    /// Ends the touch without a click.
     ///
-    /// A pointer that has once been far away does not click when it is released; released where it was, it leaves
-    /// sliders as they are, whichever way they lie. What it carries is dropped nowhere.
+    /// A pointer that has been far away does not click at its release; released at its old place, it leaves sliders
+    /// of any direction unchanged. A dragged payload is dropped nowhere.
     pub(crate) fn cancel(self, context: &Context, events: &mut Vec<Event>) {
         events.push(self.event(TouchPhase::Cancel));
         if self.is_pointer {

@@ -8,9 +8,9 @@ use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
 use underfoot::scene::{self, Scene, Show, Theme, View};
 
-/// Floor, feet and controls in an egui app: a picture of a snapshot, which nothing here changes.
+/// Floor, feet and controls in an egui app: a drawing of a snapshot, without any effect on it.
 ///
-/// One for each place where a floor is shown, kept from picture to picture.
+/// Use one for each place that shows a floor, and keep it from frame to frame.
 #[derive(Debug)]
 pub struct FloorView {
     theme: Theme,
@@ -20,17 +20,16 @@ pub struct FloorView {
 }
 
 impl FloorView {
-    /// A view of these parts in these colours; [`Show::PROJECTOR`] is for a second screen that is thrown onto the
-    /// floor.
+    /// A view of these parts in these colours; [`Show::PROJECTOR`] is for a projector above the floor.
     #[must_use]
     pub fn new(theme: Theme, show: Show) -> Self {
         Self { theme, show, scene: Scene::new(), palette: Palette::default() }
     }
 
-    /// Fills the room that is left in `ui` with the floor, upright and as large as it goes.
+    /// Fills the remaining room in `ui` with the floor, upright and as large as possible.
     ///
-    /// `snapshot` belongs to `layout`, as those of [`underfoot::runtime::Snapshot`] do. The map tells where on the
-    /// screen things are.
+    /// `snapshot` belongs to `layout`, like those of [`underfoot::runtime::Snapshot`]. The returned map converts
+    /// between floor and screen positions.
     pub fn ui(
         &mut self,
         ui: &mut Ui,

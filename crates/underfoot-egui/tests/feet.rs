@@ -19,13 +19,13 @@ use underfoot_egui::{FloorView, FootInput, FootSlider};
 
 const WINDOW: Vec2 = vec2(600.0, 600.0);
 
-/// Time from picture to picture, in seconds.
+/// Time between two frames, in seconds.
 const PICTURE_S: f32 = 0.05;
 
 #[derive(Default)]
 struct App {
     clicks: u32,
-    /// A lying slider, a standing one, and two for feet.
+    /// A horizontal slider, a vertical one, and two for feet.
     values: [f32; 4],
 }
 
@@ -72,7 +72,7 @@ impl Stage {
         stage
     }
 
-    /// Lets so many pictures pass while the floor goes on.
+    /// Advances by `count` frames of app and floor.
     fn pictures(&mut self, count: usize) {
         for _ in 0..count {
             self.floor.at = self.floor.at + Duration::from_secs_f32(PICTURE_S);
@@ -86,7 +86,7 @@ impl Stage {
         self.app.step();
     }
 
-    /// Puts the foot `id` where the window's point `x`, `y` is, or moves it there.
+    /// Puts or moves the foot `id` to the window's point `x`, `y`.
     fn put(&mut self, id: u32, (x, y): (f32, f32)) {
         self.lift(id);
         let id = ContactId(id);
@@ -126,7 +126,7 @@ fn a_long_press_that_rolls_clicks_once() {
     assert!(!stage.is_down());
 }
 
-/// What ends a press without counting.
+/// A cause that ends a press without a click.
 type Cancel = (&'static str, fn(&mut Stage));
 
 const CANCELS: [Cancel; 6] = [
@@ -165,10 +165,10 @@ fn a_cancelled_press_neither_clicks_nor_changes_nor_stays_down() {
             let App { clicks, values, .. } = stage.app.state();
             assert_eq!(*clicks, 0, "{name}, {label}");
             assert!(!stage.is_down(), "{name}, {label}");
-            // egui's own sliders keep what they followed; those for feet are as they were.
+            // egui's own sliders keep their last value; those for feet restore the old one.
             let expected = if label == "left" { [50.0; 4] } else { followed };
             assert_eq!(*values, expected, "{name}, {label}");
-            // The foot that is still there has to let go first.
+            // The remaining foot has to lift first.
             stage.floor.link = LinkState::Live;
             stage.put(1, at);
             stage.pictures(4);
@@ -205,7 +205,7 @@ fn two_feet_drag_two_sliders_at_once() {
     let [lying, standing, less, more] = stage.app.state().values;
     assert!(less < 25.0 && more > 75.0, "{less} and {more}");
     assert_eq!((lying, standing), (50.0, 50.0));
-    // The first one lifts; the other one drags on.
+    // The first one lifts; the other one keeps dragging.
     stage.lift(1);
     stage.put(2, (x, right));
     stage.pictures(2);
@@ -227,12 +227,12 @@ fn feet_that_were_put_down_elsewhere_or_on_a_control_do_not_touch() {
     stage.put(1, (on_control.x, WINDOW.y - on_control.y));
     stage.put(2, (-20.0, 100.0));
     stage.pictures(3);
-    // Both slide to where they would have touched.
+    // Both slide to places where a press would touch.
     stage.put(1, (300.0, 100.0));
     stage.put(2, (200.0, 100.0));
     stage.pictures(3);
     assert_eq!(stage.feet.touches(), 0);
-    // A foot beside them is not held up.
+    // A foot beside them is not affected.
     stage.put(3, (400.0, 100.0));
     stage.pictures(3);
     assert_eq!(stage.feet.touches(), 1);
@@ -254,7 +254,7 @@ fn numbers_that_are_none_and_parts_without_area_touch_nothing() {
 fn the_part_is_stretched_over_the_target() {
     let mut stage = Stage::new();
     let (x, y) = stage.middle(Role::Button, "Press me");
-    // All of the floor is the button.
+    // The whole floor maps to the button.
     stage.feet.set_target(Rect::from_center_size(pos2(x, y), vec2(20.0, 10.0)));
     stage.put(1, (10.0, 590.0));
     stage.pictures(4);

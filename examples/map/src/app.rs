@@ -22,10 +22,10 @@ const INK: Color32 = Color32::from_rgb(0x2a, 0x28, 0x25);
 const QUIET: Color32 = Color32::from_rgb(0x5d, 0x58, 0x50);
 const CARD: Color32 = Color32::from_rgba_premultiplied(0xed, 0xea, 0xe5, 0xf2);
 
-/// What lies between the edge of a card and what is on it, in points.
+/// Space between the edge of a card and its content, in points.
 const EDGE: Vec2 = vec2(18.0, 14.0);
 
-/// How often a map is drawn on which nothing moves.
+/// Time between two frames of a map that does not move.
 const IDLE: Duration = Duration::from_millis(50);
 
 pub struct App {
@@ -35,11 +35,11 @@ pub struct App {
     small: SmallFloor,
     projector: Projector,
     picture: Picture,
-    /// What of the floor the small one shows.
+    /// The part of the floor that the small one shows.
     part: Part,
     drag: Vec2,
     levels: f64,
-    /// What lay over the map the last time.
+    /// The areas that covered the map in the last frame.
     covered: Vec<Rect>,
 }
 
@@ -47,12 +47,12 @@ pub struct App {
 #[derive(Default)]
 pub struct Picture {
     pub tiles: Option<Tiles>,
-    /// Whose they are; empty if nobody is to be named.
+    /// The owner of the pictures; empty for none.
     pub attribution: String,
 }
 
 impl Picture {
-    /// Whose shapes and pictures are seen, and why some are not.
+    /// The sources of the visible shapes and pictures, and the reason why some are missing.
     fn credits(&self) -> String {
         let attribution = Some(self.attribution.clone()).filter(|text| !text.is_empty());
         let trouble = self.tiles.as_ref().and_then(Tiles::trouble).map(|why| format!("No tiles: {why}"));
@@ -92,7 +92,7 @@ impl App {
         }
     }
 
-    /// The card in a corner that says where one is; gives what it covers.
+    /// The card in a corner with the map's position; returns the area that it covers.
     fn title(&self, ui: &mut Ui, rect: Rect, snapshot: &Snapshot) -> Rect {
         let camera = &self.guide.state.camera;
         let side = |degrees: f64, [plus, minus]: [&str; 2]| {
@@ -115,7 +115,7 @@ impl App {
         })
     }
 
-    /// The small floor, and the mouse as a foot on it; gives what it covers.
+    /// The small floor, with the mouse as a foot on it; returns the area that it covers.
     fn floor(&mut self, ui: &mut Ui, rect: Rect, snapshot: &Snapshot) -> Rect {
         let size = self.part.size(rect.size());
         let outer = size + 2.0 * EDGE;
@@ -135,7 +135,7 @@ impl eframe::App for App {
         self.small.lead(&mut self.feet, &self.guide.floor, context, raw);
     }
 
-    /// Here and not in `ui`, which a window that is fully covered does not call: time goes on.
+    /// In `logic` and not in `ui`, since a fully covered window does not call `ui` while its time advances.
     fn logic(&mut self, context: &Context, _: &mut eframe::Frame) {
         let before = self.guide.state.camera;
         self.guide.turn(std::mem::take(&mut self.drag), std::mem::take(&mut self.levels));
@@ -179,7 +179,7 @@ impl eframe::App for App {
     }
 }
 
-/// The map in `rect`, as it is dragged by feet or the mouse.
+/// The map in `rect`, dragged by feet or the mouse.
 pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect) -> Response {
     let map = ui.interact(rect, ui.scope_id().with("map"), Sense::drag());
     map.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Map"));
@@ -187,7 +187,7 @@ pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect) -> Response {
     map
 }
 
-/// A light card over the map; gives where it is.
+/// A light card over the map; returns its area.
 fn card(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) -> Rect {
     let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect));
     let shadow = Shadow { offset: [0, 2], blur: 14, spread: 0, color: Color32::from_black_alpha(45) };

@@ -1,4 +1,4 @@
-//! The map as it is drawn.
+//! Drawing of the map.
 
 use eframe::egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
@@ -23,10 +23,10 @@ const LAND: [Color32; HUES] = [
     Color32::from_rgb(0xf0, 0xe4, 0xb9),
 ];
 
-/// Distance between two points of a line that are both worth drawing, in points.
+/// Smallest distance between two points of a line that are both drawn, in points.
 const FINE: f32 = 1.5;
 
-/// Draws sea, land and what flows through it into `rect`.
+/// Draws sea, land, lakes and rivers into `rect`.
 pub fn shapes(painter: &Painter, rect: Rect, world: &World, state: &State) {
     let screen = Screen::new(rect, &state.camera);
     let zoom = state.camera.zoom;
@@ -42,7 +42,7 @@ pub fn shapes(painter: &Painter, rect: Rect, world: &World, state: &State) {
     }
     painter.add(Shape::mesh(land));
     for river in world.rivers.iter().filter(|river| river.from <= zoom + 0.3) {
-        // Wider the nearer: a great river is three points wide at the nearest zoom.
+        // Wider at a higher zoom: a great river is three points wide at the highest.
         let width = (0.7 + river.width) * (1.0 + 0.15 * (zoom as f32 - 2.0));
         line(painter, &screen, &river.points, &river.bounds, Stroke::new(width.min(3.0), RIVER));
     }
@@ -69,7 +69,7 @@ fn lakes(painter: &Painter, screen: &Screen, world: &World, zoom: f64) {
     }
 }
 
-/// A line wherever it is seen.
+/// A line at each place where it is visible.
 fn line(painter: &Painter, screen: &Screen, points: &[[f64; 2]], bounds: &Bounds, stroke: Stroke) {
     for turn in screen.turns(bounds.span).filter(|_| screen.reaches(bounds.reach)) {
         let points = fine(points.iter().map(|at| screen.point(*at, turn)));
@@ -79,8 +79,8 @@ fn line(painter: &Painter, screen: &Screen, points: &[[f64; 2]], bounds: &Bounds
     }
 }
 
-/// Draws what lies over land and sea, as far as it is switched on, and the mark in the middle; `covered` is what will lie
-/// over the map.
+/// Draws the layers over land and sea that are switched on, and the mark in the middle; `covered` are the areas that
+/// other parts of the window will cover.
 pub fn layers(painter: &Painter, rect: Rect, world: &World, state: &State, covered: &[Rect]) {
     let screen = Screen::new(rect, &state.camera);
     if state.grid {
@@ -92,7 +92,7 @@ pub fn layers(painter: &Painter, rect: Rect, world: &World, state: &State, cover
     crosshair(painter, rect.center());
 }
 
-/// Without the points that nobody could tell from the one before; the last one stays.
+/// Drops points that are indistinguishable from the one before; the last one stays.
 fn fine(points: impl Iterator<Item = Pos2>) -> Vec<Pos2> {
     let mut kept: Vec<Pos2> = Vec::new();
     let mut last = None;
@@ -127,14 +127,14 @@ fn grid(painter: &Painter, rect: Rect, screen: &Screen, zoom: f64) {
     }
 }
 
-/// Where the map's middle is: its place is the one that is named.
+/// Marks the map's middle: the named place is there.
 fn crosshair(painter: &Painter, at: Pos2) {
     painter.circle_stroke(at, 9.0, Stroke::new(4.0, HALO));
     painter.circle_stroke(at, 9.0, Stroke::new(1.6, INK));
     painter.circle_filled(at, 2.0, INK);
 }
 
-/// A bar with the kilometres that it is long, from `corner` to the right.
+/// A bar labelled with its length in kilometres, from `corner` to the right.
 pub fn scale_bar(painter: &Painter, rect: Rect, state: &State, corner: Pos2) {
     let screen = Screen::new(rect, &state.camera);
     let each = screen.kilometres(1.0);

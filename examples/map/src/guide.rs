@@ -1,4 +1,4 @@
-//! Between the floor and the map: events and holds to the one, labels and values to the other.
+//! Connects the floor and the map: events and holds go to the map, labels and values to the floor.
 
 use std::time::{Duration, Instant};
 
@@ -10,23 +10,23 @@ use crate::mercator::Camera;
 use crate::state::{Hold, State};
 use crate::world::World;
 
-/// Longest time that one turn may stand for: a window that was covered does not jump.
+/// Longest time that one turn may cover, so that the map does not jump after its window was covered.
 const LONGEST: Duration = Duration::from_millis(250);
 
-/// How often the floor's labels may change: reading takes longer.
+/// Shortest time between two changes of the floor's labels: reading takes longer.
 const LABEL_EVERY: Duration = Duration::from_millis(250);
 
-/// What of a zoom level is worth telling the floor's slider.
+/// Smallest change of the zoom level that the floor's slider receives.
 const WORTH: f64 = 0.02;
 
 pub struct Guide {
     pub floor: Session,
     pub world: World,
     pub state: State,
-    /// What the map's middle is on.
+    /// The country at the map's middle.
     pub place: String,
     pub has_ended: bool,
-    /// Whether each rest of the map is printed.
+    /// Whether to print the map's state each time it comes to rest.
     print: bool,
     last: Instant,
     labelled: Option<(Instant, [String; 2])>,
@@ -38,7 +38,7 @@ impl Guide {
         Self { floor, world, state, place, has_ended: false, print, last, labelled: None }
     }
 
-    /// Lets time pass until now; gives what the floor looks like.
+    /// Advances to the present; returns a snapshot of the floor.
     pub fn turn(&mut self, drag: Vec2, levels: f64) -> Snapshot {
         while let Some(event) = self.floor.next_event() {
             self.has_ended |= matches!(event.kind, Kind::Ended(_));
@@ -70,7 +70,7 @@ impl Guide {
         snapshot
     }
 
-    /// A pair of numbers while a foot holds it, and nobody doubts that it does.
+    /// A pair of numbers while a foot certainly holds it; otherwise zero.
     fn held(&self, snapshot: &Snapshot, id: &str) -> Vec2 {
         match snapshot.value(id) {
             Some(Value::Pair(pair)) if self.floor.held(id).is_ok_and(|held| held.is_fresh()) => {
@@ -80,7 +80,7 @@ impl Guide {
         }
     }
 
-    /// Lets labels and values on the floor follow the map. A control in use refuses, and is asked again.
+    /// Updates labels and values on the floor from the map. A control in use refuses, and the next turn tries again.
     fn tell(&mut self, snapshot: &Snapshot, now: Instant) -> Result<(), Refusal> {
         if self.state.was_reset {
             self.floor.control("names")?.set(self.state.names)?;
@@ -104,7 +104,7 @@ impl Guide {
     }
 }
 
-/// One line of JSON.
+/// Prints one line of JSON.
 fn print(state: &State) {
     match serde_json::to_string(&state.report()) {
         Ok(line) => println!("{line}"),

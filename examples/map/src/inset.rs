@@ -1,22 +1,22 @@
-//! How large the small floor in the window is, and which part of the floor it shows.
+//! The size of the small floor in the window, and the part of the floor that it shows.
 
 use eframe::egui::{Rect, Vec2, pos2, vec2};
 use underfoot::floor::{self, Geometry};
 use underfoot::layout::Layout;
 
-/// How large the smallest side of a control is at least, in points: what a mouse or a finger hits and a label needs.
+/// Least size of a control's smallest side, in points: enough for a mouse or a finger to hit, and for a label.
 const CONTROL: f32 = 40.0;
 
-/// Metres of floor that are shown around what people need.
+/// Margin around controls, regions and stances, in metres.
 const AROUND_M: f32 = 0.06;
 
-/// Most of the window's width and height that the small floor may take.
+/// Greatest share of the window's width and height for the small floor.
 const MOST: Vec2 = vec2(0.5, 0.55);
 
-/// The part of a floor that is shown, in metres.
+/// The visible part of a floor, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// From the south of the floor on.
+    /// Northwards from the floor's southern edge.
     height_m: f32,
     width_m: f32,
     /// The smallest side of a control.
@@ -37,14 +37,15 @@ impl Part {
         Self { height_m: north.min(whole.y), width_m: whole.x, control_m }
     }
 
-    /// How large it is in a window of this size: so that its smallest control can be pressed, if there is room for that.
+    /// Its size in a window of this size, so that its smallest control can be pressed if the window has room for
+    /// that.
     pub fn size(&self, window: Vec2) -> Vec2 {
         let wanted = CONTROL / self.control_m;
         let [most_x, most_y] = [MOST.x * window.x / self.width_m, MOST.y * window.y / self.height_m];
         wanted.min(most_x).min(most_y) * vec2(self.width_m, self.height_m)
     }
 
-    /// Where the whole floor is drawn so that this part of it fills `shown`: its southern edge is that of `shown`.
+    /// The place of the whole floor such that this part of it fills `shown`: its southern edge is that of `shown`.
     pub fn whole(&self, geometry: &Geometry, shown: Rect) -> Rect {
         let height = shown.width() * geometry.bounds().size().y / self.width_m;
         Rect::from_min_max(pos2(shown.left(), shown.bottom() - height), shown.max)
@@ -69,7 +70,7 @@ mod tests {
         let (_, part) = part();
         let size = part.size(vec2(1280.0, 800.0));
         assert!(part.control_m * size.x / part.width_m >= CONTROL - 0.1, "{size}");
-        // The atlas ends 3.3 tiles from the south: the north of the floor is not shown.
+        // The atlas ends 3.3 tiles from the south: the north of the floor is hidden.
         assert!(part.height_m < 0.6 * part.width_m, "{part:?}");
     }
 

@@ -1,4 +1,4 @@
-//! A map of the world that is worked with the feet. Without arguments it brings a simulated floor of its own.
+//! A map of the world, operated with the feet. Without arguments it runs on a simulated floor.
 
 mod app;
 mod chart;
@@ -31,10 +31,10 @@ use crate::world::World;
 /// The floor of this app.
 const ATLAS: &str = include_str!("../atlas.ron");
 
-/// Where the map is when there is no window, in points.
+/// The map's area without a window, in points.
 const UNSEEN: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1280.0, 800.0) };
 
-/// A map of the world, worked with the feet.
+/// A map of the world, operated with the feet.
 ///
 /// Without a floor, the small one in the window is a simulated one: press it with the mouse.
 #[derive(Parser, Debug)]
@@ -45,13 +45,13 @@ struct Args {
     /// The real floor's hardware.
     #[arg(long, value_name = "FILE", requires = "listen")]
     floor: Option<PathBuf>,
-    /// Let a simulated person walk as this file says, and end with them.
+    /// Run a simulated person by this file, and end with its last step.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
     /// Print a line of JSON whenever the map comes to rest.
     #[arg(long)]
     print_state: bool,
-    /// Record the floor into a file, in place of what was there: `underfoot replay` plays it again.
+    /// Record the floor into a file, replacing its content: `underfoot replay` plays it again.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Open no window.
@@ -61,7 +61,7 @@ struct Args {
     /// such as `http://127.0.0.1:8080/{z}/{x}/{y}.png`.
     #[arg(long, value_name = "FOLDER|URL")]
     tiles: Option<String>,
-    /// Whose pictures they are, told at the map's edge.
+    /// The owner of the pictures, shown at the map's edge.
     #[arg(long, value_name = "TEXT", requires = "tiles")]
     attribution: Option<String>,
     /// Also open a window for a projector above the floor; the key P does the same.
@@ -128,7 +128,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(eframe::run_native("Atlas", native, start)?)
 }
 
-/// Without a window: the same feet, as touches on a map that nobody sees.
+/// Without a window: the same feet, as touches on an invisible map.
 fn unseen(mut guide: Guide, mut feet: FootInput) {
     let context = egui::Context::default();
     FootInput::tune(&context);

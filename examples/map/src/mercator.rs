@@ -1,27 +1,27 @@
-//! Web Mercator: degrees to a world of 1 x 1, whose west is 0 and whose north is 0.
+//! Web Mercator: degrees to a world of 1 x 1, with 0 in the west and in the north.
 
 use std::f64::consts::{PI, TAU};
 
 use eframe::egui::{Pos2, Rect, Vec2, vec2};
 
-/// Points of a whole world at zoom 0: a tile of the usual maps.
+/// Size of a whole world at zoom 0, in points: a tile of the usual maps.
 const TILE: f64 = 256.0;
 
 /// The latitude at which this world ends, in degrees.
 pub const LIMIT: f64 = 85.051_128_78;
 
-/// Where degrees of longitude and latitude are in the world.
+/// The place in the world of a longitude and a latitude in degrees.
 pub fn project(lon: f64, lat: f64) -> [f64; 2] {
     let lat = lat.clamp(-LIMIT, LIMIT).to_radians();
     [lon / 360.0 + 0.5, 0.5 - (lat.tan() + 1.0 / lat.cos()).ln() / TAU]
 }
 
-/// Degrees of longitude and latitude of a place in the world.
+/// The longitude and the latitude in degrees of a place in the world.
 pub fn unproject([x, y]: [f64; 2]) -> (f64, f64) {
     ((x - 0.5) * 360.0, ((0.5 - y) * TAU).sinh().atan().to_degrees())
 }
 
-/// What part of the world is seen: its middle in degrees, and each level doubles the scale.
+/// The visible part of the world: its middle in degrees, and a zoom level; each level doubles the scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     pub lon: f64,
@@ -33,12 +33,12 @@ impl Camera {
     pub const LEAST: f64 = 2.0;
     pub const GREATEST: f64 = 6.0;
 
-    /// Points that the whole world is wide.
+    /// Width of the whole world, in points.
     pub fn scale(&self) -> f64 {
         TILE * self.zoom.exp2()
     }
 
-    /// Moves what is seen by so many points: east, and south.
+    /// Moves the visible part by these points, east and south.
     pub fn pan(&mut self, by: Vec2) {
         let [x, y] = project(self.lon, self.lat);
         let (lon, lat) = unproject([x + f64::from(by.x) / self.scale(), y + f64::from(by.y) / self.scale()]);
@@ -50,7 +50,7 @@ impl Camera {
         self.zoom = (self.zoom + levels).clamp(Self::LEAST, Self::GREATEST);
     }
 
-    /// Goes a share of the way to `to`, by the shorter way around the world.
+    /// Moves by a share of the way to `to`, by the shorter way around the world.
     pub fn approach(&mut self, to: &Self, share: f64) {
         let east = (to.lon - self.lon + 180.0).rem_euclid(360.0) - 180.0;
         self.lon = (self.lon + east * share + 180.0).rem_euclid(360.0) - 180.0;
@@ -58,7 +58,7 @@ impl Camera {
         self.zoom += (to.zoom - self.zoom) * share;
     }
 
-    /// Whether it is as good as at `other`: nobody sees the difference.
+    /// Whether it is so near to `other` that the difference is invisible.
     pub fn is_at(&self, other: &Self) -> bool {
         let near = |one: f64, other: f64, by: f64| (one - other).abs() < by;
         near(self.lon, other.lon, 0.05)
@@ -80,13 +80,13 @@ impl Screen {
         Self { rect, middle: project(camera.lon, camera.lat), scale: camera.scale() }
     }
 
-    /// A place in the world, of which `turn` further worlds lie in the west.
+    /// The point of a place in the world, moved by `turn` worlds to the east.
     pub fn point(&self, [x, y]: [f64; 2], turn: f64) -> Pos2 {
         let [dx, dy] = [x + turn - self.middle[0], y - self.middle[1]].map(|way| (way * self.scale) as f32);
         self.rect.center() + vec2(dx, dy)
     }
 
-    /// In which of the worlds side by side something is seen that lies between these two, west and east.
+    /// The numbers of the worlds side by side in which a range from west to east is visible.
     pub fn turns(&self, [west, east]: [f64; 2]) -> impl Iterator<Item = f64> + use<> {
         let half = f64::from(self.rect.width()) / 2.0 / self.scale;
         let first = (self.middle[0] - half - east).ceil() as i32;
@@ -94,15 +94,15 @@ impl Screen {
         (first..=last).map(f64::from)
     }
 
-    /// Whether something is seen that lies between these two, north and south.
+    /// Whether a range from north to south is visible.
     pub fn reaches(&self, [north, south]: [f64; 2]) -> bool {
         let half = f64::from(self.rect.height()) / 2.0 / self.scale;
         self.middle[1] - half <= south && north <= self.middle[1] + half
     }
 
-    /// Kilometres that `points` are in the middle of the screen.
+    /// The length of `points` at the middle of the screen, in kilometres.
     pub fn kilometres(&self, points: f64) -> f64 {
-        /// Around the equator.
+        /// Length of the equator.
         const EQUATOR_KM: f64 = 40_075.0;
         let (_, lat) = unproject(self.middle);
         points / self.scale * EQUATOR_KM * (lat / 180.0 * PI).cos()

@@ -14,53 +14,53 @@ const QUIET: Color32 = Color32::from_rgb(0x6b, 0x5d, 0x4c);
 const WATER: Color32 = Color32::from_rgb(0x2f, 0x6c, 0x90);
 const HALO: Color32 = Color32::from_rgba_premultiplied(0xe4, 0xe1, 0xd8, 0xe8);
 
-/// Sizes of letters, in hundredths of the window's height. On a screen of 55 inches, which is 685 mm high, the capitals of
-/// the smallest ones are 9.5 mm high: 16 minutes of arc from two metres.
+/// Sizes of letters, in hundredths of the window's height. On a screen of 55 inches, which is 685 mm high, the
+/// capitals of the smallest ones are 9.5 mm high: 16 minutes of arc from two metres.
 const LAKE: f32 = 2.0;
 const CITY: f32 = 2.15;
 const CAPITAL: f32 = 2.5;
 const COUNTRY: [f32; 2] = [2.2, 3.4];
 
-/// The smallest letters whatever the window, in points.
+/// Size of the smallest letters in any window, in points.
 const SMALLEST: f32 = 13.0;
 
-/// How much wider than its country a name may be.
+/// Greatest ratio of a name's width to its country's.
 const WIDER: f32 = 1.25;
 
-/// Space around a name that no other name enters, in points.
+/// Space around a name that stays free of other names, in points.
 const APART: f32 = 3.0;
 
-/// Most names at once: a window full.
+/// Greatest number of names at once: a full window.
 const MOST: usize = 150;
 
-/// The zoom from which on lakes have names.
+/// Zoom from which lakes have names.
 const LAKES_FROM: f64 = 3.6;
 
-/// Rectangles of the screen that are taken.
+/// Occupied rectangles of the screen.
 #[derive(Debug, Default)]
 pub struct Board {
     taken: Vec<Rect>,
 }
 
 impl Board {
-    /// A board on which these are taken.
+    /// A board with these rectangles occupied.
     pub fn new(taken: Vec<Rect>) -> Self {
         Self { taken }
     }
 
-    /// Takes the first of these places that is inside `room` and free.
+    /// Occupies and returns the first of these places that is inside `room` and free.
     pub fn claim(&mut self, room: Rect, places: impl IntoIterator<Item = Rect>) -> Option<Rect> {
         let place = places.into_iter().find(|place| room.contains_rect(*place) && self.is_free(*place))?;
         self.taken.push(place);
         Some(place)
     }
 
-    /// Whether nothing is near this place.
+    /// Whether no occupied rectangle is near this place.
     pub fn is_free(&self, place: Rect) -> bool {
         !self.taken.iter().any(|other| other.intersects(place.expand(APART)))
     }
 
-    /// Takes a place that others must keep clear of.
+    /// Occupies a place.
     pub fn take(&mut self, place: Rect) {
         self.taken.push(place);
     }
@@ -77,9 +77,9 @@ pub fn beside(at: Pos2, size: Vec2, gap: f32) -> [Rect; 4] {
     ]
 }
 
-/// Draws the names of countries, cities and lakes that have room; `covered` is what lies over the map.
+/// Draws the names of countries, cities and lakes that have room; `covered` are the covered areas of the map.
 pub fn draw(painter: &Painter, rect: Rect, screen: &Screen, world: &World, zoom: f64, covered: &[Rect]) {
-    // The middle's name is not written below the mark on it: it stands beside the map.
+    // The name of the place in the middle stands beside the map and not below the mark.
     let mut taken = covered.to_vec();
     taken.push(Rect::from_center_size(rect.center(), vec2(26.0, 26.0)));
     let mut names = Names { painter, rect, screen, board: Board::new(taken), left: MOST };
@@ -99,7 +99,7 @@ struct Names<'a> {
 }
 
 impl Names<'_> {
-    /// Those of large countries first, where they fit into them.
+    /// Names of countries, large ones first, where they fit into them.
     fn countries(&mut self, world: &World) {
         let mut countries: Vec<_> = world.countries.iter().collect();
         countries.sort_by(|one, other| other.area.total_cmp(&one.area));
@@ -119,7 +119,7 @@ impl Names<'_> {
         }
     }
 
-    /// Those of great ones first, each beside its dot.
+    /// Names of cities, great ones first, each beside its dot.
     fn cities(&mut self, world: &World, zoom: f64) {
         for city in world.cities.iter().take_while(|city| city.from <= zoom + 0.05) {
             let [x, y] = city.at;
@@ -133,7 +133,7 @@ impl Names<'_> {
                 let dot = 0.17 * size;
                 let places = beside(at, galley.size(), dot + 4.0);
                 let mark = Rect::from_center_size(at, Vec2::splat(2.0 * dot));
-                // A city whose dot would lie in a name is left out.
+                // A city is left out if a name would cover its dot.
                 if self.board.is_free(mark) && self.write(&galley, INK, places) {
                     self.board.take(mark);
                     self.dot(at, dot, city.is_capital);
@@ -167,7 +167,7 @@ impl Names<'_> {
         self.painter.layout_job(LayoutJob::single_section(name.to_owned(), format))
     }
 
-    /// Writes a name at the first of these places that is free; gives whether there was one.
+    /// Writes a name at the first free of these places; returns whether there was one.
     fn write(
         &mut self,
         galley: &Arc<Galley>,
@@ -188,7 +188,7 @@ impl Names<'_> {
         true
     }
 
-    /// A city's mark: a disc, for a capital with a ring.
+    /// A city's mark: a disc, with a ring for a capital.
     fn dot(&self, at: Pos2, size: f32, is_capital: bool) {
         self.painter.circle_filled(at, size + 1.5, HALO);
         self.painter.circle_filled(at, size, INK);
@@ -239,7 +239,7 @@ mod tests {
         let mut board = Board::default();
         let sides: Vec<Rect> = std::iter::from_fn(|| board.claim(ROOM, beside(at, size, 12.0))).collect();
         assert_eq!(sides, beside(at, size, 12.0));
-        // The first one is wanted by others in vain.
+        // Another name that wants the first one does not get it.
         assert_eq!(board.claim(ROOM, [sides[0].translate(vec2(5.0, 5.0))]), None);
     }
 }

@@ -1,4 +1,4 @@
-//! What the map shows, and what feet make of it. Knows neither window nor floor.
+//! The state of the map and its reactions to feet, independent of window and floor.
 
 use eframe::egui::{Vec2, vec2};
 use serde::Serialize;
@@ -7,10 +7,10 @@ use underfoot::widget::{EventKind, Value};
 
 use crate::mercator::Camera;
 
-/// Where the map begins.
+/// The map's first position.
 pub const HOME: Camera = Camera { lon: 12.0, lat: 28.0, zoom: 2.0 };
 
-/// What the buttons of the floor go to.
+/// The targets of the floor's buttons.
 const PLACES: [(&str, Camera); 3] = [
     ("europe", Camera { lon: 12.0, lat: 50.0, zoom: 4.0 }),
     ("asia", Camera { lon: 95.0, lat: 34.0, zoom: 3.2 }),
@@ -26,24 +26,24 @@ const ZOOM: f64 = 1.0;
 /// Time constant of flights, in seconds.
 const FLIGHT_S: f64 = 0.25;
 
-/// How long nobody must be on the floor before the map goes home, in seconds.
+/// Time without feet after which the map goes home, in seconds.
 pub const HOME_AFTER_S: f64 = 60.0;
 
-/// How long nothing must move for the map to count as settled, in seconds.
+/// Time without movement after which the map counts as settled, in seconds.
 const SETTLED_S: f64 = 0.3;
 
-/// What feet hold at this moment.
+/// The holds of feet at one time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hold {
     /// The place on the pad, eastwards and northwards up to 1; zero while it is not held.
     pub pad: Vec2,
     /// The lean, likewise.
     pub lean: Vec2,
-    /// How far feet dragged the map since the last time, in points.
+    /// Distance that feet dragged the map since the last call, in points.
     pub drag: Vec2,
-    /// How many levels a mouse wheel went nearer since then.
+    /// Number of levels by which a mouse wheel zoomed in since then.
     pub levels: f64,
-    /// How many feet are on the floor.
+    /// Number of feet on the floor.
     pub feet: usize,
 }
 
@@ -53,7 +53,7 @@ pub struct State {
     pub camera: Camera,
     pub names: bool,
     pub grid: bool,
-    /// Whether feet have been away for so long that everything was set back; the floor's switches follow.
+    /// Whether the map was reset after a long time without feet; the floor's switches follow.
     pub was_reset: bool,
     flight: Option<Camera>,
     alone_s: f64,
@@ -61,7 +61,7 @@ pub struct State {
     home_after_s: f64,
 }
 
-/// What a test compares.
+/// The state that tests compare.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub lon: f64,
@@ -85,7 +85,7 @@ impl State {
         }
     }
 
-    /// Does what a foot's event asks for.
+    /// Reacts to a foot's event.
     pub fn hear(&mut self, event: &Event) {
         let Kind::Control(kind) = event.kind else { return };
         match (event.id(), kind) {
@@ -111,7 +111,7 @@ impl State {
         self.still_s = 0.0;
     }
 
-    /// Lets `dt_s` seconds pass; says whether the map has just come to rest.
+    /// Advances by `dt_s` seconds; returns whether the map has just come to rest.
     pub fn pass(&mut self, dt_s: f64, hold: &Hold) -> bool {
         let before = (self.camera, self.names, self.grid);
         let lean = vec2(hold.lean.x, 0.0);
@@ -142,7 +142,7 @@ impl State {
         !was_still && self.still_s >= SETTLED_S
     }
 
-    /// The zoom level that the floor's slider should show: where a flight goes.
+    /// The zoom level for the floor's slider: the target of a flight, else the present one.
     pub fn shown_zoom(&self) -> f64 {
         self.flight.map_or(self.camera.zoom, |to| to.zoom)
     }

@@ -1,4 +1,4 @@
-//! A person walks over the simulated floor, and the map goes where their feet tell it to.
+//! A person walks over the simulated floor, and the map follows their feet.
 #![allow(clippy::panic, clippy::unwrap_used)]
 
 use std::path::Path;
@@ -10,7 +10,7 @@ use underfoot::recording::Speed;
 use underfoot::runtime::{Kind, Session};
 use underfoot::widget::EventKind;
 
-/// What the map was like whenever it came to rest during the shipped tour, which is played in real time.
+/// The map's state each time it came to rest during the shipped tour, played in real time.
 fn rests(record: &Path) -> Vec<Value> {
     let tour = Path::new(env!("CARGO_MANIFEST_DIR")).join("tour.ron");
     let output = Command::new(env!("CARGO_BIN_EXE_underfoot-map"))
@@ -25,7 +25,7 @@ fn rests(record: &Path) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// What is clicked when the floor of the recording `path` is sensed again.
+/// The controls clicked when the recording `path` is sensed again.
 fn clicks(path: &Path) -> Vec<String> {
     let session = Session::replay(path, Speed::Max).unwrap().start().unwrap();
     let events = std::iter::from_fn(|| session.next_event_timeout(Duration::from_secs(60)));
@@ -44,10 +44,11 @@ fn a_tour_pans_zooms_switches_a_layer_and_goes_home() {
     let [start, panned, dragged, .., zoomed, without_names, home] = rests.as_slice() else {
         panic!("{rests:?}")
     };
-    // A foot that lands a few centimetres off, or a machine that is busy, pans a little less or more.
+    // A foot that lands a few centimetres off, or a busy machine, pans a little less or more.
     near(panned, "lon", number(start, "lon") + 30.0, 5.0);
     near(panned, "zoom", 2.0, 0.0);
-    // 25 of 115 parts of a window of 1280 points, of which 1024 are the world. A centimetre of floor is 13 degrees.
+    // 25 of 115 parts of a window of 1280 points, of which the world covers 1024. A centimetre of floor is 13
+    // degrees.
     near(dragged, "lon", number(panned, "lon") + 97.8, 20.0);
     near(zoomed, "zoom", 5.0, 0.25);
     near(zoomed, "lon", number(dragged, "lon"), 0.1);

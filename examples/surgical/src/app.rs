@@ -25,20 +25,20 @@ const AMBER: Color32 = Color32::from_rgb(0xff, 0xb3, 0x2e);
 const RED: Color32 = Color32::from_rgb(0xd9, 0x3b, 0x34);
 const DARK: Color32 = Color32::from_rgb(0x2a, 0x2f, 0x36);
 
-/// How wide the panel beside the picture is, and how high the line above both, in points.
+/// Width of the panel beside the picture, and height of the line above both, in points.
 const PANEL: f32 = 372.0;
 const LINE: f32 = 34.0;
 
-/// What lies between the panel's edge and what is on it, in points.
+/// Space between the panel's edge and its content, in points.
 const EDGE: f32 = 22.0;
 
-/// How often a window is drawn in which nothing moves.
+/// Time between two frames of a window that does not change.
 const IDLE: Duration = Duration::from_millis(50);
 
-/// Most files that are left out and named in the window; all of them are on standard error.
+/// Greatest number of skipped files named in the window; standard error names all of them.
 const NAMED: usize = 3;
 
-/// What the pictures are.
+/// The loaded series.
 pub struct Shelf {
     pub series: Vec<Series>,
     pub left_out: Vec<String>,
@@ -55,7 +55,7 @@ pub struct App {
     small: SmallFloor,
     projector: Projector,
     drag: [f64; 2],
-    /// How far a wheel has turned that is not a slice yet, in slices.
+    /// Turn of a wheel that has not reached a slice yet, in slices.
     wheel: f32,
 }
 
@@ -76,7 +76,7 @@ impl App {
         Self { guide, shelf, film, geometry, feet, small, projector, drag: [0.0; 2], wheel: 0.0 }
     }
 
-    /// Picture, and what must be seen over it at once.
+    /// The picture, and warnings over it.
     fn picture(&mut self, ui: &Ui, rect: Rect) {
         let state = &self.guide.state;
         let painter = ui.painter_at(rect);
@@ -216,7 +216,7 @@ impl App {
         }
     }
 
-    /// The small floor, and the mouse as a foot on it.
+    /// The small floor, with the mouse as a foot on it.
     fn floor(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
         let side = ui.available_width().min(ui.available_height() - 26.0).max(120.0);
         let words = self.small.advice(&self.guide.floor, snapshot);
@@ -231,7 +231,7 @@ impl eframe::App for App {
         self.small.lead(&mut self.feet, &self.guide.floor, context, raw);
     }
 
-    /// Here and not in `ui`, which a window that is fully covered does not call: the beam's lamp goes out in time.
+    /// In `logic` and not in `ui`, since a fully covered window does not call `ui`: the beam's lamp goes out in time.
     fn logic(&mut self, context: &Context, _: &mut eframe::Frame) {
         self.guide.turn(std::mem::take(&mut self.drag));
         context.request_repaint_after(IDLE);
@@ -267,7 +267,7 @@ impl eframe::App for App {
     }
 }
 
-/// How far the picture in `rect` was dragged by feet or mouse, in units of the series, with what was `before`.
+/// The drag in units of the series: `before`, plus the drag of the picture in `rect` by feet or the mouse.
 pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect, guide: &Guide, before: [f64; 2]) -> [f64; 2] {
     let picture = ui.interact(rect, ui.scope_id().with("picture"), Sense::drag());
     picture.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Slice"));
@@ -277,9 +277,9 @@ pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect, guide: &Guide, before:
     [before[0] + f64::from(by.x) / scale, before[1] + f64::from(by.y) / scale]
 }
 
-/// By how many slices a wheel over the picture and keys ask to turn; `rest` is what a wheel has turned less than that.
+/// Number of slices to turn by a wheel over the picture and by keys; `rest` is the wheel's turn below a whole slice.
 fn turned(ui: &Ui, picture: Rect, rest: &mut f32) -> f64 {
-    /// Points that a wheel's step scrolls by, as the toolkit has it.
+    /// Points by which one step of a wheel scrolls in egui.
     const STEP: f32 = 50.0;
     let keys = [
         (Key::ArrowUp, -1.0),

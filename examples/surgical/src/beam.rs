@@ -1,47 +1,47 @@
-//! The simulated X-ray lamp: on while a foot holds its control, and nothing else may keep it on.
+//! The simulated X-ray lamp: it is on only while a foot holds its control.
 
 use underfoot::units::Instant;
 use underfoot::widget::EventKind;
 
-/// Why the lamp went out the last time.
+/// The reason why the lamp went out the last time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// The foot let go.
+    /// The foot released it.
     Lifted,
-    /// It was held for as long as it may be.
+    /// It reached its longest time.
     Time,
     /// The floor fell silent, or its session ended.
     FloorLost,
-    /// The foot slid off, stepped, or could not be believed.
+    /// The foot slid off or stepped, or its hold was uncertain.
     Doubt,
 }
 
 /// The lamp.
 #[derive(Clone, Debug, Default)]
 pub struct Beam {
-    /// Whether it shines: only what is known to be held at this very moment.
+    /// Whether it is on: only while the hold is certain at this time.
     pub is_on: bool,
     /// Whether it will soon stop by itself.
     pub has_warned: bool,
     pub ended: Option<Cause>,
-    /// How often it shone, and for how many seconds together.
+    /// Number of exposures, and their total in seconds.
     pub shots: u32,
     pub seconds: f64,
-    /// For how long it has shone in this press, in seconds.
+    /// Duration of the present press, in seconds.
     pub held_s: f64,
     since: Option<Instant>,
     ended_at: Option<Instant>,
 }
 
-/// How long after the end of a press the floor's silence, which ended it, may be told, in seconds.
+/// Time after the end of a press in which a report of the floor's silence can explain that end, in seconds.
 const TOLD_S: f64 = 0.5;
 
-/// How much earlier than its longest time an end still counts as that, in seconds: some frames.
+/// Tolerance within which an end counts as the longest time, in seconds: some frames.
 const AT_ONCE_S: f64 = 0.05;
 
 impl Beam {
-    /// What happened to its control, and when; `longest_s` is how long that may be held.
+    /// Processes an event of its control at `at`; `longest_s` is the longest time of a press.
     pub fn hear(&mut self, kind: EventKind, at: Instant, longest_s: f64) {
         match kind {
             EventKind::Pressed => {
@@ -52,7 +52,7 @@ impl Beam {
             EventKind::Warned => self.has_warned = true,
             EventKind::Released if self.since.is_some() => self.end(Cause::Lifted, at),
             EventKind::Cancelled => {
-                // That the floor is lost may be told before what it cancelled.
+                // The loss of the floor may be reported before the cancellation that it causes.
                 let Some(since) = self.since else { return };
                 let is_time = at.since(since).as_secs_f64() >= longest_s - AT_ONCE_S;
                 self.end(if is_time { Cause::Time } else { Cause::Doubt }, at);
@@ -61,7 +61,7 @@ impl Beam {
         }
     }
 
-    /// The floor is silent or gone: a press that was cancelled just before was cancelled by that.
+    /// Processes the loss of the floor, which also explains a cancellation just before.
     pub fn lose(&mut self, at: Instant) {
         let is_told_now = self.ended_at.is_some_and(|end| at.since(end).as_secs_f64() < TOLD_S);
         if self.since.is_some() || (self.ended == Some(Cause::Doubt) && is_told_now) {
@@ -69,7 +69,7 @@ impl Beam {
         }
     }
 
-    /// Lets time pass; `is_held` is what the floor confirms at this moment.
+    /// Advances time; `is_held` is the floor's confirmation at this time.
     pub fn pass(&mut self, dt_s: f64, is_held: bool) {
         self.is_on = is_held && self.since.is_some();
         if self.is_on {

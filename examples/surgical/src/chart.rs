@@ -1,4 +1,4 @@
-//! The picture as it is drawn: a slice through its window, marks and measures, a scale, and which side is which.
+//! Drawing of the picture: a slice through its window, marks and measures, a scale, and the sides of the body.
 
 use eframe::egui::{
     Align2, Color32, ColorImage, Context, FontId, Painter, Pos2, Rect, Stroke, TextureHandle, TextureOptions,
@@ -11,7 +11,7 @@ use crate::state::{Mark, State};
 const GAUGE: Color32 = Color32::from_rgb(0xf2, 0xd0, 0x6b);
 const SHADE: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 170);
 
-/// Where the units of a series are on the screen.
+/// Maps units of a series to the screen.
 #[derive(Clone, Copy)]
 pub struct Screen {
     rect: Rect,
@@ -34,7 +34,7 @@ impl Screen {
     }
 }
 
-/// The slice that is shown, as the graphics card has it.
+/// The visible slice as a texture.
 #[derive(Default)]
 pub struct Film {
     texture: Option<TextureHandle>,
@@ -76,7 +76,7 @@ impl Film {
     }
 }
 
-/// Values as greys, black below the window and white above; of colours, each of red, green and blue likewise.
+/// Values as greys, black below the window and white above; for colours, each of red, green and blue likewise.
 fn developed(size: [usize; 2], pixels: &Pixels, window: Window, is_inverted: bool) -> ColorImage {
     let low = window.level - 0.5 * window.width;
     let grey = |value: f64| {
@@ -97,7 +97,7 @@ fn developed(size: [usize; 2], pixels: &Pixels, window: Window, is_inverted: boo
     }
 }
 
-/// Letters at all four edges: towards which side of the body each is.
+/// Letters at all four edges for the sides of the body.
 fn sides(painter: &Painter, rect: Rect, state: &State) {
     const SIZE: f32 = 26.0;
     let Some([right, down]) = state.sheet().towards(state.view().slice) else { return };
@@ -136,7 +136,7 @@ fn marks(painter: &Painter, screen: &Screen, state: &State) {
     }
 }
 
-/// What the marking button marks.
+/// The target of the marking button.
 fn crosshair(painter: &Painter, at: Pos2) {
     for (width, colour) in [(3.5, SHADE), (1.4, Color32::WHITE)] {
         for way in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
@@ -145,7 +145,7 @@ fn crosshair(painter: &Painter, at: Pos2) {
     }
 }
 
-/// A bar with the length that it stands for, in the lower left.
+/// A bar labelled with its length, in the lower left.
 fn scale_bar(painter: &Painter, screen: &Screen, state: &State) {
     let lengths = [200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2];
     let length = lengths.into_iter().find(|length| length * screen.scale < 220.0).unwrap_or(0.1);
@@ -165,7 +165,7 @@ fn scale_bar(painter: &Painter, screen: &Screen, state: &State) {
     );
 }
 
-/// Words that can be read on any picture.
+/// Words that are readable on any picture.
 fn words_at(painter: &Painter, at: Pos2, anchor: Align2, words: &str, size: f32) {
     let galley = painter.layout_no_wrap(words.to_owned(), FontId::proportional(size), Color32::WHITE);
     let place = anchor.anchor_size(at, galley.size());

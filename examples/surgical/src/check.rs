@@ -1,4 +1,4 @@
-//! What the viewer makes of files, for programs: a line of JSON for each.
+//! The viewer's results for files, for programs: a line of JSON for each.
 
 use std::fs;
 use std::io;
@@ -8,19 +8,19 @@ use serde::Serialize;
 
 use crate::series::{self, Part, Pixels, Unfit};
 
-/// What became of one file.
+/// The result for one file.
 #[derive(Debug, Serialize)]
 struct Outcome {
     file: PathBuf,
     shown: bool,
-    /// Why it is not.
+    /// The reason why it is not shown.
     #[serde(skip_serializing_if = "Option::is_none")]
     why: Option<String>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     picture: Option<Picture>,
 }
 
-/// What is shown.
+/// The properties of a shown picture.
 #[derive(Debug, Serialize)]
 struct Picture {
     title: String,
@@ -64,8 +64,9 @@ impl Picture {
     }
 }
 
-/// Prints what becomes of each file; writes the pixels of each first picture into `values`, if given, as `<number>.f32`
-/// (little-endian) or `<number>.rgb` by the file's place in the list, from 0. Gives whether all are shown.
+/// Prints the result for each file; writes the pixels of each first picture into `values`, if given, as
+/// `<number>.f32` (little-endian) or `<number>.rgb` by the file's place in the list, from 0. Returns whether all are
+/// shown.
 ///
 /// # Errors
 /// The pixels can't be written.

@@ -1,4 +1,4 @@
-//! What feet feel and ears hear: a channel for each tile's actuator, on a sound card or in a file.
+//! Haptics and sound: a channel for each tile's actuator, on a sound card or in a file.
 
 use std::path::PathBuf;
 
@@ -14,21 +14,21 @@ use underfoot::units::Instant;
 /// Samples per second of files.
 const RATE: u32 = 48_000;
 
-/// By what it is felt.
+/// The output for actuators.
 #[derive(Args, Clone, Debug)]
 pub struct Feel {
-    /// Record what actuators would do into a WAV file, instead of playing it.
+    /// Record the actuators' samples into a WAV file, instead of playing them.
     #[arg(long, value_name = "FILE")]
     wav: Option<PathBuf>,
-    /// The sound card that the actuators are on, by its name or a part of it (`underfoot rack devices` lists them);
-    /// `paced` is a clock that stands in for a card. Without it, the system's choice.
+    /// The sound card of the actuators, by its name or a part of it (`underfoot rack devices` lists them); `paced` is
+    /// a clock that stands in for a card. Without it, the system's default.
     #[cfg(feature = "audio")]
     #[arg(long, value_name = "NAME", conflicts_with = "wav")]
     device: Option<String>,
 }
 
 impl Feel {
-    /// Lets what happens on the floor be felt.
+    /// Adds the actuators to `session`.
     pub fn attach(self, session: SessionBuilder) -> SessionBuilder {
         session.actuators(move |floor, start, _| self.open(floor, start))
     }
@@ -42,7 +42,7 @@ impl Feel {
         #[cfg(feature = "audio")]
         {
             let is_asked = self.device.is_some();
-            // Each tile on a channel of its own where the card has enough, otherwise all on two loudspeakers.
+            // Each tile has a channel of its own if the card has enough; otherwise all share two loudspeakers.
             let mut played = Err(None);
             for mix in [Mix::PerActuator, Mix::Stereo] {
                 played = played.or_else(|_| play(floor, self.device.clone(), mix).map_err(Some));
@@ -61,7 +61,7 @@ impl Feel {
     }
 }
 
-/// Where nothing is felt: nothing is rendered either.
+/// A floor without haptics, which renders nothing.
 struct Unfelt;
 
 impl ActuatorSink for Unfelt {

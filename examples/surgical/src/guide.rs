@@ -1,4 +1,4 @@
-//! Between the floor and the viewer: events and holds to the one, ranges, values and labels to the other.
+//! Connects the floor and the viewer: events and holds go to the viewer; ranges, values and labels to the floor.
 
 use std::time::{Duration, Instant};
 
@@ -8,20 +8,20 @@ use underfoot::widget::Value;
 
 use crate::state::{Hold, OFFERED, State};
 
-/// Longest time that one turn may stand for: a window that was covered does not jump.
+/// Longest time that one turn may cover, so that the viewer does not jump after its window was covered.
 const LONGEST: Duration = Duration::from_millis(250);
 
-/// How often the floor's labels may change: reading takes longer.
+/// Shortest time between two changes of the floor's labels: reading takes longer.
 const LABEL_EVERY: Duration = Duration::from_millis(250);
 
 pub struct Guide {
     pub floor: Session,
     pub state: State,
     pub has_ended: bool,
-    /// Whether each rest of the viewer is printed.
+    /// Whether to print the viewer's state each time it comes to rest.
     print: bool,
     last: Instant,
-    /// The series whose range the floor's slider has.
+    /// The series with the range that the floor's slider has.
     ranged: Option<usize>,
     labelled: Option<Instant>,
 }
@@ -32,8 +32,8 @@ impl Guide {
         Self { floor, state, has_ended: false, print, last, ranged: None, labelled: None }
     }
 
-    /// Lets time pass until now; `drag` is how far feet dragged the picture, in units of the series. Gives what the
-    /// floor looks like.
+    /// Advances to the present; `drag` is the distance that feet dragged the picture, in units of the series. Returns
+    /// a snapshot of the floor.
     pub fn turn(&mut self, drag: [f64; 2]) -> Snapshot {
         let before = self.state.report(None);
         while let Some(event) = self.floor.next_event() {
@@ -65,12 +65,12 @@ impl Guide {
         snapshot
     }
 
-    /// Lets the floor follow the viewer. A control in use refuses, and is asked again.
+    /// Updates the floor from the viewer. A control in use refuses, and the next turn tries again.
     fn tell(&mut self, snapshot: &Snapshot, now: Instant) -> Result<(), Refusal> {
         let (sheet, view) = (self.state.sheet(), self.state.view());
         if self.ranged != Some(self.state.current) {
             let slice = self.floor.control("slice")?;
-            // A single picture leaves nothing to slide.
+            // With a single picture, there is nothing to slide.
             slice.set_enabled(sheet.frames > 1)?;
             if sheet.frames > 1 {
                 slice.set_range(1.0..=sheet.frames as f64)?;
@@ -84,7 +84,7 @@ impl Guide {
                 self.floor.control(id)?.set(value)?;
             }
         }
-        // What is locked refuses, and that is felt: there is nothing to clear.
+        // A press on a locked control is refused with a haptic cue: there is nothing to clear.
         let is_locked = snapshot.control("clear").is_some_and(|clear| clear.locked);
         if is_locked == self.state.has_marks() {
             self.floor.control("clear")?.set_locked(!is_locked)?;
@@ -96,7 +96,7 @@ impl Guide {
         Ok(())
     }
 
-    /// What is written on the floor.
+    /// Writes the labels on the floor.
     fn label(&self, snapshot: &Snapshot) -> Result<(), Refusal> {
         let state = &self.state;
         let (sheet, view) = (state.sheet(), state.view());
@@ -127,12 +127,12 @@ impl Guide {
         if is_so { Ok(()) } else { control.set_enabled(wanted) }
     }
 
-    /// Whether a foot holds a control, and nobody doubts that it does.
+    /// Whether a foot certainly holds a control.
     fn is_held(&self, id: &str) -> bool {
         self.floor.held(id).is_ok_and(|held| held.is_fresh())
     }
 
-    /// One line of JSON.
+    /// Prints one line of JSON.
     fn print(&self, snapshot: &Snapshot) {
         let range = snapshot.control("slice").and_then(|slice| match slice.range {
             Some(ValueRange::Number(scale)) => Some([scale.min, scale.max].map(f64::from)),

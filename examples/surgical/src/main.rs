@@ -1,4 +1,4 @@
-//! DICOM images read with the feet. Without arguments it shows a phantom, on a simulated floor of its own.
+//! DICOM images read with the feet. Without arguments it shows a phantom, on a simulated floor.
 //!
 //! An example of a user interface, not a medical device.
 
@@ -37,13 +37,13 @@ use crate::state::{Sheet, State};
 /// The floor of this app.
 const CONSOLE: &str = include_str!("../console.ron");
 
-/// Where the picture is when there is no window, in points.
+/// The picture's area without a window, in points.
 const UNSEEN: Rect = Rect { min: pos2(0.0, 34.0), max: pos2(908.0, 800.0) };
 
 /// DICOM images read with the feet, while both hands are busy. NOT A MEDICAL DEVICE: an example of a user interface.
 ///
-/// Without a folder it shows a phantom. Without a floor, the small one in the window is a simulated one: press it with
-/// the mouse.
+/// Without a folder it shows a phantom. Without a floor, the small one in the window is a simulated one: press it
+/// with the mouse.
 #[derive(Parser, Debug)]
 #[command(args_conflicts_with_subcommands = true)]
 struct Args {
@@ -57,13 +57,13 @@ struct Args {
     /// The real floor's hardware.
     #[arg(long, value_name = "FILE", requires = "listen")]
     floor: Option<PathBuf>,
-    /// Let a simulated person walk as this file says, and end with them.
+    /// Run a simulated person by this file, and end with its last step.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
     /// Print a line of JSON whenever the viewer comes to rest.
     #[arg(long)]
     print_state: bool,
-    /// Record the floor into a file, in place of what was there: `underfoot replay` plays it again.
+    /// Record the floor into a file, replacing its content: `underfoot replay` plays it again.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Open no window.
@@ -73,17 +73,18 @@ struct Args {
     feel: Feel,
 }
 
-/// What there is to do without a window and a floor.
+/// Commands without a window and a floor.
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Print a line of JSON for each file: whether it is shown, as what, or why not. Ends with status 1 if one is not.
+    /// Print a line of JSON for each file: its picture, or the reason why it is not shown. Ends with status 1 if one
+    /// is not.
     ///
     /// A folder of this name is opened as `./check`.
     Check {
         #[arg(required = true)]
         files: Vec<PathBuf>,
-        /// Write the pixels of each file's first picture into this folder: grey values as `<number>.f32`, little-endian,
-        /// and colours as `<number>.rgb`, by the file's place among the arguments, from 0.
+        /// Write the pixels of each file's first picture into this folder: grey values as `<number>.f32`,
+        /// little-endian, and colours as `<number>.rgb`, by the file's place among the arguments, from 0.
         #[arg(long, value_name = "FOLDER")]
         values: Option<PathBuf>,
     },
@@ -99,7 +100,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Opens the viewer, and closes with it.
+/// Runs the viewer until its window closes.
 fn view(args: Args) -> Result<(), Box<dyn Error>> {
     let shelf = shelf(args.folder.as_deref())?;
     let hardware = match &args.floor {
@@ -170,7 +171,7 @@ fn shelf(folder: Option<&Path>) -> Result<Shelf, Box<dyn Error>> {
     }
 }
 
-/// For how long the beam may be held, in seconds.
+/// The longest time of the beam, in seconds.
 fn longest_s(layout: &Layout) -> Option<f64> {
     let beam = layout.widgets.get(layout.widget_index("beam")?)?;
     match beam.behaviour.thresholds().guard {
@@ -179,9 +180,9 @@ fn longest_s(layout: &Layout) -> Option<f64> {
     }
 }
 
-/// A simulated floor on which people do what a file says, with what goes wrong meanwhile.
+/// A simulated floor with the people and faults of a scenario file.
 fn played(path: &Path, wired: &Floor, layout: &Layout) -> Result<SessionBuilder, Box<dyn Error>> {
-    /// Which floor of its kind.
+    /// Seed of the simulated floor.
     const SEED: u64 = 1;
     let scenario = Scenario::load(path)?;
     let mut faults = Faults::default();
@@ -198,7 +199,7 @@ fn played(path: &Path, wired: &Floor, layout: &Layout) -> Result<SessionBuilder,
     Ok(Session::source(Box::new(source), clock).floor(floor))
 }
 
-/// Without a window: the same feet, as touches on a picture that nobody sees.
+/// Without a window: the same feet, as touches on an invisible picture.
 fn unseen(mut guide: Guide, mut feet: FootInput) {
     let context = egui::Context::default();
     FootInput::tune(&context);

@@ -1,4 +1,4 @@
-//! Two series of a thing that does not exist, written as real DICOM files: nothing in them is of a patient.
+//! Two series of an invented object, written as real DICOM files without any patient's data.
 
 use std::io;
 use std::path::Path;
@@ -12,12 +12,12 @@ use dicom_object::{FileMetaTableBuilder, InMemDicomObject};
 pub const SLICES: usize = 40;
 const WIDE: usize = 224;
 
-/// Between pixels, and from slice to slice, in millimetres.
+/// Distance between pixels, and between slices, in millimetres.
 pub const SPACING_MM: f64 = 1.25;
 const APART_MM: f64 = 3.0;
 
-/// Between the two metal rods of the first series, middle to middle, and how far below the middle they are, in
-/// millimetres: what is measured can be checked.
+/// Distance between the centres of the two metal rods of the first series, and their depth below the middle, in
+/// millimetres, against which measurements can be checked.
 pub const RODS_MM: f64 = 90.0;
 pub const RODS_DOWN_MM: f64 = 62.0;
 
@@ -37,7 +37,7 @@ pub fn write(folder: &Path) -> io::Result<()> {
         let at_mm = slice as f64 * APART_MM;
         let stored = pixels(WIDE, |x, y| {
             let (x, y) = (x * SPACING_MM, y * SPACING_MM);
-            // A pixel is the mean of what lies in it, as a scanner has it.
+            // A pixel is the mean of its area, as in a scanner.
             let parts = [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)];
             let along = at_mm / (SLICES as f64 * APART_MM);
             let part = |(right, down)| hounsfield(x + right * SPACING_MM, y + down * SPACING_MM, along);
@@ -72,7 +72,7 @@ pub fn write(folder: &Path) -> io::Result<()> {
     save(file, uids::X_RAY_ANGIOGRAPHIC_IMAGE_STORAGE, &folder.join("xa.dcm"))
 }
 
-/// What every file says.
+/// The elements that all files share.
 fn common(series: usize, number: usize, modality: &str, title: &str, class: &str) -> InMemDicomObject {
     let mut file = InMemDicomObject::new_empty();
     put(&mut file, tags::SOP_CLASS_UID, VR::UI, class);
@@ -146,7 +146,7 @@ fn hounsfield(x: f64, y: f64, along: f64) -> f64 {
     for side in [-1.0, 1.0] {
         let (rx, ry) = (34.0 * bulge + 4.0, 46.0 * bulge + 4.0);
         if inside(side * 60.0, -8.0, rx, ry) {
-            // A vessel that wanders through each lung, and a nodule that is in a few slices only.
+            // A vessel that winds through each lung, and a nodule in a few slices only.
             let turn = 6.0 * along + side;
             let vessel = inside(side * 60.0 + 14.0 * turn.cos(), -8.0 + 20.0 * turn.sin(), 4.0, 4.0);
             let nodule = side > 0.0 && (along - 0.6).abs() < 0.06 && inside(52.0, -24.0, 7.0, 7.0);
@@ -162,13 +162,13 @@ fn hounsfield(x: f64, y: f64, along: f64) -> f64 {
     if inside(-6.0, -14.0, 24.0 * bulge, 30.0 * bulge) { 150.0 } else { 45.0 }
 }
 
-/// The same in every run: what a detector adds, a few Hounsfield units.
+/// Detector noise of a few Hounsfield units, the same in every run.
 fn noise(x: f64, y: f64, slice: usize) -> f64 {
     let mixed = (x * 12.9898 + y * 78.233 + slice as f64 * 37.719).sin() * 43_758.545;
     24.0 * (mixed - mixed.floor() - 0.5)
 }
 
-/// A catheter that goes into a vessel tree, as a shadow on a bright screen; places from -0.5 to 0.5.
+/// A catheter that enters a vessel tree, as a shadow on a bright screen; places from -0.5 to 0.5.
 fn shadow(x: f64, y: f64, phase: f64) -> f64 {
     let mut light: f64 = 208.0 - 120.0 * (x * x + y * y);
     for rib in 0..6 {

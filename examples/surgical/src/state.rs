@@ -1,4 +1,4 @@
-//! What the viewer shows, and what feet make of it. Knows neither window nor floor.
+//! The state of the viewer and its reactions to feet, independent of window and floor.
 
 use serde::Serialize;
 use underfoot::runtime::{Event, Kind};
@@ -8,41 +8,42 @@ use underfoot::wire::LinkState;
 use crate::beam::{Beam, Cause};
 use crate::series::{Plane, Series, Window};
 
-/// How many series a page of the floor offers.
+/// Number of series that a page of the floor offers.
 pub const OFFERED: usize = 4;
 
-/// Times by which the window widens in a second, as a power of e, and by how much of its width the level moves, at the
-/// pad's edge.
+/// At the pad's edge: rate at which the window widens, in powers of e per second, and share of its width by which the
+/// level moves in a second.
 const WIDENS: f64 = 0.9;
 const MOVES: f64 = 0.5;
 
 /// Narrowest and widest window: from one step of the value to all that 32 bits can hold.
 const WIDTHS: [f64; 2] = [1.0, 4.3e9];
 
-/// How far one may come nearer.
+/// Greatest zoom.
 pub const NEAREST: f64 = 8.0;
 
-/// How near to each other two points of a measurement count as the same, in pixels along both axes.
+/// Distance below which two points of a measurement count as the same, in pixels along both axes.
 const SAME: f64 = 0.5;
 
-/// How long nothing must change for the viewer to count as settled, in seconds.
+/// Time without change after which the viewer counts as settled, in seconds.
 const SETTLED_S: f64 = 0.3;
 
-/// How long a notice stays, in seconds.
+/// Duration of a notice, in seconds.
 const NOTICE_S: f64 = 4.0;
 
-/// What feet do at this moment.
+/// The state of feet at one time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hold {
     /// The place on the window pad, eastwards and northwards up to 1; zero while it is not held.
     pub window: [f64; 2],
-    /// How far feet dragged the picture since the last time, to the right and downwards, in [units](View::middle).
+    /// Distance that feet dragged the picture since the last call, to the right and downwards, in
+    /// [units](View::middle).
     pub drag: [f64; 2],
     /// Whether the floor confirms a foot on the beam's control.
     pub beam: bool,
 }
 
-/// A place in a series: which slice, and where in it, in [units](View::middle).
+/// A place in a series: the slice, and the place in it, in [units](View::middle).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
     pub slice: usize,
@@ -64,22 +65,22 @@ impl Measure {
     }
 }
 
-/// How one series is looked at.
+/// The view of one series.
 #[derive(Clone, Debug)]
 pub struct View {
     pub slice: usize,
     pub window: Window,
-    /// How many times as large as fits the window.
+    /// The zoom; 1 fits the picture to the window.
     pub zoom: f64,
-    /// What is in the middle, from the picture's upper left corner to the right and down: in millimetres, or in pixels
-    /// where the files don't say how large these are.
+    /// The point in the middle, from the picture's upper left corner to the right and down: in millimetres, or in
+    /// pixels if the files lack their size.
     pub middle: [f64; 2],
     /// The first press of a measurement.
     pub first: Option<Mark>,
     pub measures: Vec<Measure>,
 }
 
-/// What a series is, apart from its pixels.
+/// A series without its pixels.
 #[derive(Clone, Debug)]
 pub struct Sheet {
     pub title: String,
@@ -113,17 +114,17 @@ impl Sheet {
         [0, 1].map(|axis| self.size[axis] as f64 * spacing[axis])
     }
 
-    /// Units from pixel to pixel.
+    /// Distance between pixels, in units.
     fn spacing(&self, slice: usize) -> [f64; 2] {
         self.spacing_mm(slice).unwrap_or([1.0; 2])
     }
 
-    /// The units of a slice: millimetres, or pixels where its file doesn't say how large these are.
+    /// The units of a slice: millimetres, or pixels if its file lacks their size.
     pub fn unit(&self, slice: usize) -> &'static str {
         if self.spacing_mm(slice).is_some() { "mm" } else { "px" }
     }
 
-    /// Towards which side of the body the right edge and the lower edge of a slice are, in letters.
+    /// The sides of the body at the right edge and the lower edge of a slice, in letters.
     pub fn towards(&self, slice: usize) -> Option<&[String; 2]> {
         self.planes.get(slice)?.towards.as_ref()
     }
@@ -152,13 +153,13 @@ pub struct State {
     pub beam: Beam,
     pub longest_s: f64,
     pub is_lost: bool,
-    /// Whether one press more clears the measurements.
+    /// Whether one more press clears the measurements.
     pub is_armed: bool,
     notice: Option<(String, f64)>,
     still_s: f64,
 }
 
-/// What a test compares.
+/// The state that tests compare.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     pub series: String,
@@ -179,7 +180,7 @@ pub struct Report {
 }
 
 impl State {
-    /// A viewer of at least one series; `longest_s` is how long the beam may be held.
+    /// A viewer of at least one series; `longest_s` is the longest time of the beam.
     pub fn new(sheets: Vec<Sheet>, longest_s: f64) -> Self {
         let views = sheets.iter().map(Sheet::view).collect();
         Self {
@@ -208,7 +209,7 @@ impl State {
         &mut self.views[self.current]
     }
 
-    /// What just happened and needs words.
+    /// The present notice, if any.
     pub fn notice(&self) -> Option<&str> {
         self.notice.as_ref().map(|(words, _)| words.as_str())
     }
@@ -217,7 +218,7 @@ impl State {
         self.notice = Some((words.into(), NOTICE_S));
     }
 
-    /// Does what an event of the floor asks for.
+    /// Reacts to an event of the floor.
     pub fn hear(&mut self, event: &Event) {
         match event.kind {
             Kind::Control(kind) if event.id() == "beam" => {
@@ -271,7 +272,7 @@ impl State {
         }
     }
 
-    /// Turns to the slice with this number, from 1; the nearest there is.
+    /// Turns to the slice with this number, from 1, or the nearest one.
     fn turn_to(&mut self, number: f64) {
         let last = self.sheet().frames.saturating_sub(1);
         // A number that is not finite becomes 0.
@@ -287,7 +288,7 @@ impl State {
         }
     }
 
-    /// Turns by so many slices, as mouse and keys ask for; stops at the first one and the last one.
+    /// Turns by this number of slices, for mouse and keys; stops at the first one and the last one.
     pub fn step(&mut self, slices: f64) {
         self.turn_to(self.view().slice as f64 + 1.0 + slices);
         self.still_s = 0.0;
@@ -316,7 +317,7 @@ impl State {
         self.view().first.is_some() || !self.view().measures.is_empty()
     }
 
-    /// Lets time pass; gives whether the viewer has just come to rest.
+    /// Advances time; returns whether the viewer has just come to rest.
     pub fn pass(&mut self, dt_s: f64, hold: &Hold) -> bool {
         let before = self.report(None);
         let extent = self.sheet().extent(self.view().slice);
@@ -338,12 +339,12 @@ impl State {
         }
         self.notice = self.notice.take().filter(|(_, left_s)| *left_s > 0.0);
         let was_still = self.still_s >= SETTLED_S;
-        // What happened between two turns has set this back already.
+        // Changes between two turns have reset this already.
         self.still_s = if before == self.report(None) { self.still_s + dt_s } else { 0.0 };
         !was_still && self.still_s >= SETTLED_S
     }
 
-    /// Something has changed that `pass` does not do itself.
+    /// Marks a change that `pass` does not make itself.
     pub fn stir(&mut self) {
         self.still_s = 0.0;
     }
@@ -430,7 +431,7 @@ mod tests {
         let mut state = viewer();
         assert_eq!(state.sheet().extent(0), [50.0, 100.0]);
         state.hear_control("mark", EventKind::Clicked);
-        // The picture goes to the left and up, so that what is in the middle goes to the right and down.
+        // The picture moves to the left and up, so that the middle moves to the right and down in it.
         state.pass(DT_S, &Hold { drag: [-3.0, -4.0], ..Hold::default() });
         state.hear_control("mark", EventKind::Clicked);
         assert_eq!(state.report(None).measures, [5.0]);

@@ -1,4 +1,4 @@
-//! A person walks over the simulated floor, and the viewer does what their feet say.
+//! A person walks over the simulated floor, and the viewer follows their feet.
 #![allow(clippy::panic, clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// What the viewer was like whenever it came to rest while a shipped scenario was played, in real time.
+/// The viewer's state each time it came to rest during a shipped scenario, played in real time.
 fn rests(scenario: &str) -> Vec<Value> {
     let scenario = shipped(scenario);
     let output = viewer(&["--no-window", "--print-state", "--scenario", scenario.to_str().unwrap()]);
@@ -34,12 +34,12 @@ fn a_reading_turns_slices_zooms_windows_pans_measures_and_takes_another_series()
         panic!("{rests:#?}")
     };
     assert_eq!((&start["frames"], &start["range"]), (&json!(40), &json!([1.0, 40.0])));
-    // Of 40 slices on 56 cm, a centimetre is less than one.
+    // With 40 slices on 56 cm, a centimetre is less than one.
     assert!((number(&turned["slice"]) - 32.0).abs() <= 2.0, "{turned}");
     assert!((number(&zoomed["zoom"]) - 2.0).abs() <= 0.3, "{zoomed}");
     assert!(number(&windowed["width"]) > 500.0 && windowed["slice"] == turned["slice"], "{windowed}");
-    // The foot goes over half of the free floor, and so the picture over half of its window: 454 of 908 points, of
-    // which 5.47 are a millimetre at a zoom of 2.
+    // The foot moves over half of the free floor, and so the picture over half of its window: 454 of 908 points; a
+    // millimetre takes 5.47 of them at a zoom of 2.
     let way = number(&panned["middle"][0]) - number(&start["middle"][0]);
     let expected = 0.5 * 908.0 / (766.0 / 280.0 * number(&zoomed["zoom"]));
     assert!((way - expected).abs() < 0.15 * expected, "{way} is not {expected}: {panned}");

@@ -1,4 +1,4 @@
-//! What a foot feels of the console without looking: slices, walls, refusals.
+//! The haptic cues of the console, which replace looking: slices, walls, refusals.
 #![allow(clippy::panic, clippy::unwrap_used)]
 
 use std::time::Duration;
@@ -11,15 +11,15 @@ use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated};
 use underfoot::source::{Pace, SensorSource, SimulatedSource};
 use underfoot::widget::{EventKind, Value};
 
-/// What came of some steps.
+/// The results of some steps.
 struct Felt {
     cues: usize,
-    /// The most that lasted at the same time: friction, and what pushes back.
+    /// The greatest number of sustained cues at once: friction, and the force of a wall.
     lasting: usize,
     events: Vec<EventKind>,
 }
 
-/// What comes of these steps; 40 slices, and nothing to clear.
+/// The results of these steps, with 40 slices and nothing to clear.
 fn felt(steps: &str) -> Felt {
     let wired = Floor::default();
     let sim = SimFloor::new(&wired, SimConfig::default(), 1);

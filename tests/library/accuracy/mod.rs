@@ -1,4 +1,4 @@
-//! How well feet are found: seeded tables, and the bounds that underfoot promises.
+//! Position errors of feet: seeded tables, and the bounds that underfoot promises.
 
 mod people;
 mod phantom;

@@ -1,4 +1,4 @@
-//! How well the feet of people are found: a small table as a snapshot, held against the goals.
+//! Position errors of people's feet: a small table as a snapshot, compared with the goals.
 //!
 //! `underfoot experiment feet --people 100` makes the same table of more people.
 
@@ -20,8 +20,8 @@ fn both_feet_of_people_who_walk_turn_and_stand() {
     let [eq4, tracker] = [0, 1].map(|method| table.whole(method));
     let median = |followed: &Followed| followed.two_feet.quantile(0.5).unwrap();
     assert!(median(&tracker) < 0.015, "{} m", median(&tracker));
-    // The goals: 5 cm for 95 of 100 feet, and hardly any foot that goes on under another name: splitting one
-    // foot in two once made 300 swaps per 1000 steps, and the 195 steps of these 8 people see a few.
+    // The goals: 5 cm for 95 of 100 feet, and hardly any foot that changes its number: splitting one foot in two once
+    // made 300 swaps per 1000 steps, and the 195 steps of these 8 people see a few.
     let most = tracker.two_feet.quantile(0.95).unwrap();
     assert!(most < 0.05, "{most} m");
     assert!(tracker.swaps <= 4, "{} swaps", tracker.swaps);
@@ -30,7 +30,7 @@ fn both_feet_of_people_who_walk_turn_and_stand() {
 
 #[test]
 fn people_whose_feet_once_changed_their_names() {
-    // Each made 3 to 46 changes, one false foot dragging the next behind it, until the cause was found.
+    // Each made 3 to 46 changes, one false foot causing the next, until the error was fixed.
     let mut swaps = 0;
     for (seed, why) in [
         (40_246, "118 kg on one tile: a sensor near its end reads a fifth too much"),
@@ -51,13 +51,13 @@ fn people_whose_feet_once_changed_their_names() {
         println!("{} swaps of person {seed}: {why}", table.whole(1).swaps);
         swaps += table.whole(1).swaps;
     }
-    // Three to 46 each before; what is left are pairs on one saturated sensor that are taken for one.
+    // Three to 46 each before; the rest are pairs on one saturated sensor that count as one foot.
     assert!(swaps <= 60, "{swaps} swaps");
 }
 
 #[test]
 fn both_feet_of_people_who_arrive_and_stand_narrowly() {
-    // 16 to 21 cm apart both feet are often on one tile: only how weight comes over to the second one tells of it.
+    // 16 to 21 cm apart both feet are often on one tile: only the transfer of weight reveals the second one.
     let (mut found, mut all) = (0, 0);
     for seed in 1..=6_u8 {
         let mut rig = Rig::of_calibrated_parts(Geometry::default(), seed.into()).unwrap();
@@ -77,7 +77,7 @@ fn both_feet_of_people_who_arrive_and_stand_narrowly() {
             script.feet_at(Instant::from_millis(milli), &mut feet);
             rig.step(feet.iter().map(Foot::as_load), |frame| {
                 let contacts = sensing.update(frame);
-                // A foot that has long stood: one contact for both is 8 cm and more from either.
+                // A foot that has stood for some time: one contact for both feet is at least 8 cm from either.
                 for foot in feet.iter().filter(|_| milli + 400 > end) {
                     all += 1;
                     found += usize::from(contacts.iter().any(|contact| near(contact, foot)));

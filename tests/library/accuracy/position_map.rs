@@ -1,4 +1,4 @@
-//! How well one foot is found with and without position maps, on simulated floors calibrated by our own procedure.
+//! Position error of one foot with and without position maps, on simulated floors calibrated by our own procedure.
 //!
 //! The table is a snapshot: a change that moves a figure shows up as a diff.
 
@@ -21,8 +21,8 @@ struct Bench {
 }
 
 impl Bench {
-    /// Default parts, calibrated and mapped, after which every sensor's zero has wandered by
-    /// half a newton (standard deviation), as on a floor tared in the morning.
+    /// Default parts, calibrated and mapped; then every sensor's zero drifts by half a newton (standard deviation),
+    /// as on a floor tared in the morning.
     fn new(seed: u64, method: Method) -> Self {
         let wired = Floor::of(Geometry::of_paper_tiles(1, 1).unwrap());
         let config =
@@ -44,15 +44,15 @@ impl Bench {
         }
     }
 
-    /// Errors of a point load that has been lying still for 30 ms, in metres: without, with; and
-    /// whether no sensor was at the end of its range.
+    /// Errors in metres of a point load that has lain still for 30 ms, without and with the map; and whether no
+    /// sensor was at the end of its range.
     fn errors(&mut self, at: Vec2, force: f32) -> ([f32; 2], bool) {
         let load = Load { print: Print::Point, position: at, heading: 0.0, force: Newtons(force) };
         for pressed in [false, true] {
-            // One that has gone in a moment is doubted for 100 ms.
+            // A tile that becomes unloaded at once is uncertain for 100 ms.
             for milli in 1..=if pressed { 30_u8 } else { 110 } {
                 self.millis += 1;
-                // No load comes from one moment to the next: it lands within 5 ms.
+                // No load comes at once: it lands within 5 ms.
                 let landed = Load { force: Newtons(force * (0.2 * f32::from(milli)).min(1.0)), ..load };
                 let readings = self.sim.step_under(pressed.then_some(landed));
                 let received = Instant::from_millis(self.millis.into());
@@ -97,12 +97,12 @@ fn offsets(seed: u64) -> [f32; 4] {
     std::array::from_fn(|_| normal.sample(&mut rng))
 }
 
-/// Least error that a share of the sorted errors keeps to, in centimetres.
+/// The error within which a share of the sorted errors lies, in centimetres.
 fn percentile(errors: &[f32], share: f32) -> f32 {
     errors[((errors.len() - 1) as f32 * share).round() as usize] * 100.0
 }
 
-/// Sorted errors on some floors: without a map, with it, and with it where no sensor was at its end.
+/// Sorted errors on some floors: without a map, with it, and with it and no saturated sensor.
 fn errors_on(seeds: impl Iterator<Item = u64>, method: Method, force: f32) -> [Vec<f32>; 3] {
     let mut errors = [Vec::new(), Vec::new(), Vec::new()];
     for seed in seeds {
@@ -122,7 +122,7 @@ fn errors_on(seeds: impl Iterator<Item = u64>, method: Method, force: f32) -> [V
 
 #[test]
 fn a_position_map_brings_a_point_load_closer_everywhere() {
-    // None of the floors that the fit's constants were chosen on, which were 1 to 40.
+    // Different floors from those for which the fit's constants were chosen, 1 to 40.
     const FLOORS: std::ops::RangeInclusive<u64> = 101..=140;
     let mut table = String::from("centroid error over one whole tile, 40 tiles, zeros off by 0.5 N, cm\n");
     table += "              without map               with map              with map, none saturated\n";
@@ -138,7 +138,7 @@ fn a_position_map_brings_a_point_load_closer_everywhere() {
             figures[0][1] < 2.5 && figures[0][2] < 5.0,
             "without a map as in the paper: {plain} at {force} N"
         );
-        // The goals of the project; a sensor at its end says "at least" and no map can help it.
+        // The goals of the project; a saturated sensor gives a lower bound, and no map can correct it.
         let [median, p95, worst] = figures[2];
         assert!(median <= 0.4 && p95 <= 1.0 && worst <= 2.0, "{live} at {force} N");
     }

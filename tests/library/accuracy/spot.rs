@@ -1,4 +1,4 @@
-//! How well one contact is found on floors of the paper's parts: tables as snapshots, held against the goals.
+//! Position error of one contact on floors of the paper's parts: tables as snapshots, compared with the goals.
 
 use underfoot::experiment::{SeamTable, SpotTable, Thing, Way};
 
@@ -15,13 +15,13 @@ fn one_contact_over_a_whole_tile() {
         // 95 in 100 true places lie in the ellipse. All places of a tile lie over the same four parts: 20 floors are
         // few for that (80 floors of 15 x 15 places: 94 to 98 %).
         let inside = 100.0 * row.share_inside();
-        // From 350 N on a lone contact may be two feet, and its ellipse is as wide; of 50 N a part may be left by the
-        // load that was there 60 ms before.
+        // From 350 N on a lone contact may be two feet, and its ellipse is as wide; at 50 N a residue of the load 60
+        // ms before may remain.
         let expected = 90.0..=if (60.0..350.0).contains(&row.force.0) { 99.9 } else { 100.0 };
         assert!(expected.contains(&inside), "{inside} % in the ellipse, {what}");
         // The paper, without a position map: typically under 2 cm, under 5 cm at worst.
         assert!(found.median_cm < 2.0 && found.worst_cm < 5.0, "{what}");
-        // Our goal with one is 0.4, 1 and 2 cm.
+        // Our goals with a map are 0.4, 1 and 2 cm.
         if row.way.mapped {
             assert!(found.median_cm < 0.4 && found.p95_cm < 1.0 && found.worst_cm < 2.0, "{what}");
         }

@@ -1,4 +1,4 @@
-//! Whether a heavy foot beside a region disturbs the one that works in it: a small table as a snapshot.
+//! The effect of a heavy foot beside a region on the foot that works in it: a small table as a snapshot.
 //!
 //! `underfoot experiment feet --people 100` makes the same table of more people.
 

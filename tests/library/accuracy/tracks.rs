@@ -1,4 +1,4 @@
-//! How well one foot is found: the paper's figures, on a simulated floor.
+//! Position errors of one foot: the paper's figures, on a simulated floor.
 //!
 //! The tables are snapshots: a change that moves a figure shows up as a diff.
 
@@ -35,7 +35,7 @@ impl Bench {
         }
     }
 
-    /// One millisecond under these loads; gives the contacts' places and forces.
+    /// Advances by one millisecond under these loads; returns the contacts.
     fn step(&mut self, loads: &[Load]) -> &[underfoot::sense::Contact] {
         self.millis += 1;
         let received = Instant::from_millis(self.millis.into());
@@ -50,7 +50,7 @@ impl Bench {
         self.sensing.contacts()
     }
 
-    /// The error of a point load that has been lying still for 30 ms, in metres.
+    /// The error in metres of a point load that has lain still for 30 ms.
     fn error(&mut self, at: Vec2, force: Newtons) -> f32 {
         for _ in 0..5 {
             self.step(&[]);

@@ -1,4 +1,4 @@
-//! One control on a simulated floor, and a foot that works it.
+//! One control on a simulated floor, with a foot that operates it.
 
 use underfoot::glam::Vec2;
 use underfoot::units::Newtons;
@@ -8,16 +8,16 @@ pub use EventKind::{Cancelled, Changed, Clicked, Pressed, Released};
 
 use crate::support::{Walker, page};
 
-/// A foot that means it, on any shipped kind.
+/// Force of a deliberate foot, enough for any shipped kind.
 pub const FIRM: Newtons = Newtons(150.0);
 
-/// How fast a foot slides unless it says otherwise, in metres per second.
+/// Default speed of a sliding foot, in metres per second.
 const SPEED: f32 = 0.3;
 
-/// What a person of 70 kg has on the standing foot.
+/// Load on the standing foot of a person of 70 kg.
 const WEIGHT: Newtons = Newtons(690.0);
 
-/// One control named `it`, alone on the floor, and somebody who stands before it with a foot to spare.
+/// One control named `it`, alone on the floor, and a person before it with one free foot.
 pub struct Bench {
     pub walker: Walker,
     middle: Vec2,
@@ -25,7 +25,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// The control written as `fields`, 1.2 tiles (36 cm) wide and one (30 cm) deep.
+    /// The control with these `fields`, 1.2 tiles (36 cm) wide and one (30 cm) deep.
     pub fn with(fields: &str) -> Self {
         let text = format!(
             "Layout(version: 1, regions: [(id: \"all\", at: (0, 2), size: (6, 4))],
@@ -35,7 +35,7 @@ impl Bench {
         let layout = page(&text);
         let area = layout.widgets[0].area;
         let mut walker = Walker::on(layout);
-        // Somebody who has come to stand there, and is no longer about to walk on.
+        // A person who has arrived and is no longer expected to step on.
         walker.stand(WEIGHT);
         walker.wait(3000);
         Self { walker, middle: area.centre(), size: area.size() }
@@ -46,7 +46,7 @@ impl Bench {
         self.middle + (Vec2::new(east, north) - 0.5) * self.size
     }
 
-    /// Puts the foot there, firmly, and lets the dwell pass.
+    /// Puts the foot there with [`FIRM`], and waits for the dwell.
     pub fn press_at(&mut self, east: f32, north: f32) {
         self.press_with(east, north, FIRM);
     }
@@ -88,13 +88,13 @@ impl Bench {
         self.lift();
     }
 
-    /// All boards fall silent under the foot.
+    /// Stops all boards under the foot.
     pub fn lose_the_floor(&mut self) {
         self.walker.connected = false;
         self.walker.wait(150);
     }
 
-    /// What happened since the last call.
+    /// The events since the last call.
     pub fn events(&mut self) -> Vec<EventKind> {
         self.walker.take_events().into_iter().map(|(_, kind)| kind).collect()
     }
@@ -127,7 +127,7 @@ impl Bench {
     }
 }
 
-/// How often a click was felt since the last call.
+/// Number of clicks since the last call.
 pub fn clicks(bench: &mut Bench) -> usize {
     bench.walker.take_cues().len()
 }

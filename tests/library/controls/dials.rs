@@ -9,10 +9,10 @@ use super::bench::{Bench, Cancelled, Changed, FIRM, Pressed, Released, clicks};
 /// A turn of 270 degrees from 0 to 27: ten degrees a step.
 const DIAL: &str = r#"kind: "dial", max: 27, initial: 10"#;
 
-/// How far from the middle the foot goes round, in metres.
+/// Distance of the foot from the middle, in metres.
 const REACH: f32 = 0.12;
 
-/// Takes the foot round the middle from one angle to another, in degrees from east counter-clockwise.
+/// Moves the foot around the middle from one angle to another, in degrees from east counter-clockwise.
 fn turn(bench: &mut Bench, from: f32, to: f32) {
     let middle = bench.at(0.5, 0.5);
     for step in 1..=40 {
@@ -50,7 +50,7 @@ fn lines_1_to_4_clockwise_is_more() {
 fn line_5_near_the_middle_it_stands_still() {
     let mut bench = Bench::with(DIAL);
     press_at(&mut bench, 180.0);
-    // Straight through the middle and out at the other side: no turn at all.
+    // Straight through the middle and out on the other side: not a turn.
     let west = bench.at(0.5, 0.5) + REACH * Vec2::new(1.0, 0.0);
     bench.walker.slide_to(west, 0.3);
     bench.is_about(10.0, 3.0);

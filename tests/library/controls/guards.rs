@@ -83,7 +83,7 @@ const OFF: Value = Value::Switch(false);
 /// Runs for 2 s at most, warns half a second before.
 const RUN: &str = r#"kind: "dead_man", guard: HoldToRun(max_s: 2, warn_s: 0.5)"#;
 
-/// Long enough for a foot that means it to have settled, and for the dwell.
+/// Time for a deliberate foot to settle, plus the dwell.
 const SETTLED: u64 = 600;
 
 fn run(bench: &mut Bench) {
@@ -140,7 +140,7 @@ fn hold_to_run_lines_10_and_11_warned_then_stopped_then_lifted() {
 #[test]
 fn hold_to_run_a_foot_that_crosses_runs_nothing() {
     let mut bench = Bench::with(RUN);
-    // A step's landing on the control, gone within a quarter of a second.
+    // A step's landing on the control, which lasts less than a quarter of a second.
     let at = bench.at(0.5, 0.5);
     bench.walker.step_at(at, Newtons(300.0));
     bench.wait(120);

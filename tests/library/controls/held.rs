@@ -50,7 +50,7 @@ fn hold_line_4_pedal_line_8_lean_line_9_only_a_foot_can_hold() {
     }
 }
 
-/// 45 N gives nothing, 245 N everything, in a straight line.
+/// 45 N is 0, 245 N is 1, with a straight line between them.
 const PEDAL: &str = r#"kind: "pedal", deadband_n: 45, full_n: 245, curve: 1"#;
 
 #[test]

@@ -1,4 +1,4 @@
-//! What apps can do to controls: disable, lock, light a lamp; and the shared press, see `src/widget/press.rs`.
+//! Requests of apps to controls: disable, lock, light a lamp; and the shared press, see `src/widget/press.rs`.
 
 use underfoot::engine::Snapshot;
 use underfoot::glam::Vec2;
@@ -127,12 +127,12 @@ fn press_line_9_a_foot_that_slid_on_must_lift_first() {
     assert_eq!(bench.events(), [Pressed]);
 }
 
-/// Row S12 of the fault table: somebody falls, and lands on everything at once.
+/// Row S12 of the fault table: a person falls and lands on the floor with several parts of the body.
 #[test]
 fn a_fall_confirms_nothing() {
     let mut bench = Bench::with(r#"kind: "confirm_button""#);
     let at = bench.at(0.5, 0.5);
-    // A knee, a hip, a hand: heavy, moving, here and there within a second.
+    // A knee, a hip, a hand: heavy, moving, in several places within a second.
     for (way, force) in [(Vec2::ZERO, 900.0), (Vec2::new(0.06, 0.03), 500.0), (Vec2::new(-0.05, 0.1), 700.0)]
     {
         bench.walker.step_at(at + way, Newtons(force));

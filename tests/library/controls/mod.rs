@@ -1,4 +1,4 @@
-//! Every behaviour and guard, driven by a foot through each line of the timeline written above it.
+//! Every behaviour and guard, driven by a foot through each line of the timeline in its source file.
 //!
 //! The numbers in the names of tests are those lines.
 

@@ -1,4 +1,4 @@
-//! Every control of every shipped layout, worked by a person who stands where the layout says.
+//! Every control of every shipped layout, operated by a person in the stance of the layout.
 
 use crate::support::{Walker, layout};
 use underfoot::glam::Vec2;
@@ -17,17 +17,17 @@ fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothi
             let id = widget.id.to_string();
             let at = widget.behaviour.thresholds();
             let mut walker = Walker::on(page.clone());
-            // Somebody who has come to stand there, and is no longer about to walk on.
+            // A person who has arrived and is no longer expected to step on.
             walker.stand(WEIGHT);
             walker.wait(3000);
             assert_eq!(walker.take_events(), [], "standing is no press: {name}");
-            // Off the middle, where no selector, stepper or dial is as it was.
+            // Off the middle, at a place where each selector, stepper or dial changes.
             let place = widget.area.min + widget.area.size() * Vec2::new(0.75, 0.6);
             let taps = if matches!(at.guard, Guard::Confirm { .. }) { 2 } else { 1 };
             for _ in 0..taps {
                 // Part of a foot rests on the tile behind.
                 walker.step_at(place, at.press * 2.5);
-                // What runs while it is held, or is stood upon, waits for a foot that has settled.
+                // A control that acts while it is held, or on which a person stands, waits for a settled foot.
                 let waits = matches!(at.guard, Guard::HoldToRun { .. })
                     || matches!(widget.behaviour, Behaviour::Lean(_));
                 let settled = if waits { 400 } else { 0 };
@@ -35,7 +35,7 @@ fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothi
                 walker.lift();
                 walker.wait(100);
             }
-            // A single tap is known once no second one has come.
+            // A single tap is certain once the time for a second one has passed.
             walker.wait(400);
             let events = walker.take_events();
             assert!(events.iter().all(|(of, _)| *of == id), "{name}: {events:?}");
@@ -43,7 +43,7 @@ fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothi
             let ends = kinds.iter().filter(|kind| **kind == EventKind::Released).count();
             assert_eq!((kinds.first(), ends), (Some(&EventKind::Pressed), taps), "{name}: {id}: {kinds:?}");
             let acts = |kind: &EventKind| matches!(kind, EventKind::Clicked | EventKind::Changed(_));
-            // Leaning is a matter of more than a tap; see the timelines.
+            // A lean needs more than a tap; see the timelines.
             let acts =
                 kinds.iter().any(acts) || matches!(widget.behaviour, Behaviour::Lean(_) | Behaviour::Dial(_));
             assert!(acts, "{name}: {id}: {kinds:?}");

@@ -51,7 +51,7 @@ fn selector_lines_1_2_and_4_where_the_foot_lets_go_is_chosen() {
 fn selector_line_3_between_two_options_the_one_in_question_stays() {
     let mut bench = Bench::with(TOOLS);
     bench.press_at(0.5, 0.5);
-    // 1 cm beyond the border, 1 cm back, again and again: sway.
+    // 1 cm beyond the border, 1 cm back, repeatedly: sway.
     for _ in 0..5 {
         bench.slide_to(0.69, 0.5);
         bench.slide_to(0.64, 0.5);
@@ -63,7 +63,7 @@ fn selector_line_3_between_two_options_the_one_in_question_stays() {
 fn selector_line_5_a_lifting_foot_chooses_nothing_else() {
     let mut bench = Bench::with(TOOLS);
     bench.press_at(0.5, 0.5);
-    // 36 N: above the release threshold, but on its way up; the foot rolls on to the next option.
+    // 36 N: above the release threshold, but the foot is lifting; it rolls on to the next option.
     bench.walker.press(underfoot::units::Newtons(36.0));
     bench.slide_to(0.9, 0.5);
     bench.lift();

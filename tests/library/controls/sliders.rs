@@ -55,7 +55,7 @@ fn slider_line_2_along_any_track() {
 fn slider_lines_3_and_4_relative_sliders_move_and_can_be_lifted_back() {
     let mut bench = Bench::with(&format!("{PLAIN}, mapping: Relative(gain: 0.5)"));
     bench.press_at(0.9, 0.5);
-    // Pressing moves nothing but what the foot trembles by: the foot is at 0.9.
+    // A press changes the value only by the foot's tremor: the foot is at 0.9.
     bench.is_about(0.5, 0.01);
     bench.slide_to(0.5, 0.5);
     bench.is_about(0.3, 0.04);
@@ -65,7 +65,7 @@ fn slider_lines_3_and_4_relative_sliders_move_and_can_be_lifted_back() {
     bench.slide_to(0.5, 0.5);
     bench.lift();
     bench.is_about(0.1, 0.06);
-    // Beyond the end nothing is stored up: it comes back at once.
+    // The value does not accumulate beyond the end: it comes back at once.
     bench.press_at(0.9, 0.5);
     bench.slide_to(0.1, 0.5);
     assert_eq!(bench.number(), 0.0);
@@ -83,7 +83,7 @@ fn slider_line_5_rate_sliders_run_as_fast_as_the_foot_is_away() {
     bench.slide_to(0.6, 0.5);
     let from = bench.number();
     bench.wait(1000);
-    // Six tenths of full speed, less the tenth that is dead.
+    // Six tenths of full speed, less the dead band of a tenth.
     let moved = bench.number() - from;
     assert!((0.07..0.15).contains(&moved), "{moved} in a second");
     bench.lift();

@@ -62,7 +62,7 @@ fn lines_4_and_8_off_its_half_lifting_or_untrusted_it_waits() {
     bench.wait(1000);
     assert_eq!(bench.number(), 7.0, "forces that can't be trusted");
     bench.walker.untrusted = false;
-    // 42 N: above the release threshold, below what a foot that stays would press.
+    // 44 N: above the release threshold, but below the force of a foot that stays.
     bench.walker.press(Newtons(44.0));
     bench.wait(1000);
     assert_eq!(bench.number(), 7.0, "lifting");

@@ -1,4 +1,4 @@
-//! Which source files the crates of the workspace compile, found by following their `mod` lines.
+//! The source files that the crates of the workspace compile, found through their `mod` lines.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -31,8 +31,8 @@ fn crate_roots(package: &Path) -> Vec<PathBuf> {
     roots
 }
 
-/// Adds `file` and the modules that it names. The modules of a crate root or of a `mod.rs` lie beside it, those of any
-/// other file in a folder of its name.
+/// Adds `file` and the modules that it names. The modules of a crate root or of a `mod.rs` lie beside it, those of
+/// any other file in a folder of its name.
 fn follow(file: &Path, is_root: bool, found: &mut BTreeSet<PathBuf>) {
     if !found.insert(file.to_owned()) {
         return;

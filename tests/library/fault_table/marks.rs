@@ -1,18 +1,18 @@
-//! Rows of the table of faults that tests are marked with.
+//! Marks of tests with rows of the table of faults.
 //!
 //! A mark is a test's name (`n3_a_silent_floor...`), a comment above it (`// N3`, `// N1, N2`) or a part of its doc
 //! comment (`Row N3.`).
 
-/// A test with the rows that it is marked with.
+/// A test and the rows of its marks.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Marked {
     pub function: String,
     pub rows: Vec<String>,
-    /// Whether it runs only where somebody asks for it.
+    /// Whether it runs only on request.
     pub is_ignored: bool,
 }
 
-/// The letters that rows begin with, in the order of the page's tables.
+/// First letters of the rows, in the order of the page's tables.
 pub const LETTERS: [&str; 9] = ["N", "P", "S", "A", "F", "R", "W", "J", "C"];
 
 pub fn is_row(text: &str) -> bool {
@@ -55,7 +55,7 @@ fn row_of_name(name: &str) -> Option<String> {
     is_row(&row.to_uppercase()).then(|| row.to_uppercase())
 }
 
-/// The rows that a comment names: it is nothing but them, or they follow `Row` or `Rows`.
+/// The rows in a comment: it holds only rows, or they follow `Row` or `Rows`.
 fn rows_of_comment(comment: &str) -> Vec<String> {
     let rows = |list: &str| -> Vec<String> {
         let words = list.split_whitespace().map(|word| word.trim_end_matches([',', '.', ':']));

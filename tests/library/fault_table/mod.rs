@@ -1,7 +1,7 @@
-//! `docs/faults.md`: the two last columns of its tables are made from the marks of tests (`marks`), and a row without a
-//! test in the running program says why there can be none.
+//! `docs/faults.md`: the marks of tests (`marks`) determine the two last columns of its tables, and a row without a
+//! test in the running program gives the reason.
 //!
-//! With `UPDATE_EXPECTED=1` the page is written anew.
+//! With `UPDATE_EXPECTED=1` the test rewrites the page.
 
 mod compiled;
 mod marks;
@@ -13,13 +13,13 @@ use marks::{LETTERS, is_row, marked};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// How a row begins, in its third column, whose fault cannot happen because the part that it concerns does not exist.
+/// Beginning of the third column of a row for a part that does not exist yet, so that its fault cannot happen.
 const NOT_YET: &str = "not yet built";
 
-/// How the fourth column begins where no test in the running program is possible; the reason follows.
+/// Beginning of the fourth column if no test in the running program is possible; the reason follows.
 const IMPOSSIBLE: &str = "Not possible: ";
 
-/// Where tests start programs of this workspace as processes.
+/// Folders of tests that start programs of this workspace as processes.
 const RUNNING: [&str; 2] = ["tests/program/", "crates/underfoot-cluster/tests/cluster/"];
 
 /// The tests of one row, as `file:function`.
@@ -41,7 +41,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Each row's tests, of all crates of the workspace.
+/// The tests of each row, of all crates of the workspace.
 fn tests() -> BTreeMap<String, Tests> {
     let root = Path::new(ROOT);
     let mut rows: BTreeMap<String, Tests> = BTreeMap::new();
@@ -66,22 +66,22 @@ fn tests() -> BTreeMap<String, Tests> {
     rows
 }
 
-/// A test as the page shows it.
+/// A test in the form of the page.
 fn shown(file: &str, function: &str, is_ignored: bool) -> String {
     if is_ignored { format!("{BY_HAND}`{file}:{function}`") } else { format!("`{file}:{function}`") }
 }
 
-/// How the page shows a test that runs only where somebody asks for it.
+/// The page's mark of a test that runs only on request.
 const BY_HAND: &str = "by hand ";
 
-/// The tests that run without being asked for, then the others.
+/// The tests that always run, then those that run on request.
 fn cell(tests: &[String]) -> String {
     let (by_hand, always): (Vec<&String>, Vec<&String>) =
         tests.iter().partition(|test| test.starts_with(BY_HAND));
     always.into_iter().chain(by_hand).map(String::as_str).collect::<Vec<_>>().join(" ")
 }
 
-/// The fourth column of a row: its tests in the running program, or why there are none.
+/// The fourth column of a row: its tests in the running program, or the reason why there are none.
 fn running_cell(row: &str, outcome: &str, before: &str, tests: &Tests) -> String {
     let is_tested = |tests: &[String]| tests.iter().any(|test| !test.starts_with(BY_HAND));
     if outcome.starts_with(NOT_YET) {
@@ -103,7 +103,7 @@ fn running_cell(row: &str, outcome: &str, before: &str, tests: &Tests) -> String
     before.to_owned()
 }
 
-/// The page with its last columns made anew, and the rows that it has.
+/// The page with new last columns, and its rows.
 fn made(page: &str, tests: &BTreeMap<String, Tests>) -> (String, Vec<String>) {
     let mut rows = Vec::new();
     let mut text = String::new();

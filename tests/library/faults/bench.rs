@@ -1,4 +1,4 @@
-//! Four tiles with one button, for what takes long: ten minutes of floor in a few seconds.
+//! Four tiles with one button, for long runs: ten minutes of floor in a few seconds.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use underfoot::wire::{Readings, SensorPacket};
 
 use crate::support::page;
 
-/// A button of the shipped kind (60 N, 40 N, 20 ms) on the whole south-west tile, its sensors included.
+/// A button of the shipped kind (60 N, 40 N, 20 ms) on the whole south-west tile, including its sensors.
 const PAGE: &str = r#"Layout(version: 1, title: "bench", regions: [(id: "all", at: (0, 0), size: (2, 2))],
     widgets: [(id: "it", kind: "button", at: (0, 0), size: (1, 1), label: "It")])"#;
 
@@ -33,7 +33,7 @@ impl Bench {
         Self::new_seed(sensing, 3)
     }
 
-    /// As [`Bench::new`], with other parts out of the box.
+    /// Like [`Bench::new`], with other random parts.
     pub fn new_seed(sensing: Sensing, seed: u64) -> Self {
         let wired = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
         let sim = SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, seed);
@@ -41,7 +41,7 @@ impl Bench {
         Self::with_floor(&floor, sim)
     }
 
-    /// As [`Bench::new`], the tare measured by the assembler itself.
+    /// Like [`Bench::new`], with a tare that the assembler measures itself.
     pub fn tared_at_start(sensing: Sensing) -> Self {
         let mut bench = Self::new(sensing);
         let mut floor = Floor::of(*bench.sim.geometry());
@@ -65,13 +65,13 @@ impl Bench {
         bench
     }
 
-    /// Takes the button's dwell away: the easiest to press by mistake.
+    /// Removes the button's dwell, so that a press by mistake is easiest.
     pub fn hasten(&mut self) {
         self.engine.set_layout(page(&PAGE.replace("label:", "dwell_ms: 0, label:")));
         self.run(100);
     }
 
-    /// Puts a dead man's pedal in the button's place.
+    /// Replaces the button by a dead man's pedal.
     pub fn run_pedal(&mut self) {
         self.engine.set_layout(page(&PAGE.replace("button", "dead_man")));
         self.run(100);
@@ -85,7 +85,7 @@ impl Bench {
         self.run_with(millis, |_, _, _| {});
     }
 
-    /// A millisecond under loads that are not feet; what the controls make of it is not examined.
+    /// A millisecond under loads that are not feet; the test ignores the events of controls.
     pub fn run_under(&mut self, loads: &[Load]) {
         self.now = self.now + Duration::from_millis(1);
         let (sequence, received) = ((self.now.micros() / 1000) as u32, self.now);
@@ -95,7 +95,7 @@ impl Bench {
         while self.assembler.ready().is_some() {}
     }
 
-    /// Lets time pass; `disturb` may change what channel (board, number) sends, in newtons.
+    /// Advances time; `disturb` may change the reading of channel (board, number), in newtons.
     pub fn run_with(&mut self, millis: u64, mut disturb: impl FnMut(u64, (usize, usize), &mut f32)) {
         self.run_altered(millis, |ms, board, readings| {
             if let Readings::Newtons(forces) = readings {
@@ -107,7 +107,7 @@ impl Bench {
         });
     }
 
-    /// Lets time pass; `alter` may change what a board sends.
+    /// Advances time; `alter` may change the readings of a board.
     pub fn run_altered(&mut self, millis: u64, mut alter: impl FnMut(u64, u16, &mut Readings)) {
         for ms in 0..millis {
             self.now = self.now + Duration::from_millis(1);
@@ -125,7 +125,7 @@ impl Bench {
         }
     }
 
-    /// Brings one foot, its pressure on `at`, to `force` within 40 ms.
+    /// Brings one foot, with its pressure on `at`, to `force` within 40 ms.
     pub fn press(&mut self, at: Vec2, force: f32) {
         let before = self.feet.first().map_or(0.0, |foot| foot.force.0);
         for step in 1..=40_u8 {
@@ -134,8 +134,8 @@ impl Bench {
         }
     }
 
-    /// Lets time pass under one foot that stays, swaying by some millimetres as people who stand do:
-    /// what keeps perfectly still for a minute is not a foot (S10).
+    /// Advances time under one foot that stays, swaying by some millimetres like a standing person: a load that is
+    /// perfectly still for a minute is not a foot (S10).
     pub fn stay(
         &mut self,
         at: Vec2,

@@ -1,4 +1,4 @@
-//! S1 stuck, S2 saturated, S3 open and short: sensors that say nothing of the foot.
+//! S1 stuck, S2 saturated, S3 open and short: sensors that do not follow the foot.
 
 use underfoot::floor::{Corner, Rect, SensorId, TileId};
 use underfoot::glam::Vec2;
@@ -19,7 +19,7 @@ fn s1_stuck_sensor_is_faulty_within_a_second_under_a_moving_foot_and_its_tile_go
         walker.sim.set_fault(stuck, Some(SensorFault::Stuck));
         walker.wait(10_000);
         assert_eq!(trouble(&walker, stuck), None, "on an empty tile every sensor stands still");
-        // A foot that works on the tile, in its middle: 250 N, now more, now less.
+        // A foot in the middle of the tile, with a load that varies around 250 N.
         let centre = walker.geometry().centre(stuck.tile);
         walker.step_at(centre, Newtons(250.0));
         walker.wait(500);
@@ -39,7 +39,7 @@ fn s1_stuck_sensor_is_faulty_within_a_second_under_a_moving_foot_and_its_tile_go
 
 #[test]
 fn s1_error_with_three_sensors_is_as_large_as_stated() {
-    // A foot all over the middle of a tile with each sensor dead in turn, on several floors.
+    // A foot all over the middle of a tile with each sensor stuck in turn, on several floors.
     let mut errors = Vec::new();
     let mut inside = 0;
     for seed in 1..=6 {
@@ -109,7 +109,7 @@ fn s2_saturated_sensor_starts_nothing_but_keeps_what_was_started() {
         })
         .unwrap();
     let part = sensor(tile, nearest);
-    // Started in range, then the converter's end is reached.
+    // It starts in range and then reaches the end of the converter.
     walker.step_at(at, Newtons(120.0));
     walker.wait(60);
     let pressed = (id.to_string(), EventKind::Pressed);
@@ -194,7 +194,7 @@ fn s3_an_open_sensor_under_a_standing_foot_keeps_the_press() {
 #[test]
 fn a_person_who_stamps_about_breaks_no_sensor() {
     let mut walker = at_the_map();
-    // Every 5 cm over four tiles, heavily, the edges and the sensors' own places included.
+    // Every 5 cm over four tiles, heavily, including the edges and the sensors' own places.
     for step in 0..144_u8 {
         let at = Vec2::new(f32::from(step % 12), f32::from(step / 12)) * 0.05 + 0.61;
         walker.step_at(at, Newtons(500.0));
@@ -203,7 +203,7 @@ fn a_person_who_stamps_about_breaks_no_sensor() {
         walker.lift();
         walker.wait(5);
     }
-    // And stands on the corner of a tile for five seconds.
+    // Then stands on the corner of a tile for five seconds.
     let corner = walker.geometry().sensor(TileId::new(2, 3), Corner::NorthEast);
     walker.step_at(corner, Newtons(690.0));
     for _ in 0..10 {
@@ -236,12 +236,12 @@ fn s1_a_sensor_found_stuck_under_a_standing_foot_neither_splits_nor_moves_it_at_
                 last = contacts[0].centroid;
                 if !found && bench.assembler.troubles().next().is_some() {
                     found = true;
-                    // It has just lain: a quarter of the foot's force was missing.
+                    // Until now a quarter of the foot's force was missing.
                     assert!(last.distance(at) > 0.01, "{corner:?} at {at}: {last}");
                 }
             }
             assert!(found, "{corner:?} at {at}");
-            // All at once it would be 4 cm; noise alone is 1 mm, more at the end of the part's range.
+            // In one step it would be 4 cm; noise alone is 1 mm, more at the end of the part's range.
             assert!(furthest < 0.005, "{corner:?} at {at}: {furthest} m in a millisecond");
             let off = last.distance(at);
             let (stated, _) = bench.contacts()[0].covariance.ellipse_95_m();
@@ -250,14 +250,14 @@ fn s1_a_sensor_found_stuck_under_a_standing_foot_neither_splits_nor_moves_it_at_
     }
 }
 
-/// Floors with parts that read nothing, or too much, where others read a little: the hardest of 1500 for
-/// what follows, and some as they come.
+/// Floors with parts that read zero, or too much, where others read a little: the hardest of 1500 for the following
+/// tests, and some random ones.
 const FLOORS: [u64; 16] = [399, 449, 564, 665, 802, 1270, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
 
 #[test]
 fn loads_at_the_edges_of_plates_that_tip_break_no_sensor() {
-    // Point loads are the hardest: all of it on one edge, the opposite corner in the air, the near one
-    // at the end of its range. Every 2.3 cm, from a light touch to a stamp.
+    // Point loads are the hardest: all of the load on one edge, the opposite corner lifted, the near one at the end
+    // of its range. Every 2.3 cm, from a light touch to a stamp.
     let place = |step: u8| (f32::from(step) + 0.5) * 0.304 / 13.0;
     for seed in FLOORS {
         let mut bench = Bench::new_seed(Sensing::default(), seed);
@@ -276,12 +276,12 @@ fn loads_at_the_edges_of_plates_that_tip_break_no_sensor() {
 
 #[test]
 fn short_stamps_beyond_the_range_leave_no_sensor_stuck() {
-    // 1500 N, two bodies' weight: corners beyond their range, others in the air, and all of it over
-    // within one or two of the averages of 64 ms that stuck sensors are found by.
+    // 1500 N, two bodies' weight: corners beyond their range, others lifted, and all of it over within one or two of
+    // the averages of 64 ms that detect stuck sensors.
     let mut walker = at_the_map();
     let size = walker.geometry().bounds().size();
     for step in 0..240_u16 {
-        // Spread evenly over the floor (multiples of the golden ratio's powers), whatever lies there.
+        // Spread evenly over the floor (multiples of the golden ratio's powers), at any place.
         let share = Vec2::new(0.754_877_7, 0.569_840_3) * f32::from(step + 1);
         walker.step_at(share.fract() * size, Newtons(1500.0));
         walker.wait(60);

@@ -48,7 +48,7 @@ fn what_a_tare_leaves_is_gone_in_a_second_and_what_rests_there_is_not() {
     };
     let tared = off(&mut bench, [0.6, -0.5, 0.4, 0.8]);
     assert!(tared.iter().all(|force| force.abs() < 0.1), "{tared:?}");
-    // A light thing on one corner: of that only a newton is taken for the sensor's own.
+    // A light thing on one corner: the tare absorbs only a newton of it.
     let laid = off(&mut bench, [2.6, -0.5, 0.4, 0.8]);
     assert!(laid[0] > 1.2, "{laid:?}");
     assert_eq!(bench.events, []);
@@ -57,24 +57,24 @@ fn what_a_tare_leaves_is_gone_in_a_second_and_what_rests_there_is_not() {
 #[test]
 fn s4_drift_too_fast_to_follow_presses_nothing_either() {
     let mut bench = Bench::new(Sensing::default());
-    // The whole tile by 30 N a corner, twice what a press takes, in five minutes.
+    // The whole tile by 30 N a corner, twice the force of a press, in five minutes.
     drift(&mut bench, &Corner::ALL, 30.0, 300);
     assert_eq!(bench.events, []);
 }
 
 #[test]
 fn s5_a_foot_that_stands_and_creeps_is_neither_lost_nor_gained_nor_zeroed() {
-    // Parts whose law is known, so that it is the creep that crosses the threshold and nothing else.
+    // Parts with a known law, so that only the creep crosses the threshold.
     let parts = PartConfig { creep: 0.05, deviation: 0.0, ..PartConfig::default() };
     let mut bench = Bench::tared_at_start(Sensing::Counts(parts));
-    // Below the threshold of 60 N to begin with, above it after some minutes of creep.
+    // Below the threshold of 60 N at first, above it after some minutes of creep.
     bench.press(BUTTON, 52.0);
     bench.stay(BUTTON, 52.0, 600, |_, _, _| {});
     let force: f32 = bench.contacts().iter().map(|contact| contact.force.0).sum();
     assert!(force > 60.0, "or nothing is shown: {force} N");
     assert_eq!(bench.events, [], "gained");
     assert!(bench.assembler.drift().flatten().all(|zero| zero.0.abs() < 0.5), "zeroed");
-    // And pressed well above it: kept, and let go by the lift.
+    // Pressed well above it, it is kept and then released by the lift.
     bench.press(BUTTON, 150.0);
     bench.run(60);
     assert_eq!(bench.events, [EventKind::Pressed]);
@@ -87,8 +87,8 @@ fn s5_a_foot_that_stands_and_creeps_is_neither_lost_nor_gained_nor_zeroed() {
 
 #[test]
 fn s4_drift_beyond_a_fifth_of_the_range_is_a_trouble() {
-    // Boards that send newtons, whose range is taken for the nominal 406 N: the limit is 81 N, 81 minutes away.
-    // A sensor as weak as that is not waited for: the rule itself is tried on one of 20 N.
+    // For boards that send newtons, the range is the nominal 406 N: the limit is 81 N, 81 minutes away. To shorten
+    // the test, it uses a sensor of 20 N.
     use underfoot::floor::{Calibration, Floor, Geometry};
     use underfoot::sim::{SimConfig, SimFloor};
     let mut floor = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());

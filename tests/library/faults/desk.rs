@@ -1,4 +1,4 @@
-//! What the rows share: the shipped map on a simulated floor, a person in front of it, and a part that breaks.
+//! Common setup of the rows: the shipped map on a simulated floor, a person in front of it, and a part that breaks.
 
 use underfoot::engine::Snapshot;
 use underfoot::floor::{Corner, SensorId, TileId};
@@ -9,10 +9,10 @@ use underfoot::widget::EventKind;
 
 use crate::support::{Walker, layout};
 
-/// A button's press is 60 N: a deliberate foot presses with some more.
+/// A button's press is 60 N: a deliberate foot presses with somewhat more.
 pub const FIRM: Newtons = Newtons(120.0);
 
-/// Somebody in front of the shipped map, with nothing wrong yet.
+/// A person in front of the shipped map, with an intact floor.
 pub fn at_the_map() -> Walker {
     let mut walker = Walker::on(layout("map"));
     walker.stand(Newtons(690.0));
@@ -36,7 +36,7 @@ pub fn sensor(tile: TileId, corner: Corner) -> SensorId {
     SensorId { tile, corner }
 }
 
-/// What the engine last knew of a sensor.
+/// The last quality of a sensor in the engine.
 pub fn quality(walker: &Walker, sensor: SensorId) -> Quality {
     let index = walker.geometry().index(sensor.tile).unwrap();
     let mut snapshot = Snapshot::default();
@@ -48,7 +48,7 @@ pub fn trouble(walker: &Walker, sensor: SensorId) -> Option<Trouble> {
     walker.assembler.troubles().find(|(id, _)| *id == sensor).map(|(_, trouble)| trouble)
 }
 
-/// Presses `id` for 150 ms and lifts; whether exactly a click came of it.
+/// Presses `id` for 150 ms and lifts; returns whether the result was exactly one click.
 pub fn clicks(walker: &mut Walker, id: &str) -> bool {
     walker.take_events();
     walker.step_onto(id, FIRM);

@@ -1,4 +1,4 @@
-//! R1 a sensing thread that panics, and every other end of a server: what is held is cancelled first.
+//! R1 a sensing thread that panics, and every other end of a server: all holds are cancelled first.
 
 use std::net::UdpSocket;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -24,16 +24,16 @@ use crate::support::page;
 const PAGE: &str = r#"Layout(version: 1, regions: [(id: "all", at: (0, 0), size: (2, 2))],
     widgets: [(id: "zoom", kind: "slider", at: (0, 0), size: (2, 1))])"#;
 
-/// What ends the packets of [`Drag`].
+/// The cause that ends the packets of [`Drag`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum End {
-    /// Somebody sets the flag that stops the server.
+    /// A program sets the flag that stops the server.
     Stopped,
     /// The recording is over.
     Ended,
-    /// The socket is gone.
+    /// The socket is closed.
     Failed,
-    /// A mistake of ours.
+    /// A program error.
     Panic,
 }
 
@@ -46,7 +46,7 @@ struct Drag {
     stop: Arc<AtomicBool>,
 }
 
-/// When the packets end.
+/// Time at which the packets end.
 const END_MS: u32 = 900;
 
 impl SensorSource for Drag {
@@ -86,7 +86,7 @@ impl SensorSource for Drag {
     }
 }
 
-/// Every message until nothing has come for a while.
+/// All messages until none has come for some time.
 fn hear(app: &UdpSocket) -> Vec<(String, Vec<OscType>)> {
     let mut told = Vec::new();
     let mut bytes = [0; 2048];
@@ -102,7 +102,7 @@ fn hear(app: &UdpSocket) -> Vec<(String, Vec<OscType>)> {
     told
 }
 
-/// Everything that was said of controls and contacts, in order, contacts by their number only.
+/// All reports about controls and contacts, in order, contacts by their number only.
 fn told(end: End) -> Vec<(String, Vec<OscType>)> {
     let app = UdpSocket::bind("127.0.0.1:0").unwrap();
     app.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
@@ -148,8 +148,8 @@ fn r1_every_end_of_a_server_cancels_what_is_held_then_says_so_then_goodbye() {
         let holds = told
             .iter()
             .filter(|(address, args)| address == "/underfoot/widget/zoom/held" && args[0] == OscType::Int(1));
-        // Pressed at about 230 ms, by simulated time: 50 a second until 900 ms. Time runs faster here than datagrams
-        // are sent, and a repetition that finds the queue full is left out.
+        // Pressed at about 230 ms of simulated time: 50 reports a second until 900 ms. Time runs faster here than
+        // datagrams are sent, and a repetition that finds the queue full is left out.
         let count = holds.count();
         assert!((10..=36).contains(&count), "{end:?}: {count} times held");
     }

@@ -16,7 +16,7 @@ fn s7_hum_and_noise_make_no_event_in_ten_minutes() {
     for (mains_hz, seed) in [(50.0, 1), (60.0, 2)] {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let mut bench = Bench::new(Sensing::Newtons(Default::default()));
-        // Hum that all sensors share, which is the worst case, and noise of their own: 5 N together.
+        // Hum that all sensors share, which is the worst case, and independent noise: 5 N together.
         let mut noise = move |ms: u64, _: (usize, usize), force: &mut f32| {
             let phase = (TAU * mains_hz * (ms % 1000) as f32 / 1000.0).sin();
             *force += 4.0 * phase + rng.random_range(-1.0..=1.0f32);
@@ -49,8 +49,8 @@ fn s7_a_noisy_sensor_is_named() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    /// Whatever one sensor sends, forces stay finite, nothing is pressed by it alone, and it is
-    /// trusted again only after a second without nonsense.
+    /// For any readings of one sensor, forces stay finite, they cause no press, and the sensor's quality recovers
+    /// only after a second without nonsense.
     #[test]
     fn whatever_comes_forces_stay_finite_and_quality_needs_evidence(
         sent in prop::collection::vec(
@@ -71,7 +71,7 @@ proptest! {
                     nonsense_ms = clock_ms;
                 }
                 let improved = tile.quality[0] < worst && value.is_finite() && bench.assembler.troubles().next().is_none();
-                // A reading that is not a number marks one frame and no more.
+                // A reading that is not a number marks one frame only.
                 let was_found = worst == Quality::Degraded;
                 prop_assert!(!(improved && was_found) || clock_ms - nonsense_ms > 900);
                 worst = tile.quality[0];

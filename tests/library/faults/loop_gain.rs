@@ -1,4 +1,4 @@
-//! S8 the actuator felt by the sensors beside it.
+//! S8 the actuator's force on the sensors beside it.
 
 use underfoot::feel::{RendererConfig, renderer};
 use underfoot::floor::{Floor, Geometry};
@@ -10,7 +10,7 @@ use super::bench::{BUTTON, Bench};
 
 const RATE: usize = 48_000;
 
-/// Plays the session's cues into the sensors of each tile, `share` of the actuator's force on every one.
+/// Plays the session's cues into the sensors of each tile, with `share` of the actuator's force on every one.
 fn session(share: f32) -> (Vec<EventKind>, usize, f32) {
     let floor = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
     let mut bench = Bench::new(Sensing::Newtons(Default::default()));
@@ -24,7 +24,7 @@ fn session(share: f32) -> (Vec<EventKind>, usize, f32) {
         for ms in 0..millis {
             let risen = (ms as f32 / 40.0).min(1.0);
             bench.feet = vec![super::bench::foot(BUTTON, before + (force - before) * risen)];
-            // What the actuators did in the last millisecond; each sensor catches its last sample.
+            // The actuators' samples in the last millisecond; each sensor reads the last one.
             sink.advance(bench.now()).unwrap();
             let coupled: Vec<f32> =
                 (0..4).map(|tile| sink.channel(tile).last().copied().unwrap_or(0.0) * 40.0 * share).collect();

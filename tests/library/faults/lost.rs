@@ -1,5 +1,5 @@
-//! N3 a silent link, N7 a burst after a delay, F10 another layout under a foot, R5 a window that nobody
-//! looks at, R6 a floor that is lost while a slider is dragged.
+//! N3 a silent link, N7 a burst after a delay, F10 another layout under a foot, R5 a window without a viewer, R6 a
+//! floor that is lost while a slider is dragged.
 
 use underfoot::glam::Vec2;
 use underfoot::units::Newtons;
@@ -36,7 +36,7 @@ fn n7_what_was_pressed_while_packets_were_delayed_is_not_replayed() {
     let mut walker = at_the_map();
     let place = middle(&walker, "home");
     walker.hold_back = true;
-    // Pressed and lifted while nothing comes through; then all of it at once.
+    // Pressed and lifted while no packet comes through; then all packets at once.
     walker.step_at(place, FIRM);
     walker.wait(120);
     walker.lift();
@@ -83,7 +83,7 @@ fn f10_a_control_that_vanished_from_the_layout_is_cancelled() {
 
 #[test]
 fn r5_feet_do_not_need_a_window() {
-    // Nobody asks this engine for a snapshot: it says the same as one that is examined every millisecond.
+    // An engine without snapshots reports the same as one that is examined every millisecond.
     let events = |looked_at: bool| {
         let mut walker = at_the_map();
         walker.watched = looked_at;

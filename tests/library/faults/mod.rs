@@ -1,7 +1,7 @@
-//! What goes wrong with sensors, links and people, and what becomes of the feet: one test per row of the fault table,
-//! named by its id.
+//! Faults of sensors, links and people, and the resulting events: one test per row of the fault table, named by its
+//! id.
 //!
-//! Simulated packets go through the assembler into an engine, as those of a real floor do.
+//! Simulated packets go through the assembler into an engine, like those of a real floor.
 
 mod bench;
 mod broken;

@@ -1,4 +1,4 @@
-//! Faults put together at random under a person who plays the built-in session, and under nobody.
+//! Random combinations of faults under a person who plays the built-in session, and on an empty floor.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -16,7 +16,7 @@ use underfoot::wire::LinkState;
 
 use crate::support::layout;
 
-/// Everything that was told, in order.
+/// All reports, in order.
 #[derive(Clone, Debug)]
 enum Told {
     Event(WidgetEvent),
@@ -39,7 +39,7 @@ impl EventSink for Notes {
     }
 }
 
-/// Nobody, for a while.
+/// An empty floor for a while.
 struct Nobody(Instant);
 
 impl FootDriver for Nobody {
@@ -66,12 +66,12 @@ fn serve(
     std::mem::take(&mut *notes.0.lock().unwrap())
 }
 
-/// What ends a press; nothing else is left of it then.
+/// Whether an event ends a press.
 fn ends(kind: EventKind) -> bool {
     matches!(kind, EventKind::Released | EventKind::Cancelled)
 }
 
-/// Every press happens under a foot that presses there, ends once, and is not held on a floor that is lost.
+/// Every press happens under a foot that presses there, ends once, and is not held on a lost floor.
 fn check(told: &[Told], script: &Script, page: &Layout, seed: u64) -> usize {
     let mut pressed: Vec<String> = Vec::new();
     let (mut presses, mut lost_since) = (0, None);
@@ -123,7 +123,7 @@ fn a_floor() -> (Floor, SimFloor) {
     (sim::calibrated(&wired, &sim, 7).unwrap(), sim)
 }
 
-/// What happened to which control, in order, without how far and how hard.
+/// The events of each control, in order, without positions and forces.
 fn story(told: &[Told]) -> Vec<(String, &'static str)> {
     let events = told.iter().filter_map(|told| match told {
         Told::Event(event) if !matches!(event.kind, EventKind::Changed(_) | EventKind::Ticked) => Some(event),

@@ -1,5 +1,5 @@
-//! R7 a slip from one control to another, R8 walking over controls, R9 a control held too long,
-//! S10 an object left on the floor, S12 somebody who jumps or falls.
+//! R7 a slip from one control to another, R8 walking over controls, R9 a control held too long, S10 an object left on
+//! the floor, S12 a person who jumps or falls.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use underfoot::widget::{Behaviour, Confirm, EventKind, Guard, HoldToRun};
 use super::desk::{FIRM, at_the_map, clicks, middle};
 use crate::support::{Walker, layout};
 
-/// The map with every button guarded so.
+/// The map with this guard on every button.
 fn guarded(guard: Guard) -> Layout {
     let mut page = layout("map");
     for widget in &mut page.widgets {
@@ -120,7 +120,7 @@ fn r9_a_control_held_too_long_warns_stops_and_needs_a_lift() {
 fn rule_7_only_one_control_runs_at_a_time() {
     let mut page = guarded(HOLD);
     page.regions[0].cursor = underfoot::layout::CursorRule::Each;
-    // Somebody who sits, with both feet free: together they would run two.
+    // A seated person with both feet free, which together would run two.
     let mut walker = Walker::on(page);
     walker.step_onto("home", FIRM);
     walker.wait(500);
@@ -143,12 +143,12 @@ fn s10_an_object_left_on_a_control_is_shown_after_a_minute_and_presses_nothing()
     let mut snapshot = Snapshot::default();
     walker.engine.snapshot(&mut snapshot);
     assert_eq!(snapshot.cursors, [None], "it is no cursor, so feet elsewhere in the region may be");
-    // Something heavy laid on top within a fifth of it changes nothing.
+    // Another heavy thing on top, within a fifth of its load, changes nothing.
     walker.press(Newtons(58.0));
     walker.wait(1000);
     assert_eq!(role(&walker, home), Some(FootRole::Object));
     assert_eq!(walker.take_events(), []);
-    // Taken away, the control works again.
+    // After its removal, the control works again.
     walker.lift();
     walker.wait(100);
     walker.stand(Newtons(690.0));

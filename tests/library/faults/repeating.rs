@@ -1,4 +1,4 @@
-//! Readings that repeat under a foot: a control that acts while it is held ends with them, whatever the boards send.
+//! Repeated readings under a foot: they end a control that acts while it is held, with any readings of the boards.
 
 use std::time::Duration;
 
@@ -12,10 +12,10 @@ use underfoot::wire::Readings;
 
 use super::bench::{BUTTON, Bench, foot};
 
-/// How long a hold may outlive readings that stand still.
+/// Longest time that a hold may outlive repeated readings.
 const SOON: Duration = Duration::from_millis(150);
 
-/// What boards send.
+/// The formats of boards' readings.
 fn formats() -> [Sensing; 2] {
     [Sensing::Counts(PartConfig::default()), Sensing::Newtons(PartConfig::default())]
 }
@@ -31,12 +31,12 @@ fn held(sensing: Sensing, seed: u64) -> Bench {
     bench
 }
 
-/// What happened, apart from the pedal's values, which go with it.
+/// The events without the pedal's values, which accompany them.
 fn told(bench: &Bench) -> Vec<EventKind> {
     bench.events.iter().filter(|event| !matches!(event, EventKind::Changed(_))).copied().collect()
 }
 
-/// The bits of one reading: counts, or those of newtons.
+/// The bits of one reading: counts, or the bits of newtons.
 fn bits(readings: &Readings, channel: usize) -> u32 {
     match readings {
         Readings::Counts(counts) => counts[channel].unwrap_or_default().into(),
@@ -51,10 +51,11 @@ fn set_bits(readings: &mut Readings, channel: usize, bits: u32) {
     }
 }
 
-/// How long after the foot begins to leave the pedal is still held, if some channels of the first board read from then
-/// on what `stuck` says: of the channel and the millisecond, by what the channel read in the milliseconds before.
+/// The time for which the pedal is still held after the foot begins to leave, if from then on some channels of the
+/// first board read the result of `stuck`: by channel and millisecond, from the channel's readings in the
+/// milliseconds before.
 fn outlives(bench: &mut Bench, stuck: impl Fn(usize, u64, &[u32]) -> Option<u32>) -> Option<Duration> {
-    // What was read before, oldest first.
+    // Earlier readings, oldest first.
     let mut past: Vec<Vec<u32>> = vec![Vec::new(); 8];
     bench.run_altered(200, |_, board, readings| {
         if board == 0 {
@@ -83,7 +84,7 @@ fn outlives(bench: &mut Bench, stuck: impl Fn(usize, u64, &[u32]) -> Option<u32>
     ended
 }
 
-/// The longest of some rounds, each on a floor of its own.
+/// The longest of some rounds, each on its own floor.
 fn longest(sensing: Sensing, stuck: impl Fn(usize, u64, &[u32]) -> Option<u32>) -> Duration {
     let rounds = (1..=20).map(|seed| outlives(&mut held(sensing, seed), &stuck).unwrap_or(Duration::MAX));
     rounds.max().unwrap_or_default()
@@ -93,8 +94,8 @@ fn last(past: &[u32]) -> u32 {
     past[past.len() - 1]
 }
 
-/// The three ways in which a hold outlived its foot, and more of the kind: name, and what the four channels of the tile
-/// read.
+/// The three patterns with which a hold once outlived its foot, and similar ones: name, and the readings of the
+/// tile's four channels.
 type Way = (&'static str, fn(usize, u64, &[u32]) -> Option<u32>);
 
 const WAYS: [Way; 9] = [
@@ -133,7 +134,7 @@ fn name(sensing: Sensing) -> &'static str {
     if matches!(sensing, Sensing::Counts(_)) { "counts" } else { "newtons" }
 }
 
-/// One sensor alone may stand still; the others say that the foot has left.
+/// One sensor alone may stand still; the others show that the foot has left.
 #[test]
 fn a_single_sensor_that_stands_still_does_not_keep_a_hold() {
     for sensing in formats() {
@@ -173,7 +174,7 @@ fn sensors_that_stand_still_while_a_foot_lands_start_nothing() {
 fn sensors_that_stand_still_while_a_foot_lifts_end_the_hold() {
     for sensing in formats() {
         let mut bench = held(sensing, 5);
-        // Between what releases the pedal and what presses it.
+        // Between the release threshold and the press threshold of the pedal.
         bench.press(BUTTON, 80.0);
         assert_eq!(told(&bench), []);
         assert!(outlives(&mut bench, |_, _, past| Some(last(past))).is_some_and(|took| took <= SOON));
@@ -194,7 +195,7 @@ fn a_plate_whose_sensors_move_again_works_after_the_foot_has_lifted() {
     assert_eq!(told(&bench), [Cancelled, Pressed]);
 }
 
-/// A button is cancelled as well, not clicked, when the readings come back without the foot.
+/// A button is cancelled as well, not clicked, when the readings resume without the foot.
 #[test]
 fn a_plate_that_stands_still_commits_nothing() {
     let mut bench = Bench::new(Sensing::default());
@@ -206,7 +207,7 @@ fn a_plate_that_stands_still_commits_nothing() {
     assert_eq!(told(&bench), [Pressed, Cancelled]);
 }
 
-/// Counts of a converter of so many bits.
+/// Counts of a converter with `bits` bits.
 fn coarse(bits: u32) -> impl FnMut(u64, u16, &mut Readings) {
     move |_, _, readings| {
         if let Readings::Counts(counts) = readings {
@@ -215,7 +216,7 @@ fn coarse(bits: u32) -> impl FnMut(u64, u16, &mut Readings) {
     }
 }
 
-/// Stands on the floor for so many seconds, swaying by no more than a millimetre, while `alter` changes readings.
+/// Stands on the floor for `seconds`, swaying by at most a millimetre, while `alter` changes readings.
 fn stand(bench: &mut Bench, seconds: u64, mut alter: impl FnMut(u64, u16, &mut Readings)) {
     for tenth in 0..seconds * 10 {
         let sway = 0.001 * (0.5 * tenth as f32).sin();
@@ -239,7 +240,7 @@ fn a_foot_that_stands_very_still_for_minutes_keeps_its_hold() {
     }
 }
 
-/// 2 mV of noise are 0.1 and 0.4 counts of such converters, which repeat themselves under a foot that keeps still.
+/// 2 mV of noise are 0.1 and 0.4 counts of such converters, which repeat readings under a foot that keeps still.
 #[test]
 fn a_coarse_converter_works_and_holds_no_pedal() {
     for bits in [8, 10] {
@@ -289,7 +290,7 @@ fn a_converter_that_samples_twenty_times_a_second_works_and_holds_no_pedal() {
     assert_eq!(bench.snapshot().widgets[0].off, Some(OffReason::CoarseReadings));
 }
 
-/// 10 bits, 0.1 counts of noise and five counts of hum from the mains: no two readings 8 ms apart are the same.
+/// 10 bits, 0.1 counts of noise and five counts of mains hum: two readings 8 ms apart always differ.
 #[test]
 fn hum_on_a_coarse_converter_is_not_a_buffer_that_is_sent_again() {
     let parts = PartConfig { noise_v: 0.0005, ..PartConfig::default() };
@@ -311,7 +312,7 @@ fn hum_on_a_coarse_converter_is_not_a_buffer_that_is_sent_again() {
     assert_eq!(told(&bench), [Pressed]);
 }
 
-/// Boards that send newtons and say 0 until something presses: their noise shows under a load only.
+/// Boards that send newtons and read 0 without a load: their noise shows under a load only.
 #[test]
 fn boards_that_read_nothing_without_a_load_hold_a_pedal_once_a_foot_has_shown_their_noise() {
     let dead_band = |_: u64, _: u16, readings: &mut Readings| {
@@ -332,7 +333,7 @@ fn boards_that_read_nothing_without_a_load_hold_a_pedal_once_a_foot_has_shown_th
 fn readings_without_noise_hold_a_pedal_where_the_floor_says_that_they_have_none() {
     let noiseless = PartConfig { noise_v: 0.0, ..PartConfig::default() };
     for sensing in [Sensing::Exact, Sensing::Counts(noiseless)] {
-        // The simulation says so by itself.
+        // The simulation declares this itself.
         let mut bench = Bench::new(sensing);
         bench.run_pedal();
         bench.press(BUTTON, 150.0);

@@ -9,7 +9,7 @@ use super::bench::{Bench, foot};
 use underfoot::glam::Vec2;
 use underfoot::sim::SimConfig;
 
-/// What the boards sent while a foot pressed, once more while nobody is there, at any pace.
+/// The packets of boards during a press, repeated on an empty floor, at any pace.
 #[test]
 fn p9_an_old_press_that_is_sent_again_presses_nothing() {
     for every in [1, 2, 5] {
@@ -36,7 +36,7 @@ fn p9_an_old_press_that_is_sent_again_presses_nothing() {
                 captured.extend(live.iter().cloned());
             }
             feed(&mut bench, &live);
-            // Later, with all that was captured, in order, beside what is live.
+            // Later, all captured packets, in order, beside the live ones.
             if time == 1500 {
                 assert!(!bench.events.is_empty(), "it was pressed");
                 bench.events.clear();

@@ -1,4 +1,4 @@
-//! People on a floor that breaks: what a fault does to it, and what became of them.
+//! People on a floor that breaks: the effect of a fault on the floor and on their events.
 
 use std::f32::consts::TAU;
 use std::time::Duration;
@@ -21,11 +21,11 @@ use underfoot::wire::Readings;
 
 use crate::support::page;
 
-/// One button over the whole floor: whatever presses anywhere counts.
+/// One button over the whole floor: a press anywhere counts.
 const ALL_BUTTON: &str = r#"Layout(version: 1, title: "all", regions: [(id: "all", at: (0, 0), size: (6, 6))],
     widgets: [(id: "all", kind: "button", at: (0, 0), size: (6, 6))])"#;
 
-/// A sensor that breaks at a time, and is whole again at another.
+/// A sensor that breaks at one time and recovers at another.
 #[derive(Clone, Copy)]
 pub struct Break {
     pub sensor: SensorId,
@@ -35,7 +35,7 @@ pub struct Break {
 }
 
 impl Break {
-    /// Broken from the very beginning and for good.
+    /// Broken from the beginning to the end.
     pub fn for_good(sensor: SensorId, fault: SensorFault) -> Self {
         Self { sensor, fault, from_ms: 1, until_ms: u64::MAX }
     }
@@ -52,18 +52,18 @@ impl FaultHook for Break {
     }
 }
 
-/// What became of a visit.
+/// The result of a visit.
 pub struct Visited {
     pub followed: Followed,
-    /// Presses of a button over the whole floor while nobody was on it.
+    /// Presses of a button over the whole floor while it was empty.
     pub out_of_nothing: usize,
-    /// Presses in all.
+    /// All presses.
     pub pressed: usize,
     /// Troubles at the end.
     pub troubles: Vec<(SensorId, Trouble)>,
-    /// The worst quality that any reading had while somebody was on the floor.
+    /// The worst quality of any reading while a person was on the floor.
     pub worst: Quality,
-    /// Whether the button is still down at the end, when everybody has gone.
+    /// Whether the button is still down at the end, when all people have left.
     pub left_down: bool,
 }
 
@@ -85,7 +85,7 @@ impl std::fmt::Display for Visited {
     }
 }
 
-/// Lets the visit of `seed` happen on the floor of `rig`, which `fault` breaks.
+/// Runs the visit of `seed` on the floor of `rig`, with `fault`.
 pub fn visited(mut rig: Rig, seed: u64, fault: impl FaultHook) -> Visited {
     let visit = Visit::of(seed, rig.geometry()).unwrap();
     let geometry = *rig.geometry();
@@ -113,7 +113,7 @@ pub fn visited(mut rig: Rig, seed: u64, fault: impl FaultHook) -> Visited {
     }
 }
 
-/// An engine beside the experiment's, that knows when somebody is there.
+/// An engine beside the experiment's, with knowledge of the people on the floor.
 struct Watch<'a, M> {
     engine: Engine,
     geometry: Geometry,
@@ -160,7 +160,7 @@ impl<M: FaultHook> FaultHook for Watch<'_, M> {
     }
 }
 
-/// The tile that carries most over the visit of `seed`, and the milliseconds between which it is loaded first.
+/// The tile that carries most over the visit of `seed`.
 pub fn busiest_tile(seed: u64, geometry: &Geometry) -> TileId {
     let visit = Visit::of(seed, geometry).unwrap();
     let mut carried = vec![0.0; geometry.tile_count()];
@@ -176,7 +176,7 @@ pub fn busiest_tile(seed: u64, geometry: &Geometry) -> TileId {
     geometry.tile_at_index(most)
 }
 
-/// What became of the taps of `seeds`' people in both stances; `fault` is made for each scene.
+/// The result of the taps of `seeds`' people in both stances; `fault` makes the fault of each scene.
 pub fn tapped<M: FaultHook>(
     seeds: impl IntoIterator<Item = u64>,
     rig: impl Fn(u64) -> Rig,
@@ -199,7 +199,7 @@ pub fn tapped<M: FaultHook>(
     Tapped { score, troubles }
 }
 
-/// What the tracker made of taps.
+/// The tracker's result for taps.
 pub struct Tapped {
     pub score: TapScore,
     pub troubles: Vec<(SensorId, Trouble)>,
@@ -217,13 +217,13 @@ impl std::fmt::Display for Tapped {
     }
 }
 
-/// The sensor nearest to where the working foot presses first.
+/// The sensor nearest to the working foot's first press.
 pub fn under_the_taps(scene: &TapScene, geometry: &Geometry) -> SensorId {
     let (at, _) = scene.touches().next().unwrap();
     nearest(at, geometry)
 }
 
-/// The sensor nearest to the standing foot's pressure.
+/// The sensor nearest to the standing foot's centre of pressure.
 pub fn under_the_stance(scene: &TapScene, geometry: &Geometry) -> SensorId {
     nearest(scene.feet(1000)[0].centre_of_pressure(), geometry)
 }
@@ -240,7 +240,7 @@ pub fn offset(newtons: f32) -> SensorFault {
     SensorFault::Offset(Newtons(newtons))
 }
 
-/// Hum that all sensors share, which is the worst case, and noise of their own: 5 N together, on boards that send
+/// Hum that all sensors share, which is the worst case, and independent noise: 5 N together, on boards that send
 /// newtons.
 pub struct Hum {
     pub mains_hz: f32,
@@ -260,15 +260,15 @@ impl FaultHook for Hum {
     }
 }
 
-/// Actuators that the sensors of their tiles feel, `share` of their force on every one.
+/// Actuators with `share` of their force on each sensor of their tiles.
 pub struct Coupled {
     share: f32,
     sender: CueSender,
     sink: ManualSink,
     now: Instant,
-    /// What each tile's actuator does to its sensors now, in newtons.
+    /// The present force of each tile's actuator on its sensors, in newtons.
     felt: Vec<f32>,
-    /// The most it did.
+    /// The greatest of these forces.
     pub peak: f32,
     pub cues: usize,
 }

@@ -1,4 +1,4 @@
-//! S6 loads out of nowhere, S9 a floor nobody calibrated, S11 feet that one tile cannot tell apart.
+//! S6 loads without a cause, S9 an uncalibrated floor, S11 feet that one tile cannot separate.
 
 use underfoot::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use underfoot::glam::Vec2;
@@ -48,7 +48,7 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_runs_nothing_that_must_be_he
     let floor = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
     assert_eq!(floor.uncalibrated().count(), 16);
     let sim = SimFloor::new(&floor, SimConfig::default(), 3);
-    // Tared, but with nominal gains for parts that are off by a quarter.
+    // Tared, but with nominal gains for parts that deviate by a quarter.
     let mut tared = floor.clone();
     for (tare, tile) in tared.tare.iter_mut().zip(0..) {
         *tare = sim.support_forces(tile).unwrap();
@@ -64,7 +64,7 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_runs_nothing_that_must_be_he
     bench.lift(BUTTON);
     bench.run(100);
     assert_eq!(bench.events.first(), Some(&EventKind::Pressed), "what does no harm works");
-    // A dead man's pedal in the same place, with the foot that would hold it there.
+    // A dead man's pedal in the same place, with a foot that would hold it.
     let hold = |bench: &mut Bench| {
         bench.run_pedal();
         bench.events.clear();

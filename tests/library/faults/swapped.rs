@@ -1,4 +1,4 @@
-//! N11 boards that have changed places: noticed from what their plates weigh.
+//! N11 swapped boards: detected from the weights of their plates.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use underfoot::wire::SensorPacket;
 
 use super::bench::foot;
 
-/// A floor of four boards under feet, for a while; `place` says under which board's number each board sends.
+/// A floor of four boards under feet, for a while; `place` gives the board number under which each board sends.
 struct Rows {
     sim: SimFloor,
     assembler: Assembler,
@@ -26,7 +26,7 @@ impl Rows {
         Self { sim, assembler: Assembler::with_tare(&floor, Tare::FromFloor), ms: 0 }
     }
 
-    /// Who is out of place and in whose, and whether frames count as calibrated.
+    /// The swapped boards with their places, and whether frames count as calibrated.
     fn run(&mut self, ms: u32, place: [u16; 4], feet: &[Foot]) -> (Vec<(u16, u16)>, bool) {
         let mut calibrated = true;
         for _ in 0..ms {
@@ -73,7 +73,7 @@ fn n11_feet_on_the_boards_hide_nothing_and_accuse_nobody() {
     }
 }
 
-/// Board 0 sends as 1, 1 as 2 and 2 as 0, as when a bundle of cables is plugged in one socket further; then all four.
+/// Board 0 sends as 1, 1 as 2 and 2 as 0, like a bundle of cables plugged in one socket further; then all four.
 #[test]
 fn n11_boards_that_have_moved_on_in_a_ring_are_found_as_one() {
     for seed in 0..20 {

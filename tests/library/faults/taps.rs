@@ -1,6 +1,6 @@
 //! S1 to S9 and S11 while a heavy foot stands beside a region and the other one taps and slides in it.
 //!
-//! The region is one button; each of a scene's six touches should press it once, nothing else should.
+//! The region is one button; each of a scene's six touches should press it once, and there should be no other press.
 
 use underfoot::experiment::{Stance, TapScene};
 use underfoot::floor::{Geometry, SensorId};
@@ -10,31 +10,32 @@ use underfoot::sim::SensorFault;
 use super::scenes::{Break, Coupled, Tapped, offset, tapped, under_the_stance, under_the_taps};
 use super::visits::{creeping, hum, newtons, nominal, plain, weak};
 
-/// Who taps, in both stances: 12 touches.
+/// The people who tap, in both stances: 12 touches.
 const PEOPLE: [u64; 1] = [1];
 const TOUCHES: usize = 12;
 
-/// When sensors break while somebody stands there already, but has not touched the region yet.
+/// Time at which sensors break: the person already stands there, but has not touched the region yet.
 const STANDING_MS: u64 = 700;
 
 type Place = fn(&TapScene, &Geometry) -> SensorId;
 
-/// The sensors that are broken: one where the foot works, one under the foot that stands.
+/// The sensors that are broken: one under the working foot, one under the standing foot.
 const PLACES: [(&str, Place); 2] =
     [("under the taps", under_the_taps), ("under the stance", under_the_stance)];
 
-/// Nothing presses by itself or twice, and at least `pressed` touches press.
+/// Asserts that there is no press without a touch, that touches press once, and that at least `pressed` touches
+/// press.
 fn assert_pressed(what: &str, tapped: &Tapped, pressed: usize) {
     println!("{what}: {tapped}");
     let score = &tapped.score;
     assert_eq!((score.touches, score.out_of_nothing), (TOUCHES, 0), "{what}");
     assert!(score.pressed >= pressed, "{what}: {} of {TOUCHES} touches pressed", score.pressed);
     assert!(score.repeated <= 1, "{what}: {} pressed again", score.repeated);
-    // At most once a second, and without a reason hardly ever.
+    // At most once a second, and hardly ever without a reason.
     assert!(score.flips <= 2, "{what}: the cursor changed {} times during a touch", score.flips);
 }
 
-/// Breaks each place at each time, and hands over what became of it.
+/// Breaks each place at each time, and passes the result to `check`.
 fn broken(fault: SensorFault, check: impl Fn(&str, &Tapped)) {
     for (name, place) in PLACES {
         for from_ms in [1, STANDING_MS] {
@@ -59,7 +60,7 @@ fn a_whole_floor_to_compare_with() {
 #[test]
 fn s1_a_stuck_sensor() {
     broken(SensorFault::Stuck, |what, tapped| {
-        // Before it is known, a light touch beside it lacks what it should carry.
+        // Before it is detected, a light touch beside it lacks the share of this sensor.
         assert_pressed(what, tapped, TOUCHES - 2);
         assert!(tapped.score.cursor.quantile(0.5).unwrap() < 0.02, "{what}");
     });
@@ -68,7 +69,7 @@ fn s1_a_stuck_sensor() {
 #[test]
 fn s2_sensors_that_saturate_start_nothing_by_themselves() {
     let tapped = tapped(PEOPLE, weak, |_, _| ());
-    // Where the standing foot saturates the tile that is touched, nothing may start.
+    // If the standing foot saturates the touched tile, no press may start.
     assert_pressed("weak parts", &tapped, TOUCHES - 4);
     assert_eq!(tapped.troubles, []);
     assert!(tapped.score.cursor.quantile(0.5).unwrap() < 0.02);
@@ -81,7 +82,7 @@ fn s3_open_and_short_circuits() {
         assert!(tapped.troubles.iter().all(|(_, trouble)| *trouble == Trouble::Open), "{what}");
     });
     broken(SensorFault::Short, |what, tapped| {
-        // Under a foot that stands a short circuit is "at least": its tile starts nothing until it is lifted.
+        // Under a standing foot a short circuit gives a lower bound: its tile starts no press until the foot lifts.
         assert_pressed(what, tapped, TOUCHES - 4);
     });
 }
@@ -114,7 +115,7 @@ fn s5_parts_that_creep() {
 fn s6_loads_out_of_nowhere() {
     for newtons in [50.0, 150.0, -30.0] {
         broken(offset(newtons), |what, tapped| {
-            // Half a second of suspicion may swallow a touch or two.
+            // Half a second of suspicion may suppress a touch or two.
             assert_pressed(what, tapped, TOUCHES - 2);
         });
     }
@@ -124,7 +125,7 @@ fn s6_loads_out_of_nowhere() {
 fn s7_hum() {
     let mild = tapped(PEOPLE, newtons, |_, _| hum(1.0));
     assert_pressed("hum of 1 N", &mild, TOUCHES - 1);
-    // Four times that hides touches of 30 N, but makes none.
+    // Four times that hides touches of 30 N, but causes none.
     let bad = tapped(PEOPLE, newtons, |_, _| hum(4.0));
     println!("hum of 4 N: {bad}");
     assert_eq!(bad.score.out_of_nothing, 0);
@@ -146,7 +147,7 @@ fn s9_a_floor_nobody_calibrated() {
 
 #[test]
 fn s11_both_feet_on_one_tile_or_on_four_do_not_make_the_cursor_flicker() {
-    // Whoever stands facing the region with no gap has the toes on the very tile that is touched.
+    // A person facing the region without a gap has the toes on the touched tile.
     let tapped = tapped(3..7, plain, |_, _| ());
     println!("shared tiles: {tapped}");
     assert!(tapped.score.flips <= 1, "the cursor changed {} times during touches", tapped.score.flips);

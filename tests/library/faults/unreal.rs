@@ -1,4 +1,4 @@
-//! Readings that no foot on a working converter gives: all of a board standing still, a row that jumps.
+//! Readings that no foot on a working converter causes: a whole board that repeats, a row that jumps.
 
 use underfoot::sense::Quality;
 use underfoot::sim::{PartConfig, Sensing};
@@ -7,7 +7,7 @@ use underfoot::wire::{LinkState, Readings};
 
 use super::bench::{BUTTON, Bench};
 
-/// What the boards read at first, over and over; `which` says whose converters stand still.
+/// Repeats the first readings of the boards; `which` selects the boards.
 fn freeze(bench: &mut Bench, millis: u64, which: impl Fn(u16) -> bool) {
     let mut frozen = Vec::new();
     bench.run_altered(millis, |ms, board, readings| {
@@ -32,7 +32,7 @@ fn converters_that_stand_still_under_a_foot_are_noticed_within_a_tenth_of_a_seco
     assert!(board.frozen && board.quality == Quality::Stale, "{board:?}");
     assert_eq!(bench.assembler.counters().frozen, 1, "nobody stands on the other board");
     assert_eq!(bench.assembler.link_state(), LinkState::Partial);
-    // They move again, under a foot that has been there all the time: it must lift first.
+    // They change again, under a foot that has been there all the time: it must lift first.
     bench.run(1500);
     assert_eq!(bench.events, [Pressed, Cancelled]);
     assert_eq!(bench.assembler.link_state(), LinkState::Live);

@@ -1,7 +1,7 @@
 //! S1 to S9 and S11 under people who walk, turn and stand on the paper's floor.
 //!
-//! Each visit is compared with the same one on a whole floor. A button over the whole floor shows whether a
-//! broken sensor presses while nobody is there.
+//! Each visit is compared with the same one on an intact floor. A button over the whole floor shows whether a broken
+//! sensor presses on an empty floor.
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -14,15 +14,15 @@ use underfoot::wire::SensorPacket;
 
 use super::scenes::{Break, Coupled, Hum, Visited, busiest_tile, offset, visited};
 
-/// The people who visit: as many as show the behaviour and no more, for each takes a second.
+/// The visitors: as many as show the behaviour and no more, since each takes a second.
 const PEOPLE: [u64; 2] = [1, 2];
 
-/// The paper's floor with maps, as a laboratory hands it over.
+/// The paper's floor with maps, like one from a laboratory.
 pub fn paper(seed: u64) -> Rig {
     Rig::of_mapped_parts(Geometry::default(), seed).unwrap()
 }
 
-/// The same without maps: quicker to make, and good enough where it isn't about centimetres.
+/// The same without maps: quicker to make, and sufficient for tests above the scale of centimetres.
 pub fn plain(seed: u64) -> Rig {
     Rig::of_calibrated_parts(Geometry::default(), seed).unwrap()
 }
@@ -41,12 +41,12 @@ pub fn weak(seed: u64) -> Rig {
     parts(Sensing::Counts(PartConfig { nominal, ..PartConfig::default() }), seed)
 }
 
-/// Parts that creep by 5 % a decade, tared by themselves while nobody is there.
+/// Parts that creep by 5 % a decade, and tare themselves on an empty floor.
 pub fn creeping(seed: u64) -> Rig {
     tared(PartConfig { creep: 0.05, ..PartConfig::default() }, true, seed)
 }
 
-/// A floor that nobody has calibrated.
+/// An uncalibrated floor.
 pub fn nominal(seed: u64) -> Rig {
     tared(PartConfig::default(), false, seed)
 }
@@ -75,12 +75,12 @@ pub fn hum(hum_n: f32) -> Hum {
     Hum { mains_hz: 50.0, hum_n, noise_n: 0.25 * hum_n, rng: Pcg64Mcg::seed_from_u64(1) }
 }
 
-/// The sensor whose tile the person of `seed` uses most.
+/// The sensor on the tile that the person of `seed` uses most.
 fn busiest(seed: u64) -> SensorId {
     SensorId { tile: busiest_tile(seed, &Geometry::default()), corner: Corner::NorthEast }
 }
 
-/// Nothing presses by itself, nothing stays pressed, and both feet are found.
+/// Asserts that there is no press without a foot, that no press remains, and that both feet are found.
 fn assert_found(what: &str, seed: u64, visited: &Visited, within_5cm: f32) {
     println!("{what}, person {seed}: {visited}");
     assert_eq!(visited.out_of_nothing, 0, "{what}, person {seed}: pressed by nobody");
@@ -106,7 +106,7 @@ fn s1_a_stuck_sensor_under_people() {
     for seed in PEOPLE {
         let part = busiest(seed);
         let visited = visited(plain(seed), seed, Break::for_good(part, SensorFault::Stuck));
-        // Two seconds of load that it does not follow go by before it is known: until then it misleads.
+        // Detection takes two seconds of load that the sensor does not follow: until then it misleads.
         assert_found("stuck", seed, &visited, 0.85);
         found += usize::from(visited.troubles == [(part, Trouble::Stuck)]);
         assert!(visited.troubles.len() < 2, "{:?}", visited.troubles);
@@ -135,8 +135,9 @@ fn s3_an_open_and_a_short_circuit_under_people() {
             let shares = visited.followed.share_inside();
             inside.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share / PEOPLE.len() as f32);
         }
-        // The three others say where a foot is, and how sure that is. Two people stand in few places, each for seconds:
-        // in one of them the second one's contact is a millimetre off for all that time, just beyond its ellipse.
+        // The three others give the position of a foot and its uncertainty. Two people stand in few places, each for
+        // seconds: in one of them the second one's contact is a millimetre off for all that time, just beyond its
+        // ellipse.
         let [alone, both] = inside;
         assert!(alone > 0.85 && both > 0.75, "within the 95 % ellipse: {alone}, {both}");
     }
@@ -179,7 +180,7 @@ fn s4_a_floor_that_has_drifted_by_ten_newtons_in_ten_minutes() {
 fn s5_parts_that_creep_under_people() {
     for seed in PEOPLE {
         let visited = visited(creeping(seed), seed, ());
-        // What lingers where a foot has been is learnt in the first ten steps; until then it looks like a light foot.
+        // The residue of a foot is learnt in the first ten steps; until then it looks like a light foot.
         assert_found("creeping", seed, &visited, 0.9);
         let extra = visited.followed.share_extra();
         assert!(extra < 0.08, "{extra} more feet than there are");
@@ -208,7 +209,7 @@ fn s6_a_load_out_of_nowhere_while_people_come_and_go() {
 #[test]
 fn s7_hum_under_people() {
     for seed in PEOPLE {
-        // A newton on every sensor, all in step: 4 N per tile, and noise.
+        // A newton on every sensor, all in phase: 4 N per tile, and noise.
         let mild = visited(newtons(seed), seed, hum(1.0));
         assert_found("hum of 1 N", seed, &mild, 0.94);
         // The worst of the table, 5 N, looks like light feet everywhere. None of them presses.
@@ -239,7 +240,7 @@ fn s9_people_on_a_floor_nobody_calibrated() {
 
 #[test]
 fn s11_people_whose_feet_share_tiles_and_lie_over_four() {
-    // Persons who stand with their feet 15 to 20 cm apart: often on one tile.
+    // Persons standing with their feet 15 to 20 cm apart: often on one tile.
     let narrow =
         (1..60).filter(|&seed| Visit::of(seed, &Geometry::default()).unwrap().person().stand_width_m < 0.2);
     for seed in narrow.take(2) {
@@ -247,7 +248,7 @@ fn s11_people_whose_feet_share_tiles_and_lie_over_four() {
         println!("narrow, person {seed}: {visited}");
         assert_eq!((visited.out_of_nothing, visited.left_down), (0, false));
         let (followed, troubles) = (&visited.followed, &visited.troubles);
-        // One foot alone is always found; of two on one tile the sum is, and the uncertainty of each is told.
+        // One foot alone is always found; for two on one tile, the sum is, and each has its uncertainty.
         assert!(followed.one_foot.quantile(0.5).unwrap() < 0.02, "{}", followed.one_foot);
         assert!(followed.share_missed() < 0.1, "{}", followed.share_missed());
         assert_eq!(troubles, &[]);

@@ -10,7 +10,7 @@ use underfoot::feel::{
 use underfoot::schema::{AhapError, Effects, read_ahap, write_ahap};
 use underfoot::units::Newtons;
 
-/// A spring: a tap, then a hum that fades and dulls by two curves, as in Apple's own samples.
+/// A spring: a tap, then a hum that becomes weaker and duller by two curves, as in Apple's own samples.
 const BOING: &str = r#"{
   "Version": 1.0,
   "Metadata": { "Description": "a spring" },
@@ -136,7 +136,7 @@ fn hum(time: f32, duration: f32, parameters: &str) -> String {
     )
 }
 
-/// A curve of a control through these points, which begins at 0.
+/// A curve of a control through these points, starting at time 0.
 fn curve(id: &str, points: &[(f32, f32)]) -> String {
     let points: Vec<String> =
         points.iter().map(|(t, value)| format!("{{ \"Time\": {t}, \"ParameterValue\": {value} }}")).collect();
@@ -246,12 +246,12 @@ fn as_many_taps_as_apples_longest_patterns_have_are_kept() {
     let (effect, warnings) = read_ahap(&pattern(&taps), "gravel").unwrap();
     assert_eq!(parts(&effect).len(), 240);
     assert!(warnings[0].contains("events from 4.800 s on: left out, 60 of them"), "{warnings:?}");
-    // Whatever their order in the file.
+    // In any order in the file.
     let reversed: Vec<String> = taps.into_iter().rev().collect();
     assert_eq!(read_ahap(&pattern(&reversed), "gravel").unwrap(), (effect, warnings));
 }
 
-/// Level of all tones at `t`, of full intensity.
+/// Sum of the levels of all tones at `t`, relative to full intensity.
 fn level_at(effect: &Effect, t: f32) -> f32 {
     let of = |at_s: f32, tone: &Tone| tone.level.0 / 12.0 * tone.at(t - at_s).0;
     match &effect.kind {
@@ -268,14 +268,14 @@ fn level_at(effect: &Effect, t: f32) -> f32 {
     }
 }
 
-/// The value that straight lines through `points` have at `t`.
+/// The value of the polyline through `points` at `t`.
 fn line_at(points: &[(f32, f32)], t: f32) -> f32 {
     let after = points.iter().position(|point| point.0 > t).unwrap_or(points.len() - 1).max(1);
     let (a, b) = (points[after - 1], points[after]);
     a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0)
 }
 
-/// The greatest difference in level of a hum of two seconds under this curve, and the warnings.
+/// The greatest difference in level of a hum of two seconds under this curve, the warnings, and the number of parts.
 fn difference(points: &[(f32, f32)], parameters: &str) -> (f32, Vec<String>, usize) {
     let text = pattern(&[hum(0.0, 2.0, parameters), curve("HapticIntensityControl", points)]);
     let (effect, warnings) = read_ahap(&text, "long").unwrap();
@@ -317,7 +317,7 @@ fn stated(warnings: &[String]) -> f32 {
 
 #[test]
 fn curves_that_cannot_be_simplified_are_split_and_never_cut() {
-    // A saw of 100 teeth: nothing of it can be left out.
+    // A saw of 100 teeth: no point can be left out.
     let saw: Vec<(f32, f32)> =
         (0..=200).map(|n| (0.01 * n as f32, if n % 2 == 0 { 0.1 } else { 0.9 })).collect();
     let (worst, warnings, tones) = difference(&saw, "");
@@ -335,7 +335,7 @@ fn a_split_tone_keeps_its_attack_and_its_release() {
     let (effect, _) = read_ahap(&text, "long").unwrap();
     let envelope = |t: f32| (t / 0.4).min(1.0) * (1.0 - ((t - 2.0) / 0.3).max(0.0));
     for t in [0.1_f32, 0.2, 0.3, 1.0, 2.15] {
-        // A seam lies near one of three moments at most.
+        // A seam lies near at most one of three times.
         let off =
             [t, t + 0.001, t + 0.03].map(|t| (level_at(&effect, t) - envelope(t) * line_at(&saw, t)).abs());
         let least = off.into_iter().fold(f32::INFINITY, f32::min);
@@ -344,7 +344,7 @@ fn a_split_tone_keeps_its_attack_and_its_release() {
     assert_eq!(level_at(&effect, 2.31), 0.0);
 }
 
-/// A minute of a control that jumps every millisecond, under many tones: whatever becomes of it, it ends.
+/// A minute of a control that jumps every millisecond, under many tones: reading it ends in any case.
 #[test]
 fn no_number_of_control_points_takes_for_ever() {
     let step = |n: u32| {
@@ -443,7 +443,7 @@ fn course(part: &Part) -> Vec<(f32, f32)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Parts half a second apart, so that no curve concerns a neighbour.
+    /// Parts half a second apart, so that no curve affects a neighbour.
     #[test]
     fn whatever_ahap_can_say_goes_out_and_comes_back(kinds in prop::collection::vec(prop_oneof![click(), tone()], 2..12)) {
         let parts: Vec<Part> =
@@ -461,7 +461,7 @@ proptest! {
                 prop_assert!((a.0 - b.0).abs() < 0.02 && (a.1 / b.1 - 1.0).abs() < 0.01, "{a:?} {b:?}\n{text}");
             }
         }
-        // What came back goes out the same.
+        // A second export is equal to the first.
         let kind = EffectKind::Sequence(Sequence { parts: back.into(), curve: Default::default() });
         let (again, _) = write_ahap(&Effect { kind, manner: Manner::PLAIN }, "made up").unwrap();
         let (back, _) = read_ahap(&again, "again.ahap").unwrap();

@@ -1,4 +1,4 @@
-//! Which effect answers what a foot does to a control.
+//! The effects that answer a foot's actions on a control.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use underfoot::widget::Value;
 
 use crate::controls::bench::Bench;
 
-/// Pushes against an end and what is held; frictions are something else.
+/// Hums of ends and of held controls; frictions are excluded.
 fn hums(sustained: &[SustainedCue]) -> Vec<f32> {
     sustained
         .iter()
@@ -41,7 +41,7 @@ fn a_slider_has_a_wall_at_its_end_that_is_felt_when_it_is_hit_and_pushed() {
     let pushed = hums(&bench.walker.take_sustained());
     let (first, last) = (pushed[2], pushed[pushed.len() - 1]);
     assert!(last > 2.0 * first && last > 3.0, "the wall gets harder: {first} to {last} N");
-    // Who only stands there is left in peace, who pushes on feels it again.
+    // A foot that only stands there feels no more hum; one that pushes on feels it again.
     bench.wait(1800);
     bench.walker.take_sustained();
     bench.wait(100);
@@ -227,7 +227,7 @@ fn a_folder_of_effects_replaces_shipped_ones_wherever_they_are_named() {
     assert_eq!(press.level, Newtons(3.0));
     assert!(release.is_some(), "what is not written stays");
 
-    // One that no button can play is told of, with the file that wanted it.
+    // An effect that a button cannot play is reported, with the file that uses it.
     let rubbing = r#"Effect(name: "crisp_click", plays: Friction(level_n: 3, low_hz: 80, high_hz: 200))"#;
     std::fs::write(folder.path().join("crisp_click.ron"), rubbing).unwrap();
     effects.read_folder(folder.path()).unwrap();

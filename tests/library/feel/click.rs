@@ -42,7 +42,8 @@ fn spectrum_at(samples: &[f32], rate: f64, frequency: f64, centre: usize) -> (f6
     sum
 }
 
-/// The frequency and decay time of the mode near `expected` hertz, from how its phase and size change within 25 ms.
+/// The frequency and decay time of the mode near `expected` hertz, from the change of its phase and size within 25
+/// ms.
 fn measure_mode(samples: &[f32], rate: f64, expected: f64, start: usize) -> (f64, f64) {
     let apart = 0.025;
     let early = start + (0.03 * rate) as usize;
@@ -62,7 +63,7 @@ fn every_mode_has_its_frequency_within_1_percent_and_its_decay_within_5() {
         sink.advance(millis(400)).unwrap();
         let rate = f64::from(rate);
         for mode in &click.modes {
-            // Looking 3 % beside the mode, so that the measurement has to find it.
+            // The start value is 3 % beside the mode, so that the measurement has to find it.
             let (f, d) = measure_mode(
                 sink.channel(14),
                 rate,
@@ -134,7 +135,7 @@ fn spots_share_a_click_by_weight_and_other_tiles_stay_silent() {
     }
 }
 
-/// 36 channels are two groups of sixteen and a rest: none may write over another.
+/// 36 channels are two groups of sixteen and a rest: no group may overwrite another.
 #[test]
 fn every_tile_gets_its_own_click() {
     let (mut sender, mut sink) = floor(48_000);
@@ -162,7 +163,7 @@ fn newtons_become_full_scales_by_each_actuators_own_measure() {
     sender.send(&cue(millis(10), &[(0, 1.0), (1, 1.0)], &click));
     sink.advance(millis(30)).unwrap();
     let peak = |channel: usize| sink.channel(channel).iter().fold(0.0_f32, |a, b| a.max(b.abs()));
-    // 4 N are a tenth of 40 N and four tenths of 10 N; the direct-current block takes a few percent.
+    // 4 N are a tenth of 40 N and four tenths of 10 N; the DC blocker takes a few percent.
     assert!((peak(0) - 0.1).abs() < 0.005, "{}", peak(0));
     assert!((peak(30) - 0.4).abs() < 0.02, "{}", peak(30));
     assert_eq!(peak(1), 0.0);

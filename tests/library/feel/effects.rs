@@ -1,4 +1,4 @@
-//! Every shipped effect, measured from what the renderer makes of it.
+//! Every shipped effect, measured from the renderer's samples.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ fn rms(samples: &[f32]) -> f32 {
     (samples.iter().map(|sample| sample * sample).sum::<f32>() / samples.len() as f32).sqrt()
 }
 
-/// The second second of an even slide.
+/// The second second of a steady slide.
 fn slide(effect: &Arc<Effect>, speed: f32, force: f32) -> Analysis {
     let samples = audition(effect, &Gesture::steady(speed, Newtons(force), 2.0), RATE);
     analyse(&samples[RATE as usize..], RATE as f32, Band::USEFUL)
@@ -53,7 +53,7 @@ fn every_shipped_effect_has_95_percent_of_its_energy_between_50_and_750_hz() {
             analysis.centroid_hz
         );
         assert!(within >= 0.95, "{}: {:.2} %", named.name, 100.0 * within);
-        // Nobody is shaken, and nobody misses it.
+        // Neither too strong nor too weak.
         assert!((1.5..=45.0).contains(&analysis.peak), "{}: {} N", named.name, analysis.peak);
     }
 }
@@ -85,18 +85,18 @@ fn what_slides_has_its_level_and_rises_with_force() {
             None => unreachable!("only what lasts"),
         };
         let full = match effect.kind {
-            // A sole is loudest where it sticks and slips.
+            // A sole is loudest in the range of stick and slip.
             EffectKind::StickSlip(_) => {
                 (1..=8_u8).map(|n| slide(effect, 0.075 * f32::from(n), 200.0).rms).fold(0.0, f32::max)
             }
             _ => slide(effect, 0.6, 200.0).rms,
         };
-        // A sine of that level; chance plays a part in a second of gravel.
+        // A sine of that level; a second of gravel is partly random.
         let sine = level / 2.0_f32.sqrt();
         assert!((0.7..1.4).contains(&(full / sine)), "{name}: {full} instead of {sine}");
         let [hard, half, light] = [200.0, 100.0, 25.0].map(|force| slide(effect, 0.6, force).rms);
         assert!(hard > 1.3 * half && half > 1.5 * light, "{name}: {hard}, {half}, {light}");
-        // A foot that does not move is not felt.
+        // A foot at rest feels no friction.
         let still = audition(effect, &Gesture::steady(0.0, Newtons(200.0), 1.0), RATE);
         assert!(rms(&still) < 0.01 * full, "{name} at rest");
     }
@@ -104,7 +104,7 @@ fn what_slides_has_its_level_and_rises_with_force() {
 
 #[test]
 fn the_pitch_of_what_slides_rises_with_the_speed() {
-    // Noise by its mean, ridges by the distance of their pulses, a sole by how often it slips.
+    // Noise by its centroid, ridges by the distance of their pulses, a sole by the rate of its slips.
     let smooth: Vec<f32> = [0.05, 0.2, 0.4, 0.6]
         .iter()
         .map(|speed| slide(&shipped("smooth"), *speed, 200.0).centroid_hz)
@@ -112,14 +112,14 @@ fn the_pitch_of_what_slides_rises_with_the_speed() {
     assert!(smooth.windows(2).all(|pair| pair[1] > 1.15 * pair[0]), "{smooth:?}");
     for name in ["wood", "grating", "gravel", "rubber"] {
         let effect = match shipped(name).kind.clone() {
-            // How often it slips is told best without chance.
+            // The rate of slips is measured best without randomness.
             EffectKind::StickSlip(stick) => {
                 let kind = EffectKind::StickSlip(StickSlip { rough: 0.0, ..stick });
                 Arc::new(Effect { kind, manner: Manner::PLAIN })
             }
             _ => shipped(name),
         };
-        // A sole slips that slowly; beyond, its slips run into each other.
+        // A sole slips that slowly; above, its slips merge.
         let slowest = if name == "rubber" { 0.02 } else { 0.04 };
         let rates: Vec<f32> =
             [1.0, 3.0, 9.0].iter().map(|times| bumps_per_second(&effect, slowest * times)).collect();
@@ -127,7 +127,7 @@ fn the_pitch_of_what_slides_rises_with_the_speed() {
     }
 }
 
-/// How often the loudness of an even slide rises over its mean, within two seconds.
+/// Rate at which the loudness of a steady slide rises over its mean, within two seconds.
 fn bumps_per_second(effect: &Arc<Effect>, speed: f32) -> f32 {
     let samples = audition(effect, &Gesture::steady(speed, Newtons(200.0), 3.0), RATE);
     let mut level = 0.0;
@@ -144,7 +144,7 @@ fn bumps_per_second(effect: &Arc<Effect>, speed: f32) -> f32 {
     rises as f32 / 2.0
 }
 
-/// Ridges are a spatial thing: the pitch is the speed over their distance.
+/// Ridges are spatial: the pitch is the speed divided by their distance.
 #[test]
 fn even_ridges_sound_at_the_speed_over_their_distance() {
     let EffectKind::Texture(texture) = shipped("grating").kind.clone() else { panic!("ridges") };
@@ -154,7 +154,7 @@ fn even_ridges_sound_at_the_speed_over_their_distance() {
         let effect = Arc::new(Effect { kind: EffectKind::Texture(even), manner: Manner::PLAIN });
         let analysis = slide(&effect, speed, 200.0);
         let pitch = speed / spacing_m;
-        // All that sounds are multiples of it.
+        // All partials are multiples of it.
         let near: f32 = analysis
             .spectrum
             .iter()
@@ -169,8 +169,7 @@ fn even_ridges_sound_at_the_speed_over_their_distance() {
     }
 }
 
-/// As loud as each other, and yet nobody takes one for the other: they differ in where their power lies and in how
-/// they come and go.
+/// Equally loud, and still easy to distinguish: they differ in their spectrum and in their rhythm.
 #[test]
 fn textures_differ_in_timbre_and_not_only_in_loudness() {
     let mut faces: Vec<(String, [f32; 3])> = Vec::new();
@@ -298,7 +297,7 @@ fn what_is_held_goes_on_until_it_is_let_go_and_a_rise_rises() {
     assert!(rms(&samples[range(0.6, 1.0)]) < 0.01, "let go, it is gone");
 }
 
-/// The whole way from a cue to samples stays finite whatever a file or a sensor makes of the numbers.
+/// The whole path from a cue to samples stays finite for any numbers from a file or a sensor.
 #[test]
 fn the_physical_friction_stays_finite_for_absurd_input() {
     let EffectKind::StickSlip(rubber) = shipped("rubber").kind.clone() else { panic!("stick-slip") };

@@ -20,7 +20,7 @@ fn floor() -> (CueSender, ManualSink) {
     (sender, ManualSink::new(renderer, Instant::START))
 }
 
-/// A texture of 8 N whose band goes from 100 to 400 Hz.
+/// A texture of 8 N with a band from 100 to 400 Hz.
 fn sustained_cue(speed_m_s: f32, force: f32, spots: &[(u16, f32)]) -> SustainedCue {
     let friction = Friction {
         level: Newtons(8.0),
@@ -40,7 +40,7 @@ fn sustained_cue(speed_m_s: f32, force: f32, spots: &[(u16, f32)]) -> SustainedC
     }
 }
 
-/// What tile 0 gets from two seconds of steady rubbing, without the first 100 ms.
+/// The samples of tile 0 in two seconds of steady sliding, without the first 100 ms.
 fn steady(sustained_cue: &SustainedCue) -> Vec<f32> {
     let (mut sender, mut sink) = floor();
     let sustained: SustainedCues = [sustained_cue.clone()].into_iter().collect();
@@ -55,7 +55,7 @@ fn rms(samples: &[f32]) -> f64 {
     (samples.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / samples.len() as f64).sqrt()
 }
 
-/// Power at each multiple of 20 Hz up to 3 kHz, averaged over stretches of 50 ms under a Hann window (Goertzel's way).
+/// Power at each multiple of 20 Hz up to 3 kHz, averaged over windows of 50 ms (Hann), by Goertzel's algorithm.
 fn spectrum(samples: &[f32]) -> Vec<(f64, f64)> {
     let length = RATE as usize / 20;
     let window: Vec<f64> = (0..length).map(|n| 0.5 - 0.5 * (TAU * n as f64 / length as f64).cos()).collect();
@@ -83,7 +83,7 @@ fn centroid(spectrum: &[(f64, f64)]) -> f64 {
 #[test]
 fn the_level_is_that_of_a_sine_and_rises_with_speed_and_force() {
     let full = rms(&steady(&sustained_cue(0.5, 400.0, &[(0, 1.0)])));
-    // 8 N of 40 N at full scale, over the root of two; 10 % of play for two seconds of noise.
+    // 8 N of 40 N at full scale, over the square root of two; tolerance of 10 % for two seconds of noise.
     let sine = 8.0 / 40.0 / 2.0_f64.sqrt();
     assert!((full / sine - 1.0).abs() < 0.1, "{full} instead of {sine}");
     for (speed, force, share) in [(0.5, 200.0, 0.5), (0.25, 400.0, 0.5), (0.125, 100.0, 0.0625)] {
@@ -101,7 +101,7 @@ fn the_pitch_rises_with_the_speed_from_low_to_high() {
     let mut last = 0.0;
     for (speed, wanted) in [(0.05, 130.0), (0.15, 190.0), (0.25, 250.0), (0.4, 340.0), (0.5, 400.0)] {
         let pitch = centroid(&spectrum(&steady(&sustained_cue(speed, 400.0, &[(0, 1.0)]))));
-        // The band is lopsided towards high frequencies, its centroid up to a fifth above its centre.
+        // The band leans towards high frequencies, with a centroid up to a fifth above its centre.
         assert!((0.95..1.25).contains(&(pitch / wanted)), "{speed} m/s: {pitch} Hz");
         assert!(pitch > last);
         last = pitch;
@@ -139,7 +139,7 @@ fn a_sustained_cue_that_is_over_is_gone_after_15_ms() {
         assert!(rms(&samples[301 * 48..305 * 48]) > 0.2 * level, "it fades, it does not break off");
         let steepest = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
         assert!(f64::from(steepest) < 0.5 * level, "no step anywhere: {steepest}");
-        // What is left is the direct-current block coming to rest.
+        // The rest is the settling of the DC blocker.
         assert!(rms(&samples[318 * 48..]) < 0.02 * level);
     }
 }
@@ -153,7 +153,7 @@ fn a_foot_that_slides_over_a_seam_takes_its_texture_along() {
         sender.sustain(&[sustained_cue].into_iter().collect());
         sink.advance(millis(n)).unwrap();
     }
-    // The same foot, the same noise: the two tiles together give it whole at any time.
+    // The same foot, the same noise: at any time the two tiles add up to the whole.
     let sum: Vec<f32> = sink.channel(0).iter().zip(sink.channel(1)).map(|(a, b)| a + b).collect();
     let level = rms(&sum[100 * 48..]);
     for hundred in 1..10 {

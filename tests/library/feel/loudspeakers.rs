@@ -1,4 +1,5 @@
-//! What is also heard, once or for a while: the same synthesis, in the same block, from where it is felt.
+//! The audible part of cues, transient and sustained: the same synthesis, in the same block, at the place of the
+//! haptics.
 
 use underfoot::feel::{
     Click, Cue, CueSender, Hum, Lasting, Mode, RendererConfig, Spot, SustainedCue, SustainedCues, Tone,
@@ -12,7 +13,7 @@ use underfoot::units::{Instant, Newtons};
 
 use super::strike;
 
-/// The paper's floor with a loudspeaker at each corner, on channels 36 to 39; the last is half as loud.
+/// The paper's floor with a loudspeaker at each corner, on channels 36 to 39; the last one is half as loud.
 fn floor() -> Floor {
     let corners = [(0.0, 0.0), (1.824, 0.0), (0.0, 1.824), (1.824, 1.824)];
     let loudspeakers = (36..).zip(corners).map(|(channel, (x, y))| {
@@ -38,7 +39,7 @@ fn energy(samples: &[f32]) -> f64 {
     samples.iter().map(|x| f64::from(*x).powi(2)).sum()
 }
 
-/// Every cue's first sample, found in the 24-bit file that both are written to.
+/// Finds every cue's first sample in the 24-bit file that receives both.
 #[test]
 fn what_is_felt_and_what_is_heard_begin_within_one_sample_in_one_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -46,7 +47,7 @@ fn what_is_felt_and_what_is_heard_begin_within_one_sample_in_one_file() {
     let (mut sender, renderer) = renderer(RendererConfig::of(&floor(), 96_000));
     let options = WavOptions::default().with_format(WavFormat::Pcm24).with_when_full(WhenFull::Wait);
     let mut file = WavSink::create(&path, renderer, options).unwrap();
-    // Half a second apart, so that each begins in silence; at moments that fall into the middle of blocks.
+    // Half a second apart, so that each begins in silence; at times within blocks.
     let moments: Vec<u64> = (0..6).map(|n| 20_000 + n * 517_313).collect();
     let tiles = [0_u16, 5, 14, 21, 30, 35];
     for (at, tile) in moments.iter().zip(tiles) {
@@ -65,7 +66,7 @@ fn what_is_felt_and_what_is_heard_begin_within_one_sample_in_one_file() {
     };
     for (at, tile) in moments.iter().zip(tiles) {
         let due = (*at as f64 * 0.096).round() as usize;
-        // From 10 ms before: there everything is at rest.
+        // From 10 ms before: there all channels are silent.
         let felt = first(tile.into(), due - 960).unwrap();
         let heard = (36..40).filter_map(|channel| first(channel, due - 960)).min().unwrap();
         assert!(felt.abs_diff(due) <= 1, "tile {tile} begins at {felt} instead of {due}");
@@ -92,7 +93,7 @@ fn what_is_heard_is_what_is_felt_from_where_it_is_felt() {
         });
         let loudest = (0..3).max_by(|a, b| gains[*a].total_cmp(&gains[*b]));
         assert!(nearest == Some(3) || loudest == nearest, "tile {tile}: {gains:?}");
-        // Sample by sample the same.
+        // Equal, sample by sample.
         for (channel, gain) in (36..40).zip(&gains) {
             let worst = sink.channel(channel).iter().zip(felt).fold(0.0_f64, |worst, (heard, felt)| {
                 worst.max((f64::from(*heard) - gain * f64::from(*felt)).abs())
@@ -116,7 +117,7 @@ fn a_layout_that_does_not_ask_is_not_heard_and_half_is_half() {
     assert!((heard(9.0) / heard(1.0) - 1.0).abs() < 1e-6);
 }
 
-/// What lasts, one of every model.
+/// The sustained effects, one of every model.
 fn lasting() -> Vec<(&'static str, Lasting)> {
     let effects = Effects::builtin();
     let named = |name| (name, effects.get(name).unwrap().effect.kind.lasting().unwrap());
@@ -134,7 +135,7 @@ fn sustained_cue(effect: Lasting, tile: u16, audio_gain: f32) -> SustainedCues {
         .collect()
 }
 
-/// A millisecond after the other, with what lasts in it.
+/// Renders millisecond by millisecond, with the sustained cues of each.
 fn slide(floor: &Floor, millis: u64, sustained: impl Fn(u64) -> SustainedCues) -> ManualSink {
     let (mut sender, mut sink) = play(floor);
     for ms in 0..millis {
@@ -152,7 +153,7 @@ fn onset(samples: &[f32]) -> Option<usize> {
 fn what_lasts_is_heard_as_it_is_felt_and_begins_within_one_sample() {
     let floor = floor();
     for (name, effect) in lasting() {
-        // After 20 ms of nothing; between three loudspeakers, so that each has a share.
+        // After 20 ms of silence; between three loudspeakers, so that each has a share.
         let sink =
             slide(
                 &floor,
@@ -172,7 +173,7 @@ fn what_lasts_is_heard_as_it_is_felt_and_begins_within_one_sample() {
             let worst = sink.channel(channel).iter().zip(felt).fold(0.0_f64, |worst, (heard, felt)| {
                 worst.max((f64::from(*heard) - gain * f64::from(*felt)).abs())
             });
-            // What is lasting may come near the limiter, which holds each channel by itself.
+            // Sustained cues may come near the limiter, which works on each channel separately.
             assert!(worst < 1e-3, "{name}, loudspeaker {channel}: {worst}");
         }
     }
@@ -190,18 +191,18 @@ fn a_tone_of_a_cue_is_heard_as_well() {
     assert!(energy(sink.channel(36)) > 0.8 * energy(sink.channel(0)));
 }
 
-/// A hum of 4 N that goes from the south-west corner to the north-east one, tile by tile.
+/// A hum of 4 N that moves from the south-west corner to the north-east one, tile by tile.
 #[test]
 fn what_lasts_is_heard_from_where_the_foot_is_and_never_jumps() {
     let effect = Lasting::Hum(Hum { level: Newtons(4.0), hz: 90.0, noise: 0.0 });
     let sink = slide(&floor(), 1800, |ms| sustained_cue(effect, (ms / 300 * 7) as u16, 1.0));
-    // 200 ms of each tile, once the sound has come there; the fourth loudspeaker is set to half.
+    // 200 ms of each tile, once the sound has arrived there; the fourth loudspeaker has half the gain.
     let loud = |channel: usize, step: usize| {
         let own = if channel == 39 { 2.0 } else { 1.0 };
         own * energy(&sink.channel(channel)[(300 * step + 90) * 96..(300 * step + 290) * 96]).sqrt()
     };
     let (west, east): (Vec<f64>, Vec<f64>) = (0..6).map(|step| (loud(36, step), loud(39, step))).unzip();
-    // The farthest of the four is silent: three share what is heard.
+    // The farthest of the four is silent: three share the sound.
     assert!(west.windows(2).all(|pair| pair[1] <= pair[0]), "{west:?}");
     assert!(east.windows(2).all(|pair| pair[1] >= pair[0]), "{east:?}");
     assert!(west[0] > 5.0 && east[0] == 0.0 && east[5] > 5.0 && west[5] == 0.0, "{west:?} {east:?}");
@@ -225,7 +226,7 @@ fn what_lasts_and_does_not_ask_is_exactly_silent_on_every_loudspeaker() {
         let whole = slide(&floor(), 100, |_| sustained_cue(effect, 0, 1.0));
         let share = (energy(half.channel(36)) / energy(whole.channel(36))).sqrt();
         assert!((share - 0.5).abs() < 0.01, "{name}: {share}");
-        // It ends with the foot, but for what the direct-current block lets fade.
+        // It ends with the foot, except for the decay of the DC blocker.
         let lifted =
             slide(
                 &floor(),

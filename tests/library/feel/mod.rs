@@ -1,4 +1,4 @@
-//! What the floor feels like, measured from rendered samples.
+//! The haptics of the floor, measured from rendered samples.
 
 mod ahap;
 mod answers;

@@ -25,7 +25,7 @@ fn two_tiles() -> Floor {
     Floor::of(Geometry::of_paper_tiles(2, 1).unwrap())
 }
 
-/// A mode that hardly decays, on one tile.
+/// A mode with little decay, on one tile.
 fn ringing(at: Instant, tile: u16, frequency_hz: f32, level: f32) -> Cue {
     let mode = Mode { frequency_hz, decay_s: 2.0, amplitude: 1.0 };
     let click = Click { modes: [mode].into_iter().collect(), level: Newtons(level), ..Click::default() };
@@ -45,7 +45,7 @@ fn amplitude_at(samples: &[f32], hz: f64) -> f64 {
     2.0 * re.hypot(im) / length as f64
 }
 
-/// What a tile of this floor gives of a mode of `hz` once its beginning has passed.
+/// The amplitude of a mode of `hz` on a tile of this floor, after its onset.
 fn settled(floor: &Floor, hz: f32) -> f64 {
     let (mut sender, mut sink) = play(floor);
     sender.send(&ringing(millis(10), 0, hz, 2.0));
@@ -53,7 +53,7 @@ fn settled(floor: &Floor, hz: f32) -> f64 {
     amplitude_at(&sink.channel(0)[400 * 48..], f64::from(hz))
 }
 
-/// A plate with a boom at 70 Hz, a dip at 300 and a slope: hertz and decibels.
+/// A plate with a resonance at 70 Hz, a dip at 300 and a slope: hertz and decibels.
 fn plate() -> Response {
     let bump =
         |hz: f32, centre: f32, octaves: f32, db: f32| db / (1.0 + ((hz / centre).log2() / octaves).powi(2));
@@ -86,7 +86,7 @@ fn what_is_below_the_band_is_taken_away_from_a_measured_plate_only() {
     );
 }
 
-/// Somebody leans on a control that never stops ringing, for a minute.
+/// A person leans on a control that never stops ringing, for a minute.
 // A9
 #[test]
 fn no_coil_gets_more_than_80_w_over_a_minute() {
@@ -95,7 +95,7 @@ fn no_coil_gets_more_than_80_w_over_a_minute() {
     let mut watts = Vec::new();
     let mut heard = 0;
     for tenth in 0..600_u64 {
-        // Twice a second 20 N that ring for 2 s add up to some 90 N on a 40 N actuator.
+        // 20 N twice a second, ringing for 2 s, add up to some 90 N on a 40 N actuator.
         if tenth.is_multiple_of(5) {
             sender.send(&ringing(millis(100 * tenth), 0, 60.0, 20.0));
         }
@@ -170,7 +170,7 @@ fn a_voice_that_is_far_too_loud_is_silenced_and_counted_and_the_next_is_felt() {
     let absurd = sink.channel(0);
     assert!(absurd.iter().all(|x| x.is_finite() && x.abs() <= 1.0));
     assert!(absurd[20 * 48..25 * 48].iter().any(|x| x.abs() > 0.1), "it began");
-    // 5 ms of fading, and what is left is the direct-current block coming to rest.
+    // After 5 ms of fading only the DC blocker settles.
     assert!(absurd[40 * 48..].iter().all(|x| x.abs() < 0.3), "it does not ring on for its 2 s");
     let counters = sender.counters();
     assert!(counters.overloaded > 0);
@@ -187,7 +187,7 @@ fn a_voice_that_is_far_too_loud_is_silenced_and_counted_and_the_next_is_felt() {
 
 #[test]
 fn what_dies_away_ends_in_exact_silence_without_denormal_numbers() {
-    // Denormal numbers cost up to a hundred times as much to compute with; filters that ring on make them.
+    // Computing with denormal numbers takes up to a hundred times as long; ringing filters create them.
     for response in [None, Some(plate())] {
         let mut floor = two_tiles();
         floor.responses[0] = response;
@@ -195,7 +195,7 @@ fn what_dies_away_ends_in_exact_silence_without_denormal_numbers() {
         let mut cue = ringing(millis(10), 0, 150.0, 5.0);
         cue.click.modes[0].decay_s = 0.1;
         sender.send(&cue);
-        // Far below the faintest that is heard after 2 s: 20 decay times are -174 dB.
+        // Far below the faintest audible level after 2 s: 20 decay times are -174 dB.
         sink.advance(millis(4000)).unwrap();
         let samples = sink.channel(0);
         assert!(samples[..48_000].iter().any(|sample| sample.abs() > 0.05));

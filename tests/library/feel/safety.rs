@@ -1,4 +1,4 @@
-//! What a person stands on stays gentle: limits, silence, loss.
+//! The rack stays gentle under a standing person: limits, silence, loss.
 
 use proptest::prelude::*;
 use underfoot::feel::{
@@ -20,7 +20,7 @@ fn floor() -> (CueSender, ManualSink) {
     (sender, ManualSink::new(renderer, Instant::START))
 }
 
-/// A floor with everything: plates that were measured, and loudspeakers.
+/// A floor with all features: measured plates, and loudspeakers.
 fn whole_floor() -> (CueSender, ManualSink) {
     let mut floor = Floor::default();
     floor.responses[3] = Response::of(vec![(40.0, -3.0), (300.0, 3.0), (800.0, -9.0)]);
@@ -102,7 +102,7 @@ fn a_sustained_cue_that_nobody_renews_fades_out() {
     sink.advance(millis(200)).unwrap();
     let samples = sink.channel(3);
     assert!(samples[30 * 48..50 * 48].iter().any(|x| x.abs() > 0.001));
-    // 50 ms of patience, 15 ms of fading, and the direct-current block comes to rest.
+    // 50 ms until the time-out, 15 ms of fading, and the DC blocker settles.
     assert!(samples[75 * 48..].iter().all(|x| x.abs() < 0.001));
     sink.advance(millis(600)).unwrap();
     assert!(sink.channel(3)[550 * 48..].iter().all(|x| *x == 0.0));

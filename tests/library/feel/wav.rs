@@ -75,7 +75,7 @@ fn a_path_that_cannot_be_written_is_named() {
     assert!(error.to_string().starts_with("cannot write /no/such/folder/floor.wav: "), "{error}");
 }
 
-/// The device /dev/full takes no byte, like a disk without space.
+/// The device /dev/full accepts no byte, like a disk without space.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_told_with_the_path() {
@@ -86,7 +86,7 @@ fn a_full_disk_is_told_with_the_path() {
 #[test]
 fn latency_is_measured_from_the_packet_to_the_block_handed_on() {
     let meter = LatencyMeter::new();
-    // A clock that stands still at 30.25 ms; the packets arrived at 30 ms.
+    // A clock fixed at 30.25 ms; the packets arrived at 30 ms.
     let probe = LatencyProbe::new(meter.clone(), Arc::new(|| Instant::from_micros(30_250)));
     let (mut sender, renderer) = floor();
     let mut sink = ManualSink::new(renderer, Instant::START).with_latency(probe);

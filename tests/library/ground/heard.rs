@@ -1,4 +1,4 @@
-//! What is heard of the ground: the same events and modes as are felt, from where they happen.
+//! The audible part of the ground: the same events and modes as in the haptics, at their places.
 
 use underfoot::feel::{Cue, RendererConfig, renderer};
 use underfoot::floor::{Floor, Loudspeaker};
@@ -29,7 +29,7 @@ fn floor() -> Floor {
     Floor { loudspeakers: loudspeakers.collect(), ..Floor::default() }
 }
 
-/// The cues of a walk of some steps over a page, from each side to the other.
+/// The cues of some steps over a page, from each side to the other.
 fn walk(walker: &mut Walker) -> Vec<Cue> {
     walker.take_cues();
     for step in 0..10_u8 {
@@ -61,7 +61,7 @@ fn energy(samples: &[f32]) -> f64 {
     samples.iter().map(|sample| f64::from(*sample).powi(2)).sum()
 }
 
-/// A cue by itself, soon after the start.
+/// One cue alone, soon after the start.
 fn alone(cue: &Cue) -> ManualSink {
     play(&[Cue { at: Instant::from_millis(10), ..cue.clone() }])
 }
@@ -82,7 +82,7 @@ fn each_crack_of_the_pond_is_heard_most_from_the_loudspeaker_nearest_to_it() {
         };
         let distance = |channel: usize| loudspeakers[channel - 36].at.distance(place);
         let nearest = HEARD.min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap();
-        // Of two that are equally far either may be.
+        // Of two equally distant ones, either may be the loudest.
         let is_nearest = loudest == nearest || (distance(loudest) - distance(nearest)).abs() < 1e-3;
         assert!(is_nearest, "{place}: {loudest} before {second}, and not {nearest}");
         loudest_ones.insert(loudest);
@@ -97,7 +97,7 @@ fn a_crack_is_as_strong_to_the_ear_as_to_the_foot() {
         let played = alone(cue);
         let felt: f64 = (0..36).map(|channel| energy(played.channel(channel))).sum();
         let heard: f64 = HEARD.map(|channel| energy(played.channel(channel))).sum();
-        // What is felt on several tiles adds up as forces do.
+        // The haptic shares on several tiles add up like forces.
         let shares: f64 = cue.spots.iter().map(|spot| f64::from(spot.weight).powi(2)).sum();
         let ratio = heard / (felt / shares);
         assert!((ratio - 1.0).abs() < 0.02, "{ratio} at {:?}", cue.heard_at);

@@ -3,8 +3,8 @@
 use underfoot::experiment::PondLaws;
 use underfoot::ground::IceSpec;
 
-/// 100,000 events as the experiment makes them. A sample that fits fails a test at 0.001 once in a
-/// thousand seeds; this seed is fixed, so it passes for ever or the model has changed.
+/// 100,000 events of the experiment. A sample from the model fails a test at 0.001 for one of a thousand seeds; this
+/// seed is fixed, so it passes unless the model changes.
 #[test]
 fn onsets_energies_fronts_and_turns_are_the_model_s() {
     let laws = PondLaws::measure(IceSpec::POND, 1, 100_000);
@@ -31,7 +31,7 @@ fn onsets_energies_fronts_and_turns_are_the_model_s() {
     assert_eq!(line("fronts: started at once").found, Some(2.0));
 }
 
-/// Other numbers than the shipped ones are followed as well; no threshold is the paper's own model.
+/// Other parameters than the shipped ones are followed as well; no threshold is the paper's own model.
 #[test]
 fn the_paper_s_plain_ice_follows_its_model_too() {
     let mut spec = IceSpec { calm_j: 0.0, onsets_per_j_s: 900.0, ..IceSpec::POND };

@@ -29,7 +29,7 @@ fn step(walker: &mut Walker) -> Vec<Cue> {
     walker.take_cues()
 }
 
-/// Squares of the levels, which is what is heard of many small clicks.
+/// Sum of the squared levels: the loudness of many small clicks.
 fn loudness(cues: &[Cue]) -> f32 {
     cues.iter().map(|cue| cue.click.level.0.powi(2)).sum()
 }
@@ -73,7 +73,7 @@ fn grains_differ_in_number_and_strength_and_fall_silent() {
     assert!(gravel.1 > 2.0 * sand.1, "and gravel harder ones");
 }
 
-/// Wood creaks while the load on it changes, faster the faster it does, and as it comes off too.
+/// Wood creaks while the load on it changes, at a rate proportional to that of the change, and during unloading too.
 #[test]
 fn wood_creaks_by_stick_and_slip() {
     let gaps = |millis: u64| {
@@ -90,7 +90,7 @@ fn wood_creaks_by_stick_and_slip() {
     };
     let (slow, fast) = (gaps(1200), gaps(300));
     println!("wood: {} slips {:.4} s apart, {} slips {:.4} s apart", slow.0, slow.1, fast.0, fast.1);
-    // A joint that bears 70 N and loses 0.4 of it slips each 28 N: 600 N make some 21 slips, however long it takes.
+    // A joint that carries 70 N and loses 0.4 of it slips each 28 N: 600 N make some 21 slips, in any time.
     assert!((14..=26).contains(&slow.0) && (14..=26).contains(&fast.0));
     assert!((slow.1 / fast.1 - 4.0).abs() < 0.8, "four times as fast, four times as many a second");
     let mut walker = on("Wood");

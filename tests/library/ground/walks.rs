@@ -49,7 +49,7 @@ fn careful_walking_cracks_at_most_a_third_of_what_stamping_does() {
     for manner in [Manner::Careful, Manner::Lighter] {
         assert!(line(manner).share <= 1.0 / 3.0, "{manner:?}: {}", line(manner).share);
     }
-    // Who loads as hard but more slowly cracks less too, and who walks is heard.
+    // A slower rise to the same load cracks less too, and walking is audible.
     assert!(line(Manner::Slower).share < 0.8, "{}", line(Manner::Slower).share);
     assert!(walking.events_per_step > 2.0 && walking.share < 0.5, "{walking:?}");
     assert!(stamping.events_per_step > 20.0, "{stamping:?}");
@@ -79,7 +79,7 @@ fn each_crack_is_felt_under_the_foot_at_its_own_time() {
         let modes = &cue.click.modes;
         assert!(modes.len() == 6 && modes.iter().all(|mode| (70.0..=720.0).contains(&mode.frequency_hz)));
     }
-    // The cracks lie where the foot is.
+    // The cracks lie at the foot.
     assert!(state.seeds.iter().all(|seed| seed.at.distance(Vec2::new(0.608, 0.75)) < 0.12));
 }
 
@@ -95,7 +95,7 @@ fn standing_shifting_and_leaving_crack_nothing() {
     assert_eq!(ground(&walker).counters.events, before);
 }
 
-/// What stands there when the floor comes back has not stamped.
+/// A load that is present when the floor comes back is not a stamp.
 #[test]
 fn a_floor_that_was_lost_and_comes_back_under_a_foot_does_not_crack() {
     let mut walker = Walker::on(layout("pond"));
@@ -111,7 +111,7 @@ fn a_floor_that_was_lost_and_comes_back_under_a_foot_does_not_crack() {
     }
 }
 
-/// A layout that comes while somebody stands there finds its ice under load already.
+/// Ice in a layout that arrives under a standing person starts under load.
 #[test]
 fn ice_laid_under_a_standing_foot_is_whole_and_edited_ice_keeps_its_cracks() {
     let text = |title: &str, seed: u32| {

@@ -1,4 +1,4 @@
-//! Rules for feet: where they begin to speak, and that the numbers behind them are those that are measured.
+//! Rules for feet: their thresholds, and the agreement of the numbers behind them with measurements.
 
 use underfoot::ergonomics::{self, RULES, Zone, predicted_error_m};
 use underfoot::experiment::PlaceTable;
@@ -7,7 +7,7 @@ use underfoot::glam::Vec2;
 use underfoot::schema::{Kinds, Severity, parse_layout};
 use underfoot::units::Newtons;
 
-/// Codes of what is found about the controls of a layout with these fields, errors with an exclamation mark.
+/// Codes of the findings about the controls of a layout with these fields, errors with an exclamation mark.
 fn found(fields: &str) -> Vec<String> {
     let floor = Floor::default();
     let region = "(id: \"r\", at: (0, 0), size: (1.8, 1.8))";
@@ -44,7 +44,7 @@ fn where_maps_leave_nothing_else_a_light_press_is_found_less_exactly() {
     let mut floor = Floor::default();
     let area = Rect::from_centre_size(Vec2::splat(0.36), Vec2::splat(0.02));
     let error = |floor: &Floor, newtons: f32| predicted_error_m(floor, area, Newtons(newtons));
-    // Without maps the parts' spread is most of it, and that grows with the force.
+    // Without maps the spread of parts dominates, and it grows with the force.
     assert!(error(&floor, 40.0) > 0.012);
     floor.position_maps.fill(Some(PositionMap::NONE));
     assert!(error(&floor, 40.0) > 1.5 * error(&floor, 120.0));
@@ -70,7 +70,7 @@ fn gaps_grow_with_what_is_at_stake() {
     assert_eq!(gap(run, 0.1), [] as [&str; 0]);
     assert_eq!(gap(run, 0.06), ["U102"]);
     assert_eq!(gap(run, 0.05), ["U102!"]);
-    // Said once, and of the one that needs more room.
+    // Reported once, for the one that needs more room.
     let guarded_last = found(&format!(
         "{holds}, widgets: [(id: \"a\", {free}, label: \"A\", at: (0.5, 0.9), size: (0.2, 0.2)),
                    (id: \"b\", {run}, label: \"B\", right_of: \"a\", gap: 0.05)]"
@@ -97,7 +97,7 @@ fn reach_is_counted_from_where_a_foot_can_stand() {
              widgets: [(id: \"a\", kind: \"button\", label: \"A\", at: (0.8, {north}), size: (0.2, 0.2))]"
         ))
     };
-    // A shoe's middle is 17 cm north at most; the control's is 10 cm north of its edge.
+    // A shoe's middle is at most 17 cm north; the control's is 10 cm north of its edge.
     assert_eq!(at(0.86), [] as [&str; 0]);
     assert_eq!(at(0.88), ["U103"]);
     assert_eq!(at(1.3), ["U103!"]);
@@ -129,7 +129,7 @@ fn eyes() {
     let icon =
         found("widgets: [(id: \"a\", kind: \"button\", at: (0.9, 0.9), size: (0.3, 0.3), look: (icon: Up))]");
     assert_eq!(icon, [] as [&str; 0]);
-    // Words are broken where they must be, over as many lines as there is room for: two here.
+    // Words break if necessary, over as many lines as there is room for: two here.
     let long = "Lungenfunktionsprüfungsprotokoll";
     let label = |width: f32| {
         found(&format!(
@@ -153,7 +153,7 @@ fn every_rule_is_explained_and_has_a_code_of_its_own() {
     assert_eq!(ergonomics::rule("U999"), None);
 }
 
-/// The tables in the code are those of 60 floors; a few floors come close to them.
+/// The tables in the code come from 60 floors; a few floors come close to them.
 #[test]
 fn predicted_errors_are_those_of_the_simulated_floor() {
     let mut table = PlaceTable::new(96);

@@ -1,4 +1,4 @@
-//! What layouts can say beyond one place per control: grids, groups, neighbours, measures, kinds of their own.
+//! The language of layouts beyond one place per control: grids, groups, neighbours, measures, custom kinds.
 
 use std::fs;
 
@@ -75,7 +75,7 @@ fn neighbours_stand_beside_each_other_in_whatever_order_they_are_written() {
            (id: "high", kind: "button", above: "home", align: Start, size: (1, 0.5)),
            (id: "west", kind: "button", left_of: "home", align: End, gap: 0.5, size: (0.5, 0.5)),"#,
     );
-    // Without a size of its own it has its neighbour's.
+    // Without a size it has its neighbour's.
     assert_eq!(tiles(&layout, "next"), [2.7, 2.0, 0.6, 0.8]);
     assert_eq!(tiles(&layout, "low"), [1.8, 1.3, 1.0, 0.5]);
     assert_eq!(tiles(&layout, "high"), [2.0, 2.8, 1.0, 0.5]);
@@ -133,10 +133,10 @@ fn a_kind_is_made_from_another_and_says_only_what_differs() {
     assert_eq!((kind.look.icon, kind.look.face), (Some(Icon::Home), Colour::rgb(255, 255, 255)));
     assert_eq!((kind.look.lit, &kind.feel), (parent.look.lit, &parent.feel));
 
-    // One of the same name replaces the one it is made from.
+    // A kind of the same name replaces the one from which it is made.
     kinds.add("Kind(name: \"button\", from: \"button\", press_n: 90)", "button.ron").unwrap();
     assert_eq!(press(&kinds, "button"), Newtons(90.0));
-    // Kinds made before keep what they had.
+    // Kinds made before keep their old values.
     assert_eq!(press(&kinds, "big_button"), Newtons(80.0));
 }
 
@@ -149,10 +149,10 @@ fn kinds_of_a_folder_are_made_from_each_other_in_any_order_of_their_files() {
     write("c.ron", "Kind(name: \"c\", from: \"button\", dwell_ms: 55)");
     let mut kinds = Kinds::builtin();
     kinds.read_folder(folder.path()).unwrap_or_else(|problems| panic!("{problems}"));
-    // `c` comes from the folder's button, not from the one that it replaces.
+    // `c` comes from the folder's button, and not from the one that it replaces.
     assert_eq!((press(&kinds, "a"), press(&kinds, "c")), (Newtons(100.0), Newtons(100.0)));
 
-    // A circle through three files is told of once, in one of them; the good ones count for nothing then.
+    // A cycle through three files is reported once, in one of them; the valid files are then not loaded either.
     write("b.ron", "Kind(name: \"button\", from: \"a\", press_n: 100)");
     let mut kinds = Kinds::builtin();
     let problems = kinds.read_folder(folder.path()).unwrap_err();
@@ -161,7 +161,7 @@ fn kinds_of_a_folder_are_made_from_each_other_in_any_order_of_their_files() {
     assert!(circle.path.ends_with("a.ron") && circle.field == "from", "{problems}");
     assert_eq!(circle.expected, "from \"c\", from \"button\", from \"a\"");
 
-    // A parent that is broken is told of in its own file, once.
+    // A parent with an error is reported in its own file, once.
     write("b.ron", "Kind(name: \"button\", from: \"button\", pres_n: 100)");
     let problems = kinds.read_folder(folder.path()).unwrap_err();
     assert_eq!(problems.len(), 1);
@@ -203,7 +203,7 @@ fn as_many_controls_as_there_may_be_and_not_one_more() {
         ("too many controls", "widgets[1].repeat")
     );
 
-    // A chain of four thousand neighbours needs no stack.
+    // A chain of four thousand neighbours does not overflow the stack.
     let mut chain = "(id: \"w4095\", kind: \"button\", at: (0, 0), size: (0.05, 0.05)),".to_owned();
     for index in 0..4095 {
         chain.push_str(&format!("(id: \"w{index}\", kind: \"button\", above: \"w{}\"),", index + 1));

@@ -1,4 +1,4 @@
-//! Layout files: what is shipped, what can be written, what can be wrong.
+//! Layout files: the shipped ones, the language, and its errors.
 
 mod ergonomics;
 mod language;

@@ -1,4 +1,4 @@
-//! Files that no person wrote: shipped ones with random damage, and random floors.
+//! Machine-made files: shipped ones with random damage, and random floors.
 
 use std::fs;
 
@@ -21,20 +21,20 @@ use underfoot::schema::{
 use underfoot::units::Newtons;
 use underfoot::widget::Behaviour;
 
-/// One thing that happens to a file.
+/// One change of a file.
 #[derive(Clone, Debug)]
 enum Edit {
-    /// A bit turns over.
+    /// One bit is inverted.
     Flip(Index, u8),
-    /// A stretch is lost.
+    /// A range is lost.
     Delete(Index, Index),
-    /// A stretch comes twice.
+    /// A range is doubled.
     Repeat(Index, Index),
-    /// Something is typed.
+    /// A text is inserted.
     Insert(Index, &'static str),
 }
 
-/// What people and their keyboards put into files.
+/// Texts that users type into files.
 const TYPED: &[&str] = &[
     "(",
     ")",
@@ -82,7 +82,7 @@ fn edit() -> impl Strategy<Value = Edit> {
         (any::<Index>(), any::<Index>()).prop_map(|(from, to)| Edit::Delete(from, to)),
         (any::<Index>(), any::<Index>()).prop_map(|(from, to)| Edit::Repeat(from, to)),
         (any::<Index>(), select(TYPED)).prop_map(|(at, text)| Edit::Insert(at, text)),
-        // Typing is what mostly happens.
+        // Typing is the most frequent change.
         (any::<Index>(), select(TYPED)).prop_map(|(at, text)| Edit::Insert(at, text)),
     ]
 }
@@ -91,7 +91,7 @@ fn edited(bytes: &[u8], edits: Vec<Edit>) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for edit in edits {
         let length = bytes.len().max(1);
-        // Long stretches would leave little of the file.
+        // Long ranges would leave little of the file.
         let stretch = |from: Index, to: Index| {
             let from = from.index(length);
             from..(from + to.index(60)).min(bytes.len())
@@ -117,7 +117,7 @@ fn edited(bytes: &[u8], edits: Vec<Edit>) -> Vec<u8> {
     bytes
 }
 
-/// What the engine counts on, whatever stood in the file.
+/// The invariants on which the engine relies, for any file.
 fn check_layout(layout: &Layout) {
     let floor = Geometry::default().bounds().grown(1e-4);
     for (index, widget) in layout.widgets.iter().enumerate() {
@@ -141,7 +141,7 @@ fn check_layout(layout: &Layout) {
     }
 }
 
-/// Errors say something, at places that are in the file.
+/// Errors have a text, and places within the file.
 fn check_problems(bytes: &[u8], problems: &Diagnostics) {
     assert!(problems.errors() > 0);
     assert!(!problems.to_string().is_empty());
@@ -170,7 +170,7 @@ proptest! {
         match load_layout(&path, &Kinds::builtin(), &Geometry::default()) {
             Ok(loaded) => {
                 check_layout(&loaded.layout);
-                // Places are in the text, whatever is found about them.
+                // Places are in the text, for any finding.
                 let found = ergonomics::review(&loaded.layout, &Floor::default());
                 for problem in &loaded.places.locate(&found) {
                     let text = std::str::from_utf8(&bytes).unwrap();
@@ -232,14 +232,14 @@ fn layouts() -> Vec<&'static str> {
     builtin_layouts().filter_map(builtin_layout).chain([LANGUAGE, LANGUAGE]).collect()
 }
 
-/// 400 cases of each, or as many as `PROPTEST_CASES` says.
+/// 400 cases of each, or as many as `PROPTEST_CASES` sets.
 fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let cases = if std::env::var_os("PROPTEST_CASES").is_some() { default.cases } else { 400 };
     ProptestConfig { cases, ..default }
 }
 
-/// Floors as labs have them: parts measured, boards rewired, actuators missing.
+/// Floors as in laboratories: measured parts, rewired boards, missing actuators.
 fn floors() -> impl Strategy<Value = Floor> {
     (1..9_u16, 1..9_u16, 0.05..5.0_f32, 1.0..2.0_f32, 0.0..0.49_f32).prop_flat_map(
         |(columns, rows, tile, gap, inset)| {
@@ -268,7 +268,7 @@ fn law() -> impl Strategy<Value = Calibration> {
     ]
 }
 
-/// Calibrated and mapped on some days, in places that follow from `seed`.
+/// Adds calibrations and maps with dates, on tiles chosen by `seed`.
 fn record(floor: &mut Floor, seed: u64) {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let day = |rng: &mut Pcg64Mcg| Day::of_unix_seconds(rng.random_range(0..200_000_000_000));
@@ -306,7 +306,7 @@ fn build((geometry, sensors, actuators, rewired, seed): Parts) -> Floor {
     }
     record(&mut floor, seed);
     if rewired {
-        // Every sensor somewhere, in an order of its own, with unused channels between.
+        // Every sensor on some channel, in another order, with unused channels between.
         let mut sensors: Vec<SensorId> =
             geometry.tiles().flat_map(|tile| Corner::ALL.map(|corner| SensorId { tile, corner })).collect();
         let turn = (seed % sensors.len() as u64) as usize;

@@ -1,4 +1,4 @@
-//! The reference of the format is what its reader goes by.
+//! The reference of the format agrees with its reader.
 
 use underfoot::schema::{reference, write_reference};
 
@@ -7,7 +7,7 @@ const HEAD: &str = "# What files may say\n\n\
     reader goes by. Units are the ends of names: `press_n` is in newtons, `dwell_ms` in milliseconds. A kind made \
     `from` another, a widget of a kind and an effect made `from` another take from it what they don't write.\n\n";
 
-/// After a change of a record run this with `UPDATE_EXPECTED=1` and read the differences.
+/// After a change of a record run this with `UPDATE_EXPECTED=1` and check the differences.
 #[test]
 fn the_page_is_up_to_date() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/reference.md");

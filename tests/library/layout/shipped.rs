@@ -1,4 +1,4 @@
-//! The shipped layouts and kinds, and everything that can be wrong with a file.
+//! The shipped layouts and kinds, and all possible errors of a file.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ fn ron_files(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Another program's reader of RON can read what is shipped and what is written.
+/// Another program's reader of RON can read shipped and written files.
 #[test]
 fn files_are_ordinary_ron() {
     let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
@@ -89,7 +89,7 @@ fn shipped_layouts_are_made_for_feet() {
     for name in builtin_layouts() {
         let layout = shipped(name);
         assert_eq!(ergonomics::review(&layout, &Floor::default()), [], "{name}");
-        // Grounds are walked on, from anywhere.
+        // People walk on grounds, from any side.
         if layout.widgets.is_empty() {
             continue;
         }
@@ -97,7 +97,7 @@ fn shipped_layouts_are_made_for_feet() {
         // The rows of tiles with the standing foot and with controls: one in between stays empty.
         let row = |y: f32| (y / 0.304 + 1e-4).floor();
         assert_eq!(row(stance.max.y - 1e-3), 0.0, "{name}");
-        // Middles of feet that stand within the zone.
+        // Centres of feet that stand within the zone.
         let feet = Rect::new(stance.min + Vec2::new(0.055, 0.13), stance.max - Vec2::new(0.055, 0.13));
         for (index, widget) in layout.widgets.iter().enumerate() {
             let id = &widget.id;
@@ -139,15 +139,15 @@ fn shipped_kinds_feel_different_and_as_soles_feel() {
     }
 }
 
-/// The click of `effect` where it answers a press or a release.
+/// The click of `effect` as an answer to a press or a release.
 fn click(effect: Option<&Arc<Effect>>, releases: bool) -> Click {
     let EffectKind::Click(Clicks { press, release }) = &effect.unwrap().kind else { panic!("no click") };
     release.as_ref().filter(|_| releases).unwrap_or(press).clone()
 }
 
-/// What a designer reads for each broken file is the file beside it that ends in `.stderr`.
+/// The messages for each broken file are in the file beside it that ends in `.stderr`.
 ///
-/// After a change of wording run this with `UPDATE_EXPECTED=1` and read the differences.
+/// After a change of wording run this with `UPDATE_EXPECTED=1` and check the differences.
 // F6, F9
 #[test]
 fn every_broken_file_is_explained() {
@@ -171,7 +171,7 @@ fn every_broken_file_is_explained() {
     assert!(differing.is_empty(), "not as expected:\n{}", differing.join("\n"));
 }
 
-/// What is wrong with a file, by its name a kind, a floor or a layout.
+/// The errors of a file, which is a kind, a floor or a layout by its name.
 fn problems(text: &str, name: &str) -> Diagnostics {
     if name.starts_with("kind_") {
         Kinds::builtin().add(text, name).unwrap_err()
@@ -190,7 +190,7 @@ fn problems(text: &str, name: &str) -> Diagnostics {
     }
 }
 
-/// Lines and columns are those of the spans, and spans are places of the text.
+/// Lines and columns agree with the spans, and spans are places in the text.
 fn check_places(text: &str, problems: &Diagnostics) {
     for problem in problems.iter().filter(|problem| problem.line > 0) {
         let marked = text.get(problem.span.clone());
@@ -232,7 +232,7 @@ fn a_byte_order_mark_and_foreign_line_ends_change_nothing() {
     }
 }
 
-/// A file that is being saved while it is read.
+/// A file that is read while it is being saved.
 // F1
 #[test]
 fn every_prefix_of_every_shipped_layout_is_an_error_and_never_a_part_of_it() {
@@ -272,7 +272,7 @@ fn limits_hold_before_memory_and_stack_are_used_up() {
     );
     assert_eq!(first(&" ".repeat((4 << 20) + 1)), "the file is larger than 4 MB");
 
-    // As many problems as fit into a file: the first 500 are kept, the rest counted.
+    // As many errors as fit into a file: the first 500 are kept, the rest is counted.
     let problems = parse(&page(&"(),".repeat(4096)), "big.ron").unwrap_err();
     assert_eq!((problems.len(), problems.errors()), (Diagnostics::LIMIT, 4096));
     assert!(problems.to_string().ends_with("... and 3596 more problems\nbig.ron: 4096 errors"));
@@ -291,7 +291,7 @@ fn kinds_of_one_s_own_add_to_the_shipped_ones_and_replace_them() {
     assert_eq!(kinds.iter().count(), shipped + 1);
     assert_ne!(kinds.get("button"), Kinds::builtin().get("button"));
 
-    // One bad file and nothing of the folder is taken; the message names the kind's own file.
+    // With one bad file the folder's other files are not loaded; the message names the kind's own file.
     write("bad.ron", "Kind(name: \"bad\", behaviour: Button, press_n: 5)");
     write("bell_2.ron", "Kind(name: \"bell\", behaviour: Button, press_n: 60, release_n: 30)");
     let mut kinds = Kinds::builtin();
@@ -390,7 +390,7 @@ fn links_and_read_only_files_are_read_like_any_other() {
     std::os::unix::fs::symlink(&file, &link).unwrap();
     let loaded = load_layout(&link, &Kinds::builtin(), &Geometry::default());
     assert_eq!(loaded.unwrap().layout, shipped("map"));
-    // A link to nowhere is not a file.
+    // A dangling link is not a file.
     fs::remove_file(&file).unwrap();
     let problems = load_layout(&link, &Kinds::builtin(), &Geometry::default()).unwrap_err();
     assert!(problems.to_string().contains("there is no such file"), "{problems}");

@@ -1,4 +1,4 @@
-//! One area's computer finds the feet in it as one for the whole floor would.
+//! One area's computer finds the same feet in it as one for the whole floor.
 
 use glam::Vec2;
 use underfoot::floor::{Area, Floor, Geometry, TileBlock, TileId};
@@ -6,7 +6,7 @@ use underfoot::sense::{ForceFrame, Method, Sensing};
 use underfoot::sim::{Performance, Person, Script, SimConfig, SimFloor};
 use underfoot::units::Instant;
 
-/// One computer: its area, and what it senses.
+/// One computer: its area, and the part of the floor that it senses.
 struct Computer {
     area: Area,
     floor: Floor,
@@ -77,7 +77,7 @@ fn feet_that_cross_a_border_are_where_the_whole_floor_s_computer_finds_them() {
             }
         }
     }
-    // Before a foot stands within what a computer senses, that computer knows less of its owner.
+    // Before a foot enters the sensed part of a computer, that computer knows less about its person.
     assert!(compared > 10_000, "{compared}");
     assert!(astray * 200 <= compared, "{astray} of {compared}");
 }

@@ -1,4 +1,4 @@
-//! How well feet are found: a table for people of several kinds, Eq. 4 beside the tracker.
+//! Position errors of feet: a table for people of several kinds, Eq. 4 beside the tracker.
 
 use crate::sense_support::{Scene, Score, Sensors, quantile, stand, tap, walk};
 use underfoot::sense::Method;

@@ -1,4 +1,4 @@
-//! What sensing must never do: differ from run to run, or break on nonsense.
+//! Sensing is deterministic, and survives nonsense.
 
 use crate::sense_support::{Scene, Sensors, stand, walk};
 use proptest::prelude::*;
@@ -37,7 +37,7 @@ fn a_person_seen_with_a_dead_sensor_is_degraded_and_still_found() {
     assert!(seen[3000].iter().any(|contact| contact.quality == Quality::Degraded));
     for foot in &scene.truth[3000] {
         let nearest = seen[3000].iter().map(|contact| contact.centroid.distance(foot.centre));
-        // A rigid plate's fourth corner is known only as far as the plate rests evenly on all four.
+        // A rigid plate's fourth corner can be estimated only if the plate rests evenly on all four.
         assert!(nearest.fold(f32::INFINITY, f32::min) < 0.05, "{:?}", seen[3000]);
     }
 }
@@ -83,7 +83,7 @@ proptest! {
                 frame.forces.clone_from(forces);
                 frame.quality.clone_from(quality);
                 for _ in 0..*repeats {
-                    // A gap of nothing and one of 50 ms both happen.
+                    // Gaps from zero to 50 ms occur.
                     micros += gap;
                     frame.at = Instant::from_micros(micros);
                     let contacts = sensing.update(&frame);

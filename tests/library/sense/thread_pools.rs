@@ -6,7 +6,7 @@ use crate::sense_support::Crowd;
 use underfoot::parallel::ThreadPool;
 use underfoot::sense::{Contact, ForceFrame, Method, Sensing};
 
-/// All contacts of all frames, found by so many threads.
+/// All contacts of all frames, found with `threads` threads.
 fn found(crowd: &Crowd, threads: usize) -> Vec<Vec<Contact>> {
     let pool = ThreadPool::new(NonZeroUsize::new(threads).unwrap()).unwrap();
     pool.run(|| {
@@ -23,7 +23,7 @@ fn found(crowd: &Crowd, threads: usize) -> Vec<Vec<Contact>> {
 
 #[test]
 fn a_crowd_is_sensed_alike_by_any_number_of_threads() {
-    // Feet enough for a pool to be used, and time enough for each to land, to meet another and to leave.
+    // Enough feet for the use of a pool, and enough time for each to land, to meet another and to leave.
     let crowd = Crowd::of(60, 200, 600);
     let alone = found(&crowd, 1);
     assert!(alone.iter().all(|contacts| contacts.len() > 150), "a crowd");

@@ -1,4 +1,4 @@
-//! Datagrams nobody should send: none may crash the program, and none may change what feet do.
+//! Invalid datagrams: none may crash the program, and none may change the events of feet.
 
 use proptest::prelude::*;
 use rosc::{OscPacket, encoder};
@@ -16,13 +16,13 @@ fn floor() -> Floor {
 }
 
 fn packet(board: u16, ms: u32) -> SensorPacket {
-    // A slow wave, so that frames differ from each other and boards from each other.
+    // A slow wave, so that frames and boards differ from each other.
     let wave = |channel: u32| 20_000 + (ms % 1000) as u16 * 20 + board * 50 + channel as u16;
     let readings = Readings::Counts((0..24).map(|channel| Some(wave(channel))).collect());
     SensorPacket { board, sequence: ms, received: Instant::from_millis(ms.into()), readings }
 }
 
-/// A receiving end: everything behind the socket.
+/// A receiving end: all code behind the socket.
 struct Receiver {
     decoder: Decoder,
     batch: Batch,
@@ -92,13 +92,13 @@ fn ten_seconds_of_garbage_beside_the_packets_changes_next_to_nothing() {
             noisy.receive(datagram, ms);
             sent.push(datagram.to_vec());
         }
-        // Compared and forgotten each second.
+        // Compared and dropped each second.
         if ms % 1000 == 999 {
             assert_eq!(clean.frames.len(), noisy.frames.len(), "before {ms}");
             let frames = clean.frames.drain(..).zip(noisy.frames.drain(..));
-            // A copy of the last packet with just the number's lowest bit damaged passes for this
-            // millisecond's: the frame then holds a value 1 ms old, perhaps with a bit wrong.
-            // About one in two seconds does.
+            // A copy of the last packet with only the number's lowest bit damaged passes for this millisecond's
+            // packet: the frame then holds a value 1 ms old, perhaps with a wrong bit. That happens about once in two
+            // seconds.
             let changed = frames
                 .inspect(|(_, noisy)| {
                     assert!(noisy.forces.iter().flatten().all(|force| force.is_finite()));
@@ -119,7 +119,7 @@ fn as_osc(datagram: &[u8]) -> Option<OscPacket> {
     rest.is_empty().then_some(packet)
 }
 
-/// What the guard passes, rosc must read to the last byte: written again it has the same length.
+/// rosc must read datagrams that the guard passes completely: encoded again they have the same length.
 fn guard_and_rosc_agree(datagram: &[u8]) -> Result<(), TestCaseError> {
     if check(datagram, &Limits::SENSORS).is_ok() {
         let packet = as_osc(datagram);
@@ -130,7 +130,7 @@ fn guard_and_rosc_agree(datagram: &[u8]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Fragments of OSC, so that random datagrams get past the first check now and then.
+/// Fragments of OSC, so that some random datagrams pass the first check.
 fn fragments() -> impl Strategy<Value = Vec<u8>> {
     let fragment = prop_oneof![
         Just(b"#bundle\0\0\0\0\0\0\0\0\x01".to_vec()),
@@ -181,7 +181,7 @@ proptest! {
 
 #[test]
 fn the_fragments_above_do_reach_the_decoder() {
-    // Otherwise the property would say nothing about what passes the guard.
+    // Otherwise the property would say little about datagrams that pass the guard.
     use proptest::strategy::ValueTree;
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let passed = (0..4000).filter(|_| {

@@ -20,7 +20,7 @@ use underfoot::wire::Prefix;
 
 use crate::sender::{ANY_PORT, Sender, simulated, small_floor, standing};
 
-/// A button on each of two tiles at opposite ends: no foot reaches both.
+/// A button on each of two tiles at opposite ends: a foot cannot reach both.
 const TWO_BUTTONS: &str = r#"Layout(
     version: 1,
     regions: [(id: "all", at: (0, 0), size: (3, 2))],
@@ -41,17 +41,17 @@ fn two_buttons(geometry: &Geometry) -> Layout {
 fn tapping(geometry: &Geometry, ms: u32) -> Option<Foot> {
     let column = ms / 500 % 2 * 2;
     let middle = geometry.centre(geometry.tile_under(Vec2::new(0.1 + 0.304 * column as f32, 0.1)).unwrap());
-    // A foot that presses, not one that walks.
+    // The force of a press and not of a step.
     (150..300).contains(&(ms % 500)).then(|| Foot { force: Newtons(150.0), ..standing(middle) })
 }
 
-/// A floor at work, an app that asks, and another that listens.
+/// A running floor, an app that sends requests, and another that listens.
 struct Room {
     server: Server,
     clock: HostClock,
     app: UdpSocket,
     listener: UdpSocket,
-    /// When the recording began.
+    /// Start of the recording.
     start: Instant,
 }
 
@@ -82,14 +82,14 @@ impl Room {
         self.app.send(&rosc::encoder::encode(&message).unwrap()).unwrap();
     }
 
-    /// Serves the floor until both buttons were tapped once more; gives back which part of the recording that is.
+    /// Serves the floor until both buttons were tapped once more; returns that part of the recording.
     fn serve_a_second(&mut self) -> std::ops::Range<usize> {
         let begun = (self.clock)();
         while (self.clock)().since(begun) < Duration::from_secs(1) {
             self.server.turn().unwrap();
         }
         let sample = |at: Instant| (at.since(self.start).as_secs_f64() * f64::from(RATE)) as usize;
-        // What was asked takes a moment to arrive, and 5 ms to fade; the tap that was just felt rings out.
+        // A request takes a moment to arrive, and 5 ms to fade; the latest tap rings out.
         sample(begun + Duration::from_millis(60))..sample((self.clock)())
     }
 
@@ -97,7 +97,7 @@ impl Room {
         message(&self.app).expect("an answer")
     }
 
-    /// What listeners were told of mutes so far.
+    /// The mute reports to listeners so far.
     fn told(&self) -> Vec<Vec<i32>> {
         self.listener.set_read_timeout(Some(Duration::from_millis(200))).unwrap();
         let all = std::iter::from_fn(|| message(&self.listener));
@@ -106,7 +106,7 @@ impl Room {
     }
 }
 
-/// The next message; of a bundle the first.
+/// The next message; the first one of a bundle.
 fn message(socket: &UdpSocket) -> Option<(String, Vec<OscType>)> {
     let mut buffer = [0; 2048];
     let length = socket.recv(&mut buffer).ok()?;
@@ -153,7 +153,7 @@ fn a_muted_tile_is_silent_and_the_others_play_until_all_are() {
 
     assert_eq!(before, 0);
     assert!(counted >= 2, "press and release of the west button are counted: {counted}");
-    // What one app asks is answered to all.
+    // All apps receive the answer to one app's request.
     assert_eq!(told, [vec![0, 0, 0], vec![0, 0, 0], vec![1, 0, 0], vec![1], vec![0]]);
 
     let mut reader = hound::WavReader::open(&wav).unwrap();

@@ -1,4 +1,4 @@
-//! Events and contacts as another program hears them, over loopback.
+//! Events and contacts as another program receives them, over loopback.
 
 use std::net::UdpSocket;
 use std::time::Duration;
@@ -71,7 +71,7 @@ fn events_arrive_in_order_up_to_the_last() {
         sink.report(Report::Event(&event(number)));
     }
     drop(sink);
-    // News of the link and news of the sensors both tell of both.
+    // Changes of the link and changes of the sensors both report both.
     for _ in 0..2 {
         assert_eq!(hear(&listener), [("/underfoot/health".into(), Some(OscType::String("live".into())))]);
     }
@@ -84,7 +84,7 @@ fn events_arrive_in_order_up_to_the_last() {
 fn contacts_arrive_at_100_hz_and_end_with_none() {
     let (listener, mut sink) = listen();
     let nobody = [("/underfoot/contacts".to_owned(), Some(OscType::Int(0)))];
-    // Nobody, then a foot for 100 ms from 5 ms on, then nobody.
+    // An empty floor, then a foot for 100 ms from 5 ms on, then an empty floor.
     let mut reports = 0;
     for ms in 0..300 {
         let here = (5..105).contains(&ms);
@@ -93,7 +93,7 @@ fn contacts_arrive_at_100_hz_and_end_with_none() {
         if ms == 0 {
             assert_eq!(hear(&listener), nobody, "who waits learns that the floor is there");
         }
-        // The report falls due at 5, 15, ... 105: the first at once, the last with nobody.
+        // The report falls due at 5, 15, ... 105: the first at once, the last without a foot.
         if (5..=105).contains(&ms) && ms % 10 == 5 {
             reports += 1;
             let received = hear(&listener);
@@ -127,7 +127,7 @@ fn that_nobody_is_there_is_said_every_second_on_an_empty_and_on_a_lost_floor() {
     sink.report(Report::Link(Instant::from_millis(2600), LinkState::Lost));
     assert_eq!(hear(&listener), health("lost"));
     assert_eq!(hear(&listener), nobody, "at once");
-    // No frames come: only the clock goes on.
+    // No frames come: only the clock advances.
     for ms in 2601..4700 {
         sink.poll(Instant::from_millis(ms));
         if ms == 3600 || ms == 4600 {

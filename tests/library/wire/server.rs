@@ -1,4 +1,4 @@
-//! A server without sockets: what it does with packets, silence and requests.
+//! A server without sockets: its handling of packets, silence and requests.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value, WidgetId};
 use underfoot::wire::{ControlMessage, LinkState, Request, SensorPacket};
 
-/// Packets of a foot on `home`, with silences in between: the clock goes on, nothing comes.
+/// Packets of a foot on `home`, with silences in between, in which only the clock advances.
 struct Visit {
     sim: SimFloor,
     /// Milliseconds with (`Some`) or without packets, and the force on `home`.
@@ -28,7 +28,7 @@ struct Visit {
     waiting: VecDeque<SensorPacket>,
     foot: Foot,
     requests: VecDeque<ControlMessage>,
-    /// Sensors that break, and when.
+    /// Sensors that break, with their times.
     breaks: VecDeque<(u32, SensorId, Option<SensorFault>)>,
 }
 
@@ -66,7 +66,7 @@ impl SensorSource for Visit {
     }
 }
 
-/// Notes everything with its time in milliseconds.
+/// Records all reports with their times in milliseconds.
 struct Notes(mpsc::Sender<(u64, String)>);
 
 impl EventSink for Notes {
@@ -187,7 +187,7 @@ fn a_new_layout_is_on_the_floor_at_once_and_shown_with_its_revision() {
     assert_eq!(snapshot.link, LinkState::Live);
 }
 
-/// A sink whose disk is full from the start.
+/// A sink with a full disk from the start.
 struct Broken;
 
 impl ActuatorSink for Broken {
@@ -206,7 +206,7 @@ fn controls_go_on_without_actuators() {
     assert!(told.iter().any(|(_, what)| what == "home clicked"));
 }
 
-/// A manual sink that is examined while the server owns it.
+/// A manual sink that the test examines while the server owns it.
 struct Watched(ManualSink, mpsc::Sender<(u64, Instant)>);
 
 impl ActuatorSink for Watched {
@@ -238,7 +238,7 @@ fn a_click_starts_with_the_sample_of_its_press() {
     assert_eq!(first, pressed * 48, "48 samples a millisecond");
 }
 
-/// An effect tried from the window goes the same way as a control's answer, and the floor goes on meanwhile.
+/// An effect tried in the window is played like a control's answer, and the floor continues meanwhile.
 #[test]
 fn an_effect_can_be_tried_while_the_floor_works() {
     let (server, told) = server(&[(300, EMPTY), (200, PRESSED), (400, EMPTY)], &[]);
@@ -276,7 +276,7 @@ fn the_sensors_health_is_told_when_it_changes_and_once_a_second_at_most() {
     drop(server);
     let told: Vec<_> = told.iter().filter(|(_, what)| what.starts_with("health")).collect();
     let what: Vec<_> = told.iter().map(|(_, what)| what.trim_start_matches("health ")).collect();
-    // That all is well at first is not reported.
+    // A healthy state at the start is not reported.
     assert_eq!(what, ["1 faulty, 143 live", "2 faulty, 142 live", "1 faulty, 143 live"]);
     assert!(told.windows(2).all(|pair| pair[1].0 - pair[0].0 >= 1000), "{told:?}");
     assert!((1500..1650).contains(&told[0].0), "at once, if the last was a second ago: {told:?}");

@@ -1,4 +1,4 @@
-//! TUIO as a client reads it: frames, coordinates, datagram sizes, goodbyes.
+//! TUIO as a client reads it: frames, coordinates, datagram sizes, final frames.
 
 use std::net::UdpSocket;
 use std::time::Duration;
@@ -53,7 +53,7 @@ struct Frame {
     sets: Vec<(i32, Vec<f32>)>,
     fseq: i32,
     bundles: usize,
-    /// Who was alive in a bundle before being set in this frame, a number per bundle.
+    /// Ids that were alive in a bundle before being set in this frame, a number per bundle.
     unset: Vec<i32>,
 }
 
@@ -61,7 +61,7 @@ fn int(arg: &OscType) -> i32 {
     arg.clone().int().unwrap()
 }
 
-/// Reads a bundle as the specification wants it: source, alive, set..., fseq, all of one profile.
+/// Reads a bundle in the order of the specification: source, alive, set..., fseq, all of one profile.
 fn read(datagram: &[u8], frames: &mut [Frame; 2]) {
     let messages = messages(datagram);
     let profile =
@@ -117,7 +117,7 @@ fn the_origin_is_the_north_west_corner() {
         &blobs.sets[0].1,
         &[0.25, 2.0 / 3.0, std::f32::consts::FRAC_PI_2, w, h, ellipse, 0.5, -0.5, 0.0, 0.0, 0.0],
     );
-    // Corners, and what lies beyond them.
+    // Corners, and places beyond them.
     for (second, x, y, expected) in
         [(1, 0.0, 0.912, [0.0, 0.0]), (2, 1.824, 0.0, [1.0, 1.0]), (3, 2.5, -0.5, [1.0, 1.0])]
     {
@@ -133,11 +133,11 @@ fn a_blob_points_along_the_foot_where_two_tiles_hint_at_it() {
         let contact = Contact { difference, ..foot(1, 0.5, 0.5) };
         write(&mut tuio, ms, &[contact]).0[1].sets.first().map(|(_, floats)| floats[2].to_degrees().round())
     };
-    // Clockwise from the x axis, since y grows southwards; heel and toe look alike.
+    // Clockwise from the x axis, since y grows southwards; heel and toe are indistinguishable.
     assert_eq!(angle(0, Some(Vec2::new(0.1, 0.1))), Some(135.0));
     assert_eq!(angle(10, Some(Vec2::new(-0.1, -0.1))), None, "the same foot: nothing has changed");
     assert_eq!(angle(20, Some(Vec2::new(0.1, 0.0))), Some(0.0));
-    // Without a hint it stays as it was.
+    // Without a hint it stays unchanged.
     assert_eq!(angle(30, None), None);
 }
 
@@ -174,7 +174,7 @@ fn a_crowd_takes_several_datagrams() {
             assert_eq!(frame.bundles > 1, crowd > 1, "{crowd} feet in {} bundles", frame.bundles);
         }
     }
-    // More than fit into one `alive`: the heaviest are told, the rest counted.
+    // More than fit into one `alive`: the heaviest are reported, the rest counted.
     let heavier = |id: u32| Contact { force: Newtons(100.0 + id as f32), ..foot(id, 0.5, 0.5) };
     let feet: Vec<Contact> = (0..250).map(heavier).collect();
     let ([cursors, _], left_out) = write(&mut Tuio1::new(&floor(), "underfoot@host", 1), 0, &feet);
@@ -219,7 +219,7 @@ fn pointers_carry_force_as_pressure() {
         bundles += 1;
         assert_eq!(bundle[0].args[0], OscType::Int(1 + bundles), "a number of its own");
         told += bundle.len() - 2;
-        // 7 and 8 were told before; the others are alive from their first pointer on.
+        // 7 and 8 were reported before; the others are alive from their first pointer on.
         let known = |id: i32| id == 7 || id == 8 || id < told as i32;
         let alive: Vec<i32> = (0..100).filter(|id| known(*id)).collect();
         assert_eq!(bundle.last().unwrap().args.iter().map(int).collect::<Vec<_>>(), alive);
@@ -260,18 +260,18 @@ fn nobody_stays_behind_as_a_ghost() {
     ] {
         let (listener, mut sink) = listen(version);
         let frame = || (0..per_frame).map(|_| alive(&listener)).collect::<Vec<_>>();
-        // Also an empty floor is told of: a client that waits learns that somebody is there to speak.
+        // An empty floor is reported too, so that a waiting client knows that the server runs.
         sink.report(Report::Contacts(Instant::START, &[]));
         assert_eq!(frame(), vec![Vec::<i32>::new(); per_frame]);
         sink.report(Report::Contacts(Instant::from_millis(1), &[foot(1, 0.5, 0.5)]));
         assert_eq!(frame(), vec![vec![1]; per_frame]);
-        // The floor falls silent: there are no more frames that would say so.
+        // The floor falls silent: there are no more frames that would report it.
         sink.report(Report::Link(Instant::from_millis(100), LinkState::Lost));
         assert_eq!(frame(), vec![Vec::<i32>::new(); per_frame]);
         sink.report(Report::Link(Instant::from_millis(200), LinkState::Live));
         sink.report(Report::Contacts(Instant::from_millis(201), &[foot(2, 0.5, 0.5)]));
         assert_eq!(frame(), vec![vec![2]; per_frame]);
-        // The program ends under a foot: goodbye, twice, for one may be lost.
+        // The program ends under a foot: two final frames, since one may be lost.
         drop(sink);
         assert_eq!(frame(), vec![Vec::<i32>::new(); per_frame]);
         assert_eq!(frame(), vec![Vec::<i32>::new(); per_frame]);

@@ -1,4 +1,4 @@
-//! What strict TUIO clients make of our datagrams: one that drops numbers it has passed, and believes `alive`.
+//! Our datagrams in strict TUIO clients: one that drops numbers it has passed, and follows `alive`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,8 +10,8 @@ use underfoot::outgoing::{Tuio1, Tuio2, TuioProfiles, tuio_first_frame};
 use underfoot::sense::{Contact, ContactId};
 use underfoot::units::{Instant, Newtons};
 
-/// A client as tuio-client, tuioxide and the C++ reference are: a datagram whose number is not larger than the
-/// last is late and dropped; who is not in `alive` is gone; who is, and was never set, appears at the origin.
+/// A client like tuio-client, tuioxide and the C++ reference: it drops a datagram as late if its number is not larger
+/// than the last; an id missing from `alive` is gone; one in `alive` that was never set appears at the origin.
 #[derive(Debug, Default)]
 struct Client {
     number: i32,
@@ -69,7 +69,7 @@ fn floor() -> Geometry {
     Geometry::of_paper_tiles(6, 6).unwrap()
 }
 
-/// Writes `frames`, sets of contacts with a place each, as every profile; each with its client, which must see them.
+/// Writes `frames`, sets of contacts with a place each, in every profile; a client of each must see them.
 fn follow(frames: &[BTreeMap<u32, u8>], starts: usize) -> Result<(), TestCaseError> {
     for profile in ["/tuio/2Dcur", "/tuio/2Dblb", "/tuio2"] {
         let mut client = Client::default();
@@ -110,7 +110,7 @@ fn follow(frames: &[BTreeMap<u32, u8>], starts: usize) -> Result<(), TestCaseErr
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Feet come, stay, move and leave in any number, also when the program is started again.
+    /// Feet come, stay, move and leave in any number, also across a restart of the program.
     #[test]
     fn strict_clients_see_everybody_at_their_place_and_no_ghost(
         frames in prop::collection::vec(prop::collection::btree_map(0_u32..150, any::<u8>(), 0..120), 1..12),

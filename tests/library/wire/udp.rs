@@ -12,7 +12,7 @@ use underfoot::wire::{ControlMessage, LinkCause, Readings, SensorEncoder, Sensor
 
 const ANY_PORT: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
 
-/// Long enough for a loaded machine; nothing waits it out when all is well.
+/// Long enough for a loaded machine; tests that pass do not wait for it.
 const SOON: Duration = Duration::from_secs(5);
 
 fn floor() -> Floor {
@@ -170,7 +170,7 @@ fn readings_are_taken_from_a_bundle_whose_requests_are_not() {
     let mut source = source.with_commands(commands, [ANY_PORT.ip().into()]).unwrap();
     let (_, readings) = rosc::decoder::decode_udp(&datagram(&packet(0, 5))).unwrap();
     let content = vec![message("/underfoot/widget/zoom/get", vec![]), readings];
-    // In 1900 and in 2036, by a board whose clock was never set.
+    // In 1900 and in 2036, from a board with an unset clock.
     for seconds in [1, u32::MAX] {
         let timetag = OscTime { seconds, fractional: 0 };
         let bundle = OscPacket::Bundle(OscBundle { timetag, content: content.clone() });
@@ -242,7 +242,7 @@ fn a_port_in_use_is_reported_with_what_to_do() {
 
 #[test]
 fn an_address_of_another_machine_is_reported_with_what_to_do() {
-    // 192.0.2.0/24 belongs to documentation, never to a machine.
+    // 192.0.2.0/24 is reserved for documentation and never belongs to a machine.
     let Err(error) = UdpSource::bind("192.0.2.1:9000".parse().unwrap(), &floor()) else { panic!("bound") };
     assert!(error.to_string().contains(": 0.0.0.0:9000 takes packets on all of them"), "{error}");
 }
@@ -254,7 +254,7 @@ fn a_flood_of_rubbish_holds_no_call_for_long_and_lets_packets_through() {
     let flood = std::thread::spawn(move || {
         for sequence in 0..2000 {
             for _ in 0..10 {
-                // A full receive buffer makes the kernel drop; that is not a failure of the sender.
+                // A full receive buffer makes the kernel drop packets, which is not a failure of the sender.
                 let _ = sender.send(&[0xFF; 400]);
             }
             let _ = sender.send(&datagram(&packet(0, sequence)));
@@ -285,7 +285,7 @@ fn what_the_kernel_drops_while_nobody_reads_is_counted() {
     for _ in 0..sent {
         let _ = sender.send(&datagram);
     }
-    // The kernel is asked once a second.
+    // The program queries the kernel once a second.
     let mut patience = 50;
     while source.counters().overflowed == 0 && patience > 0 {
         source.next(Duration::from_millis(100)).unwrap();
@@ -303,7 +303,7 @@ fn the_granted_buffer_is_told() {
     assert!(source.granted_buffer() > 0);
 }
 
-/// What apps have asked for, oldest first.
+/// The requests of apps, oldest first.
 fn asked(source: &mut UdpSource) -> Vec<ControlMessage> {
     std::iter::from_fn(|| source.take_request()).map(|request| request.message).collect()
 }

@@ -1,7 +1,7 @@
-//! A1, A2, A4, A5 and A9: sound cards that vanish, hang or do not fit, and an actuator that is driven too long.
+//! A1, A2, A4, A5 and A9: sound cards that vanish, hang or do not fit, and an actuator driven for too long.
 //!
-//! The card is a JACK server without hardware, which keeps time as a card does, behind ALSA's own plugin: that takes
-//! Debian's `jackd2` and `libasound2-plugins`. Where they lack, a test prints so and passes.
+//! The card is a JACK server without hardware, which keeps time like a card, behind ALSA's own plugin: this needs
+//! Debian's `jackd2` and `libasound2-plugins`. Without them, a test prints a message and passes.
 #![cfg(all(target_os = "linux", feature = "audio"))]
 
 use std::path::Path;
@@ -14,10 +14,11 @@ use super::live::Live;
 use super::tape::BUTTON;
 use crate::end_to_end::{channels, said, underfoot};
 
-/// How the card is named in ALSA.
+/// The card's name in ALSA.
 const CARD: &str = "testfloor";
 
-/// A JACK server of its own name, as a card of some channels at 48 kHz; `None`, which is printed, where there is none.
+/// A JACK server with its own name, as a card of some channels at 48 kHz; `None`, with a printed message, without
+/// JACK.
 struct Card {
     folder: tempfile::TempDir,
     server: Option<Child>,
@@ -75,14 +76,14 @@ impl Card {
         jackd.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()
     }
 
-    /// What leads a program to this card.
+    /// The environment that leads a program to this card.
     fn environment(&self) -> [(&'static str, String); 3] {
         let config = self.folder.path().join("alsa.conf").display().to_string();
         let start = ("JACK_NO_START_SERVER", "1".into());
         [("ALSA_CONFIG_PATH", config), ("JACK_DEFAULT_SERVER", self.name()), start]
     }
 
-    /// Whether the program finds it within a while.
+    /// Whether the program finds it within 20 s.
     fn is_found(&self) -> bool {
         let end = Instant::now() + Duration::from_secs(20);
         let devices = || underfoot().args(["rack", "devices"]).envs(self.environment()).output().unwrap();
@@ -92,12 +93,12 @@ impl Card {
             .any(|output| is_there(&said(&output)))
     }
 
-    /// Ends the server, politely at first: one that is killed leaves its name taken, and there are eight names.
+    /// Ends the server, first by SIGTERM: a killed one leaves its name occupied, and there are eight names.
     fn pull_out(&mut self) {
         let Some(mut server) = self.server.take() else { return };
         let process = server.id().to_string();
         for signal in ["CONT", "TERM"] {
-            // It may have ended by itself.
+            // It may have ended already.
             let _ = Command::new("kill").args(["-s", signal, &process]).stderr(Stdio::null()).status();
         }
         let end = Instant::now() + Duration::from_secs(10);
@@ -120,7 +121,7 @@ impl Drop for Card {
     }
 }
 
-/// The latest that the floor reports of its card.
+/// The floor's latest report about its card.
 fn card_state(live: &Live) -> Value {
     live.lines().into_iter().rfind(|line| line["event"] == "device").unwrap_or_default()
 }
@@ -187,7 +188,7 @@ fn steps_on_a_floor_whose_card_hangs_are_not_felt_all_at_once_when_it_is_back() 
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("Cues: ") && said.contains("muted "), "{said}");
     let longest = said.split("longest ").nth(1).unwrap().split(' ').next().unwrap();
-    // Found to hang after 200 ms; the steps went on for 4.5 s.
+    // The hang was detected after 200 ms; the steps continued for 4.5 s.
     assert!(longest.parse::<f64>().unwrap() < 1000.0, "{said}");
 }
 
@@ -218,7 +219,7 @@ fn a_card_that_does_not_fit_is_refused_with_the_map() {
 // A5
 #[test]
 fn without_real_time_priority_it_plays_and_says_what_helps() {
-    // Even root gets none without the capability; `prlimit` and `setpriv` are of util-linux.
+    // Even root has none without the capability; `prlimit` and `setpriv` belong to util-linux.
     let denied = ["--rtprio=0:0", "setpriv", "--bounding-set=-sys_nice", "--inh-caps=-sys_nice"];
     let made = Command::new("prlimit").args(denied).arg("true").output();
     let is_made = made.is_ok_and(|output| output.status.success());
@@ -247,7 +248,7 @@ fn without_real_time_priority_it_plays_and_says_what_helps() {
     assert!(said.contains("/etc/security/limits.d"), "{priority}: {said}");
 }
 
-/// A foot holds a control for a minute whose effect drives its actuator at full scale (36 V into 4 ohms).
+/// A foot holds a control for a minute; the control's effect drives its actuator at full scale (36 V into 4 ohms).
 // A9
 #[test]
 fn an_actuator_that_is_driven_too_long_is_turned_down() {
@@ -295,7 +296,7 @@ fn an_actuator_that_is_driven_too_long_is_turned_down() {
     assert!(minute <= 80.0, "{minute} W over the minute");
 }
 
-/// The mean power of each second into the coil that takes most, in watts.
+/// The mean power of each second in the coil that receives most, in watts.
 fn powers(path: &Path) -> Vec<f32> {
     let (rate, channels) = channels(path);
     let energy = |samples: &[f32]| samples.iter().map(|sample| sample * sample).sum::<f32>();

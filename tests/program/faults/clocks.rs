@@ -1,4 +1,4 @@
-//! N9 and N13: a wall clock that is set, and a program that does not read in time.
+//! N9 and N13: a wall clock that is set, and a program that reads too late.
 #![cfg(target_os = "linux")]
 
 use std::net::UdpSocket;
@@ -8,10 +8,10 @@ use std::time::Duration;
 use super::live::Live;
 use super::tape::{BUTTON, PEDAL};
 
-/// How often a hold is tried again that a busy machine has lost packets of.
+/// Number of attempts at a hold that a busy machine may lose packets of.
 const TRIES: usize = 6;
 
-/// libfaketime for programs with threads, where Debian and others keep it.
+/// libfaketime for programs with threads, in the folders of Debian and others.
 fn faketime() -> Option<PathBuf> {
     let folders = ["/usr/lib", "/usr/lib64", "/usr/local/lib"].iter().map(Path::new);
     let triples = Path::new("/usr/lib").read_dir().into_iter().flatten().flatten().map(|entry| entry.path());
@@ -19,8 +19,8 @@ fn faketime() -> Option<PathBuf> {
     folders.map(|folder| folder.join("faketime/libfaketimeMT.so.1")).find(|path| path.is_file())
 }
 
-/// Row N9. The clock of this process alone is set, by a day forwards and by two back; a foot goes on holding its control.
-/// Its monotonic clock goes on, as a computer's does when the time is set.
+/// Row N9. The clock of this process alone is set, by a day forwards and by two back; a foot keeps holding its
+/// control. The process's monotonic clock continues, as a computer's does when the time is set.
 #[test]
 fn a_wall_clock_that_is_set_by_a_day_ends_no_hold() {
     let Some(library) = faketime() else {
@@ -37,7 +37,7 @@ fn a_wall_clock_that_is_set_by_a_day_ends_no_hold() {
         };
         set("+0");
         let live = Live::start_as(PEDAL, |run| {
-            // All others are named once a minute each, by which the log shows its clock.
+            // The log names each other sender once a minute, which shows the program's clock.
             run.args(["--allow", "127.0.0.1"])
                 .env("LD_PRELOAD", &library)
                 .env("FAKETIME_TIMESTAMP_FILE", &clock)
@@ -54,7 +54,7 @@ fn a_wall_clock_that_is_set_by_a_day_ends_no_hold() {
             days.push(day_that_the_log_shows(&live, days.len() + 1));
         }
         if live.ends() > before {
-            // A machine that starves the boards of this test loses the floor as well: then it was no test.
+            // If a starved machine has lost the floor as well, the attempt does not count.
             assert!(live.was_lost(), "cancelled although packets came: {:?}", live.lines());
             continue;
         }
@@ -79,14 +79,14 @@ fn day_that_the_log_shows(live: &Live, number: usize) -> String {
     line.split('T').next().unwrap().to_owned()
 }
 
-/// Row N13. The program stands still while datagrams fill its receive buffer: what the kernel drops is counted and
-/// reported with the setting that helps.
+/// Row N13. The program is stopped while datagrams fill its receive buffer: it counts the packets that the kernel
+/// drops and reports them with the setting that helps.
 #[test]
 fn datagrams_that_the_kernel_drops_are_counted_and_the_setting_is_named() {
     let live = Live::start(BUTTON, &[]);
     live.signal("STOP");
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
-    // The kernel counts each with what it takes of its own memory: some 10,000 fill the 8 MiB that the program asks for.
+    // The kernel counts each with its own overhead: some 10,000 fill the 8 MiB that the program requests.
     let filler = [0; 1400];
     for _ in 0..60_000 {
         let _ = socket.send_to(&filler, live.address);

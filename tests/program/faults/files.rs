@@ -66,7 +66,7 @@ fn f6_a_layout_with_too_much_is_refused_before_it_takes_memory() {
 fn f7_odd_files_are_taken_or_refused_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/layouts/map.ron")).unwrap();
-    // As Windows writes it, with its mark.
+    // As Windows writes it, with its byte order mark.
     let utf16: Vec<u8> = format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect();
     let good = [
         ("mark.ron", format!("\u{feff}{text}").into_bytes()),

@@ -1,4 +1,4 @@
-//! P1 to P5, P7, P9 to P11 and R4: datagrams that no board or app sends. After each kind the floor senses and answers.
+//! P1 to P5, P7, P9 to P11 and R4: datagrams that no board or app sends. After each kind the floor still works.
 
 use std::net::UdpSocket;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -10,7 +10,7 @@ use underfoot::wire::Readings;
 use super::live::Live;
 use super::tape::BUTTON;
 
-/// Text padded as OSC has it.
+/// Text padded as in OSC.
 fn text(text: &str) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
     bytes.resize((bytes.len() / 4 + 1) * 4, 0);
@@ -39,7 +39,7 @@ fn bundle(tag: u64, elements: &[Vec<u8>]) -> Vec<u8> {
 /// The time tag that means "at once".
 const AT_ONCE: u64 = 1;
 
-/// The time tag of so many seconds from now.
+/// The time tag `seconds` from now.
 fn from_now(seconds: i64) -> u64 {
     const FROM_1900_TO_1970: u64 = 2_208_988_800;
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_secs() + FROM_1900_TO_1970;
@@ -57,13 +57,14 @@ fn is_muted(live: &Live) -> bool {
     answer.ends_with(&[1])
 }
 
-/// The number behind `name` in what the program says at its end.
+/// The number behind `name` in the program's final report.
 fn counted(said: &str, name: &str) -> u64 {
     let rest = said.split(&format!("{name} ")).nth(1).unwrap_or_else(|| panic!("no {name}: {said}"));
     rest.split(|letter: char| !letter.is_ascii_digit()).next().unwrap().parse().unwrap()
 }
 
-/// Nothing has pressed the control; a foot does, and the program ends as it should. What it said.
+/// Checks that the control was not pressed, that a foot presses it, and that the program ends normally; returns its
+/// messages.
 fn works_still(live: Live) -> String {
     assert_eq!(live.count("it pressed"), 0, "{:?}", live.lines());
     assert!(!is_muted(&live));
@@ -111,7 +112,7 @@ fn damaged_datagrams_change_nothing_and_the_floor_goes_on() {
         rng.fill_bytes(&mut noise);
         send(&live, &noise);
     }
-    // A good request before an element that is cut, and behind one.
+    // A good request before a truncated element, and behind one.
     let broken = b"/underfoot/mu".to_vec();
     send(&live, &bundle(AT_ONCE, &[mute.clone(), broken.clone()]));
     send(&live, &bundle(AT_ONCE, &[broken, mute]));
@@ -119,7 +120,7 @@ fn damaged_datagrams_change_nothing_and_the_floor_goes_on() {
     assert!(counted(&said, "refused") >= 500, "{said}");
 }
 
-/// A packet of the boards with a bit turned, over and over.
+/// Packets of the boards with an inverted bit, repeatedly.
 // P3
 #[test]
 fn packets_with_damaged_bits_end_nothing() {
@@ -230,7 +231,7 @@ fn hostile_addresses_reach_no_control() {
     assert!(counted(&said, "refused") + counted(&said, "requests not met") >= 50, "{said}");
 }
 
-/// Ten thousand datagrams of each kind that is refused, twice: the second time takes no memory.
+/// Ten thousand datagrams of each refused kind, twice: the second pass allocates no memory.
 // R4
 #[test]
 #[cfg(target_os = "linux")]
@@ -245,7 +246,7 @@ fn floods_of_refused_datagrams_take_no_memory() {
     ];
     let flood = || {
         for number in 0..40_000_usize {
-            // A full receive buffer makes the kernel drop.
+            // A full receive buffer makes the kernel drop packets.
             let _ = socket.send_to(&kinds[number % kinds.len()], live.address);
         }
         assert!(!is_muted(&live));

@@ -1,4 +1,4 @@
-//! N1 to N8 and N12: packets that get lost, doubled, late or out of order, boards that restart, crystals that drift.
+//! N1 to N8 and N12: packets that are lost, doubled, late or out of order, boards that restart, crystals that drift.
 //!
 //! Most run `underfoot session`, which senses a simulated floor through its raw packets in the floor's own time.
 
@@ -16,27 +16,27 @@ const PAGE: &str = r#"Layout(version: 1, regions: [(id: "page", at: (0, 2), size
     (id: "home", kind: "button", at: (2.2, 2.2), size: (0.9, 0.9)),
 ])"#;
 
-/// Somebody holds `drive` for two seconds, from second 4.9 on, and then presses `home`.
+/// A person holds `drive` for two seconds, from second 4.9 on, and then presses `home`.
 const VISIT: &str = r#"Scenario(title: "Drive, then home", person: (mass_kg: 70, foot_m: 0.27), steps: [
     Wait(ms: 1200), Enter(from: South, at: (2.2, 0.5)), Press(widget: "drive", force_n: 140, hold_ms: 2000),
     Wait(ms: 500), Press(widget: "home", force_n: 140, hold_ms: 350), Wait(ms: 1200),
 ])"#;
 
-/// Events of that visit when nothing goes wrong.
+/// Events of that visit without faults.
 const WELL: [&str; 5] = ["drive pressed", "drive released", "home pressed", "home released", "home clicked"];
 
-/// What the floor reports when that visit meets these faults.
+/// The floor's reports when that visit meets these faults.
 fn visit(faults: &[&str]) -> Vec<Value> {
     let options: Vec<&str> = faults.iter().flat_map(|fault| ["--fault", fault]).collect();
     session(PAGE, VISIT, &options)
 }
 
-/// The most sensors that a line counts as degraded.
+/// The greatest number of sensors that a line counts as degraded.
 fn degraded(lines: &[Value]) -> u64 {
     lines.iter().filter_map(|line| line["degraded"].as_u64()).max().unwrap_or_default()
 }
 
-/// When an event came first, in seconds.
+/// The time of the first such event, in seconds.
 fn time_of(lines: &[Value], id: &str, event: EventKind) -> f64 {
     let line = lines.iter().find(|line| line["id"] == id && line["event"] == event.name());
     line.unwrap_or_else(|| panic!("no {event:?} of {id}: {lines:?}"))["t_s"].as_f64().unwrap()
@@ -75,7 +75,7 @@ fn n6_a_sequence_number_that_wraps_leaves_no_trace() {
     let tapped = |sequence: u32| {
         let mut tape = Tape::on(BUTTON);
         tape.sequence = sequence;
-        // Boards that start anew are taken up first.
+        // Boards that have just started are accepted first.
         tape.wait(3000);
         tape.tap();
         let pressed = tape.seconds();
@@ -117,12 +117,12 @@ fn n7_packets_held_back_for_200_ms_cancel_what_is_held_and_press_nothing_old() {
     assert_eq!(tape::events(&lines), ended);
     let cancelled = time_of(&lines, "drive", EventKind::Cancelled);
     assert!((5.5..5.621).contains(&cancelled), "within 120 ms: {cancelled} s");
-    // What is pressed while nothing comes is not pressed afterwards.
+    // A press during the outage is not pressed afterwards either.
     let lines = visit(&["stall=4.7s..5.5s"]);
     assert_eq!(tape::events(&lines), &ended[2..]);
 }
 
-/// One board's crystal is fast by 200 millionths and the other's slow: 48 ms apart after two minutes.
+/// One board's crystal is fast by 200 ppm and the other's slow: 48 ms apart after two minutes.
 #[test]
 fn n8_crystals_that_run_fast_or_slow_change_nothing() {
     let mut tape = Tape::on(BUTTON);
@@ -150,7 +150,7 @@ fn n8_crystals_that_run_fast_or_slow_change_nothing() {
     assert!(!played.lines.iter().any(|line| line["state"] == "lost" || line["state"] == "partial"));
 }
 
-/// Nothing comes for 150 ms of every 500.
+/// No packet comes for 150 ms of every 500.
 #[test]
 fn n12_a_flapping_link_presses_nothing_until_it_has_been_clean_for_a_second() {
     let mut tape = Tape::on(BUTTON);

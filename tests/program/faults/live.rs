@@ -1,4 +1,4 @@
-//! A floor that is served in real time: the program, boards that send real datagrams, and a foot that a test moves.
+//! A floor served in real time: the program, boards that send real datagrams, and a foot that a test moves.
 
 use std::io::{BufRead, BufReader, Read};
 use std::net::{SocketAddr, UdpSocket};
@@ -19,13 +19,13 @@ use super::tape::{MIDDLE, events, foot};
 use crate::end_to_end::{Served, terminate, underfoot};
 use crate::ports::free_port;
 
-/// How long something that is bound to happen may take.
+/// Time-out for an event that must happen.
 const AT_LAST: Duration = Duration::from_secs(60);
 
-/// How much a foot's force changes in a millisecond of the boards' time, in newtons.
+/// Change of a foot's force per millisecond of the boards' time, in newtons.
 const RAMP_N: f32 = 3.0;
 
-/// Changes what a board reads before it sends it; `false` sends nothing.
+/// Changes the readings of a board before it sends them; `false` sends nothing.
 type Change = Box<dyn FnMut(u16, &mut Readings) -> bool + Send>;
 
 /// A floor of two by two tiles on two boards, served by a program of its own.
@@ -47,7 +47,7 @@ impl Live {
         })
     }
 
-    /// As [`Live::start`], with a command that `change` has changed.
+    /// Like [`Live::start`], with a command that `change` has changed.
     pub fn start_as(page: &str, change: impl FnOnce(&mut Command)) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let wired = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
@@ -74,7 +74,7 @@ impl Live {
         live
     }
 
-    /// Waits until something has happened that is bound to.
+    /// Waits until an event that must happen.
     pub fn wait_until(&self, what: &str, happened: impl Fn(&Self) -> bool) {
         let end = HostInstant::now() + AT_LAST;
         while !happened(self) {
@@ -84,17 +84,17 @@ impl Live {
         }
     }
 
-    /// Whether there was such a line of JSON.
+    /// Whether there was a line of JSON for which `wanted` holds.
     pub fn has(&self, wanted: impl Fn(&Value) -> bool) -> bool {
         self.lines.lock().unwrap().iter().any(wanted)
     }
 
-    /// Whether the program has said this to people.
+    /// Whether the program has printed this on standard error.
     pub fn has_said(&self, text: &str) -> bool {
         self.chatter.lock().unwrap().iter().any(|line| line.contains(text))
     }
 
-    /// The latest that the program has said to people with this text in it.
+    /// The program's latest line on standard error with this text.
     pub fn chatter_line(&self, text: &str) -> String {
         let chatter = self.chatter.lock().unwrap();
         chatter.iter().rfind(|line| line.contains(text)).cloned().unwrap_or_default()
@@ -105,7 +105,7 @@ impl Live {
         self.lines.lock().unwrap().clone()
     }
 
-    /// How often an event such as `it pressed` has come.
+    /// Number of events such as `it pressed`.
     pub fn count(&self, event: &str) -> usize {
         events(&self.lines.lock().unwrap()).iter().filter(|one| *one == event).count()
     }
@@ -114,7 +114,7 @@ impl Live {
         self.boards.as_ref().unwrap()
     }
 
-    /// Puts the foot with so many newtons onto the control's middle; 0 lifts it.
+    /// Puts the foot with `force` newtons onto the control's middle; 0 lifts it.
     pub fn press(&self, force: f32) {
         self.press_at(MIDDLE, force);
     }
@@ -123,7 +123,7 @@ impl Live {
         self.boards().work.lock().unwrap().target = (at, force);
     }
 
-    /// Changes what boards read from now on.
+    /// Changes the readings of boards from now on.
     pub fn change(&self, change: impl FnMut(u16, &mut Readings) -> bool + Send + 'static) {
         self.boards().work.lock().unwrap().change = Box::new(change);
     }
@@ -146,17 +146,17 @@ impl Live {
         }
     }
 
-    /// How many presses of the control have ended.
+    /// Number of ended presses of the control.
     pub fn ends(&self) -> usize {
         self.count("it cancelled") + self.count("it released")
     }
 
-    /// Whether packets of boards have been missing for so long that the floor or a part of it was lost.
+    /// Whether packets of boards were missing for so long that the floor or a part of it was lost.
     pub fn was_lost(&self) -> bool {
         self.has(|line| line["state"] == "lost" || line["state"] == "partial")
     }
 
-    /// Presses the control as somebody does until it has clicked once more: a busy machine may stall and lose a press.
+    /// Taps the control until it has clicked once more: a busy machine may stall and lose a press.
     pub fn tap_until_it_clicks(&self) {
         let before = self.count("it clicked");
         let end = HostInstant::now() + AT_LAST;
@@ -187,7 +187,7 @@ impl Live {
         assert!(status.unwrap().success());
     }
 
-    /// Ends the program politely: its exit status and all that it said to people.
+    /// Ends the program by SIGTERM; returns its exit status and its standard error.
     pub fn end(mut self) -> (Option<i32>, String) {
         self.boards = None;
         terminate(&self.served.0);
@@ -197,7 +197,7 @@ impl Live {
     }
 }
 
-/// Keeps each line of `from`, as `read` reads it.
+/// Stores each line of `from`, converted by `read`.
 fn keep<T: Send + 'static>(
     from: impl Read + Send + 'static,
     kept: Arc<Mutex<Vec<T>>>,
@@ -210,7 +210,7 @@ fn keep<T: Send + 'static>(
     })
 }
 
-/// What the boards are to do.
+/// The boards' instructions.
 struct Work {
     target: (Vec2, f32),
     change: Change,
@@ -254,7 +254,7 @@ impl Boards {
                         if matches!(readings, Readings::Newtons(_)) { &mut newtons } else { &mut counts };
                     let packet = SensorPacket { board, sequence, received: Instant::START, readings };
                     let datagram = encoder.encode(&packet).unwrap().to_vec();
-                    // Nobody may be there any more.
+                    // The receiver may be gone.
                     let _ = socket.send_to(&datagram, target);
                     work.sent.push(datagram);
                 }
@@ -270,7 +270,7 @@ impl Boards {
 impl Drop for Boards {
     fn drop(&mut self) {
         self.work.lock().unwrap_or_else(PoisonError::into_inner).is_over = true;
-        // A thread that has panicked has said so.
+        // A thread that has panicked has printed so.
         let _ = self.thread.take().map(JoinHandle::join);
     }
 }

@@ -1,8 +1,8 @@
 //! Rows of the table of faults in the running program: processes, sockets and files.
 //!
 //! Rows about sensors, people and the boards' clocks are recordings of raw packets that the program replays (`tape`):
-//! floor time passes as fast as it can be computed, so that a busy machine changes nothing. Rows about networks and files
-//! run on a floor that is served in real time (`live`).
+//! floor time passes as fast as possible, so that a busy machine does not affect the result. Rows about networks and
+//! files run on a floor that is served in real time (`live`).
 
 mod cards;
 mod clocks;

@@ -1,4 +1,4 @@
-//! W2, W3, W5 and W6: web clients that ask too much, are too many, or say what no client says.
+//! W2, W3, W5 and W6: web clients that send too much, are too many, or send invalid messages.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -11,7 +11,7 @@ use super::live::Live;
 use super::tape::BUTTON;
 use crate::web::{free_address, stream};
 
-/// How long something that is bound to happen may take.
+/// Time-out for an event that must happen.
 const AT_LAST: Duration = Duration::from_secs(60);
 
 /// A floor with a web server.
@@ -27,7 +27,7 @@ fn connect(web: SocketAddr) -> Result<WebSocket<TcpStream>, String> {
     client(format!("ws://{web}/"), stream).map(|(socket, _)| socket).map_err(|error| error.to_string())
 }
 
-/// A connection, tried again while the places of others are not free yet.
+/// A connection, retried while the places of other clients are not free yet.
 fn connected(web: SocketAddr) -> WebSocket<TcpStream> {
     let end = Instant::now() + AT_LAST;
     loop {
@@ -43,7 +43,7 @@ fn ask(socket: &mut WebSocket<TcpStream>, request: &str, args: &Value) {
     socket.send(Message::text(json!({"request": request, "args": args}).to_string())).unwrap();
 }
 
-/// Reads until a line is as `wanted`.
+/// Reads until a line for which `wanted` holds.
 fn hear_until(socket: &mut WebSocket<TcpStream>, what: &str, wanted: impl Fn(&Value) -> bool) {
     let end = Instant::now() + AT_LAST;
     loop {
@@ -56,13 +56,13 @@ fn hear_until(socket: &mut WebSocket<TcpStream>, what: &str, wanted: impl Fn(&Va
     }
 }
 
-/// A client is served: it asks, and its request is done.
+/// Checks that a client is served: it sends a request, which is done.
 fn is_served(socket: &mut WebSocket<TcpStream>, label: &str) {
     ask(socket, "widget/it/label", &json!([label]));
     hear_until(socket, label, |line| line["event"] == "state" && line["label"] == label);
 }
 
-/// The floor has lost nothing: nobody pressed, a foot does, and the program ends as it should.
+/// Checks that the floor works: no press so far, a press by a foot, and a normal end of the program.
 fn works_still(live: Live) {
     assert_eq!(live.count("it pressed"), 0);
     live.tap_until_it_clicks();
@@ -127,7 +127,7 @@ fn a_client_that_never_says_what_it_wants_is_closed() {
     for mut stream in slow.into_iter().chain([long]) {
         stream.set_read_timeout(Some(AT_LAST)).unwrap();
         let mut answer = Vec::new();
-        // Closed, with or without a word, well before the test's patience ends.
+        // Closed, with or without a message, well before the test's time-out.
         if let Err(error) = stream.read_to_end(&mut answer) {
             assert_eq!(error.kind(), std::io::ErrorKind::ConnectionReset);
         }
@@ -159,7 +159,7 @@ fn requests_that_are_none_end_at_most_their_own_connection() {
         let _ = socket.get_mut().write_all(&[0x81, 0xff, 0xff]);
     }
     let mut raw = connected(web);
-    // A text frame that is no UTF-8, and one with a length that never comes.
+    // A text frame that is not UTF-8, and an incomplete one.
     let _ = raw.get_mut().write_all(&[0x81, 0x84, 0, 0, 0, 0, 0xff, 0xfe, 0xfd, 0xfc]);
     let _ = raw.get_mut().write_all(&[0x81, 0xff, 0x7f, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff]);
     is_served(&mut other, "somebody polite");

@@ -6,7 +6,7 @@ use super::session::session;
 use super::tape::events;
 use crate::end_to_end::{said, underfoot};
 
-/// A person who walks up to the page's south side and does `steps`.
+/// One person's scenario: an approach from the page's south side, then `steps`.
 fn somebody(steps: &str) -> String {
     format!(
         "Scenario(title: \"Somebody\", person: (mass_kg: 70, foot_m: 0.27), \
@@ -14,7 +14,7 @@ fn somebody(steps: &str) -> String {
     )
 }
 
-/// The second in which `id` did `event` for the first time.
+/// The second of the first `event` of `id`.
 fn time_of(lines: &[Value], id: &str, event: &str) -> f64 {
     lines.iter().find(|line| line["id"] == id && line["event"] == event).unwrap()["t_s"].as_f64().unwrap()
 }
@@ -30,7 +30,7 @@ fn r7_a_foot_that_slips_off_one_control_cancels_it_and_does_not_press_the_next()
     assert_eq!(events(&lines)[2..], ["pan_south pressed", "pan_south released", "pan_south clicked"]);
 }
 
-/// Two strips across the floor, each in a region of its own.
+/// Two strips across the floor, each in its own region.
 const STRIPS: &str = r#"Layout(version: 1,
     regions: [(id: "south", at: (0, 2), size: (6, 0.9)), (id: "north", at: (0, 4.2), size: (6, 0.9))],
     widgets: [
@@ -39,11 +39,11 @@ const STRIPS: &str = r#"Layout(version: 1,
     ],
 )"#;
 
-/// Somebody who means it, from beside each strip.
+/// Deliberate presses, from beside each strip.
 const MEANT: &str = "Point(at: (2.5, 2.45), force_n: 140, hold_ms: 1500), Wait(ms: 500), WalkTo(at: (2.2, 3.2)), \
     Point(at: (2.5, 4.65), force_n: 140, hold_ms: 500), Wait(ms: 500), Point(at: (2.5, 4.65), force_n: 140, hold_ms: 500)";
 
-/// Four people, one after the other, who walk over both strips and along each.
+/// Four walkers, one after the other, over both strips and along each.
 const WALKERS: &str = r#"Scenario(title: "Walking over", person: (mass_kg: 70, foot_m: 0.27, speed_m_s: 1.2),
     steps: [Wait(ms: 1200), Enter(from: South, at: (2.2, 5.5)), Leave(to: North)],
     others: [
@@ -62,7 +62,7 @@ fn r8_people_who_walk_over_guarded_controls_start_none_of_them() {
     let path = folder.path().join("walk.mcap");
     let lines = session(STRIPS, WALKERS, &["--record", path.to_str().unwrap()]);
     assert_eq!(events(&lines), Vec::<String>::new());
-    // They have stepped on both strips: the recording tells where feet were.
+    // They have stepped on both strips: the recording holds the positions of feet.
     let arguments = ["--speed", "max", "--no-osc", "--json", "--json-contacts"];
     let replayed = underfoot().arg("replay").arg(&path).args(arguments).output().unwrap();
     assert!(replayed.status.success(), "{}", said(&replayed));

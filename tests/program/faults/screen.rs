@@ -1,5 +1,6 @@
-//! R5 and J5: real windows on a display of their own, with real input. They take Debian's packages `xvfb`, `xdotool`,
-//! `libgl1-mesa-dri`, `libxkbcommon-x11-0`, `libxcursor1` and `libxi6`; where they lack, a test prints so and passes.
+//! R5 and J5: real windows on a separate display, with real input. They need Debian's packages `xvfb`, `xdotool`,
+//! `libgl1-mesa-dri`, `libxkbcommon-x11-0`, `libxcursor1` and `libxi6`; without them, a test prints a message and
+//! passes.
 #![cfg(all(target_os = "linux", feature = "preview"))]
 
 use std::io::{BufRead, BufReader};
@@ -19,7 +20,7 @@ use crate::end_to_end::{Served, underfoot};
 use crate::output::memory_kb;
 use crate::web::free_address;
 
-/// How long something that is bound to happen may take: a busy machine draws windows by software.
+/// Time-out for an event that must happen: a busy machine draws windows by software.
 const AT_LAST: Duration = Duration::from_secs(120);
 
 fn wait_until(what: &str, mut happened: impl FnMut() -> bool) {
@@ -30,14 +31,14 @@ fn wait_until(what: &str, mut happened: impl FnMut() -> bool) {
     }
 }
 
-/// A display of its own.
+/// A separate display.
 struct Screen {
     _server: Served,
     display: String,
 }
 
 impl Screen {
-    /// `None`, which is printed, where there is no Xvfb or xdotool.
+    /// `None`, with a printed message, without Xvfb or xdotool.
     fn open() -> Option<Self> {
         let has_xdotool = Command::new("xdotool").arg("version").output().is_ok();
         let server = Command::new("Xvfb")
@@ -62,13 +63,14 @@ impl Screen {
         String::from_utf8_lossy(&output.stdout).into_owned()
     }
 
-    /// The windows of the program that are shown.
+    /// The visible windows of the program.
     fn windows(&self) -> Vec<String> {
         let all = self.xdotool("search --onlyvisible --name underfoot");
         all.lines().map(str::to_owned).collect()
     }
 
-    /// Opens a window that the program keeps its files for in `folder`; the process, its lines of JSON and the window.
+    /// Opens a window of the program with its files in `folder`; returns the process, its lines of JSON and the
+    /// window.
     fn show(&self, folder: &Path, arguments: &[&str]) -> (Served, Arc<Mutex<Vec<Value>>>, String) {
         let before = self.windows();
         let mut process = underfoot()
@@ -115,12 +117,12 @@ fn r5_a_window_that_loses_the_keyboard_lifts_the_foot_of_the_mouse() {
     let arguments = ["page.ron", "--grid", "2x2", "--no-osc", "--json", "--sound", "off"];
     let (_shown, lines, window) = screen.show(folder.path(), &arguments);
     let (_other, _, other) = screen.show(folder.path(), &arguments);
-    // Beside the first, which would not be drawn any more under another one.
+    // Beside the first, which would not be drawn under another one.
     screen.xdotool(&format!("windowsize {other} 300 300"));
     screen.xdotool(&format!("windowmove {other} 1290 0"));
     let count = |event: &str| events(&lines.lock().unwrap()).iter().filter(|one| *one == event).count();
     screen.xdotool(&format!("windowfocus {window}"));
-    // The first look at the pointer may come to nothing while the window still draws itself.
+    // The first pointer event may be ignored while the window still draws itself.
     wait_until("the mouse presses", || {
         screen.xdotool("mouseup 1");
         screen.xdotool("mousemove 490 390 sleep 0.3 mousemove 500 400 sleep 0.3 mousedown 1 sleep 1");
@@ -133,20 +135,20 @@ fn r5_a_window_that_loses_the_keyboard_lifts_the_foot_of_the_mouse() {
     screen.xdotool("mouseup 1");
 }
 
-/// What a hostile server answers a window that joins, connection by connection.
+/// The answers of a hostile server to a window that joins, connection by connection.
 fn rubbish(connection: usize) -> Vec<Message> {
     match connection % 5 {
         0 => vec![Message::text("no JSON")],
         1 => vec![Message::binary(vec![0xff; 60_000]); 200],
         2 => vec![Message::text(r#"{"event":"mirror","version":1,"floor":"Floor(","layout":7}"#)],
         3 => vec![Message::text("[".repeat(1 << 20))],
-        // Longer than any message that is taken.
+        // Longer than any message that is accepted.
         _ => vec![Message::binary(vec![0; 17 << 20])],
     }
 }
 
-/// Row J5. A server lets a window join, and then says what no server says: the window goes on, tries again each second,
-/// and takes no more memory than before.
+/// Row J5. A server lets a window join, and then sends invalid messages: the window continues, tries again each
+/// second, and uses no more memory than before.
 #[test]
 fn a_window_that_joins_a_server_of_rubbish_goes_on_and_tries_again() {
     let Some(screen) = Screen::open() else { return };
@@ -160,7 +162,7 @@ fn a_window_that_joins_a_server_of_rubbish_goes_on_and_tries_again() {
         for (connection, stream) in listener.incoming().enumerate() {
             count.fetch_add(1, Ordering::Relaxed);
             let Ok(mut socket) = tungstenite::accept(stream.unwrap()) else { continue };
-            // The window opens once it knows the floor: so much a good server says.
+            // The window opens once it knows the floor: a good server sends that much.
             let (mut good, _) =
                 client(format!("ws://{web}/mirror"), TcpStream::connect(web).unwrap()).unwrap();
             let greeting = std::iter::repeat_with(|| good.read().unwrap()).take(20);

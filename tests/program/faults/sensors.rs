@@ -9,7 +9,7 @@ use underfoot::wire::{Readings, SensorPacket};
 use super::tape::{BUTTON, CLICK, MIDDLE, PEDAL, Tape, foot};
 use crate::end_to_end::{channels, underfoot};
 
-/// What a foot that works presses the middle of a tile with, now more, now less.
+/// Presses the middle of a tile like a working foot, with a varying force.
 fn work(tape: &mut Tape) {
     for force in [250.0, 200.0, 250.0, 200.0] {
         tape.press(MIDDLE, force);
@@ -33,7 +33,7 @@ fn s1_a_stuck_sensor_is_named_under_a_foot_and_its_tile_still_presses() {
 
 #[test]
 fn s2_a_stamp_beyond_the_range_presses_nothing_while_it_lasts_or_lightens() {
-    // On the corner's sensor, whose converter ends at 400 N.
+    // On the corner's sensor, which saturates at 400 N.
     let on_sensor = Vec2::splat(0.02);
     let stamped = |force: f32| {
         let mut tape = Tape::on(BUTTON);
@@ -53,7 +53,7 @@ fn s2_a_stamp_beyond_the_range_presses_nothing_while_it_lasts_or_lightens() {
     assert_eq!(stamped(200.0).0.events(), [CLICK, CLICK].concat(), "in its range it would have pressed");
 }
 
-/// Parts whose range ends at 123 N.
+/// Parts that end at 123 N.
 fn weak() -> Sensing {
     let nominal = Exponential { a_n: 0.5, b_per_volt: 1.1 };
     Sensing::Counts(PartConfig { nominal, ..PartConfig::default() })
@@ -62,7 +62,7 @@ fn weak() -> Sensing {
 #[test]
 fn s2_a_sensor_that_saturates_under_a_press_keeps_it() {
     let mut tape = Tape::on_parts(BUTTON, weak(), true);
-    // Beside a sensor, which bears more than half of it: 50 N at first, then 180.
+    // Beside a sensor, which carries more than half of it: 50 N at first, then 180.
     let at = Vec2::splat(0.06);
     tape.press(at, 80.0);
     tape.wait(100);
@@ -113,7 +113,7 @@ fn s4_a_zero_that_drifts_presses_nothing_and_shows_no_foot() {
 fn s5_parts_that_creep_under_a_standing_foot_gain_no_press_and_lose_none() {
     let parts = PartConfig { creep: 0.05, deviation: 0.0, ..PartConfig::default() };
     let mut tape = Tape::on_parts(BUTTON, Sensing::Counts(parts), true);
-    // A minute below what presses (60 N), a minute far above.
+    // A minute below the press threshold (60 N), a minute far above.
     tape.press(MIDDLE, 50.0);
     tape.stay(MIDDLE, 50.0, 60);
     let light = tape.seconds();
@@ -167,7 +167,8 @@ fn s7_hum_makes_no_event_of_its_own() {
     assert!(played.time_of("it released").unwrap() > lifted);
 }
 
-/// The click that the program plays for a press, on the sensors of its own tile: a tenth of the actuator's 40 N on each.
+/// The click that the program plays for a press, on the sensors of its own tile: a tenth of the actuator's 40 N on
+/// each.
 #[test]
 fn s8_a_click_that_its_own_sensors_feel_triggers_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -184,7 +185,7 @@ fn s8_a_click_that_its_own_sensors_feel_triggers_nothing() {
         let mut tape = Tape::on_parts(BUTTON, Sensing::Newtons(PartConfig::default()), true);
         tape.wait(500);
         tape.press(MIDDLE, 75.0);
-        // Pressed after 20 ms above 60 N: the click begins with the press that the program found.
+        // Pressed after 20 ms above 60 N: the click begins with the press as the program detects it.
         tape.wait_while(1000, |ms, mut packet| {
             if let (0, Readings::Newtons(forces)) = (packet.board, &mut packet.readings) {
                 let felt = coupled.get(ms as usize).copied().unwrap_or_default();
@@ -258,7 +259,7 @@ fn s11_a_foot_over_four_tiles_is_one_contact_within_five_centimetres() {
     }
 }
 
-/// A button to be confirmed, in a region of its own: the other foot, which carries more, stands outside.
+/// A button with the guard Confirm in its own region: the other foot, which carries more, stands outside.
 const CONFIRMED: &str = r#"Layout(version: 1, regions: [(id: "one", at: (0, 0), size: (1, 1))],
     widgets: [(id: "it", kind: "button", guard: Confirm, at: (0, 0), size: (1, 1))])"#;
 
@@ -304,7 +305,7 @@ fn s12_somebody_who_jumps_confirms_nothing() {
 #[test]
 fn s2_parts_too_weak_for_feet_press_nothing_by_themselves() {
     let mut tape = Tape::on_parts(BUTTON, weak(), true);
-    // On the other tiles, where there is no control.
+    // On the other tiles, which have no control.
     for at in [Vec2::new(0.456, 0.152), Vec2::new(0.456, 0.456), Vec2::new(0.152, 0.456)] {
         tape.press(at, 700.0);
         tape.wait(600);

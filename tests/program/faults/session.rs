@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::end_to_end::{said, underfoot};
 
-/// What controls and floor report while a scenario is played on a page, with these options more.
+/// The reports of controls and floor while a scenario is played on a page, with these additional options.
 pub fn session(page: &str, scenario: &str, more: &[&str]) -> Vec<Value> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("page.ron"), page).unwrap();

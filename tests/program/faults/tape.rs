@@ -1,5 +1,5 @@
-//! Floors on tape: a recording of the packets that boards send while a test moves feet and breaks parts, which the
-//! program replays.
+//! Floors on tape: a recording of the boards' packets while a test moves feet and breaks parts, which the program
+//! replays.
 
 use std::time::Duration;
 
@@ -31,16 +31,16 @@ pub const MIDDLE: Vec2 = Vec2::splat(0.152);
 /// The tile under the control.
 pub const TILE: TileId = TileId::new(0, 0);
 
-/// Names of the events of one press that was meant.
+/// Names of the events of one deliberate press.
 pub const CLICK: [&str; 3] = ["it pressed", "it released", "it clicked"];
 
-/// How long a foot takes to put its force on or off: quick, but a foot.
+/// Time in which a foot applies or removes its force: fast, but possible for a foot.
 const RAMP_MS: u64 = 40;
 
-/// Which parts come out of the box.
+/// Seed of the parts.
 const SEED: u64 = 3;
 
-/// A floor of two by two tiles on two boards, and what its boards have sent so far.
+/// A floor of two by two tiles on two boards, and the packets of its boards so far.
 pub struct Tape {
     pub sim: SimFloor,
     pub feet: Vec<Foot>,
@@ -58,7 +58,7 @@ impl Tape {
         Self::on_parts(page, Sensing::default(), true)
     }
 
-    /// As [`Tape::on`], with other parts, calibrated or not.
+    /// Like [`Tape::on`], with other parts, calibrated or not.
     pub fn on_parts(page: &str, sensing: Sensing, is_calibrated: bool) -> Self {
         let wired = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
         let sim = SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, SEED);
@@ -75,7 +75,8 @@ impl Tape {
         self.wait_while(millis, |_, packet| Some(packet));
     }
 
-    /// Lets time pass; `change` gets each packet, with the milliseconds since the beginning, and gives what arrives.
+    /// Advances time; `change` gets each packet, with the milliseconds since the beginning, and returns the arriving
+    /// one.
     pub fn wait_while(
         &mut self,
         millis: u64,
@@ -92,7 +93,7 @@ impl Tape {
         }
     }
 
-    /// Brings one foot, its pressure on `at`, to `force`.
+    /// Brings one foot, with its pressure on `at`, to `force`.
     pub fn press(&mut self, at: Vec2, force: f32) {
         let before = self.feet.first().map_or(0.0, |foot| foot.force.0);
         for step in 1..=RAMP_MS {
@@ -107,7 +108,7 @@ impl Tape {
         self.feet.clear();
     }
 
-    /// Presses the control once, as somebody does that means it.
+    /// Presses the control once, deliberately.
     pub fn tap(&mut self) {
         self.press(MIDDLE, 120.0);
         self.wait(200);
@@ -115,7 +116,7 @@ impl Tape {
         self.wait(300);
     }
 
-    /// Lets time pass under one foot that sways by some millimetres, as people who stand do.
+    /// Advances time under one foot that sways by some millimetres, like a standing person.
     pub fn stay(&mut self, at: Vec2, force: f32, seconds: u16) {
         for tenth in 0..seconds * 10 {
             let sway = 0.008 * (0.08 * f32::from(tenth)).sin();
@@ -124,7 +125,7 @@ impl Tape {
         }
     }
 
-    /// Breaks the sensor in that corner of the control's tile, or mends it.
+    /// Sets or clears the fault of the sensor in that corner of the control's tile.
     pub fn set_fault(&mut self, corner: Corner, fault: Option<SensorFault>) {
         self.sim.set_fault(SensorId { tile: TILE, corner }, fault);
     }
@@ -134,7 +135,7 @@ impl Tape {
         self.now.secs()
     }
 
-    /// Lets the program replay it.
+    /// Replays it in the program.
     pub fn play(self) -> Played {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("tape.mcap");
@@ -153,7 +154,7 @@ impl Tape {
     }
 }
 
-/// A foot whose centre of pressure is at `at`.
+/// A foot with its centre of pressure at `at`.
 pub fn foot(at: Vec2, force: f32) -> Foot {
     let mut foot = Foot {
         position: Vec2::ZERO,
@@ -167,7 +168,7 @@ pub fn foot(at: Vec2, force: f32) -> Foot {
     foot
 }
 
-/// Packets as a source gives them.
+/// Packets as a source.
 struct Packets {
     rest: std::vec::IntoIter<SensorPacket>,
     now: Instant,
@@ -191,12 +192,12 @@ pub struct Played {
 }
 
 impl Played {
-    /// What controls did, in order, such as `it pressed`; without values on their way.
+    /// The events of controls, in order, such as `it pressed`; without intermediate values.
     pub fn events(&self) -> Vec<String> {
         events(&self.lines)
     }
 
-    /// Every trouble of a sensor that was reported, once: its corner, if it is on the control's tile, and its name.
+    /// Every reported trouble of a sensor, once: its corner, if it is on the control's tile, and its name.
     pub fn troubles(&self) -> Vec<(Option<String>, String)> {
         let all = self.lines.iter().filter(|line| line["event"] == "health");
         let all = all.flat_map(|line| line["troubles"].as_array().cloned().unwrap_or_default());
@@ -212,12 +213,12 @@ impl Played {
         found
     }
 
-    /// The most sensors that a health line counts as `quality`, such as `degraded`.
+    /// The greatest number of sensors that a health line counts as `quality`, such as `degraded`.
     pub fn most(&self, quality: &str) -> u64 {
         self.lines.iter().filter_map(|line| line[quality].as_u64()).max().unwrap_or_default()
     }
 
-    /// Contacts from second `from` to second `until`: each time they were reported, their places.
+    /// The places of contacts from second `from` to second `until`, for each report of them.
     pub fn contacts(&self, from: f64, until: f64) -> Vec<Vec<Vec2>> {
         let is_then = |line: &&Value| line["t_s"].as_f64().is_some_and(|at| (from..until).contains(&at));
         let lists = self.lines.iter().filter(is_then).filter_map(|line| line["contacts"].as_array());
@@ -226,14 +227,14 @@ impl Played {
         lists.map(|contacts| contacts.iter().map(place).collect()).collect()
     }
 
-    /// The second in which an event such as `it pressed` came first.
+    /// The second of the first event such as `it pressed`.
     pub fn time_of(&self, event: &str) -> Option<f64> {
         let (id, kind) = event.split_once(' ')?;
         self.lines.iter().find(|line| line["id"] == id && line["event"] == kind)?["t_s"].as_f64()
     }
 }
 
-/// What controls did, in order, such as `it pressed`; without values on their way.
+/// The events of controls, in order, such as `it pressed`; without intermediate values.
 pub fn events(lines: &[Value]) -> Vec<String> {
     let named = lines.iter().filter_map(|line| Some((line["id"].as_str()?, line["event"].as_str()?)));
     let told = named.filter(|(_, event)| !["state", "changed", "ticked"].contains(event));

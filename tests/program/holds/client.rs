@@ -1,4 +1,4 @@
-//! A client that hears OSC and TUIO, reads JSON lines, and believes no hold for longer than 100 ms.
+//! A client that receives OSC and TUIO, reads JSON lines, and ends each hold 100 ms after its last report.
 
 use std::io::{BufRead, BufReader};
 use std::net::{SocketAddr, UdpSocket};
@@ -15,7 +15,7 @@ mod held;
 
 use held::{BELIEVED_FOR, Held};
 
-/// How long something that is bound to happen may take.
+/// Time-out for an event that must happen.
 const AT_LAST: Duration = Duration::from_secs(30);
 
 /// An address and its arguments.
@@ -24,16 +24,16 @@ type Heard = (String, Vec<OscType>);
 pub struct Client {
     osc: UdpSocket,
     tuio: UdpSocket,
-    /// Every message but `alive`, `held` and `contact`, in order, and how often the last two of those came.
+    /// Every message but `alive`, `held` and `contact`, in order, and the number of the last two.
     heard: Vec<Heard>,
     pub alive: Vec<i32>,
     held: Held,
-    /// Whether the last TUIO frame had nobody in it.
+    /// Whether the last TUIO frame had no contact.
     tuio_is_empty: bool,
     lines: Option<Receiver<Value>>,
     json: Vec<Value>,
     json_held: (Vec<String>, Instant),
-    /// What the program said to people, once it has ended.
+    /// The program's standard error, once it has ended.
     pub chatter: Option<Vec<String>>,
 }
 
@@ -62,7 +62,7 @@ impl Client {
         [&self.osc, &self.tuio].map(|socket| socket.local_addr().unwrap())
     }
 
-    /// Reads what the program prints from now on.
+    /// Reads the program's output from now on.
     pub fn watch_json(&mut self, child: &mut Child) {
         let out = BufReader::new(child.stdout.take().unwrap());
         let (tell, lines) = channel();
@@ -88,7 +88,7 @@ impl Client {
         }
     }
 
-    /// Hears what is still on its way once everybody has gone.
+    /// Receives the messages that are still on their way after all others have ended.
     pub fn hear_the_rest(&mut self) {
         self.hear();
         // The thread that reads ends with the pipe.
@@ -131,25 +131,25 @@ impl Client {
         self.json.push(line);
     }
 
-    /// What an app that listens to OSC believes to be held.
+    /// The holds of an app that listens to OSC.
     pub fn holds(&mut self) -> Vec<String> {
         self.held.at(Instant::now())
     }
 
-    /// What an app that reads JSON lines believes to be held, by the same rule.
+    /// The holds of an app that reads JSON lines, by the same rule.
     pub fn json_holds(&self) -> Vec<String> {
         let (held, at) = &self.json_held;
         if at.elapsed() < BELIEVED_FOR { held.clone() } else { Vec::new() }
     }
 
-    /// How often it was said over OSC of a control.
+    /// Number of such OSC messages about a control.
     pub fn said(&self, id: &str, what: &str) -> usize {
         let address = format!("/underfoot/widget/{id}/{what}");
         self.heard.iter().filter(|(heard, _)| *heard == address).count()
     }
 
-    /// Both controls were cancelled and not released, on every output that tells of controls, and the
-    /// slider went back to where it was.
+    /// Checks that both controls were cancelled and not released, on every output with events of controls, and that
+    /// the slider returned to its old value.
     pub fn expect_cancelled(&self, after: &str) {
         for id in ["drive", "zoom"] {
             assert_eq!(self.said(id, "cancelled"), 1, "{after}: {id}, heard {:?}", self.heard);
@@ -167,7 +167,7 @@ impl Client {
         assert_eq!(values.last(), Some(&0.0), "{after}: and went back");
     }
 
-    /// As [`Client::expect_cancelled`], and then nobody was there any more.
+    /// Like [`Client::expect_cancelled`], followed by a report of an empty floor.
     pub fn expect_an_orderly_end(&self, after: &str) {
         self.expect_cancelled(after);
         let place = |wanted: &dyn Fn(&Heard) -> bool| self.heard.iter().rposition(wanted);
@@ -185,7 +185,7 @@ impl Client {
     }
 }
 
-/// The messages of a packet, bundles unwrapped.
+/// The messages of a packet, with bundles unpacked.
 fn messages(packet: OscPacket) -> Vec<OscMessage> {
     match packet {
         OscPacket::Message(message) => vec![message],

@@ -1,5 +1,5 @@
-//! Every hold ends: a client believes that nothing is held soon after the program, its floor or the way
-//! between them has failed, in whatever way.
+//! Every hold ends: a client has no hold any more soon after the program, its floor or the way between them has
+//! failed in any way.
 
 pub mod client;
 mod session;
@@ -13,23 +13,24 @@ use underfoot::wire::SensorFormat;
 use self::client::Client;
 use self::site::{BoardFault, Boards, Run, Site};
 
-/// How long a client may still believe that something is held.
+/// Longest time that a client may still keep a hold.
 const SOON: Duration = Duration::from_millis(150);
 
-/// How often it is tried again on a machine that had something else to do; what is said and in which order
-/// is not a matter of time and counts every time.
+/// Number of attempts on a machine that may be busy; the messages and their order do not depend on time and count
+/// every time.
 const TRIES: usize = 6;
 
-/// What becomes of the program.
+/// The expected end of the program.
 #[derive(Clone, Copy, PartialEq)]
 enum Then {
-    /// It ends by itself, and all was well.
+    /// It ends by itself with success.
     Ends,
-    /// It would go on, or is gone already.
+    /// It would continue, or has ended already.
     IsEnded,
 }
 
-/// Holds `drive` and drags `zoom`, then does `end`; gives how long the slower of two clients believed the holds.
+/// Holds `drive` and drags `zoom`, then does `end`; returns the time for which the slower of two clients kept the
+/// holds.
 fn believed_for(
     site: &Site,
     more: &[&str],
@@ -50,7 +51,7 @@ fn believed_for(
     if then == Then::Ends {
         assert!(run.child.wait().unwrap().success());
     } else {
-        // Notices for people are looked after ten times a second.
+        // Notices for the operator are checked ten times a second.
         std::thread::sleep(Duration::from_millis(300));
     }
     drop(boards);
@@ -59,7 +60,8 @@ fn believed_for(
     (took, client)
 }
 
-/// How long a client believes that the pedal is held after sensors under it begin to stand still and the foot to leave.
+/// Time for which a client keeps the pedal's hold after sensors under it begin to repeat and the foot begins to
+/// leave.
 fn pedal_believed_for(site: &Site, fault: BoardFault) -> Duration {
     let mut client = Client::new();
     let run = site.run(&client, &[]);
@@ -74,13 +76,13 @@ fn pedal_believed_for(site: &Site, fault: BoardFault) -> Duration {
     took
 }
 
-/// Faults in which sensors stand still and the foot leaves.
+/// Faults in which sensors repeat their readings and the foot leaves.
 const STANDING_STILL: [BoardFault; 3] =
     [BoardFault::TwoCorners, BoardFault::FourCorners, BoardFault::AllButOneBit];
 
 const FORMATS: [SensorFormat; 3] = [SensorFormat::Counts, SensorFormat::Newtons, SensorFormat::Blob];
 
-/// As [`believed_for`], until it is soon; the last of the clients.
+/// Repeats [`believed_for`] until the time is at most [`SOON`]; returns the last client.
 fn soon(site: &Site, more: &[&str], then: Then, end: impl Fn(&Run, &Boards)) -> Client {
     let mut times = Vec::new();
     for _ in 0..TRIES {
@@ -94,8 +96,8 @@ fn soon(site: &Site, more: &[&str], then: Then, end: impl Fn(&Run, &Boards)) -> 
     panic!("never within {SOON:?}: {times:?}");
 }
 
-/// How long a client believes what is held when the thread that senses panics, and when `--seconds` are over: from the
-/// moment at which the other clients' first word of it comes.
+/// The time for which a client keeps the holds when the sensing thread panics, and when `--seconds` are over: from
+/// the first message about it to the other clients.
 fn believed_after_the_first_word(site: &Site, more: &[&str]) -> (Duration, Client) {
     let mut client = Client::new();
     let mut run = site.run(&client, more);
@@ -114,7 +116,7 @@ fn believed_after_the_first_word(site: &Site, more: &[&str]) -> (Duration, Clien
     (took, client)
 }
 
-/// Row R1. The thread that senses panics, in the program itself.
+/// Row R1. The sensing thread panics, in the program itself.
 #[test]
 fn a_panic_in_the_sensing_thread_cancels_what_is_held_and_fails() {
     let site = Site::new();
@@ -124,7 +126,7 @@ fn a_panic_in_the_sensing_thread_cancels_what_is_held_and_fails() {
     assert!(chatter.iter().any(|line| line.contains("a part of the program failed")), "{chatter:?}");
 }
 
-/// Whatever the boards send, and whichever sensors stand still.
+/// In any format of boards, and with any sensors that repeat their readings.
 #[test]
 fn sensors_that_stand_still_keep_no_pedal() {
     for format in FORMATS {
@@ -156,7 +158,7 @@ fn twenty_rounds_of_sensors_that_stand_still() {
     assert!(late.is_empty(), "{late:#?}");
 }
 
-/// Twenty rounds of each end, the longest time of each: for an idle machine, in release form.
+/// Twenty rounds of each end, the longest time of each: for an idle machine, in a release build.
 #[test]
 #[ignore = "takes ten minutes; figures of a machine that is busy say nothing"]
 fn twenty_rounds_of_each_end() {
@@ -188,7 +190,7 @@ fn twenty_rounds_of_each_end() {
     assert!(late.is_empty(), "{late:#?}");
 }
 
-/// A fault that is only rehearsed ends what is held as well, and is not taken for a real one.
+/// A simulated fault ends all holds as well, and is marked as simulated.
 #[test]
 fn a_rehearsed_fault_ends_what_is_held() {
     let site = Site::new();
@@ -198,7 +200,7 @@ fn a_rehearsed_fault_ends_what_is_held() {
     assert!(chatter.iter().any(|line| line.contains("nothing usable")), "{chatter:?}");
 }
 
-/// Row N11. Feet stand on the tiles of one board, whose packets come under the address of the other.
+/// Row N11. Feet stand on the tiles of one board, which sends its packets under the address of the other.
 #[test]
 fn boards_that_have_changed_places_are_named_and_press_nothing() {
     let site = Site::new();
@@ -214,8 +216,8 @@ fn boards_that_have_changed_places_are_named_and_press_nothing() {
     }
 }
 
-/// Row R3. The program stands still for three seconds under a foot and wakes: what was held ends, and what waited for
-/// it in the meantime presses nothing.
+/// Row R3. The program is stopped for three seconds under a foot and wakes: its holds end, and the packets of the
+/// meantime press nothing.
 #[test]
 fn a_host_that_was_frozen_wakes_without_holds_and_acts_on_nothing_old() {
     let site = Site::new();

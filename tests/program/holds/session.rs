@@ -1,4 +1,4 @@
-//! An app's own session believes no hold for longer than it may, whatever fails while a dead man's pedal is held.
+//! An app's own session ends each hold in time, with any fault while a dead man's pedal is held.
 
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::end_to_end::underfoot;
 use crate::ports::free_port;
 use crate::sender::ANY_PORT;
 
-/// A source whose next packet can be a panic, or can never come.
+/// A source that can panic or hang in place of its next packet.
 struct Faulty {
     source: UdpSource,
     panic: Arc<AtomicBool>,
@@ -45,7 +45,7 @@ impl SensorSource for Faulty {
     }
 }
 
-/// What goes wrong.
+/// The fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     /// The process that sends the packets is killed.
@@ -58,7 +58,7 @@ enum Fault {
     HandleDropped,
     /// The sensing thread panics.
     SensingPanics,
-    /// The sensing thread stands still.
+    /// The sensing thread hangs.
     SensingHangs,
 }
 
@@ -71,14 +71,14 @@ const FAULTS: [Fault; 6] = [
     Fault::SensingHangs,
 ];
 
-/// Somebody steps on the pedal and stays there for longer than any test.
+/// A person who steps on the pedal and stays there for longer than any test.
 const HOLDS: &str = r#"Scenario(
     title: "Holds the pedal",
     person: (mass_kg: 70, foot_m: 0.26),
     steps: [Stand(at: (1.5, 1.5), facing: South), Wait(ms: 1200), Press(widget: "drive", force_n: 130, hold_ms: 60000)],
 )"#;
 
-/// Whoever sends the packets, until dropped.
+/// The sender of packets, until dropped.
 enum Sender {
     Process(Child),
     Thread(Boards),
@@ -118,7 +118,7 @@ fn rest(session: &Session) -> Vec<Event> {
     std::iter::from_fn(|| session.next_event_timeout(Duration::from_secs(5))).collect()
 }
 
-/// Lets `fault` happen while the pedal is held; gives for how long that was believed.
+/// Causes `fault` while the pedal is held; returns the time for which the app kept the hold.
 fn believed_for(site: &Site, fault: Fault) -> Duration {
     let floor_file = site.folder.path().join("floor.ron");
     let set_up = |builder: SessionBuilder| {
@@ -151,7 +151,7 @@ fn believed_for(site: &Site, fault: Fault) -> Duration {
         (Fault::SenderStops, Some(Sender::Thread(boards))) => boards.suffer(BoardFault::Silent),
         (Fault::WakePanics, _) => {
             wake_panics.store(true, Ordering::Relaxed);
-            // Told to the app as well, which wakes it.
+            // This also causes an event for the app, which wakes it.
             let session = session.as_ref().unwrap();
             session.control("zoom").unwrap().set(0.7).unwrap();
         }
@@ -164,7 +164,7 @@ fn believed_for(site: &Site, fault: Fault) -> Duration {
     let took = begun.elapsed();
     stand_still.store(false, Ordering::Relaxed);
     if let Some(session) = session {
-        // After a short standstill the floor goes on where it was: the foot is still there.
+        // After a short interruption the floor continues as before: the foot is still there.
         if !matches!(fault, Fault::SensingPanics | Fault::SensingHangs) {
             wait_until("it is cancelled", || !session.snapshot().control("drive").unwrap().pressed);
         }
@@ -198,7 +198,7 @@ fn whatever_fails_a_hold_is_not_believed_for_longer_than_it_may() {
     let site = Site::new();
     for fault in FAULTS {
         let mut times = Vec::new();
-        // A machine that had something else to do is given another chance.
+        // A busy machine gets another attempt.
         while times.last().is_none_or(|took| *took > SOON) {
             assert!(times.len() < TRIES, "{fault:?}: never within {SOON:?}: {times:?}");
             times.push(believed_for(&site, fault));

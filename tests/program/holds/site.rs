@@ -1,4 +1,4 @@
-//! A floor of two boards with a dead man's pedal and a slider, feet on both, and what may happen to the boards.
+//! A floor of two boards with a dead man's pedal and a slider, feet on both, and faults of the boards.
 
 use std::io::{BufRead, BufReader};
 use std::net::{SocketAddr, UdpSocket};
@@ -29,10 +29,10 @@ const PAGE: &str = r#"Layout(
     ],
 )"#;
 
-/// When the feet come, in milliseconds of the boards' time.
+/// Time at which the feet come, in milliseconds of the boards' time.
 const LANDING_MS: u32 = 600;
 
-/// Whatever port is free.
+/// A free port.
 fn any_port() -> UdpSocket {
     UdpSocket::bind("127.0.0.1:0").unwrap()
 }
@@ -49,7 +49,7 @@ impl Site {
         Self::sending(SensorFormat::Counts)
     }
 
-    /// As [`Site::new`], with boards that send this.
+    /// Like [`Site::new`], with boards that send this format.
     pub fn sending(format: SensorFormat) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let wired = small_floor();
@@ -66,12 +66,12 @@ impl Site {
         Self { folder, floor, sim, format }
     }
 
-    /// Where its files are: `page.ron` and `floor.ron`.
+    /// The folder of its files: `page.ron` and `floor.ron`.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// The program, which serves this floor and tells `client`.
+    /// The program, which serves this floor and reports to `client`.
     pub fn run(&self, client: &Client, more: &[&str]) -> Run {
         let address = any_port().local_addr().unwrap();
         let [osc, tuio] = client.addresses().map(|address| address.to_string());
@@ -92,7 +92,7 @@ impl Site {
     }
 }
 
-/// The program at work; it ends with the test, however that ends.
+/// The running program; it ends with the test in any case.
 pub struct Run {
     pub child: Child,
     pub address: SocketAddr,
@@ -100,7 +100,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Ends it if it has not ended, and gives what it has said on standard error.
+    /// Ends it if it has not ended, and returns its standard error.
     pub fn end(mut self) -> Vec<String> {
         self.kill();
         self.chatter.take().map(|reader| reader.join().unwrap()).unwrap_or_default()
@@ -109,7 +109,7 @@ impl Run {
 
 impl Run {
     fn kill(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -121,25 +121,25 @@ impl Drop for Run {
     }
 }
 
-/// What happens to the boards.
+/// The fault of the boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum BoardFault {
-    /// Nothing.
+    /// None.
     Well,
     /// No packet comes through.
     Silent,
-    /// None of the second board's.
+    /// No packet of the second board comes through.
     OneSilent,
-    /// The converters stand still while the packets go on.
+    /// The converters repeat their readings while the packets continue.
     Frozen,
-    /// A row reads 60,000 counts from one millisecond to the next.
+    /// A row jumps to 60,000 counts within a millisecond.
     Jumped,
-    /// Two corners of the plate under the pedal stand still, and the foot leaves.
+    /// Two corners of the plate under the pedal repeat, and the foot leaves.
     TwoCorners,
     /// All four do.
     FourCorners,
-    /// The converters stand still but for one bit, which toggles, and the foot leaves.
+    /// The converters repeat except for one bit, which toggles, and the foot leaves.
     AllButOneBit,
 }
 
@@ -149,7 +149,7 @@ impl BoardFault {
         matches!(self, Self::TwoCorners | Self::FourCorners | Self::AllButOneBit)
     }
 
-    /// Whether this channel of the first board goes on with what it read when the fault struck.
+    /// Whether this channel of the first board repeats its reading at the start of the fault.
     fn holds(self, channel: usize) -> bool {
         match self {
             Self::TwoCorners => [0, 3].contains(&channel),
@@ -177,7 +177,7 @@ pub struct Boards {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Set in place of a fault to end it all.
+/// Set in place of a fault to end the boards.
 const OVER: u8 = u8::MAX;
 
 impl Boards {
@@ -216,7 +216,7 @@ impl Boards {
                     let is_cut =
                         fault == BoardFault::Silent || (fault == BoardFault::OneSilent && board == 1);
                     if !is_cut {
-                        // Whoever listened may be gone.
+                        // The receiver may be gone.
                         let _ = socket.send_to(encoder.encode(&packet).unwrap(), target);
                     }
                 }
@@ -241,7 +241,7 @@ impl Drop for Boards {
     }
 }
 
-/// Lets the channels that stand still read what they read `before`.
+/// Makes the repeating channels read their values in `before`.
 fn hold_still(now: &mut Readings, before: &Readings, fault: BoardFault, sequence: u32) {
     let toggles = |channel| fault == BoardFault::AllButOneBit && channel == 1;
     match (now, before) {

@@ -16,7 +16,7 @@ const TAG: usize = 32;
 /// Bytes of one answer.
 const ANSWER: usize = 24;
 
-/// The purpose of a message. Each kind has a key of its own, so that none passes for another.
+/// The purpose of a message. Each kind has its own key, so that none passes for another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// From a node to gateways.
@@ -82,7 +82,7 @@ impl Parts<'_> {
     }
 }
 
-/// Writes a message into `out`, whose content it replaces.
+/// Writes a message into `out`, replacing its content.
 pub(super) fn write(
     (kind, key): (Kind, &[u8; TAG]),
     head: &Head,
@@ -119,7 +119,8 @@ pub(super) fn kind(bytes: &[u8]) -> Option<Kind> {
     Kind::ALL.into_iter().find(|kind| *kind as u8 == number)
 }
 
-/// Whether the MAC at the end of `bytes` is right for `key`. The comparison takes the same time whichever byte differs.
+/// Whether the MAC at the end of `bytes` is right for `key`. The comparison takes the same time for any differing
+/// byte.
 pub(super) fn is_genuine(bytes: &[u8], key: &[u8; TAG]) -> bool {
     bytes
         .split_last_chunk::<TAG>()

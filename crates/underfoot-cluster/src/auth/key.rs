@@ -82,8 +82,8 @@ impl Key {
 
     /// The key in the file at `path`.
     ///
-    /// On Unix, rejects a file that users other than its owner may read or write. Windows has no such bits: its folder
-    /// protects the file there.
+    /// On Unix, rejects a file that users other than its owner may read or write. Windows has no such bits: its
+    /// folder protects the file there.
     ///
     /// # Errors
     /// [`KeyError::Unreadable`], [`KeyError::Exposed`] or [`KeyError::Malformed`].

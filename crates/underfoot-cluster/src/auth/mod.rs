@@ -16,10 +16,10 @@
 //! receiver's next start. The time is one that the receiver wrote itself, so that it bounds the message's age by the
 //! receiver's own clock; no clock of another computer decides about age.
 //!
-//! Packets of boards carry no answers, which would be longer than the packet. Each is as new as its sender's last note;
-//! the time between the two on the sender's clock adds to its age.
+//! Packets of boards carry no answers, which would be longer than the packet. Each is as new as its sender's last
+//! note; the time between the two on the sender's clock adds to its age.
 //!
-//! This module is pure: time, nonces and bytes are handed in.
+//! This module is pure: the caller passes time, nonces and bytes.
 
 mod envelope;
 mod key;

@@ -12,8 +12,8 @@ pub enum Refusal {
     /// Its MAC is wrong: it was written with another key, or changed on the way.
     #[error("it was not written with this floor's key")]
     Forged,
-    /// It answers no message that this program has sent since its start: it is an earlier recording, or its sender has
-    /// received nothing yet.
+    /// It answers no message that this program has sent since its start: it is an earlier recording, or its sender
+    /// has received nothing yet.
     #[error("it answers no message since the start")]
     Unanswered,
     /// It answers a message of more than 250 ms ago.

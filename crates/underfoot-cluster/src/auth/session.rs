@@ -10,8 +10,8 @@ use super::key::Key;
 use super::refusals::{Refusal, Refusals};
 use super::window::{Novelty, Window};
 
-/// Greatest age of the message that another one answers: nodes wait 150 ms for a gateway, and a message that was on its
-/// way for 100 ms is too late for a hold.
+/// Greatest age of the message that another one answers: nodes wait 150 ms for a gateway, and a message that was on
+/// its way for 100 ms is too late for a hold.
 const FRESH: Duration = Duration::from_millis(250);
 
 /// Time for which a silent sender is remembered; it must be longer than [`FRESH`].
@@ -41,9 +41,9 @@ impl Role {
 /// Proof of a message's age: its sender wrote it after it had received the message that it answers.
 #[derive(Clone, Copy, Debug)]
 struct Proof {
-    /// When this program sent the answered message.
+    /// Time at which this program sent the answered message.
     answered: Instant,
-    /// When the sender sent its answer, in microseconds of its clock.
+    /// Time at which the sender sent its answer, in microseconds of its clock.
     sent: u64,
 }
 
@@ -79,7 +79,7 @@ struct Peer {
     proof: Option<Proof>,
     /// Messages rejected before its first answer.
     unanswered: u64,
-    /// When its counter jumped. An answer to a message after that begins a new window.
+    /// Time at which its counter jumped. An answer to a later message begins a new window.
     jumped: Option<Instant>,
 }
 
@@ -97,8 +97,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session with the floor's `key`. `nonce` must be random and new for each session; `most_peers` is the number of
-    /// other programs that are remembered, at least one.
+    /// A session with the floor's `key`. `nonce` must be random and new for each session; `most_peers` is the number
+    /// of other programs that are remembered, at least one.
     #[must_use]
     pub fn new(role: Role, key: &Key, nonce: u64, most_peers: usize) -> Self {
         Self {
@@ -124,7 +124,7 @@ impl Session {
         self.refusals
     }
 
-    /// Writes a message with this `body`, sent at `now`, into `out`, whose content it replaces. Packets of boards carry
+    /// Writes a message with this `body`, sent at `now`, into `out`, replacing its content. Packets of boards carry
     /// no answers.
     pub fn seal(&mut self, kind: Kind, body: &[u8], now: Instant, out: &mut Vec<u8>) {
         self.counter += 1;
@@ -190,8 +190,8 @@ impl Session {
         self.peers.get_mut(index).ok_or(Refusal::Malformed)
     }
 
-    /// Forgets one sender if there is no room for another: the one that has been silent for longest, of those without an
-    /// answer if there are any.
+    /// Forgets one sender if there is no room for another: the one that has been silent for longest, of those without
+    /// an answer if there are any.
     fn make_room(&mut self) {
         if self.peers.len() < self.most_peers {
             return;
@@ -486,7 +486,7 @@ mod tests {
 
     #[derive(Clone, Debug)]
     enum Step {
-        /// So many milliseconds pass.
+        /// Time passes, in milliseconds.
         Wait(u64),
         /// The node or the gateway sends; the message arrives at once, or is held back.
         Tell { by_node: bool, arrives: bool },

@@ -3,8 +3,8 @@
 /// Distance behind the greatest counter at which one is still accepted: datagrams overtake each other on a network.
 const BEHIND: u64 = 64;
 
-/// Greatest step of the counter: as many messages as a node sends in half an hour, so that a node that was cut off for
-/// that long is accepted at once.
+/// Greatest step of the counter: as many messages as a node sends in half an hour, so that a node that was cut off
+/// for that long is accepted at once.
 const AHEAD: u64 = 1 << 20;
 
 /// Greatest counter of any sender: a million messages a second for 290,000 years.
@@ -19,7 +19,7 @@ pub(super) enum Novelty {
     Overtaken,
     /// It has come, or lies behind the window.
     Repeated,
-    /// It is further beyond them than a sender gets.
+    /// It is further beyond them than any sender's counter gets.
     Jumped,
 }
 
@@ -35,7 +35,8 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// The window of a sender whose first message has this `counter`; `None` beyond the greatest counter of any sender.
+    /// The window after a sender's first message with this `counter`; `None` beyond the greatest counter of any
+    /// sender.
     pub(super) fn beginning(counter: u64) -> Option<Self> {
         (counter <= GREATEST).then_some(Self { newest: counter, seen: 1 })
     }

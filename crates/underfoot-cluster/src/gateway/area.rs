@@ -1,4 +1,4 @@
-//! One area as the gateway knows it: who serves it, how its clock goes, whether it lives.
+//! The state of one area in the gateway: the node that serves it, its clock, and its standing.
 
 use std::time::Duration;
 
@@ -9,12 +9,12 @@ use super::clock::NodeClock;
 use super::presses::Presses;
 use crate::message::{LayoutStanding, NodeMessage, Standing};
 
-/// Greatest age of an area's newest frame, by the gateway's own clock: the uncertainty of the node's clock adds to the
-/// age. All holds of the area are cancelled then.
+/// Greatest age of an area's newest frame, by the gateway's own clock: the uncertainty of the node's clock adds to
+/// the age. Beyond it, the gateway cancels all holds of the area.
 pub const LOST_AFTER: Duration = Duration::from_millis(100);
 
-/// How far in the future a frame may be: the uncertainty of clocks that are known to a round trip. What is further is
-/// of a clock that was set, of which the next echo tells.
+/// Greatest time by which a frame may lie in the future: the uncertainty of a clock with an offset known to within a
+/// round trip. A frame further ahead comes from a clock that was set, which the next echo reveals.
 const AHEAD: Duration = Duration::from_millis(20);
 
 /// One area.
@@ -25,48 +25,48 @@ pub(super) struct AreaState {
     pub(super) standing: Standing,
     pub(super) clock: NodeClock,
     pub(super) presses: Presses,
-    /// When its newest frame was, on the gateway's clock.
+    /// Time of its newest frame, on the gateway's clock.
     pub(super) newest: Option<Instant>,
     /// Uncertainty of that time.
     unsure: Duration,
-    /// Up to when what it told has been put in order; never goes back while it lives.
+    /// Time up to which its reports have been ordered; it never decreases while the area is live.
     pub(super) told: Instant,
-    /// Whether its boards are silent, as its node says.
+    /// Whether its node reports that its boards are silent.
     pub(super) silent: bool,
-    /// How its node stands with layouts, and the page that it has told of.
+    /// The state of its node's layouts, and the page that it has reported.
     pub(super) layout: LayoutStanding,
     pub(super) page: Option<String>,
-    /// Whether its node has been told what apps have set.
+    /// Whether the settings of apps have been sent to its node.
     pub(super) is_brought_up: bool,
-    /// When it came to live: events before that are of no interest any more.
+    /// Time at which it became live: earlier events are ignored.
     since: Instant,
     /// The numbers of the last message and of the next event.
     sequence: u64,
     next_event: Option<u64>,
 }
 
-/// What a message is worth.
+/// The use of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Worth {
-    /// Nothing: it is an old one, from a node that is not believed, or of a time that is not known yet.
+    /// It is dropped: an old one, one from a node that does not hold the area, or one of an unknown time.
     Nothing,
-    /// It is too old to act on, or of a moment that has not come yet.
+    /// It is too old to act on, or lies in the future.
     Stale,
-    /// It shows that the node's clock was set: nobody knows of when the last messages were.
+    /// It shows that the node's clock was set: the times of the last messages are unknown.
     ClockSet,
-    /// It tells what is now; `lost` events are missing before it.
+    /// It is current; `lost` events are missing before it.
     Fresh { lost: u64 },
 }
 
 impl AreaState {
-    /// Takes note of who says what when.
+    /// Notes a message and its sender, received at `now`.
     pub(super) fn note(&mut self, message: &NodeMessage, now: Instant) -> Worth {
         self.claims.note(message.node, &message.name, now);
         if self.claims.holder(now) != Holder::One(message.node) {
             return Worth::Nothing;
         }
         if self.holder.replace(message.node) != Some(message.node) {
-            // Another clock, other numbers.
+            // The clock and the numbers of another node.
             self.clock = NodeClock::default();
             (self.sequence, self.next_event, self.newest) = (0, None, None);
         }
@@ -86,7 +86,7 @@ impl AreaState {
             return Worth::Nothing;
         };
         let unsure = self.clock.uncertainty(now).unwrap_or_default();
-        // What a node says of silent boards is no news of the floor, however new.
+        // A message about silent boards brings no new frame, however recent it is.
         if message.silent || now.since(frame) + unsure > LOST_AFTER || frame > now + AHEAD {
             return Worth::Stale;
         }
@@ -94,23 +94,23 @@ impl AreaState {
         Worth::Fresh { lost }
     }
 
-    /// The moment here of `micros` on the node's clock.
+    /// The gateway's time at which the node's clock showed `micros`.
     pub(super) fn here(&self, micros: u64) -> Instant {
         self.clock.here(micros).unwrap_or(Instant::START)
     }
 
-    /// The moment in the order of all areas: as [`AreaState::here`], but never before one that was given earlier.
+    /// Makes `at` monotonic for the order of all areas: returns the greatest of `at` and all earlier results.
     pub(super) fn in_order(&mut self, at: Instant) -> Instant {
         self.told = self.told.max(at);
         self.told
     }
 
-    /// Whether an event of that time is of interest.
+    /// Whether the gateway reports an event of that time.
     pub(super) fn is_of_interest(&self, at: Instant) -> bool {
         at >= self.since
     }
 
-    /// Begins to believe what is told from `at` on.
+    /// Makes the area live from `at` on.
     pub(super) fn begin(&mut self, at: Instant) {
         self.standing = Standing::Live;
         self.is_brought_up = false;
@@ -122,7 +122,7 @@ impl AreaState {
         self.newest.map(|newest| now.since(newest) + self.unsure)
     }
 
-    /// Whether it has to be given up at `now`, and as what.
+    /// The standing to which it falls at `now`, if it falls.
     pub(super) fn fallen(&mut self, now: Instant) -> Option<Standing> {
         let is_disputed = self.claims.holder(now) == Holder::Disputed;
         let is_old = self.age(now).is_none_or(|age| age > LOST_AFTER);
@@ -136,7 +136,7 @@ impl AreaState {
         Some(next)
     }
 
-    /// Gives it up.
+    /// Sets the standing to which it falls.
     pub(super) fn fall(&mut self, standing: Standing) {
         self.standing = standing;
         self.newest = None;

@@ -1,4 +1,4 @@
-//! What the gateway does with requests of apps: each goes to the node that it concerns, or to all.
+//! Requests of apps: the gateway sends each to the node that it concerns, or to all.
 
 use std::net::SocketAddr;
 
@@ -13,22 +13,22 @@ use super::requests::{Answered, Asker};
 use super::told::Told;
 use crate::message::{NodeState, Standing};
 
-/// What an app that asked is answered.
+/// The answer to an app's request.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// How a control is.
+    /// The state of a control.
     Control(Box<ControlState>),
-    /// Which page is shown; empty without pages.
+    /// The page on the floor; empty without pages.
     Page(String),
-    /// What is muted.
+    /// The muted tiles.
     Muted(Muted),
-    /// The request at this address, without its prefix, was not done, and why.
+    /// The address of the refused request, without its prefix, and the reason.
     Refused(String, String),
 }
 
 impl Gateway {
-    /// Takes a request of an app, which came at `now`: nodes hear of it with the next beat, and the app is answered
-    /// when they have, or half a second later.
+    /// Takes a request of an app, which arrived at `now`. The next beat carries it to the nodes; the app receives the
+    /// answer as soon as they have answered, or after half a second.
     pub fn ask(&mut self, mut request: Request, now: Instant) {
         let pattern = request.message.id_mut().map(|id| id.as_str().to_owned()).unwrap_or_default();
         let ids: Vec<String> = match is_pattern(&pattern) && self.shared.owner(&pattern).is_none() {
@@ -60,7 +60,7 @@ impl Gateway {
             }
             _ => Ok(None),
         };
-        // No node can refuse that; one that is lost is told when it is back.
+        // No node can refuse this request; a lost one receives it when it is back.
         if area.is_ok() && matches!(message, ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. }) {
             self.keep(&message, now);
         }
@@ -89,7 +89,7 @@ impl Gateway {
         asked.then_some(()).ok_or_else(|| "too many requests wait for their answers".to_owned())
     }
 
-    /// Tells the node of area number `number`, which has just come to live, what is muted.
+    /// Sends the mute settings to the node of area number `number`, which has just become live.
     pub(super) fn tell_mutes(&mut self, number: usize, now: Instant) {
         let areas = self.named(&[number]);
         for message in self.shared.mutes_of(number) {
@@ -97,7 +97,7 @@ impl Gateway {
         }
     }
 
-    /// Brings nodes that have come to live to what apps have set, once they have the layout that it is about.
+    /// Sends the settings of apps to nodes that have become live, once they run the layout that the settings concern.
     pub(super) fn bring_up(&mut self, now: Instant) {
         let current = self.layouts.current().map(|(name, _)| name);
         for number in 0..self.areas.len() {
@@ -116,7 +116,7 @@ impl Gateway {
         }
     }
 
-    /// Takes note of the page that the node of area number `number` shows: all others are to show it too.
+    /// Notes the page that the node of area number `number` shows, and requests it from all others.
     pub(super) fn note_page(&mut self, number: usize, page: String, now: Instant) {
         if self.shared.page() == page {
             return;
@@ -130,7 +130,7 @@ impl Gateway {
         self.requests.ask(Asker::Gateway, ControlMessage::ShowPage { page: id }, &others, now);
     }
 
-    /// Tells what has become of requests at `now`.
+    /// Sends the answers to requests that are complete at `now`.
     pub(super) fn tell_answers(&mut self, now: Instant) {
         for Answered { asker, message, done } in self.requests.answered(now) {
             let Asker::App(sender) = asker else { continue };
@@ -156,7 +156,7 @@ impl Gateway {
         }
     }
 
-    /// Tells what the gateway itself knows of the floor.
+    /// Answers a request about the state of the whole floor.
     fn tell_of_all(&mut self, message: &ControlMessage, sender: Option<SocketAddr>, now: Instant) {
         let answer = if *message == ControlMessage::GetMute {
             self.out.push(Told::Muted(now, self.shared.muted.clone()));

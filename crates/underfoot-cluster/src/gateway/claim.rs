@@ -1,13 +1,13 @@
-//! Which node serves an area.
+//! The node that serves an area.
 
 use std::time::Duration;
 
 use underfoot::units::Instant;
 
-/// How long a node that is silent still claims its area, against another one that does.
+/// Time for which a silent node still claims its area against another claimant.
 const CLAIMED_FOR: Duration = Duration::from_secs(1);
 
-/// Nodes of one area that are told apart; further ones dispute it all the same.
+/// Nodes of one area that are counted separately; the dispute holds with more of them as well.
 const MOST: usize = 8;
 
 /// One node's claim.
@@ -19,23 +19,23 @@ struct Claim {
     heard: Instant,
 }
 
-/// Who claims one area.
+/// The claims of one area.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Claims(Vec<Claim>);
 
-/// Who serves an area.
+/// The node that serves an area.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Holder {
-    /// Nobody has said so of late.
+    /// No node has claimed it recently.
     Nobody,
     /// This node.
     One(u64),
-    /// Several nodes go on to say so.
+    /// Several nodes keep claiming it.
     Disputed,
 }
 
 impl Claims {
-    /// Notes that `node`, called `name`, says that it serves the area.
+    /// Notes that the node `node` with the name `name` claims the area.
     pub(super) fn note(&mut self, node: u64, name: &str, now: Instant) {
         match self.0.iter_mut().find(|claim| claim.node == node) {
             Some(claim) => claim.heard = now,
@@ -48,8 +48,8 @@ impl Claims {
         }
     }
 
-    /// Who serves the area. A node that took the place of another does; two that take turns dispute it, until all but
-    /// one have been silent for a second.
+    /// The node that serves the area. A node that replaces another one holds it; two that alternate dispute it, until
+    /// all but one have been silent for a second.
     pub(super) fn holder(&mut self, now: Instant) -> Holder {
         let latest = self.0.iter().map(|claim| claim.heard).max();
         self.0.retain(|claim| now.since(claim.heard) < CLAIMED_FOR || Some(claim.heard) == latest);
@@ -61,7 +61,7 @@ impl Claims {
         }
     }
 
-    /// What the nodes are called.
+    /// The names of the nodes.
     pub(super) fn names(&self) -> String {
         let names: Vec<&str> = self.0.iter().map(|claim| claim.name.as_str()).collect();
         names.join(" and ")

@@ -1,4 +1,4 @@
-//! How far a node's clock is from the gateway's.
+//! The offset between a node's clock and the gateway's.
 //!
 //! ```text
 //! gateway  g0 ........................ g3      node = gateway + offset
@@ -13,47 +13,48 @@ use underfoot::units::Instant;
 
 use crate::auth::Echo;
 
-/// How long a round trip counts. Longer finds quicker ones; clocks drift meanwhile, 0.5 ms in this time at most.
+/// Time for which a round trip counts. A longer one finds faster round trips; clocks drift by at most 0.5 ms in this
+/// time.
 const WINDOW: Duration = Duration::from_secs(5);
 
-/// How much faster one clock may be than another: quartz oscillators differ by 50 ppm each at most.
+/// Greatest relative rate between two clocks: quartz oscillators are off by 50 ppm each at most.
 const DRIFT: f64 = 1e-4;
 
-/// Round trips that are kept: of one gateway, twenty a second.
+/// Greatest number of round trips kept: one gateway makes twenty a second.
 const KEPT: usize = 128;
 
-/// What one round trip says.
+/// The estimate from one round trip.
 #[derive(Clone, Copy, Debug)]
 struct RoundTrip {
-    /// When it ended, on the gateway's clock.
+    /// Time at which it ended, on the gateway's clock.
     at: Instant,
-    /// The node's time less the gateway's, in microseconds.
+    /// The node's time minus the gateway's, in microseconds.
     offset: i64,
-    /// By how much that may be wrong, in microseconds.
+    /// Bound on the error of the offset, in microseconds.
     uncertainty: i64,
 }
 
 impl RoundTrip {
-    /// By how much it may be wrong at `now`.
+    /// Bound on the error at `now`: `uncertainty + DRIFT * age`.
     fn uncertainty_at(&self, now: Instant) -> i64 {
         let drift = DRIFT * now.since(self.at).as_micros() as f64;
         self.uncertainty.saturating_add(drift as i64)
     }
 }
 
-/// A node's clock as the gateway knows it.
+/// The gateway's estimate of a node's clock.
 #[derive(Clone, Debug, Default)]
 pub struct NodeClock {
     trips: VecDeque<RoundTrip>,
-    /// When the gateway sent what the last echo was of, so that each counts once.
+    /// The gateway's time of sending of the message that the last echo answered, so that each echo counts once.
     last: Option<u64>,
-    /// The surest of them.
+    /// The round trip with the smallest uncertainty.
     best: Option<RoundTrip>,
 }
 
 impl NodeClock {
-    /// Takes an echo that a message brought which the node `sent` and the gateway received at `now`. Whether the clock
-    /// turns out to have been set.
+    /// Adds an echo from a message that the node sent at `sent` and the gateway received at `now`. Returns whether
+    /// the clock was set in between.
     pub fn note(&mut self, echo: &Echo, sent: u64, now: Instant) -> bool {
         if self.last.is_some_and(|last| echo.sent <= last) {
             return false;
@@ -82,28 +83,28 @@ impl NodeClock {
         was_set
     }
 
-    /// Whether anything is known of it.
+    /// Whether an estimate exists.
     #[must_use]
     pub const fn is_known(&self) -> bool {
         self.best.is_some()
     }
 
-    /// The moment on the gateway's clock when the node's showed `micros`; `None` while nothing is known of it.
+    /// The gateway's time at which the node's clock showed `micros`; `None` without an estimate.
     #[must_use]
     pub fn here(&self, micros: u64) -> Option<Instant> {
         let here = signed(micros).saturating_sub(self.best?.offset);
-        // What was before the gateway started was at its start.
+        // Times before the gateway's start are clamped to its start.
         Some(Instant::from_micros(u64::try_from(here).unwrap_or(0)))
     }
 
-    /// What the node's clock shows at the moment `here` of the gateway's; `None` while nothing is known of it.
+    /// The node's clock reading at the gateway's time `here`; `None` without an estimate.
     #[must_use]
     pub fn there(&self, here: Instant) -> Option<u64> {
         let there = signed(here.micros()).saturating_add(self.best?.offset);
         Some(u64::try_from(there).unwrap_or(0))
     }
 
-    /// By how much [`NodeClock::here`] may be wrong at `now`.
+    /// Bound on the error of [`NodeClock::here`] at `now`.
     #[must_use]
     pub fn uncertainty(&self, now: Instant) -> Option<Duration> {
         let micros = self.best?.uncertainty_at(now);
@@ -111,7 +112,7 @@ impl NodeClock {
     }
 }
 
-/// Microseconds that two can be subtracted of; no clock has run for 73,000 years.
+/// Limits microseconds so that two of them can be subtracted; the limit is 73,000 years.
 fn signed(micros: u64) -> i64 {
     micros.min(1 << 61).cast_signed()
 }
@@ -120,7 +121,7 @@ fn signed(micros: u64) -> i64 {
 mod tests {
     use super::*;
 
-    /// A node whose clock is `offset` ahead; messages take `there` and `back`, in microseconds.
+    /// A round trip with a node clock that is `offset` ahead; messages take `there` and `back`, in microseconds.
     fn trip(clock: &mut NodeClock, at: u64, offset: u64, there: u64, back: u64) -> bool {
         let (received, sent) = (at + there + offset, at + there + offset + 500);
         let echo = Echo { sent: at, received };
@@ -138,7 +139,7 @@ mod tests {
         let now = Instant::from_micros(1_200_000);
         let uncertainty = clock.uncertainty(now).unwrap().as_micros() as i64;
         let error = clock.here(77_000_000 + 1_100_000).unwrap().micros() as i64 - 1_100_000;
-        // Half of 400 us, and what 0.1 s of drift may add.
+        // Half of 400 us, plus the drift in 0.1 s.
         assert!((200..=220).contains(&uncertainty), "{uncertainty}");
         assert!(error.abs() <= uncertainty, "{error}");
     }
@@ -157,7 +158,7 @@ mod tests {
         let mut clock = NodeClock::default();
         for tick in 0..400_u64 {
             let at = 1_000_000 + tick * 50_000;
-            // 50 ppm fast.
+            // The node's clock runs 50 ppm fast.
             trip(&mut clock, at, 3_000_000 + tick * 50_000 / 20_000, 300, 300);
         }
         let now = 1_000_000 + 400 * 50_000;

@@ -1,4 +1,4 @@
-//! What is held on the whole floor, said over and over.
+//! The controls held on the whole floor, reported repeatedly.
 
 use std::time::Duration;
 
@@ -6,14 +6,14 @@ use underfoot::sink::HeldReport;
 use underfoot::units::Instant;
 use underfoot::widget::WidgetId;
 
-/// Time between two reports: five of them may be lost or late before an app takes a control for released.
+/// Interval between two reports: five of them may be lost or late before an app treats a control as released.
 const EVERY: Duration = Duration::from_millis(20);
 
-/// How old the frames may be that say what is held. With the 100 ms that silence is believed for, a hold ends after
-/// 150 ms at the latest, also when this program dies.
+/// Greatest age of the frames from which the holds come. Together with the time-out of 100 ms for silence, a hold
+/// ends after 150 ms at the latest, also when this program crashes.
 const CURRENT: Duration = Duration::from_millis(40);
 
-/// What was reported last, and when the next report is due.
+/// The last report, and the time of the next one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HeldReports {
     last: HeldReport,
@@ -21,7 +21,8 @@ pub(super) struct HeldReports {
 }
 
 impl HeldReports {
-    /// The report of what is held, if that has changed or it is due. `age`: of the oldest frame that says so.
+    /// The report of the controls in `held`, if they have changed or a report is due. `age` is that of the oldest
+    /// frame behind it.
     pub(super) fn report(&mut self, held: &[&str], age: Duration, now: Instant) -> Option<&HeldReport> {
         let last = &mut self.last;
         let is_news =

@@ -1,8 +1,8 @@
-//! Contacts of several areas into contacts of one floor.
+//! Joins the contacts of several areas into contacts of one floor.
 //!
-//! Nodes tell what they see beyond their area too, so that a foot near a border is told by both: the two are one
-//! **joint** contact as soon as both see it, long before it crosses. Its name never changes; its **owner** is the area
-//! whose node is believed of where it is.
+//! Nodes report contacts beyond their area too, so that two nodes report a foot near a border. Both reports form one
+//! **joint** contact as soon as both nodes see the foot, long before it crosses. Its number never changes; the node
+//! of its **owner** area provides its position.
 
 use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
@@ -14,34 +14,34 @@ use underfoot::units::Instant;
 
 use crate::message::NodeContact;
 
-/// How far apart two nodes may see the same foot: both feel the same forces, but not at the same moment, and a foot
-/// that lands moves by some millimetres in each.
+/// Greatest distance (m) at which two nodes' contacts join: both sense the same forces, but at different times, and
+/// a landing foot moves by some millimetres in each.
 const SAME_M: f32 = 0.05;
 
-/// How far apart they may come to see it before it is taken for two.
+/// Distance (m) beyond which members of a joint contact are split into two.
 const APART_M: f32 = 0.15;
 
-/// How long a joint contact that no area has any more can still be found again in another area.
+/// Time for which a joint contact without members can still be matched in another area.
 const LATE: Duration = Duration::from_millis(20);
 
-/// How long the old owner is believed of a foot that has left its area while the next one does not see it.
+/// Time for which the old owner keeps a foot that has left its area while the next area does not see it.
 const LEAVING: Duration = Duration::from_millis(50);
 
-/// How long the name of a contact that has ended is known, for events that come later.
+/// Time for which the number of an ended contact stays known, for later events.
 const REMEMBERED: Duration = Duration::from_secs(2);
 
-/// Frames of an area that are kept, to tell where its contacts were between two of them.
+/// Number of stored frames of an area, between which positions of contacts are interpolated.
 const FRAMES: usize = 8;
 
-/// What one area told last.
+/// The last reports of one area.
 #[derive(Clone, Debug, Default)]
 struct View {
     frames: VecDeque<(Instant, Vec<NodeContact>)>,
-    /// The joint contact of each of its contacts, by the node's name.
+    /// The joint contact of each of its contacts, by the node's number.
     joints: HashMap<u32, u32>,
-    /// Those of contacts that have ended, and when.
+    /// Joint contacts of its ended contacts, with the time of the end.
     past: HashMap<u32, (u32, Instant)>,
-    /// Whether its node is believed.
+    /// Whether its node is live.
     live: bool,
 }
 
@@ -50,7 +50,7 @@ impl View {
         self.frames.back()?.1.iter().find(|contact| contact.id == id)
     }
 
-    /// How the contact `id` was at `at`.
+    /// The contact `id` at `at`, interpolated between two frames.
     fn between(&self, id: u32, at: Instant) -> Option<NodeContact> {
         let of =
             |(_, contacts): &(Instant, Vec<NodeContact>)| contacts.iter().find(|one| one.id == id).copied();
@@ -68,19 +68,19 @@ impl View {
     }
 }
 
-/// One foot, whoever sees it.
+/// One foot, in the views of all areas that see it.
 #[derive(Clone, Debug)]
 struct Joint {
     id: u32,
-    /// Who sees it: numbers of areas, and the nodes' names for it.
+    /// The areas that see it, with their nodes' numbers for it.
     members: Vec<(usize, u32)>,
-    /// Whose word counts.
+    /// The area that provides its position.
     owner: Option<usize>,
-    /// Since when it has been out of its owner's area, and no other one sees it there.
+    /// Time since which it has been outside its owner's area while no other area sees it inside its own.
     leaving: Option<Instant>,
-    /// Where it was last, and when.
+    /// Its last position and time.
     last: (Vec2, Instant),
-    /// The area that ended it while it was believed of it: what appears there later is another foot.
+    /// The owner that ended it: a contact that appears there later is another foot.
     ended_by: Option<usize>,
 }
 
@@ -107,7 +107,7 @@ impl Joiner {
         Self { geometry, areas, views, joints: Vec::new(), last_id: 0 }
     }
 
-    /// Takes the contacts that the node of `area` saw at `at`, which must not be before those it saw last.
+    /// Takes the contacts that the node of `area` saw at `at`, a time at or after that of its last frame.
     pub(super) fn frame(&mut self, area: usize, at: Instant, contacts: Vec<NodeContact>) {
         let Some(view) = self.views.get_mut(area) else { return };
         view.live = true;
@@ -131,7 +131,7 @@ impl Joiner {
         self.own(at);
     }
 
-    /// The joint name of what the node of `area` calls `id` and saw at `place` at `at`.
+    /// The joint number of the contact that the node of `area` numbers `id` and saw at `place` at `at`.
     pub(super) fn name(&mut self, area: usize, id: u32, place: Vec2, at: Instant) -> Option<u32> {
         let view = self.views.get(area)?;
         let known = view.joints.get(&id).copied().or_else(|| view.past.get(&id).map(|(joint, _)| *joint));
@@ -142,13 +142,13 @@ impl Joiner {
         self.views.get(area)?.joints.get(&id).copied()
     }
 
-    /// Believes the node of `area` no longer, from `at` on.
+    /// Drops all contacts of `area`, which is not live any more, from `at` on.
     pub(super) fn lose(&mut self, area: usize, at: Instant) {
         let Some(view) = self.views.get_mut(area) else { return };
         *view = View::default();
         for joint in &mut self.joints {
             joint.members.retain(|(other, _)| *other != area);
-            // What it has lost is not found again: it is not known where it went.
+            // A contact lost in this way is never matched again, since its further path is unknown.
             if joint.members.is_empty() {
                 joint.last.1 = Instant::START;
             }
@@ -157,7 +157,7 @@ impl Joiner {
         self.own(at);
     }
 
-    /// The contacts on the whole floor at `at`, in the order of their names.
+    /// The contacts on the whole floor at `at`, in the order of their numbers.
     pub(super) fn contacts(&self, at: Instant) -> Vec<Contact> {
         let told = self.joints.iter().filter_map(|joint| {
             let owner = joint.owner?;
@@ -167,8 +167,8 @@ impl Joiner {
         told.collect()
     }
 
-    /// Ends what the node of `area` called `id`. If that node is believed of it and no other one has it in its own
-    /// area, it has ended for all.
+    /// Ends the contact `id` of the node of `area`. If that node owns the joint contact and no other node has it in
+    /// its own area, the joint contact ends too.
     fn end(&mut self, area: usize, id: u32, at: Instant) {
         let Some(view) = self.views.get_mut(area) else { return };
         let Some(joint) = view.joints.remove(&id) else { return };
@@ -194,8 +194,8 @@ impl Joiner {
         }
     }
 
-    /// Notes where a contact is, and takes apart those that are not the same foot: who sees it elsewhere than its owner
-    /// sees another one.
+    /// Updates the position of a joint contact and removes members that belong to another foot: those further than
+    /// [`APART_M`] from the owner's position and, without an owner, those nearer to another joint contact.
     fn check(&mut self, area: usize, contact: &NodeContact, at: Instant) {
         let Some(view) = self.views.get(area) else { return };
         let Some(id) = view.joints.get(&contact.id).copied() else { return };
@@ -211,7 +211,7 @@ impl Joiner {
         } else {
             let owner = others().find(|(other, _)| joint.owner == Some(*other));
             let is_away = owner.map_or_else(|| others().any(is_elsewhere), is_elsewhere);
-            // What nobody owns may be what its owner has told of since.
+            // Without an owner, the foot may since have become another joint contact.
             let is_other = joint.owner.is_none()
                 && self.nearest(area, contact.place(), Some(id), at).is_some_and(|(_, nearest)| {
                     joint.members.len() == 1
@@ -230,12 +230,12 @@ impl Joiner {
         if stays {
             joint.last = (contact.place(), at);
         } else if joint.members.is_empty() && joint.owner.is_none() {
-            // Others are not to find it again.
+            // No other area may match it again.
             joint.last.1 = Instant::START;
         }
     }
 
-    /// The joint contact nearest to `place` that `area` has none in yet, with its distance.
+    /// The nearest joint contact to `place` in which `area` is not a member yet, with its distance.
     fn nearest(&self, area: usize, place: Vec2, but: Option<u32>, at: Instant) -> Option<(f32, u32)> {
         let candidates = self.joints.iter().filter(|joint| {
             let is_late = joint.members.is_empty() && at.since(joint.last.1) > LATE;
@@ -251,7 +251,7 @@ impl Joiner {
         near.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)))
     }
 
-    /// Finds the joint contacts of `new` ones of `area`, the nearest pairs first; those that have none become one.
+    /// Matches the contacts `new` of `area` with joint contacts, the nearest pairs first; the rest become new ones.
     fn find(&mut self, area: usize, mut new: Vec<(u32, Vec2)>, at: Instant) {
         while !new.is_empty() {
             let pairs = new.iter().enumerate().filter_map(|(place, (_, point))| {
@@ -285,7 +285,7 @@ impl Joiner {
         id
     }
 
-    /// Says who owns each joint contact.
+    /// Assigns the owner of each joint contact.
     fn own(&mut self, at: Instant) {
         let Self { geometry, areas, views, joints, .. } = self;
         for joint in joints {
@@ -302,7 +302,7 @@ impl Joiner {
             }
             let places: Vec<Vec2> = joint.members.iter().filter_map(|(area, _)| seen(*area)).collect();
             let members = || joint.members.iter().map(|(area, _)| *area);
-            // Each of two may see it just on the other's side.
+            // Each of two nodes may see it just on the other's side.
             let held =
                 |area: &usize| seen(*area).is_some() && places.iter().any(|place| holds(*area, *place));
             let old = joint.owner.filter(|owner| seen(*owner).is_some());
@@ -311,7 +311,7 @@ impl Joiner {
                 (Some(next), _) => (Some(next), None),
                 (None, Some(old)) => {
                     let since = joint.leaving.unwrap_or(at);
-                    // An area that is lost tells of nobody.
+                    // A lost area reports no contacts.
                     let is_dark = seen(old).is_some_and(|place| {
                         areas
                             .iter()
@@ -326,7 +326,7 @@ impl Joiner {
         }
     }
 
-    /// Forgets what has ended long enough ago.
+    /// Deletes joint contacts and old numbers past their time-outs.
     fn forget(&mut self, at: Instant) {
         self.joints.retain(|joint| !joint.members.is_empty() || at.since(joint.last.1) <= LATE);
         for view in &mut self.views {

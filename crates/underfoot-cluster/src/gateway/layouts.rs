@@ -1,4 +1,4 @@
-//! One layout on all nodes: proposed to all, and on the floor at one moment, or not at all.
+//! One layout on all nodes: proposed to all, and active on all from one time on, or on none.
 //!
 //! ```text
 //! propose -> text to all nodes -> each live one is ready -> current, from a moment on that all nodes know
@@ -12,16 +12,16 @@ use underfoot::units::Instant;
 
 use crate::message::{LayoutName, LayoutStanding};
 
-/// How long nodes may take to check a layout.
+/// Time within which nodes must check a layout.
 const ANSWER_WITHIN: Duration = Duration::from_secs(5);
 
-/// How far ahead of the decision the moment is at which nodes change: two beats.
+/// Time from the decision to the change on all nodes: two beats.
 const AHEAD: Duration = Duration::from_millis(100);
 
-/// How often a text is sent again while a node lacks it.
+/// Interval at which a text is sent again while a node lacks it.
 const SEND_EVERY: Duration = Duration::from_millis(500);
 
-/// A layout with what describes it.
+/// A layout's name and text.
 #[derive(Clone, Debug, PartialEq)]
 struct Text {
     name: LayoutName,
@@ -34,18 +34,18 @@ struct Proposal {
     since: Instant,
 }
 
-/// What became of a proposal.
+/// The outcome of a proposal.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Outcome {
-    /// All nodes have it from that moment on.
+    /// All nodes run it from that time on.
     Current(LayoutName, Instant),
-    /// No node has it.
+    /// No node runs it.
     Dropped(LayoutName, String),
-    /// A node that joined does not take the current one.
+    /// A node that joined refuses the current one.
     Unfit(String, String),
 }
 
-/// A live node: its area, and how it stands.
+/// A live node: its area, and the state of its layouts.
 pub(super) type Standing<'a> = (&'a str, &'a LayoutStanding);
 
 /// The layouts of a gateway.
@@ -55,12 +55,12 @@ pub(super) struct Layouts {
     current: Option<(Text, Instant)>,
     proposed: Option<Proposal>,
     send_due: Instant,
-    /// Areas of which it was said that they do not take the current layout.
+    /// Areas reported as refusing the current layout.
     unfit: Vec<String>,
 }
 
 impl Layouts {
-    /// Proposes the layout that `text` describes; one that is proposed already is given up for it.
+    /// Proposes the layout that `text` describes, in place of any earlier proposal.
     pub(super) fn propose(&mut self, text: String, now: Instant) -> LayoutName {
         self.revision += 1;
         let name = LayoutName::of(self.revision, &text);
@@ -69,18 +69,18 @@ impl Layouts {
         name
     }
 
-    /// Whether `text` is what is proposed, or the current layout's while nothing is.
+    /// Whether `text` is that of the proposal, or of the current layout without one.
     pub(super) fn is_known(&self, text: &str) -> bool {
         let proposed = self.proposed.as_ref().map(|proposal| &proposal.text);
         proposed.or(self.current.as_ref().map(|(text, _)| text)).is_some_and(|known| known.text == text)
     }
 
-    /// The layout that nodes are to have, and from when on.
+    /// The current layout, and the time from which it applies.
     pub(super) fn current(&self) -> Option<(LayoutName, Instant)> {
         self.current.as_ref().map(|(text, from)| (text.name, *from))
     }
 
-    /// The text that nodes have to be sent at `now`.
+    /// The text that nodes need at `now`.
     pub(super) fn send<'a>(
         &mut self,
         mut live: impl Iterator<Item = Standing<'a>>,
@@ -102,7 +102,7 @@ impl Layouts {
         Some((text.name, &text.text))
     }
 
-    /// What is decided at `now`, with these nodes live.
+    /// The decision at `now`, given the live nodes.
     pub(super) fn decide<'a>(
         &mut self,
         live: impl Iterator<Item = Standing<'a>> + Clone,
@@ -134,7 +134,7 @@ impl Layouts {
         Some(Outcome::Dropped(name, why))
     }
 
-    /// A node that does not take the current layout, and has not been named.
+    /// A node that refuses the current layout and has not been reported yet.
     fn unfit<'a>(&mut self, live: impl Iterator<Item = Standing<'a>>) -> Option<Outcome> {
         let name = self.current.as_ref()?.0.name;
         for (area, standing) in live {
@@ -158,7 +158,7 @@ mod tests {
         Instant::from_millis(ms)
     }
 
-    /// Two nodes and what they say.
+    /// Two nodes and the states of their layouts.
     struct Nodes([LayoutStanding; 2]);
 
     impl Nodes {
@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(layouts.decide(nodes.live(), at(600)), Some(Outcome::Current(name, at(700))));
         assert_eq!(layouts.current(), Some((name, at(700))));
         assert_eq!(layouts.send(nodes.live(), at(9000)), None);
-        // A node that joins gets it.
+        // A node that joins receives it.
         nodes.0[1] = LayoutStanding::default();
         assert_eq!(layouts.send(nodes.live(), at(9500)), Some((name, "new")));
     }

@@ -1,7 +1,7 @@
-//! Many areas' contacts and events as one floor's.
+//! Joins the contacts and events of many areas into one floor's.
 //!
-//! [`Gateway`] is pure: messages and the time are handed in, and what is to be told comes out. What it tells depends on
-//! what nodes said and not on the order in which their messages came, as long as none is more than [`WINDOW`] late.
+//! [`Gateway`] is pure: the caller passes messages and the time, and receives reports. They depend on the content of
+//! the nodes' messages and not on the order of arrival, as long as none is more than [`WINDOW`] late.
 //!
 //! ```text
 //! NodeMessage -claim-> one node an area -clock-> times here -> queue, in time order -> join: contacts' names
@@ -52,25 +52,25 @@ pub use ask::Answer;
 pub use clock::NodeClock;
 pub use told::{Counters, Told};
 
-/// How long what one area tells waits for what others may tell of earlier moments.
+/// Time for which the reports of one area wait for those of other areas about earlier times.
 pub const WINDOW: Duration = Duration::from_millis(25);
 
-/// Time between two signs of life.
+/// Interval between two alive reports.
 const ALIVE_EVERY: Duration = Duration::from_millis(100);
 
-/// Time between two moments of which contacts are told: a frame.
+/// Interval between two reports of contacts: a frame.
 const CONTACTS_EVERY: Duration = Duration::from_millis(1);
 
-/// Most of anything in one message: what is beyond it is refused, for no area has it.
+/// Greatest number of items of any kind in one message; the gateway refuses longer ones, as no area has so many.
 const MOST: usize = 4096;
 
-/// Most characters of the name of an unknown area.
+/// Greatest length of the name of an unknown area, in characters.
 const LONGEST_AREA: usize = 64;
 
-/// Nodes whose messages were refused that are remembered, so that each is complained of once.
+/// Number of refused nodes that are remembered, so that each causes one notice.
 const COMPLAINTS: usize = 64;
 
-/// Why a floor has no gateway.
+/// The reason why a floor can have no gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum NoGateway {
     /// The floor file names no areas.
@@ -78,7 +78,7 @@ pub enum NoGateway {
     NoAreas,
 }
 
-/// Something that an area told, waiting for its turn.
+/// One report of an area in the queue.
 #[derive(Clone, Debug)]
 enum Item {
     Event(NodeEvent),
@@ -94,10 +94,10 @@ pub struct Gateway {
     names: Vec<String>,
     areas: Vec<AreaState>,
     joiner: Joiner,
-    /// By moment, area and number; with the moment that is told, which may be before the one that orders.
+    /// By ordering time, area and number, with the reported time, which may be before the ordering time.
     queue: BTreeMap<(Instant, usize, u64), (Instant, Item)>,
     number: u64,
-    /// Up to when everything has been told.
+    /// Time up to which all reports have been sent.
     told_until: Instant,
     contacts_told: Option<Instant>,
     is_anybody_there: bool,
@@ -108,7 +108,7 @@ pub struct Gateway {
     shared: Shared,
     requests: Requests,
     layouts: Layouts,
-    /// Whether nodes have to be told something before the next beat is due.
+    /// Whether nodes need a message before the next beat is due.
     has_news: bool,
     counters: Counters,
     out: Vec<Told>,
@@ -147,20 +147,21 @@ impl Gateway {
         })
     }
 
-    /// What came in and what was not told so far.
+    /// The counts of received and withheld messages so far.
     #[must_use]
     pub const fn counters(&self) -> Counters {
         self.counters
     }
 
-    /// How the area called `id` stands; `None` for an unknown one.
+    /// The standing of the area `id`; `None` for an unknown one.
     #[must_use]
     pub fn standing(&self, id: &str) -> Option<Standing> {
         let area = self.names.iter().position(|name| name == id)?;
         self.areas.get(area).map(|area| area.standing)
     }
 
-    /// What all nodes are told at `now`: how their areas stand, and a moment by which they show what their clocks say.
+    /// The message for all nodes at `now`: the standings of their areas, and a time against which they compare their
+    /// clocks.
     #[must_use]
     pub fn message(&self, now: Instant) -> GatewayMessage {
         let standings = self.areas.iter().map(|area| area.standing);
@@ -182,7 +183,7 @@ impl Gateway {
         }
     }
 
-    /// Proposes a layout, checked for the whole floor, at `now`: it will be that of all nodes, or of none.
+    /// Proposes a layout, checked for the whole floor, at `now`: all nodes run it afterwards, or none.
     pub fn propose(&mut self, layout: Layout, now: Instant) {
         let text = write_layout(&layout);
         if self.layouts.is_known(&text) {
@@ -192,18 +193,18 @@ impl Gateway {
         self.shared.propose(layout);
     }
 
-    /// The layout that nodes have to be sent at `now`, if any.
+    /// The layout that nodes need at `now`, if any.
     pub fn layout_message(&mut self, now: Instant) -> Option<LayoutMessage> {
         let (name, text) = self.layouts.send(live(&self.names, &self.areas), now)?;
         Some(LayoutMessage { version: VERSION, gateway: self.id, name, text: text.to_owned() })
     }
 
-    /// Whether there is something that nodes should be told before the next beat is due.
+    /// Whether nodes need a message before the next beat is due.
     pub fn take_news(&mut self) -> bool {
         std::mem::take(&mut self.has_news) | self.requests.take_news()
     }
 
-    /// Takes in what a node told, received at `now`, which must not be before any other time that was given.
+    /// Takes a message of a node, received at `now`, a time at or after that of all earlier calls.
     pub fn take(&mut self, mut message: NodeMessage, now: Instant) {
         self.counters.messages += 1;
         message.tidy();
@@ -241,7 +242,7 @@ impl Gateway {
         }
     }
 
-    /// What is to be told at `now`, which must not be before any other time that was given.
+    /// The reports that are due at `now`, a time at or after that of all earlier calls.
     pub fn advance(&mut self, now: Instant) -> Vec<Told> {
         for number in 0..self.areas.len() {
             let Some(area) = self.areas.get_mut(number) else { continue };
@@ -259,7 +260,7 @@ impl Gateway {
             self.fall(number, standing, &why, now);
         }
         let told = self.areas.iter().filter(|area| area.standing == Standing::Live).map(|area| area.told);
-        // Who is late is not waited for.
+        // Areas later than the window do not delay the others.
         let until = told.min().unwrap_or(now).max(now.before(WINDOW));
         while let Some(entry) = self.queue.first_entry().filter(|entry| entry.key().0 <= until) {
             let ((at, area, _), (happened, item)) = entry.remove_entry();
@@ -274,7 +275,7 @@ impl Gateway {
         std::mem::take(&mut self.out)
     }
 
-    /// What is to be told when the gateway stops at `now`: nobody knows from then on what feet hold.
+    /// The final reports of a gateway that stops at `now`: it cancels all holds, which are unknown from then on.
     pub fn end(&mut self, now: Instant) -> Vec<Told> {
         for number in 0..self.areas.len() {
             if self.areas.get(number).is_some_and(|area| area.standing == Standing::Live) {
@@ -286,7 +287,7 @@ impl Gateway {
         std::mem::take(&mut self.out)
     }
 
-    /// The number of the area that a message is about, if it is one of this floor.
+    /// The number of the area of a message, if the message fits this floor.
     fn suited(&mut self, message: &NodeMessage) -> Option<usize> {
         let area = self.names.iter().position(|name| *name == message.area);
         let NodeMessage { contacts, earlier, events, held, answers, .. } = message;
@@ -314,7 +315,7 @@ impl Gateway {
         None
     }
 
-    /// Puts what a live node told in order.
+    /// Queues the reports of a live node.
     fn join(&mut self, number: usize, message: NodeMessage, is_torn: bool, now: Instant) {
         let Some(area) = self.areas.get_mut(number) else { return };
         let Some(frame) = area.newest else { return };
@@ -359,8 +360,8 @@ impl Gateway {
         }
     }
 
-    /// Cancels all holds of an area after a gap in its events, in which a control may have been released and pressed again.
-    /// Events from before the gap come first.
+    /// Cancels all holds of an area after a gap in its events, in which a control may have been released and pressed
+    /// again. Events from before the gap come first.
     fn tear(&mut self, number: usize, held: &[String], now: Instant) {
         let before = self.queue.extract_if(.., |(_, area, _), _| *area == number);
         for ((at, ..), (happened, item)) in before.collect::<Vec<_>>() {
@@ -372,7 +373,7 @@ impl Gateway {
         self.out.extend(cancelled.into_iter().map(Told::Event));
     }
 
-    /// Gives an area up: what feet held there is cancelled, its contacts end.
+    /// Takes an area off the floor: cancels its holds and ends its contacts.
     fn fall(&mut self, number: usize, standing: Standing, why: &str, now: Instant) {
         let Some(area) = self.areas.get_mut(number) else { return };
         area.fall(standing);
@@ -412,7 +413,7 @@ impl Gateway {
         }
     }
 
-    /// Decides on a layout that is proposed.
+    /// Decides on the proposed layout.
     fn decide(&mut self, now: Instant) {
         let Some(outcome) = self.layouts.decide(live(&self.names, &self.areas), now) else { return };
         let notice = match outcome {
@@ -475,7 +476,7 @@ impl Gateway {
     }
 }
 
-/// The nodes that live, and how they stand with layouts.
+/// The live nodes and the states of their layouts.
 fn live<'a>(
     names: &'a [String],
     areas: &'a [AreaState],
@@ -484,7 +485,7 @@ fn live<'a>(
     all.map(|(name, area)| (name.as_str(), &area.layout))
 }
 
-/// The events among what was told.
+/// The events among the reports.
 pub fn events(told: &[Told]) -> impl Iterator<Item = &WidgetEvent> {
     told.iter().filter_map(|told| match told {
         Told::Event(event) => Some(event),

@@ -1,4 +1,4 @@
-//! What apps were told of controls: which are pressed, armed, and what they hold.
+//! The state of controls as reported to apps: pressed, armed, and their values.
 //!
 //! ```text
 //! events of an area that is live      -> told, and noted here
@@ -16,35 +16,35 @@ use underfoot::widget::{EventKind, Value, WidgetEvent, WidgetId};
 
 use crate::message::NodeValue;
 
-/// A press that was told and has not ended.
+/// A reported press that has not ended.
 #[derive(Clone, Debug)]
 struct Press {
-    /// What told of it last.
+    /// The last event reported about it.
     last: WidgetEvent,
-    /// What the control held before it.
+    /// The control's value before it.
     before: Option<Value>,
 }
 
-/// What was told of the controls of one area.
+/// The reported state of the controls of one area.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Presses {
     open: BTreeMap<String, Press>,
     armed: BTreeSet<String>,
     values: BTreeMap<String, Value>,
-    /// Controls whose last press was let go: a click may come some time after that.
+    /// Controls after the end of their last press: a click may follow some time later.
     let_go: BTreeSet<String>,
-    /// Controls of which nothing is told until no foot holds them.
+    /// Controls without reports until no foot holds them.
     shut: BTreeSet<String>,
-    /// Held controls by the node's last list: pressed, and not shut.
+    /// Held controls by the node's last list: pressed, and not without reports.
     held: BTreeSet<String>,
     /// Controls in that list that were not pressed.
     unpressed: BTreeSet<String>,
-    /// Whether the node may hold other values than were told.
+    /// Whether the node's values may differ from the reported ones.
     is_unsure: bool,
 }
 
 impl Presses {
-    /// Whether `event` is to be told, of which it then takes note.
+    /// Whether `event` is to be reported; if so, this updates the state.
     pub(super) fn takes(&mut self, event: &WidgetEvent) -> bool {
         let id = event.id.as_str();
         if self.shut.contains(id) {
@@ -73,7 +73,7 @@ impl Presses {
                 self.armed.insert(id.to_owned());
             }
             EventKind::Disarmed => return self.armed.remove(id),
-            // What a press leads to that apps were never told of, or were told is cancelled.
+            // A consequence of a press that apps have not received, or have received as cancelled.
             EventKind::LongPressed | EventKind::HardPressed | EventKind::HardReleased => return is_under_way,
             EventKind::Clicked | EventKind::DoubleTapped | EventKind::Swiped(_) => return is_under_way,
             EventKind::Ticked | EventKind::Warned | EventKind::Refused => {}
@@ -84,12 +84,12 @@ impl Presses {
         true
     }
 
-    /// Ends all that was told as pressed or armed, at `at`: the events that say so.
+    /// Ends all reported presses and armed states at `at`, and returns the events about it.
     pub(super) fn cancel(&mut self, at: Instant) -> Vec<WidgetEvent> {
         let mut told = Vec::new();
         for (id, Press { last, before }) in std::mem::take(&mut self.open) {
             let event = |kind| WidgetEvent { at, kind, ..last.clone() };
-            // Only a foot holds a control that is on while it is held; so it was off, though nobody said so.
+            // Only a foot keeps a momentary control on; so it was off before, even without a report.
             let was_on = self.values.get(&id).copied() == Some(Value::Switch(true));
             let before = before.or(was_on.then_some(Value::Switch(false)));
             if let Some(value) = before.filter(|before| self.values.get(&id) != Some(before)) {
@@ -108,13 +108,13 @@ impl Presses {
         told
     }
 
-    /// Tells nothing of the controls that are `held` until their feet have let go.
+    /// Stops reports of the `held` controls until their feet have released them.
     pub(super) fn shut(&mut self, held: &[String]) {
         self.shut.extend(held.iter().cloned());
     }
 
-    /// Takes the node's list of held controls, of which only pressed ones count. Returns the number of new ones that were
-    /// not pressed.
+    /// Takes the node's list of held controls; only pressed ones count. Returns the number of new ones without a
+    /// press.
     pub(super) fn hold(&mut self, held: &[String]) -> u64 {
         self.shut.retain(|id| held.contains(id));
         let (pressed, not): (BTreeSet<&String>, BTreeSet<&String>) =
@@ -125,12 +125,12 @@ impl Presses {
         new as u64
     }
 
-    /// The controls that feet hold.
+    /// The controls held by feet.
     pub(super) fn held(&self) -> impl Iterator<Item = &str> {
         self.held.iter().map(String::as_str)
     }
 
-    /// Compares `values` with what was told: the events for those that differ, as of `at`.
+    /// Compares `values` with the reported ones and returns the events for those that differ, as of `at`.
     pub(super) fn compare(&mut self, values: &[(String, NodeValue)], at: Instant) -> Vec<WidgetEvent> {
         let mut told = Vec::new();
         for (id, value) in values {
@@ -149,7 +149,7 @@ impl Presses {
                 Some(_) => {}
             }
         }
-        // Those that are shut are compared when they are open again.
+        // Controls without reports are compared once their reports resume.
         self.is_unsure &= !self.shut.is_empty();
         told
     }
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(presses.held().collect::<Vec<_>>(), ["drive"]);
         assert_eq!(kinds(&presses.cancel(at(100))), [OFF, EventKind::Cancelled]);
         assert_eq!(presses.held().count(), 0);
-        // The node is back, and the foot still there.
+        // The node is back, and the foot is still there.
         presses.shut(&held);
         presses.hold(&held);
         assert_eq!(presses.held().count(), 0);
@@ -233,7 +233,7 @@ mod tests {
         takes(&mut presses, 6, EventKind::Armed);
         let back = EventKind::Changed(Value::Number(0.2));
         assert_eq!(kinds(&presses.cancel(at(100))), [back, EventKind::Cancelled, EventKind::Disarmed]);
-        // It was let go while nobody listened, and has kept what the foot chose.
+        // The foot released it while the area was lost, and the control has kept the foot's value.
         let news = presses.compare(&number(0.6), at(300));
         assert_eq!(kinds(&news), [EventKind::Changed(Value::Number(0.6))]);
         assert!(presses.compare(&number(0.7), at(400)).is_empty(), "its event tells");

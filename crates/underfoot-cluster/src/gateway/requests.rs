@@ -1,4 +1,4 @@
-//! Requests of apps that nodes were asked and have not all answered.
+//! Requests of apps that nodes have not all answered yet.
 
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -8,22 +8,22 @@ use underfoot::wire::ControlMessage;
 
 use crate::message::{NodeAnswer, NodeRequest, NodeState};
 
-/// How long nodes may take: a node's own patience with its sensing thread is 200 ms, and each way may be late.
+/// Time within which nodes must answer: a node waits 200 ms for its sensing thread, and each direction may add delay.
 const ANSWER_WITHIN: Duration = Duration::from_millis(500);
 
-/// Most requests that wait; further ones are refused.
+/// Greatest number of open requests; further ones are refused.
 const MOST: usize = 1024;
 
-/// Who asked.
+/// The origin of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Asker {
     /// An app.
     App(Option<SocketAddr>),
-    /// The gateway, to bring a node to where the others are: nobody hears of it.
+    /// The gateway, to bring a node to the state of the others: no app receives the answer.
     Gateway,
 }
 
-/// What was asked of one node.
+/// The part of a request that concerns one node.
 #[derive(Clone, Debug)]
 struct Part {
     area: usize,
@@ -39,26 +39,26 @@ struct Open {
     asked: Instant,
 }
 
-/// A request that all nodes have answered, or not in time.
+/// A request that all nodes have answered, or that has reached its time-out.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Answered {
     pub(super) asker: Asker,
     pub(super) message: ControlMessage,
-    /// How controls are now, or why it was not done, by one node at least.
+    /// The states of controls afterwards, or the reason why one node at least refused it.
     pub(super) done: Result<Vec<NodeState>, String>,
 }
 
-/// Requests under way.
+/// The open requests.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Requests {
     number: u64,
     open: Vec<Open>,
-    /// Whether there are some that no beat has carried yet.
+    /// Whether some have not been in a beat yet.
     are_new: bool,
 }
 
 impl Requests {
-    /// Asks the nodes of `areas`, by number and name; false if too many requests wait.
+    /// Sends a request to the nodes of `areas`, by number and name; returns false if too many requests are open.
     pub(super) fn ask(
         &mut self,
         asker: Asker,
@@ -83,18 +83,18 @@ impl Requests {
         true
     }
 
-    /// Whether something was asked since this was called last.
+    /// Whether a request was added since the last call.
     pub(super) const fn take_news(&mut self) -> bool {
         std::mem::replace(&mut self.are_new, false)
     }
 
-    /// What nodes are asked and have not answered, in order.
+    /// The requests to nodes without an answer, in order.
     pub(super) fn unanswered(&self) -> impl Iterator<Item = &NodeRequest> {
         let parts = self.open.iter().flat_map(|open| &open.parts);
         parts.filter(|part| part.answer.is_none()).map(|part| &part.request)
     }
 
-    /// Takes note of an answer of the node of area number `area`.
+    /// Stores an answer of the node of area number `area`.
     pub(super) fn note(&mut self, area: usize, answer: NodeAnswer) {
         let mut parts = self.open.iter_mut().flat_map(|open| &mut open.parts);
         let is_it = |part: &&mut Part| (part.area, part.request.number) == (area, answer.number);
@@ -106,7 +106,7 @@ impl Requests {
         }
     }
 
-    /// Takes note that the node of area number `area` is lost: it answers nothing.
+    /// Answers all requests to the node of area number `area`, which is lost, with a refusal.
     pub(super) fn lose(&mut self, area: usize, name: &str) {
         let parts = self.open.iter_mut().flat_map(|open| &mut open.parts);
         for part in parts.filter(|part| part.area == area) {
@@ -114,7 +114,7 @@ impl Requests {
         }
     }
 
-    /// Those that are over at `now`, in the order in which they were asked.
+    /// Removes and returns the complete requests at `now`, in the order in which they came.
     pub(super) fn answered(&mut self, now: Instant) -> Vec<Answered> {
         let is_over = |open: &mut Open| {
             now.since(open.asked) > ANSWER_WITHIN || open.parts.iter().all(|part| part.answer.is_some())

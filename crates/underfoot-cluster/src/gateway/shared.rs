@@ -1,4 +1,4 @@
-//! What the whole floor has in common: layout, page, what apps have set on it. Nodes that join are brought to it.
+//! The state that the whole floor shares: layout, page, and settings of apps. Nodes that join receive it.
 
 use std::collections::BTreeMap;
 
@@ -7,22 +7,22 @@ use underfoot::floor::{Area, Floor, Geometry, TileId};
 use underfoot::layout::Layout;
 use underfoot::wire::ControlMessage;
 
-/// What all nodes share.
+/// The state that all nodes share.
 #[derive(Clone, Debug)]
 pub(super) struct Shared {
     geometry: Geometry,
     areas: Vec<Area>,
     /// The tiles that an actuator moves, by tile index.
     moved: Vec<bool>,
-    /// Which area each control belongs to.
+    /// The area of each control.
     controls: BTreeMap<String, usize>,
     pages: Vec<String>,
-    /// The layout that is proposed.
+    /// The proposed layout.
     proposed: Option<Layout>,
-    /// The page that is shown, once one has been told of.
+    /// The page on the floor, once a node has reported one.
     pub(super) page: Option<String>,
     pub(super) muted: Muted,
-    /// What apps have set, by what it is about.
+    /// The settings of apps, by control and property.
     kept: BTreeMap<String, ControlMessage>,
 }
 
@@ -49,7 +49,7 @@ impl Shared {
         self.proposed = None;
     }
 
-    /// Takes note that the layout that was proposed is the current one.
+    /// Makes the proposed layout the current one.
     pub(super) fn take_proposal(&mut self) {
         let Some(layout) = self.proposed.take() else { return };
         let owner = |place| self.areas.iter().position(|area| area.holds(&self.geometry, place));
@@ -61,22 +61,22 @@ impl Shared {
         self.page = self.page.take().filter(|page| self.pages.contains(page));
     }
 
-    /// The area of the control called `id`.
+    /// The area of the control `id`.
     pub(super) fn owner(&self, id: &str) -> Option<usize> {
         self.controls.get(id).copied()
     }
 
-    /// All controls' names.
+    /// The ids of all controls.
     pub(super) fn ids(&self) -> impl Iterator<Item = &str> {
         self.controls.keys().map(String::as_str)
     }
 
-    /// The page that is shown; empty without pages.
+    /// The page on the floor; empty without pages.
     pub(super) fn page(&self) -> &str {
         self.page.as_ref().or(self.pages.first()).map_or("", String::as_str)
     }
 
-    /// The area whose computer moves `tile`, or why none does.
+    /// The area whose computer moves `tile`, or the reason why none does.
     pub(super) fn mover(&self, tile: TileId) -> Result<usize, &'static str> {
         let index = self.geometry.index(tile).ok_or("the floor has no such tile")?;
         let area = self.areas.iter().position(|area| area.tiles.contains(tile));
@@ -84,7 +84,7 @@ impl Shared {
         area.filter(|_| is_moved).ok_or("nothing moves that tile")
     }
 
-    /// Takes note of what an app has set, for nodes that join later; whether what is muted has changed.
+    /// Stores a setting of an app, for nodes that join later; returns whether the muted set has changed.
     pub(super) fn keep(&mut self, message: &ControlMessage) -> bool {
         let path = message.path();
         let stem = || path.rsplit_once('/').map_or("", |(stem, _)| stem).to_owned();
@@ -115,7 +115,7 @@ impl Shared {
         false
     }
 
-    /// What is muted, for the node of area number `number`.
+    /// The mute settings for the node of area number `number`.
     pub(super) fn mutes_of(&self, number: usize) -> Vec<ControlMessage> {
         let mut all = vec![ControlMessage::Mute { on: self.muted.all }];
         let own = self.areas.get(number).map(|area| area.tiles);
@@ -124,7 +124,7 @@ impl Shared {
         all
     }
 
-    /// What apps have set on the controls of area number `number`.
+    /// The settings of apps for the controls of area number `number`.
     pub(super) fn settings_of(&self, number: usize) -> Vec<ControlMessage> {
         let kept = self.kept.values().filter(|message| {
             let id = (*message).clone().id_mut().map(|id| id.as_str().to_owned());

@@ -1,4 +1,4 @@
-//! Feet that cross borders, nodes that fail: what the gateway makes of them.
+//! The gateway with feet that cross borders and nodes that fail.
 
 use proptest::prelude::*;
 use underfoot::floor::{Area, Geometry, TileBlock, TileId};
@@ -19,7 +19,7 @@ fn hall() -> Floor {
 
 const BORDER_M: f32 = 6.0 * 0.304;
 
-/// A node whose clock is far from the gateway's.
+/// A node with a clock far from the gateway's.
 #[derive(Clone, Debug)]
 struct Node {
     area: &'static str,
@@ -37,7 +37,7 @@ impl Node {
         Self { area, id, ahead: 1_000_000_000 * id, sequence: 0, events: 0, held: Vec::new(), layout }
     }
 
-    /// What it tells of the floor at `at` microseconds of the gateway's clock, 200 us before the gateway has it.
+    /// Its message about the floor at `at` microseconds of the gateway's clock, 200 us before it arrives.
     fn message(&mut self, at: u64, feet: &[(u32, f32, f32)], events: Vec<NodeEvent>) -> NodeMessage {
         self.sequence += 1;
         let first_event = self.events;
@@ -63,7 +63,7 @@ impl Node {
             events,
             held: self.held.clone(),
             layout: self.layout.clone(),
-            // It took the probe 200 us to come, too.
+            // The probe took 200 us as well.
             echo: Some(Echo { sent: at - 200, received: there }),
             ..NodeMessage::default()
         }
@@ -86,7 +86,7 @@ impl Node {
     }
 }
 
-/// A gateway and all it told.
+/// A gateway and all its reports.
 struct Stage {
     gateway: Gateway,
     told: Vec<Told>,
@@ -97,7 +97,7 @@ impl Stage {
         Self { gateway: Gateway::new(&hall(), 9).unwrap(), told: Vec::new() }
     }
 
-    /// Hands in a message of the floor at `at` when it arrives, 200 us later.
+    /// Passes the gateway a message about the floor at `at` when it arrives, 200 us later.
     fn take(&mut self, message: NodeMessage, at: u64) {
         self.gateway.take(message, Instant::from_micros(at + 200));
     }
@@ -111,7 +111,7 @@ impl Stage {
         events(&self.told).map(|event| event.kind).collect()
     }
 
-    /// The names of contacts, each once, in the order in which they were told, and the most that were told at once.
+    /// The numbers of contacts, each once, in the order of their reports, and the greatest number at one time.
     fn names(&self) -> (Vec<u32>, usize) {
         let (mut names, mut most) = (Vec::new(), 0);
         for told in &self.told {
@@ -145,12 +145,12 @@ impl Stage {
     }
 }
 
-/// A minute of the gateway's clock has passed when tests begin.
+/// Tests begin at one minute of the gateway's clock.
 const START: u64 = 60_000_000;
 
 #[test]
 fn a_foot_that_slides_over_the_border_is_one_contact_with_one_name() {
-    // The nodes see it up to 4 mm apart, each on the other's side for a while, and call it by their own names.
+    // The nodes see it up to 4 mm apart, each on the other's side for a while, and give it their own numbers.
     for apart in [0.0, 0.004, -0.004] {
         let mut stage = Stage::new();
         let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
@@ -208,7 +208,7 @@ fn two_feet_on_the_border_are_two_and_one_that_lands_later_elsewhere_is_another(
 fn a_foot_that_its_owner_has_elsewhere_keeps_its_name_and_who_is_not_believed_sees_another_one() {
     let mut stage = Stage::new();
     let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
-    // West senses beyond its area only half of what east takes for two feet from the tenth step on.
+    // From the tenth step on, east reports two feet; west senses only one of them beyond its area.
     let (foot, one, other) = (BORDER_M + 0.1, BORDER_M + 0.18, BORDER_M + 0.02);
     for step in 0..20_u64 {
         let at = START + step * 2000;
@@ -244,7 +244,7 @@ fn what_the_owner_ends_is_over_and_what_it_sees_there_next_is_another_foot() {
 fn events_of_all_areas_come_in_time_order_with_joint_names() {
     let mut stage = Stage::new();
     let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
-    // A control over the border that east decides, under a foot whose middle is in west.
+    // A control on the border that east decides, under a foot with its centre in west.
     let foot = (BORDER_M - 0.03, 1.0);
     for step in 0..20_u64 {
         let at = START + step * 4000;
@@ -266,13 +266,13 @@ fn events_of_all_areas_come_in_time_order_with_joint_names() {
     assert_eq!(stage.gateway.counters().late, 0);
 }
 
-/// A floor on which a foot holds `drive` in west since `START`, told every 2 ms by both nodes until `until`.
+/// A floor on which a foot holds `drive` in west since `START`; both nodes report it every 2 ms until `until`.
 fn holding(until: u64) -> (Stage, Node, Node) {
     let mut stage = Stage::new();
     let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
     for step in 0..until / 2000 {
         let at = START + step * 2000;
-        // Joined first, pressed then.
+        // The areas join before the press.
         let pressed = west.event(at, EventKind::Pressed, "drive", Some(7), (1.0, 1.0));
         let events = if step == 5 { vec![pressed] } else { vec![] };
         west.held = if step >= 5 { vec!["drive".into()] } else { vec![] };
@@ -316,7 +316,7 @@ fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
 fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghosts() {
     let (mut stage, mut west, mut east) = holding(50_000);
     let frozen = START + 50_000;
-    // It was sent before the freeze, and arrives after it with all that waited.
+    // Sent before the freeze; it arrives after it, together with the whole backlog.
     let late: Vec<NodeMessage> =
         (0..10_u64).map(|step| west.message(frozen + step * 2000, &[(7, 1.0, 1.0)], vec![])).collect();
     for step in 0..150_u64 {
@@ -338,7 +338,7 @@ fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghost
         stage.take(west.message(at, &[(7, 1.0, 1.0)], events), at);
         stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
         stage.advance(at + 300);
-        // The foot has another name now: nobody knows whether it is the same.
+        // The foot has another number now: it may or may not be the same foot.
         assert_eq!(stage.contacts(), [(2, 3.0), (3, 1.0)], "{step}");
     }
     assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled], "a cancelled press never commits");
@@ -349,8 +349,8 @@ fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghost
     assert_eq!(stage.kinds().len(), 3, "the next press is told again");
 }
 
-/// What is told when the clock of west, in which a foot holds `drive`, is set by `step_us` and echoes tell of it 40 ms
-/// later: the kinds of events, and how long after the step the hold was cancelled and the next press was told.
+/// The reports when the clock of west, in which a foot holds `drive`, is set by `step_us` and echoes reveal it 40 ms
+/// later: the kinds of events, and the times from the step to the cancellation and to the report of the next press.
 fn step_of_the_clock(step_us: i64) -> (Vec<EventKind>, u64, u64) {
     let (mut stage, mut west, mut east) = holding(50_000);
     let begun = START + 50_000;
@@ -435,7 +435,7 @@ fn of_two_nodes_that_claim_an_area_neither_acts() {
     let news = stage.last_area().unwrap();
     assert_eq!(news.state, AreaState::Disputed);
     assert!(news.why.contains("node 1 and node 3"), "{}", news.why);
-    // One of them gives way: after a second the other is believed again.
+    // One of the two stops: after a second the other one is live again.
     for step in 0..600_u64 {
         let at = START + 170_000 + step * 2000;
         stage.take(west.message(at, &[(7, 1.0, 1.0)], vec![]), at);
@@ -460,7 +460,7 @@ fn events_that_never_came_end_what_was_pressed() {
 
 #[test]
 fn events_from_before_a_gap_end_with_it() {
-    // Until 1 ms: both areas are live, and nobody has pressed.
+    // Until 1 ms: both areas are live, and there is no press.
     let (mut stage, mut west, mut east) = (Stage::new(), Node::new("west", 1), Node::new("east", 2));
     stage.take(west.message(START, &[], vec![]), START);
     stage.take(east.message(START, &[], vec![]), START);
@@ -485,7 +485,7 @@ fn the_uncertainty_of_a_node_s_clock_adds_to_the_age_of_its_frames() {
     for (one_way_ms, standing) in [(40, Standing::Live), (60, Standing::Waiting)] {
         let (mut stage, mut west) = (Stage::new(), Node::new("west", 1));
         let way = one_way_ms * 1000;
-        // A round trip of twice that says no more than that the frame is between 0 and two ways old.
+        // A round trip of twice that bounds the frame's age only to between 0 and two ways.
         let echo = Some(Echo { sent: START - way, received: START + west.ahead });
         let message = NodeMessage { echo, ..west.message(START, &[], vec![]) };
         stage.gateway.take(message, Instant::from_micros(START + way));
@@ -549,7 +549,7 @@ fn a_node_with_another_floor_file_is_told_about_once_and_not_heard() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Walkers in both areas; each node's messages come in order, but up to 20 ms late, however they interleave.
+    /// Walkers in both areas; each node's messages come in order, but up to 20 ms late, with any interleaving.
     #[test]
     fn any_interleaving_gives_the_same_events(
         delays in prop::collection::vec((0..20_000_u64, 0..20_000_u64), 60),
@@ -588,13 +588,13 @@ proptest! {
                 arrivals.push((due, place, message));
             }
             arrivals.sort_by_key(|(due, place, _)| (*due, *place));
-            // Both are there before the first event, or the order in which they join would tell.
+            // Both nodes join before the first event; otherwise the order of joining would affect the result.
             for (area, node) in [("west", 1), ("east", 2)] {
                 let mut node = Node::new(area, node);
                 stage.take(node.message(START - 2000, &[], vec![]), START - 2000);
             }
             for (due, _, mut message) in arrivals {
-                // Clocks are known from the start, so that the same moments are told.
+                // Clocks are known from the start, so that the reported times are equal.
                 message.echo = None;
                 message.sequence += 1;
                 stage.take(message, due);
@@ -637,13 +637,13 @@ fn asked_stage() -> (Stage, Node, Node) {
     stage.take(west.message(START, &[], vec![]), START);
     stage.take(east.message(START, &[], vec![]), START);
     stage.advance(START + 300);
-    // Both have what they are told at their start.
+    // Both have received their initial messages.
     answer_all(&mut stage, &mut west, &mut east, START + 1000);
     stage.told.clear();
     (stage, west, east)
 }
 
-/// Lets both nodes do all that they are asked; which node was asked what.
+/// Makes both nodes answer all their requests; returns the area and path of each.
 fn answer_all(stage: &mut Stage, west: &mut Node, east: &mut Node, at: u64) -> Vec<(String, String)> {
     let beat = stage.gateway.message(Instant::from_micros(at));
     for node in [west, east] {
@@ -705,7 +705,7 @@ fn a_node_that_comes_back_is_told_what_apps_have_set_and_one_that_is_lost_is_why
     ask(&mut stage, ControlMessage::Lock { id: WidgetId::new("left") }, at);
     ask(&mut stage, ControlMessage::Mute { on: true }, at);
     answer_all(&mut stage, &mut west, &mut east, at);
-    // Only the east goes on.
+    // Only the east continues.
     let lost = at + 150_000;
     stage.take(east.message(lost, &[], vec![]), lost);
     stage.advance(lost + 300);
@@ -749,10 +749,10 @@ fn a_layout_is_ordered_on_each_node_s_own_clock() {
     let order = stage.gateway.message(at).layout;
     let (current, from) = (order.current.unwrap(), &order.from[0]);
     assert_eq!((current.revision, from.0.as_str()), (1, "west"));
-    // Nobody was there to ask when it became current, 200 ms before.
+    // No node was there when it became current, 200 ms before.
     let here = i128::from(from.1) - i128::from(west.ahead) - i128::from(START);
     assert_eq!(here, -100_000);
-    // Another one waits for both.
+    // Another layout waits for both.
     let mut other = controls();
     other.title = "Other".into();
     stage.gateway.propose(other, at);

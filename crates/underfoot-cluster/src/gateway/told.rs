@@ -1,4 +1,4 @@
-//! What the gateway tells, and what it counts.
+//! The reports of the gateway, and its counters.
 
 use std::net::SocketAddr;
 
@@ -12,36 +12,36 @@ use underfoot::wire::LinkState;
 
 use super::ask::Answer;
 
-/// One thing that the gateway tells; times are on its clock.
+/// One report of the gateway; times are on its clock.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Told {
-    /// Something happened to a control; contacts have their joint names.
+    /// An event of a control; contacts have their joint numbers.
     Event(WidgetEvent),
-    /// The contacts on the whole floor at one moment; for each millisecond at most.
+    /// The contacts on the whole floor at one time; once a millisecond at most.
     Contacts(Instant, Vec<Contact>),
-    /// Which controls are held: at once when that changes, and 50 times a second while any is.
+    /// The held controls: at once when they change, and 50 times a second while there are any.
     Held(HeldReport),
-    /// Whether all areas live, some or none: as of the boards of a single floor.
+    /// Whether all areas are live, some or none: as for the boards of a single floor.
     Link(Instant, LinkState),
-    /// How an area stands has changed.
+    /// The standing of an area has changed.
     Area(AreaNews),
-    /// A sign of life, numbered from 1; ten times a second.
+    /// An alive report, numbered from 1; ten times a second.
     Alive(Instant, u32),
-    /// An app has changed a control or asked for it: how it is now.
+    /// The state of a control after an app has changed it or asked for it.
     Control(Instant, Box<ControlState>),
-    /// A page has taken the place of another, or somebody has asked which one is shown.
+    /// The page has changed, or an app has asked for it.
     Page(PageShown),
-    /// What is muted has changed, or somebody has asked.
+    /// The muted set has changed, or an app has asked for it.
     Muted(Instant, Muted),
-    /// What the app that asked is answered.
+    /// The answer to the app that asked.
     Answer(SocketAddr, Answer),
-    /// Something that a person has to look after.
+    /// A notice for the operator.
     Notice(String),
 }
 
 impl Told {
-    /// The same for the outputs of a single floor; `None` for what only a person or one app is told.
+    /// The same report for the outputs of a single floor; `None` for one that only the operator or one app receives.
     #[must_use]
     pub fn report(&self) -> Option<Report<'_>> {
         match self {
@@ -59,23 +59,23 @@ impl Told {
     }
 }
 
-/// What came in and what was not told, since the start.
+/// Counts of received messages and of unreported events, since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Messages of nodes that were authentic and new.
     pub messages: u64,
-    /// Messages of another version, another floor, an unknown area, or with numbers that mean nothing.
+    /// Messages of another version, another floor, an unknown area, or with invalid numbers.
     pub refused: u64,
-    /// Messages whose newest frame was more than 100 ms old, or of a moment that had not come yet.
+    /// Messages with a newest frame more than 100 ms old, or in the future.
     pub stale: u64,
-    /// Events of the time in which their area was not believed, or of presses that apps were told are cancelled.
+    /// Events from times at which their area was not live, or of presses already reported as cancelled.
     pub withheld: u64,
-    /// Holds that a node reported without a press before, and that were refused.
+    /// Holds that a node reported without a press before, and that the gateway refused.
     pub unpressed: u64,
-    /// Events that came too late to be told in order, and were told all the same.
+    /// Events that came too late for the time order; they were reported nevertheless.
     pub late: u64,
-    /// Events that never came.
+    /// Events that never arrived.
     pub lost: u64,
-    /// Requests of apps that were not done.
+    /// Refused requests of apps.
     pub denied: u64,
 }

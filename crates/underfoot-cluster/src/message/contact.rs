@@ -5,25 +5,25 @@ use serde::{Deserialize, Serialize};
 use underfoot::sense::{Contact, ContactId};
 use underfoot::units::Newtons;
 
-/// What a node tells of one contact, in floor metres and newtons.
+/// One contact as a node reports it, in floor metres and newtons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NodeContact {
-    /// The node's name for it.
+    /// The node's number for it.
     pub id: u32,
-    /// Where it is.
+    /// The centroid.
     pub at: [f32; 2],
-    /// What it presses.
+    /// The force.
     pub force: f32,
-    /// How fast it moves, in metres per second.
+    /// Its velocity, in metres per second.
     pub velocity: [f32; 2],
-    /// Where the foot points, as far as that is known: see [`Contact::difference`].
+    /// The paper's difference vector between its two heaviest tiles, if known: see [`Contact::difference`].
     pub difference: Option<[f32; 2]>,
     /// Whether it may be two feet.
     pub ambiguous: bool,
 }
 
 impl NodeContact {
-    /// What is told of `contact`.
+    /// The message form of `contact`.
     #[must_use]
     pub fn of(contact: &Contact) -> Self {
         Self {
@@ -36,13 +36,13 @@ impl NodeContact {
         }
     }
 
-    /// Where it is.
+    /// The centroid.
     #[must_use]
     pub fn place(&self) -> Vec2 {
         self.at.into()
     }
 
-    /// Whether all its numbers are ones that a contact can have.
+    /// Whether all its numbers are finite.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let difference = self.difference.unwrap_or_default();
@@ -50,7 +50,7 @@ impl NodeContact {
         all.as_flattened().iter().all(|number| number.is_finite())
     }
 
-    /// The same contact as outputs take it, called `id`. What they don't tell is missing.
+    /// The same contact as outputs take it, with the number `id`. Fields that the message lacks keep their defaults.
     #[must_use]
     pub fn contact(&self, id: u32) -> Contact {
         Contact {
@@ -64,7 +64,7 @@ impl NodeContact {
         }
     }
 
-    /// How it was `share` (0 to 1) of the way from `self` to `later`.
+    /// The contact interpolated at `share` (0 to 1) of the way from `self` to `later`.
     #[must_use]
     pub fn towards(&self, later: &Self, share: f32) -> Self {
         let between = |from: f32, to: f32| from + (to - from) * share;

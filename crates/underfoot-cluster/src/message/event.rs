@@ -6,7 +6,7 @@ use underfoot::sense::ContactId;
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{Detail, Direction, EventKind, Value, WidgetEvent, WidgetId};
 
-/// What a control holds, as messages have it.
+/// A control's value in messages.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum NodeValue {
@@ -14,30 +14,30 @@ pub enum NodeValue {
     Switch(bool),
     /// A number in the control's range.
     Number(f32),
-    /// Which of the options, from 0.
+    /// The index of the chosen option, from 0.
     Choice(u16),
     /// Two numbers, eastwards and northwards.
     Pair([f32; 2]),
-    /// Where a foot went: `north`, `east`, `south` or `west` as 0 to 3.
+    /// The direction of a foot: `north`, `east`, `south` or `west` as 0 to 3.
     Direction(u8),
 }
 
-/// One event of one control, as a node tells it.
+/// One event of one control, as a node reports it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeEvent {
-    /// When it happened, on the node's clock.
+    /// The time of the event, on the node's clock.
     pub at: u64,
-    /// Which control.
+    /// The control.
     pub id: String,
-    /// What happened: [`EventKind::name`].
+    /// The kind of event: [`EventKind::name`].
     pub kind: String,
-    /// The control's new value, or where the foot went.
+    /// The control's new value, or the direction of the foot.
     pub value: Option<NodeValue>,
-    /// The node's name for the contact that did it; `None` if no foot did.
+    /// The node's number for the contact that caused it; `None` if no foot did.
     pub contact: Option<u32>,
-    /// What that contact pressed.
+    /// The force of that contact.
     pub force: f32,
-    /// Where it was, in floor metres.
+    /// Its position, in floor metres.
     pub position: [f32; 2],
 }
 
@@ -53,7 +53,7 @@ impl From<Value> for NodeValue {
 }
 
 impl NodeValue {
-    /// The value; `None` for a direction and for numbers that no control holds.
+    /// The value; `None` for a direction and for numbers that a control cannot hold.
     #[must_use]
     pub fn value(self) -> Option<Value> {
         match self {
@@ -84,7 +84,7 @@ impl NodeValue {
 }
 
 impl NodeEvent {
-    /// What is told of `event`.
+    /// The message form of `event`.
     #[must_use]
     pub fn of(event: &WidgetEvent) -> Self {
         Self {
@@ -98,7 +98,7 @@ impl NodeEvent {
         }
     }
 
-    /// What happened; `None` if no control does that.
+    /// The kind of event; `None` if no control reports that.
     #[must_use]
     pub fn event_kind(&self) -> Option<EventKind> {
         let detail = |value: NodeValue| {
@@ -107,8 +107,8 @@ impl NodeEvent {
         EventKind::of(&self.kind, self.value.and_then(detail))
     }
 
-    /// The event as outputs take it, with the time and the contact's name that the gateway gives it; `None` if it is
-    /// not an event that a control gives.
+    /// The event as outputs take it, with the time and the contact's number from the gateway; `None` if a control
+    /// cannot report it.
     #[must_use]
     pub fn event(&self, at: Instant, contact: Option<u32>) -> Option<WidgetEvent> {
         let position = Vec2::from(self.position);

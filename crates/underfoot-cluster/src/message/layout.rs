@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::fnv;
 
-/// Which layout.
+/// Names a layout.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct LayoutName {
-    /// The gateway's number for it: greater than those of earlier ones. 0 for one that a node has from its own file.
+    /// The gateway's number for it: greater than those of earlier ones. 0 for a layout from the node's own file.
     pub revision: u64,
-    /// A number of its text. Layouts with the same text are the same, whoever numbered them.
+    /// A hash of its text. Layouts with the same text are the same, whichever gateway numbered them.
     pub digest: u64,
 }
 
@@ -35,28 +35,28 @@ pub struct LayoutMessage {
     /// The nonce of the gateway that sends it.
     #[serde(skip)]
     pub gateway: u64,
-    /// Which layout.
+    /// The name of the layout.
     pub name: LayoutName,
     /// The layout of the whole floor, as a file describes it.
     pub text: String,
 }
 
-/// How a node stands with layouts.
+/// The state of a node's layouts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayoutStanding {
     /// The layout that is on its floor, or will be as soon as no foot holds a control.
     pub running: Option<LayoutName>,
-    /// The last one that it has found good.
+    /// The last one that passed its check.
     pub ready: Option<LayoutName>,
-    /// The last one that it has not, and why.
+    /// The last one that failed its check, and the reason.
     pub refused: Option<(LayoutName, String)>,
 }
 
-/// What a gateway says of layouts, again and again.
+/// A gateway's instruction about layouts; it repeats it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayoutOrder {
     /// The layout that all nodes are to have.
     pub current: Option<LayoutName>,
-    /// From when on, for each node whose clock is known, on that clock.
+    /// The time from which it applies, for each node with a known clock, on that clock.
     pub from: Vec<(String, u64)>,
 }

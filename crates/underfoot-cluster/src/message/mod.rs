@@ -1,10 +1,10 @@
 //! Messages of nodes and gateways: one JSON object each, in an envelope of [`crate::auth`].
 //!
-//! Sender, number, time and answer of a message are in its envelope and not in the JSON; these fields are filled in from
-//! there.
+//! The envelope holds sender, number, time and echo of a message, and the JSON does not; these fields are filled in
+//! from the envelope.
 //!
-//! Times are whole microseconds on the clock of whoever tells them. A node's clock starts when its program does; the
-//! gateway finds out how far it is from its own.
+//! Times are whole microseconds on the sender's clock. A node's clock starts with its program; the gateway estimates
+//! the offset to its own clock.
 
 mod contact;
 mod event;
@@ -28,33 +28,33 @@ pub use note::{Note, NoteCue, NoteLasting, NoteSpot};
 pub use request::{NodeAnswer, NodeRequest, NodeState};
 pub use text::{is_id, shown};
 
-/// The version of the messages; others are refused.
+/// The version of the messages; a receiver refuses any other.
 pub const VERSION: u32 = 3;
 
-/// Longest message, in bytes: a layout as long as files may be, each character of it escaped.
+/// Longest message, in bytes: a layout of the greatest length of a file, with each character escaped.
 pub const MAX_BYTES: usize = 1 << 23;
 
-/// What a node tells, some hundred times a second.
+/// The report of a node, some hundred times a second.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NodeMessage {
     /// The version of the messages: [`VERSION`].
     pub version: u32,
-    /// Which floor: [`fingerprint`] of the node's floor file.
+    /// The floor: [`fingerprint`] of the node's floor file.
     pub floor: u64,
-    /// Which area the node serves.
+    /// The area that the node serves.
     pub area: String,
-    /// The node's nonce: another one after a restart.
+    /// The node's nonce; it changes at a restart.
     #[serde(skip)]
     pub node: u64,
-    /// What a person may call it, such as the address that it listens on.
+    /// A name of the node for people, such as the address that it listens on.
     pub name: String,
     /// The message's number, from 1.
     #[serde(skip)]
     pub sequence: u64,
-    /// When it was sent.
+    /// The time of sending.
     #[serde(skip)]
     pub sent: u64,
-    /// The message of the gateway that it answers.
+    /// The message of the gateway that this one answers.
     #[serde(skip)]
     pub echo: Option<Echo>,
     /// The time of the newest frame of forces; `None` before the first.
@@ -63,21 +63,21 @@ pub struct NodeMessage {
     pub silent: bool,
     /// All contacts of that frame, those beyond the area too.
     pub contacts: Vec<NodeContact>,
-    /// Frames before that one that were not told, oldest first: where several were assembled at once.
+    /// Frames before that one that no message has reported yet, oldest first: several were assembled at once.
     pub earlier: Vec<NodeFrame>,
-    /// The number of the first of `events`; each has the one after the last's.
+    /// The number of the first of `events`; the others follow in sequence.
     pub first_event: u64,
-    /// What happened since the last message, in order.
+    /// The events since the last message, in order.
     pub events: Vec<NodeEvent>,
     /// The controls that feet hold at that frame.
     pub held: Vec<String>,
-    /// What the controls that are not held hold; told now and then.
+    /// The values of the controls that no foot holds; only some messages have them.
     pub values: Option<Vec<(String, NodeValue)>>,
-    /// The page that was shown last, if that was told.
+    /// The page shown last, if there was a report of one.
     pub page: Option<String>,
-    /// What became of requests.
+    /// The answers to requests.
     pub answers: Vec<NodeAnswer>,
-    /// How the node stands with layouts.
+    /// The state of the node's layouts.
     pub layout: LayoutStanding,
 }
 
@@ -99,13 +99,13 @@ impl NodeMessage {
     }
 }
 
-/// What a gateway sends to all nodes.
+/// A message of a gateway to all nodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ToNodes {
-    /// How things stand, twenty times a second, and at once when there is something new.
+    /// The state of the floor, twenty times a second, and at once when it changes.
     Beat(GatewayMessage),
-    /// A layout to be checked.
+    /// A layout to check.
     Layout(LayoutMessage),
 }
 
@@ -121,37 +121,37 @@ impl ToNodes {
     }
 }
 
-/// What a gateway tells all nodes, twenty times a second.
+/// The state of the floor as a gateway sends it to all nodes, twenty times a second.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GatewayMessage {
     /// The version of the messages: [`VERSION`].
     pub version: u32,
-    /// The gateway's nonce: another one after a restart.
+    /// The gateway's nonce; it changes at a restart.
     #[serde(skip)]
     pub gateway: u64,
-    /// When it was sent.
+    /// The time of sending.
     #[serde(skip)]
     pub sent: u64,
-    /// How each area stands with the gateway.
+    /// The standing of each area with the gateway.
     pub areas: Vec<(String, Standing)>,
-    /// Requests of apps that have not been answered, in their order; each again and again until it is.
+    /// Requests of apps without an answer so far, in their order; each is repeated until its answer arrives.
     pub requests: Vec<NodeRequest>,
-    /// Which layout nodes are to have.
+    /// The layout that nodes are to run.
     pub layout: LayoutOrder,
 }
 
-/// How an area stands with a gateway.
+/// The standing of an area with a gateway.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
-    /// Nothing was heard of it yet.
+    /// No message of it has arrived yet.
     #[default]
     Waiting,
-    /// What happens in it is told.
+    /// The gateway reports its contacts and events.
     Live,
-    /// Its newest frame is more than 100 ms old: what feet held there is cancelled.
+    /// Its newest frame is more than 100 ms old: all holds in it are cancelled.
     Lost,
-    /// Several nodes claim it: neither is believed.
+    /// Several nodes claim it: the gateway uses neither.
     Disputed,
 }
 
@@ -166,19 +166,19 @@ impl From<Standing> for AreaState {
     }
 }
 
-/// Why a message is not one.
+/// The reason why bytes are not a valid message.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum BadMessage {
     /// It is longer than [`MAX_BYTES`].
     #[error("a message of {0} bytes")]
     TooLong(usize),
-    /// It is not what this version sends.
+    /// This version cannot parse it.
     #[error("not a message: {0}")]
     Malformed(#[from] serde_json::Error),
 }
 
-/// The bytes of a message; none for one that cannot be written, which no message of this crate is.
+/// The bytes of a message; empty for one that cannot be serialised, which does not occur in this crate.
 #[must_use]
 pub fn encode(message: &impl Serialize) -> Vec<u8> {
     serde_json::to_vec(message).unwrap_or_default()
@@ -195,9 +195,9 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, BadMessage> {
     Ok(serde_json::from_slice(bytes)?)
 }
 
-/// A number of where the floor's tiles and areas are: the same on all computers that have the same floor file.
+/// A hash of the positions of the floor's tiles and areas: equal on all computers with the same floor file.
 ///
-/// Calibration is left out of it: each node has its own sensors'.
+/// It leaves out the calibration, which differs between nodes.
 #[must_use]
 pub fn fingerprint(floor: &Floor) -> u64 {
     let geometry = &floor.geometry;

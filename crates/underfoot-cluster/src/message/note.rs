@@ -1,4 +1,4 @@
-//! What neighbours tell each other: what is felt on the other's tiles.
+//! Messages between neighbours: the haptic cues on each other's tiles.
 
 use serde::{Deserialize, Serialize};
 use underfoot::feel::{Click, Cue, Lasting, Manner, Spot, SustainedCue, Tone};
@@ -6,63 +6,63 @@ use underfoot::units::{Instant, Newtons};
 
 use crate::auth::{Echo, Head};
 
-/// A tile by its column and row on the whole floor, and the share of the level that is felt there.
+/// A tile by its column and row on the whole floor, and the weight of the cue there.
 pub type NoteSpot = (u16, u16, f32);
 
-/// What one node tells a neighbour: a datagram of its own beside those of the boards.
+/// A message of one node to a neighbour: a datagram of its own beside those of the boards.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Note {
     /// The version of the messages: [`super::VERSION`].
     pub version: u32,
-    /// Which floor: [`super::fingerprint`] of the node's floor file.
+    /// The floor: [`super::fingerprint`] of the node's floor file.
     pub floor: u64,
-    /// Which area the node serves.
+    /// The area that the node serves.
     pub area: String,
-    /// The node's nonce: another one after a restart.
+    /// The node's nonce; it changes at a restart.
     #[serde(skip)]
     pub node: u64,
     /// The note's number, from 1; datagrams to other neighbours have numbers between.
     #[serde(skip)]
     pub sequence: u64,
-    /// When it was sent, on the node's clock.
+    /// The time of sending, on the node's clock.
     #[serde(skip)]
     pub sent: u64,
-    /// The message of the neighbour that it answers.
+    /// The message of the neighbour that this one answers.
     #[serde(skip)]
     pub echo: Option<Echo>,
-    /// How many cues earlier notes had.
+    /// Number of cues in all earlier notes.
     pub earlier: u64,
-    /// What is felt once.
+    /// The transient cues.
     pub cues: Vec<NoteCue>,
-    /// All that lasts on the neighbour's tiles.
+    /// All sustained cues on the neighbour's tiles.
     pub lasting: Vec<NoteLasting>,
 }
 
-/// Something felt once.
+/// A transient cue.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NoteCue {
-    /// When the foot caused it, on the node's clock.
+    /// The time at which the foot caused it, on the node's clock.
     pub at: u64,
-    /// Where it is felt.
+    /// The tiles on which it plays.
     pub spots: Vec<NoteSpot>,
     /// The click.
     pub click: Click,
-    /// What sounds for a while.
+    /// The tone that follows the click.
     pub tone: Option<Tone>,
-    /// How it gets along with what else is felt there.
+    /// How it mixes with other cues on the same tiles.
     pub manner: Manner,
 }
 
-/// Something felt for as long as a foot slides, presses or pushes.
+/// A sustained cue: it lasts as long as a foot slides, presses or pushes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NoteLasting {
-    /// Tells it from others of that node.
+    /// Its number, unique within that node.
     pub key: u32,
-    /// Where it is felt.
+    /// The tiles on which it plays.
     pub spots: Vec<NoteSpot>,
-    /// What is felt.
+    /// The effect.
     pub effect: Lasting,
-    /// How it gets along with what else is felt there.
+    /// How it mixes with other cues on the same tiles.
     pub manner: Manner,
     /// Slip speed, in metres per second.
     pub speed_m_s: f32,
@@ -80,7 +80,7 @@ impl Note {
 }
 
 impl NoteCue {
-    /// `cue`, felt on `spots` of a neighbour. It is heard from the loudspeakers of its own node alone.
+    /// `cue` on `spots` of a neighbour. Only its own node plays it through loudspeakers.
     #[must_use]
     pub fn of(cue: &Cue, spots: Vec<NoteSpot>) -> Self {
         Self {
@@ -92,7 +92,7 @@ impl NoteCue {
         }
     }
 
-    /// The cue, felt from `at` on `spots`.
+    /// The cue on `spots`, starting at `at`.
     #[must_use]
     pub fn cue(&self, at: Instant, spots: impl IntoIterator<Item = Spot>) -> Cue {
         Cue {
@@ -109,7 +109,7 @@ impl NoteCue {
 }
 
 impl NoteLasting {
-    /// `sustained`, felt on `spots` of a neighbour.
+    /// `sustained` on `spots` of a neighbour.
     #[must_use]
     pub fn of(sustained: &SustainedCue, spots: Vec<NoteSpot>) -> Self {
         Self {
@@ -122,7 +122,7 @@ impl NoteLasting {
         }
     }
 
-    /// What lasts, by the name `key`, on `spots`.
+    /// The sustained cue with the number `key` on `spots`.
     #[must_use]
     pub fn sustained(&self, key: u32, spots: impl IntoIterator<Item = Spot>) -> SustainedCue {
         SustainedCue {

@@ -1,4 +1,4 @@
-//! An app's request on its way to a node, and what became of it.
+//! An app's request on its way to a node, and its answer.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Argument;
@@ -10,15 +10,15 @@ use underfoot::wire::{ControlMessage, read_json, write_json};
 use super::NodeValue;
 use super::text::shown;
 
-/// Most choices of a control.
+/// Greatest number of choices of a control.
 const MOST_CHOICES: usize = 1024;
 
-/// What one node is asked, as an app asks it.
+/// A request to one node, in the form in which an app sends it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeRequest {
     /// The request's number; a gateway gives each only once.
     pub number: u64,
-    /// Which area's node is asked.
+    /// The area of the node to which it is addressed.
     pub area: String,
     /// The address without its prefix.
     pub path: String,
@@ -27,43 +27,43 @@ pub struct NodeRequest {
 }
 
 impl NodeRequest {
-    /// The request numbered `number` of the node of `area`.
+    /// The request number `number` to the node of `area`.
     #[must_use]
     pub fn of(number: u64, area: &str, message: &ControlMessage) -> Self {
         let (path, args) = write_json(message);
         Self { number, area: area.to_owned(), path, args }
     }
 
-    /// What is asked.
+    /// The request as a control message.
     ///
     /// # Errors
-    /// Why there is no such request.
+    /// The reason why the path or the arguments are invalid.
     pub fn message(&self) -> Result<ControlMessage, String> {
         read_json(&self.path, &self.args)
     }
 }
 
-/// What became of a request.
+/// The answer to a request.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NodeAnswer {
-    /// Which gateway asked.
+    /// The gateway that sent the request.
     pub gateway: u64,
     /// The request's number.
     pub number: u64,
-    /// Why it was not done; `None` if it was.
+    /// The reason for a refusal; `None` if the node has done it.
     pub refused: Option<String>,
-    /// How the controls that it is about are now.
+    /// The states of the controls that it concerns, afterwards.
     pub states: Vec<NodeState>,
 }
 
-/// How a control is: [`ControlState`].
+/// The state of a control: [`ControlState`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeState {
     id: String,
     value: Option<NodeValue>,
     range: Option<NodeRange>,
     enabled: bool,
-    /// Why it is off, by name and in a sentence.
+    /// The reason why it is off, by name and in a sentence.
     #[serde(default)]
     off: Option<(String, String)>,
     locked: bool,
@@ -74,7 +74,7 @@ pub struct NodeState {
     page: Option<String>,
 }
 
-/// What a control can hold: least, greatest, step and detent, of two numbers one after the other; or the choices.
+/// The range of a control: minimum, maximum, step and detent, of two numbers one after the other; or the choices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum NodeRange {
@@ -110,7 +110,7 @@ impl From<&ControlState> for NodeState {
 }
 
 impl NodeState {
-    /// Its ids.
+    /// All its ids: of the control and, if it has one, of the page.
     pub(super) fn ids(&self) -> impl Iterator<Item = &String> {
         std::iter::once(&self.id).chain(self.page.iter().filter(|page| !page.is_empty()))
     }

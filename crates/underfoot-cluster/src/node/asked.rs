@@ -1,10 +1,10 @@
-//! Which requests a node was asked, so that it does each once however often it hears of it.
+//! The requests that a node has received, so that it does each once, however often it is repeated.
 
 use std::collections::VecDeque;
 
 use crate::message::{NodeAnswer, NodeRequest};
 
-/// Requests that are remembered.
+/// Greatest number of remembered requests.
 const MOST: usize = 1024;
 
 #[derive(Clone, Debug)]
@@ -18,12 +18,12 @@ struct Asked {
 #[derive(Clone, Debug, Default)]
 pub struct AskedRequests {
     known: VecDeque<Asked>,
-    /// Answers to be sent.
+    /// Answers that the next message sends.
     waiting: Vec<NodeAnswer>,
 }
 
 impl AskedRequests {
-    /// Whether `request` of `gateway` is new; if it has been answered, the answer is sent once more.
+    /// Whether `request` of `gateway` is new. If it already has an answer, this queues the answer again.
     pub fn is_new(&mut self, gateway: u64, request: &NodeRequest) -> bool {
         let is_it = |asked: &&Asked| (asked.gateway, asked.number) == (gateway, request.number);
         if let Some(asked) = self.known.iter().rev().find(is_it) {
@@ -37,12 +37,12 @@ impl AskedRequests {
         true
     }
 
-    /// Takes note that `request` was not taken up after all: it is new when it comes again.
+    /// Forgets a request that was not carried out: it is new when it comes again.
     pub fn forget(&mut self, gateway: u64, number: u64) {
         self.known.retain(|asked| (asked.gateway, asked.number) != (gateway, number));
     }
 
-    /// Takes note of an answer, to be sent.
+    /// Stores an answer and queues it.
     pub fn answer(&mut self, answer: NodeAnswer) {
         let is_it = |asked: &&mut Asked| (asked.gateway, asked.number) == (answer.gateway, answer.number);
         if let Some(asked) = self.known.iter_mut().rev().find(is_it) {
@@ -51,7 +51,7 @@ impl AskedRequests {
         self.waiting.push(answer);
     }
 
-    /// The answers to be sent now.
+    /// Takes the queued answers.
     pub fn take_answers(&mut self) -> Vec<NodeAnswer> {
         std::mem::take(&mut self.waiting)
     }

@@ -1,9 +1,9 @@
-//! What is felt on tiles of neighbours, and what theirs is felt here.
+//! Haptic cues that cross the border to a neighbour's tiles, in both directions.
 //!
-//! A control over a border belongs to one node. Its cues go to the neighbour under whose tiles they are felt too, at
-//! once and by UDP, as the packets of boards near the border do. A cue that comes too late is not played: a foot would
-//! take it for the answer to something else. Neighbours compare their clocks, since only by that is known how old a cue
-//! is. Notes travel in envelopes of [`crate::auth`], so that only computers of the floor move its actuators.
+//! A control on a border belongs to one node. That node sends its cues to each neighbour that shares their tiles, at
+//! once and by UDP, like the packets of boards near the border. A late cue is dropped: a foot would feel it as the
+//! answer to something else. Neighbours compare their clocks, because only then is the age of a cue known. Notes
+//! travel in envelopes of [`crate::auth`], so that only computers of the floor move its actuators.
 
 use std::collections::HashSet;
 use std::net::SocketAddr;
@@ -21,33 +21,34 @@ use crate::auth::{Echo, Head};
 use crate::gateway::NodeClock;
 use crate::message::{Note, NoteCue, NoteLasting, NoteSpot, VERSION, decode, encode, fingerprint};
 
-/// A cue older than this is not played. Clicks are felt as answers within 50 ms.
+/// Greatest age of a cue that is still played: a click within 50 ms feels like an answer to the foot.
 const MOST_AGE: Duration = Duration::from_millis(50);
 
-/// Time between two notes while nothing happens: clocks are compared as often as with the gateway.
+/// Interval between two notes without any cue: clocks are compared as often as with the gateway.
 const QUIET: Duration = Duration::from_millis(50);
 
-/// Time between two notes while something lasts; the renderer evens out what it hears in steps.
+/// Interval between two notes during a sustained cue; the renderer smooths these steps.
 const LASTING: Duration = Duration::from_millis(4);
 
-/// Most that lasts in one note, which fits in a datagram; of more, the rest is not felt over the border and is counted.
+/// Greatest number of sustained cues in one note, so that it fits in a datagram; further ones are left out and
+/// counted.
 const MOST_LASTING: usize = 10;
 
-/// Sends a note to the neighbour with this number, in an envelope; false if it could not be sent.
+/// Sends a note in an envelope to the neighbour with this number; returns false on failure.
 pub type SendNote = Box<dyn FnMut(usize, &[u8]) -> bool + Send>;
 
-/// A note that was accepted.
+/// An accepted note.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReceivedNote {
     /// Its sender, number and time.
     pub head: Head,
     /// The message that it answers.
     pub echo: Option<Echo>,
-    /// The note.
+    /// The content of the note.
     pub body: Vec<u8>,
 }
 
-/// What crossed the borders, and what did not; counted since the start.
+/// Counts of cues that crossed the borders and of those that failed to, since the start.
 #[derive(Debug, Default)]
 pub struct BorderCounters {
     given: AtomicU64,
@@ -60,19 +61,19 @@ pub struct BorderCounters {
 }
 
 impl BorderCounters {
-    /// Cues handed to neighbours.
+    /// Cues sent to neighbours.
     #[must_use]
     pub fn given(&self) -> u64 {
         self.given.load(Ordering::Relaxed)
     }
 
-    /// Cues of neighbours that were felt here.
+    /// Cues of neighbours played here.
     #[must_use]
     pub fn felt(&self) -> u64 {
         self.felt.load(Ordering::Relaxed)
     }
 
-    /// Cues of neighbours that were older than 50 ms, and not played.
+    /// Cues of neighbours that were older than 50 ms and therefore dropped.
     #[must_use]
     pub fn late(&self) -> u64 {
         self.late.load(Ordering::Relaxed)
@@ -84,19 +85,19 @@ impl BorderCounters {
         self.lost.load(Ordering::Relaxed)
     }
 
-    /// Cues of neighbours that came before the clocks had been compared, and were not played.
+    /// Cues of neighbours that came before the clocks had been compared and were therefore dropped.
     #[must_use]
     pub fn untimed(&self) -> u64 {
         self.untimed.load(Ordering::Relaxed)
     }
 
-    /// Cues and lasting effects that could not be handed to a neighbour.
+    /// Cues and sustained cues that could not be sent to a neighbour.
     #[must_use]
     pub fn unsent(&self) -> u64 {
         self.unsent.load(Ordering::Relaxed)
     }
 
-    /// Notes that were not understood, or come from no neighbour on this floor.
+    /// Notes that could not be parsed, or that come from another sender than a neighbour on this floor.
     #[must_use]
     pub fn refused(&self) -> u64 {
         self.refused.load(Ordering::Relaxed)
@@ -112,12 +113,12 @@ fn count(counter: &AtomicU64, by: usize) {
 struct Neighbour {
     area: String,
     tiles: TileBlock,
-    /// When the last note to it was sent, and the cues in all of them.
+    /// The time of the last note to it, and the number of cues in all of them.
     told: Option<Instant>,
     given: u64,
-    /// Whether the last note told of something that lasts.
+    /// Whether the last note held a sustained cue.
     told_lasting: bool,
-    /// Its nonce, the last note of it, when that came, and how many cues it had told of then.
+    /// Its nonce, the number and arrival of its last note, and the number of cues that it had counted by then.
     node: u64,
     heard: u64,
     came: Instant,
@@ -143,7 +144,7 @@ impl Neighbour {
         }
     }
 
-    /// Forgets what was known of the program that served it before.
+    /// Resets all state that belongs to the previous node of this area.
     fn meet(&mut self, node: u64) {
         let Self { area, tiles, told, given, told_lasting, .. } = self;
         let (area, tiles) = (std::mem::take(area), *tiles);
@@ -154,9 +155,9 @@ impl Neighbour {
 
 /// The borders of one area.
 pub struct Border {
-    /// What all notes have in common.
+    /// The fields that all notes have in common.
     head: Note,
-    /// What the node senses, and which of it is its own.
+    /// The geometry of the part that the node senses, and its own tiles.
     geometry: Geometry,
     own: TileBlock,
     neighbours: Vec<Neighbour>,
@@ -166,9 +167,9 @@ pub struct Border {
 }
 
 impl Border {
-    /// The areas with which the node of `area` exchanges notes, in the order of their numbers: those on whose tiles it
-    /// senses feet, and those with which it exchanges packets of boards. Areas without an address to listen on are left
-    /// out.
+    /// The areas with which the node of `area` exchanges notes, in the order of their numbers: those on whose tiles
+    /// it senses feet, and those with which it exchanges packets of boards. Areas without an address to listen on are
+    /// left out.
     #[must_use]
     pub fn neighbours<'f>(floor: &'f Floor, area: &Area) -> Vec<&'f Area> {
         let sensed = area.sensed(&floor.geometry);
@@ -182,7 +183,7 @@ impl Border {
         floor.areas.iter().filter(is_neighbour).collect()
     }
 
-    /// The borders of `area`. Notes go out by `send` and come in by `notes`.
+    /// The borders of `area`. `send` sends notes, and `notes` receives them.
     #[must_use]
     pub fn new(floor: &Floor, area: &Area, send: SendNote, notes: Receiver<ReceivedNote>) -> Self {
         let head =
@@ -198,7 +199,7 @@ impl Border {
         }
     }
 
-    /// What is counted.
+    /// The counters.
     #[must_use]
     pub fn counters(&self) -> Arc<BorderCounters> {
         Arc::clone(&self.counters)
@@ -215,7 +216,7 @@ impl Border {
         count(if is_sent { &self.counters.given } else { &self.counters.unsent }, given);
     }
 
-    /// Takes a note that is there at `now`; the cues that are to be played with the frame of time `at` go into `cues`.
+    /// Processes a note that arrived by `now`; appends its cues, which play with the frame of time `at`, to `cues`.
     fn hear(&mut self, note: &Note, at: Instant, now: Instant, cues: &mut Vec<Cue>) {
         let Some(neighbour) = self.neighbours.iter_mut().find(|neighbour| neighbour.area == note.area) else {
             return count(&self.counters.refused, 1);
@@ -226,7 +227,7 @@ impl Border {
         if neighbour.node != note.node {
             neighbour.meet(note.node);
         }
-        // What was overtaken has been counted as lost.
+        // An overtaken note has already been counted as lost.
         if note.sequence <= neighbour.heard {
             return;
         }
@@ -265,7 +266,7 @@ fn spots_there(spots: &[Spot], geometry: &Geometry, block: &TileBlock) -> Vec<No
     there.collect()
 }
 
-/// The tiles of `own` among `spots`, at most as many as a cue reaches.
+/// The tiles of `own` among `spots`, at most as many as a cue can have.
 fn spots_here<'s>(
     spots: &'s [NoteSpot],
     geometry: &'s Geometry,
@@ -314,7 +315,7 @@ impl Neighbours for Border {
                 neighbour.lasting.clear();
             }
             for one in &neighbour.lasting {
-                // Names of feet here are small numbers.
+                // Keys of this node's own feet are small numbers.
                 let key = one.key ^ number.rotate_right(5);
                 let spots = spots_here(&one.spots, &self.geometry, &self.own);
                 if sustained.try_push(one.sustained(key, spots)).is_err() {
@@ -350,7 +351,7 @@ mod tests {
     use crate::auth::{Key, Refusals, Role, Session};
     use crate::node::{NeighbourSeal, NeighbourSession};
 
-    /// How far the clock of the east is ahead of that of the west.
+    /// Offset of the east's clock against the west's.
     const AHEAD_MS: u64 = 70_000;
 
     type Wire = Arc<Mutex<Vec<Vec<u8>>>>;
@@ -393,7 +394,7 @@ mod tests {
             self.now.store(now.micros(), Ordering::Relaxed);
         }
 
-        /// Takes the datagrams that have arrived.
+        /// Processes the datagrams that have arrived.
         fn take(&mut self, now: Instant) -> (Vec<Cue>, SustainedCues) {
             self.set_clock(now);
             for bytes in self.arrived.drain(..) {
@@ -427,7 +428,7 @@ mod tests {
             Self([0, 1].map(|number| End::new(&floor, number, number as u64 + 1, &key())))
         }
 
-        /// Delivers the datagrams of one end, or loses them.
+        /// Delivers the datagrams of one end, or drops them.
         fn deliver(&mut self, from: usize, arrives: bool) {
             let sent = std::mem::take(&mut *self.0[from].wire.lock().unwrap());
             if arrives {
@@ -435,12 +436,12 @@ mod tests {
             }
         }
 
-        /// Takes the datagrams of one end when the clock of the west shows `ms`.
+        /// Processes the datagrams of one end when the clock of the west shows `ms`.
         fn take(&mut self, who: usize, ms: u64) -> (Vec<Cue>, SustainedCues) {
             self.0[who].take(Instant::from_millis(ms + AHEAD_MS * who as u64))
         }
 
-        /// Gives cues of the west.
+        /// Sends cues of the west.
         fn give(&mut self, cues: &[Cue], lasting: &SustainedCues, ms: u64) {
             let now = Instant::from_millis(ms);
             self.0[0].set_clock(now);
@@ -451,7 +452,7 @@ mod tests {
             self.0[who].border.counters()
         }
 
-        /// Lets them hear each other for some milliseconds, so that each knows the other's clock.
+        /// Exchanges notes for some milliseconds, so that each end knows the other's clock.
         fn compare_clocks(&mut self, span: Range<u64>) {
             for ms in span {
                 for who in [0, 1] {
@@ -462,7 +463,8 @@ mod tests {
         }
     }
 
-    /// A click on tile (5, 2) of the west and (6, 2) of the east, of a control of the west, whose part has 10 columns.
+    /// A click on tile (5, 2) of the west and (6, 2) of the east, of a control of the west; the west's part has 10
+    /// columns.
     fn click(at_ms: u64) -> Cue {
         let spots = [5, 6].map(|column| Spot { tile: 2 * 10 + column, weight: 0.5 });
         let mode = Mode { frequency_hz: 150.0, decay_s: 0.02, amplitude: 1.0 };
@@ -482,7 +484,7 @@ mod tests {
         pair.give(&[click(1300)], &SustainedCues::new(), 1300);
         pair.deliver(0, true);
         let (cues, _) = pair.take(1, 1302);
-        // The east senses from column 2 on: column 6 is its fifth of ten.
+        // The east senses from column 2 on: column 6 is the fifth of its ten.
         let cue = Cue { at: Instant::from_millis(1302 + AHEAD_MS), ..click(0) };
         let here = Spot { tile: 2 * 10 + 4, weight: 0.5 };
         assert_eq!(
@@ -491,15 +493,15 @@ mod tests {
         );
         let (west, east) = (pair.counters(0), pair.counters(1));
         assert_eq!((west.given(), east.felt(), east.late(), east.lost(), east.untimed()), (1, 1, 0, 0, 0));
-        // Nothing of it comes back.
+        // No cue comes back.
         pair.deliver(1, true);
         assert!(pair.take(0, 1303).0.is_empty());
     }
 
     #[test]
     fn computers_that_exchange_packets_exchange_notes() {
-        // Areas of six columns in a row. The board of the second one reaches over all of the third, whose tiles the
-        // fourth senses; it is too far from the second to sense its own.
+        // Areas of six columns in a row. The board of the second one covers all of the third as well. The fourth
+        // senses tiles of the third, but is too far from the second to sense the second's own tiles.
         let area = |id: &str, number: u16| Area {
             listen: Some(([127, 0, 0, 1], 9000 + number).into()),
             ..Area::new(id, TileBlock { first: TileId::new(6 * number, 0), columns: 6, rows: 1 })

@@ -1,24 +1,24 @@
-//! What has happened since the last message.
+//! The events and frames since the last message.
 
 use underfoot::sink::Report;
 use underfoot::wire::LinkState;
 
 use crate::message::{NodeContact, NodeEvent, NodeFrame, NodeMessage};
 
-/// Most events that wait for a message; older ones are dropped, which their numbers show.
+/// Greatest number of events in a draft; older ones are dropped, which the numbers show.
 const MOST_EVENTS: usize = 2048;
 
-/// Most frames that wait for a message; older ones are left out.
+/// Greatest number of frames in a draft; older ones are dropped.
 const MOST_FRAMES: usize = 64;
 
-/// A message but for who sends it when.
+/// A message without its sender and time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Draft {
     frame: Option<u64>,
     silent: bool,
     contacts: Vec<NodeContact>,
     earlier: Vec<NodeFrame>,
-    /// The last frame that is told, or will be.
+    /// The time of the last frame that has been, or will be, reported.
     told: u64,
     first_event: u64,
     events: Vec<NodeEvent>,
@@ -27,7 +27,7 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// Takes note of `report`; whether it is about a new frame.
+    /// Adds `report`; returns whether it holds a new frame.
     pub fn note(&mut self, report: &Report<'_>) -> bool {
         match report {
             Report::Event(event) => {
@@ -39,7 +39,7 @@ impl Draft {
             }
             Report::Contacts(at, contacts) => {
                 let at = at.micros();
-                // Between two frames a foot that lands goes some millimetres, and not straight on.
+                // Between two frames a landing foot moves some millimetres, and not in a straight line.
                 if let Some(last) = self.frame.filter(|last| *last > self.told) {
                     if self.earlier.len() == MOST_FRAMES {
                         self.earlier.remove(0);
@@ -63,13 +63,13 @@ impl Draft {
         false
     }
 
-    /// Whether events wait.
+    /// Whether the draft holds events.
     #[must_use]
     pub fn has_events(&self) -> bool {
         !self.events.is_empty()
     }
 
-    /// Begins the next one: what it tells of was told.
+    /// Clears the draft after it was sent.
     pub fn sent(&mut self) {
         self.first_event += self.events.len() as u64;
         self.events.clear();

@@ -1,6 +1,6 @@
-//! What a node does when its gateway does not, or must not, believe it.
+//! The behaviour of a node when its gateway cannot, or must not, use its reports.
 //!
-//! Apps were told that what feet held is cancelled; the node must not feel, and later tell, anything else.
+//! Apps have received the cancellation of all holds; the node must not render, nor report later, anything else.
 
 use std::time::Duration;
 
@@ -8,32 +8,32 @@ use underfoot::units::Instant;
 
 use crate::message::{GatewayMessage, Standing, VERSION};
 
-/// How long a gateway may be silent; it tells something every 50 ms.
+/// Longest silence of a gateway, which sends a message every 50 ms.
 const SILENT_AFTER: Duration = Duration::from_millis(150);
 
-/// Gateways that a node remembers.
+/// Greatest number of gateways that a node remembers.
 const MOST: usize = 4;
 
-/// What is to be done.
+/// The action that the node must take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Action {
-    /// A gateway hears this node.
+    /// A gateway uses this node's reports.
     Heard,
-    /// Cancel what feet hold; the gateway has, or is gone.
+    /// Cancel all holds: the gateway has done so, or is gone.
     Cancel(Reason),
-    /// Cancel what feet hold and let no actuator move: another node serves the area too.
+    /// Cancel all holds and stop all actuators: another node serves the area too.
     Mute,
-    /// Let actuators move again: the other one has stopped.
+    /// Start the actuators again: the other node has stopped.
     Unmute,
 }
 
-/// Why what feet hold is cancelled.
+/// The reason why holds are cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// The gateway got nothing new for 100 ms.
+    /// The gateway has received no new frame for 100 ms.
     Late,
-    /// Nothing came from the gateway.
+    /// The gateway has sent no message.
     Silent,
 }
 
@@ -45,7 +45,7 @@ struct Known {
     is_silent: bool,
 }
 
-/// What a node knows of gateways.
+/// The gateways that a node knows.
 #[derive(Clone, Debug)]
 pub struct Guard {
     area: String,
@@ -60,7 +60,7 @@ impl Guard {
         Self { area: area.to_owned(), gateways: Vec::new(), is_muted: false }
     }
 
-    /// Takes note of what a gateway said, received at `now` on the node's clock.
+    /// Processes the message of a gateway, received at `now` on the node's clock.
     pub fn hear(&mut self, message: &GatewayMessage, now: Instant) -> Vec<Action> {
         let Some((_, standing)) = message.areas.iter().find(|(area, _)| *area == self.area) else {
             return Vec::new();
@@ -91,7 +91,7 @@ impl Guard {
         actions
     }
 
-    /// Takes note that it is `now`.
+    /// Checks the time-outs at `now`.
     pub fn tick(&mut self, now: Instant) -> Vec<Action> {
         let mut actions = Vec::new();
         for known in &mut self.gateways {
@@ -102,7 +102,7 @@ impl Guard {
                 }
             }
         }
-        // A gateway that started again has another number.
+        // A gateway that has restarted has another nonce.
         self.gateways.retain(|known| now.since(known.heard) < Duration::from_secs(60));
         actions
     }

@@ -1,4 +1,4 @@
-//! Which layout a node has, and which one it is to have when.
+//! The layouts of a node: the one that runs, and the one that follows at a given time.
 //!
 //! ```text
 //! gateway: a layout's text -> checked here -> "ready" or "refused"
@@ -11,37 +11,37 @@ use underfoot::units::Instant;
 
 use crate::message::{LayoutName, LayoutOrder, LayoutStanding};
 
-/// For how long a gateway that is silent is still the one whose layouts count: two with different layouts would take
-/// turns.
+/// Time after which the node leaves a silent leading gateway; without it, two gateways with different layouts would
+/// take turns.
 const LEADS_FOR: Duration = Duration::from_secs(1);
 
-/// A node's layouts; `L` is what a layout is once it has been checked.
+/// A node's layouts; `L` is the type of a checked layout.
 #[derive(Clone, Debug)]
 pub struct NodeLayouts<L> {
     standing: LayoutStanding,
-    /// What is ready.
+    /// The layout that passed its check.
     ready: Option<(LayoutName, L)>,
-    /// When it is to be on the floor.
+    /// The time from which it is to run.
     due: Option<Instant>,
-    /// The gateway whose layouts count, and when it was heard last.
+    /// The gateway that decides about layouts, and the time of its last message.
     leader: Option<(u64, Instant)>,
 }
 
 impl<L> NodeLayouts<L> {
-    /// Of a node that has a layout from its own file, or none.
+    /// The layouts of a node that has one from its own file, or none.
     #[must_use]
     pub fn new(own: Option<LayoutName>) -> Self {
         let standing = LayoutStanding { running: own, ..LayoutStanding::default() };
         Self { standing, ready: None, due: None, leader: None }
     }
 
-    /// How it stands.
+    /// The state of the layouts.
     #[must_use]
     pub const fn standing(&self) -> &LayoutStanding {
         &self.standing
     }
 
-    /// Whether `gateway`, heard at `now`, is the one whose layouts count.
+    /// Whether `gateway`, heard at `now`, is the one that decides about layouts.
     pub fn follows(&mut self, gateway: u64, now: Instant) -> bool {
         let others = self.leader.filter(|(leader, _)| *leader != gateway);
         if others.is_some_and(|(_, heard)| now.since(heard) < LEADS_FOR) {
@@ -51,14 +51,14 @@ impl<L> NodeLayouts<L> {
         true
     }
 
-    /// Whether a layout of that name has still to be checked.
+    /// Whether the layout of that name has still to be checked.
     #[must_use]
     pub fn lacks(&self, name: &LayoutName) -> bool {
         let is_refused = self.standing.refused.as_ref().is_some_and(|(refused, _)| refused == name);
         !is_refused && self.standing.ready.as_ref() != Some(name)
     }
 
-    /// Takes note of a layout that was checked: good, or why not.
+    /// Stores a checked layout, or the reason why it failed.
     pub fn note(&mut self, name: LayoutName, checked: Result<L, String>) {
         match checked {
             Ok(layout) => {
@@ -70,11 +70,11 @@ impl<L> NodeLayouts<L> {
         }
     }
 
-    /// Takes note of what the gateway wants of the node of `area`.
+    /// Processes the gateway's instruction for the node of `area`.
     pub fn order(&mut self, order: &LayoutOrder, area: &str) {
         let Some(current) = order.current else { return };
         if self.standing.running == Some(current) {
-            // The same text under the number of another gateway.
+            // The same text under another gateway's number.
             self.standing.running = Some(current);
             return;
         }
@@ -84,7 +84,7 @@ impl<L> NodeLayouts<L> {
         }
     }
 
-    /// The layout that is to be on the floor at `now` and was not given before.
+    /// The layout that is due at `now`; each is returned once.
     pub fn take_due(&mut self, now: Instant) -> Option<(LayoutName, L)> {
         if self.due.is_none_or(|due| now < due) {
             return None;

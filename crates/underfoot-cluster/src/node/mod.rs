@@ -1,4 +1,4 @@
-//! What a node tells of its floor, and what it does when nobody hears it.
+//! The reports of a node about its floor, and its behaviour without a gateway.
 //!
 //! ```text
 //! sensing thread: Report -NodeSink-> Draft ==bounded==> sending thread: NodeMessage -> gateway

@@ -35,7 +35,7 @@ impl NeighbourSession {
         self.session.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes `note` in an envelope into `out`, whose content it replaces.
+    /// Writes `note` in an envelope into `out`, replacing its content.
     pub fn seal_note(&self, note: &[u8], out: &mut Vec<u8>) {
         self.locked().seal(Kind::Note, note, (self.clock)(), out);
     }
@@ -47,7 +47,7 @@ impl NeighbourSession {
     }
 }
 
-/// Seals packets for neighbours, opens theirs, and passes their notes on.
+/// Seals packets for neighbours, opens theirs, and forwards their notes.
 #[derive(Debug)]
 pub struct NeighbourSeal {
     session: NeighbourSession,
@@ -57,7 +57,7 @@ pub struct NeighbourSeal {
 }
 
 impl NeighbourSeal {
-    /// A seal that passes notes to `notes`; if that is full, they are dropped and counted.
+    /// A seal that sends notes to `notes`; if that is full, it drops and counts them.
     #[must_use]
     pub fn new(session: NeighbourSession, notes: SyncSender<ReceivedNote>) -> Self {
         Self { session, notes, sealed: Vec::new(), dropped: Arc::default() }

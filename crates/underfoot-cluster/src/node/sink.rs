@@ -1,4 +1,4 @@
-//! A node's floor as one that is told what happens.
+//! The event sink of a node's floor.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -10,13 +10,13 @@ use underfoot::units::Instant;
 
 use super::draft::Draft;
 
-/// Time between two messages while frames come and nothing happens.
+/// Interval between two messages while frames come and no event occurs.
 const EVERY: Duration = Duration::from_millis(2);
 
-/// Time between two messages while no frames come.
+/// Interval between two messages while no frames come.
 const QUIET: Duration = Duration::from_millis(20);
 
-/// Hands what happens on a floor to the thread that sends it, without ever waiting for it.
+/// Passes the reports of a floor to the sending thread, without ever waiting for it.
 #[derive(Debug)]
 pub struct NodeSink {
     out: SyncSender<Draft>,
@@ -27,14 +27,14 @@ pub struct NodeSink {
 }
 
 impl NodeSink {
-    /// A sink that hands drafts to `out`. What `out` does not take is told with the next one.
+    /// A sink that passes drafts to `out`. If `out` is full, the next draft includes the content of this one.
     #[must_use]
     pub fn new(out: SyncSender<Draft>) -> Self {
         let (draft, held_up) = (Draft::default(), Arc::default());
         Self { out, draft, has_frame: false, sent: Instant::START, held_up }
     }
 
-    /// How often the sending thread was not fast enough, which delays events and leaves out contacts.
+    /// Number of times that the sending thread was too slow, which delays events and leaves out contacts.
     #[must_use]
     pub fn held_up(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.held_up)
@@ -46,7 +46,7 @@ impl EventSink for NodeSink {
         self.has_frame |= self.draft.note(&report);
     }
 
-    /// Called after each packet, when what is held is known as well.
+    /// Called after each packet, when the holds are known as well.
     fn poll(&mut self, now: Instant) {
         let since = now.since(self.sent);
         let is_due = (self.has_frame && since >= EVERY) || since >= QUIET;

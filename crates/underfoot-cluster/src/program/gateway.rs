@@ -1,4 +1,4 @@
-//! `underfoot-cluster gateway`: what nodes tell, told as one floor.
+//! `underfoot-cluster gateway`: joins the reports of the nodes into those of one floor.
 
 use std::io;
 use std::net::SocketAddr;
@@ -30,7 +30,7 @@ use super::refused::{self, RefusalNotices};
 use super::slowed::slow;
 use super::{Failure, endpoints, layout, locked, stop_flag};
 
-/// What the gateway is asked to do.
+/// Options of the gateway.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// Layout file, or the name of a built-in one, for all nodes; each change of the file goes to all of them or to
@@ -40,20 +40,20 @@ pub(crate) struct Args {
     /// Floor file with `areas`; the same on all nodes.
     #[arg(long, value_name = "FILE")]
     floor: PathBuf,
-    /// Where nodes connect; may be given several times, for several network cards. Without it, as the floor file says,
+    /// Endpoint for nodes; may be given several times, for several network cards. Without it, that of the floor file,
     /// and else tcp/127.0.0.1:7447.
     #[arg(long, value_name = "ENDPOINT")]
     listen: Vec<String>,
-    /// Where apps' requests arrive as OSC; without it, none are taken.
+    /// Address for apps' requests as OSC; without it, requests are refused.
     #[arg(long, value_name = "ADDR", requires = "layout", value_parser = read_address)]
     commands: Option<SocketAddr>,
-    /// Take requests from this address or range; several may be given. Without it, from this machine only.
+    /// Accept requests from this address or range; several may be given. Without it, from this machine only.
     #[arg(long, value_name = "CIDR", requires = "commands")]
     allow_commands: Vec<Network>,
-    /// Where events and contacts are sent as OSC; may be given several times.
+    /// Target for events and contacts as OSC; may be given several times.
     #[arg(long, value_name = "HOST:PORT", value_parser = read_address)]
     osc: Vec<SocketAddr>,
-    /// What OSC addresses begin with.
+    /// Prefix of OSC addresses.
     #[arg(long, value_name = "PREFIX", default_value_t)]
     osc_prefix: Prefix,
     /// Send contacts as TUIO 1.1; may be given several times.
@@ -70,30 +70,30 @@ pub(crate) struct Args {
     json_contacts: bool,
     #[command(flatten)]
     key: KeyArgs,
-    /// Stop after so many seconds.
+    /// Stop after this many seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
-    /// For measurements: the gateway's clock goes so many times slower.
+    /// For measurements: slow the gateway's clock down by this factor.
     #[arg(long, hide = true, default_value_t = 1)]
     slow: u32,
 }
 
-/// Messages that may wait: half a second of sixteen nodes.
+/// Greatest number of queued messages: half a second of sixteen nodes.
 const WAITING: usize = 4096;
 
-/// Senders that are remembered besides two nodes for each area: recordings of earlier starts.
+/// Number of remembered senders besides two nodes for each area: recordings of earlier starts.
 const SPARE_NODES: usize = 64;
 
 /// Noun of reports about rejected messages.
 const MESSAGES: &str = "messages to the gateway";
 
-/// How long nothing may come before it is looked at what that means.
+/// Time without a message after which the gateway advances anyway.
 const PATIENCE: Duration = Duration::from_millis(2);
 
-/// Time between two messages to all nodes.
+/// Interval between two messages to all nodes.
 const TELL_EVERY: Duration = Duration::from_millis(50);
 
-/// Joins what nodes tell until told to stop.
+/// Joins the nodes' reports until a stop.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = schema::load_floor(&args.floor)?;
     let listen = endpoints(args.listen.clone(), &floor);
@@ -114,7 +114,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let notices = Notices::start();
     made.into_iter().for_each(|made| notices.say(made));
-    // What joins, and Zenoh's threads, which inherit it.
+    // The priority of this thread and of Zenoh's threads, which inherit it.
     claim_priority(Rank::Telling);
     let started = HostInstant::now();
     let times = args.slow;
@@ -187,7 +187,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The outputs that are asked for.
+/// The outputs in `args`.
 fn outputs(args: &Args, floor: &Floor) -> Result<Fanout, Failure> {
     let mut sinks = Fanout::new();
     for &target in &args.osc {
@@ -211,7 +211,7 @@ fn outputs(args: &Args, floor: &Floor) -> Result<Fanout, Failure> {
     Ok(sinks)
 }
 
-/// Where apps ask, and are answered.
+/// The socket for apps' requests and their answers.
 struct RequestSocket {
     source: UdpSource,
     prefix: Prefix,
@@ -226,14 +226,14 @@ impl RequestSocket {
         Ok(Self { source, prefix, bytes: Vec::new() })
     }
 
-    /// What apps have asked.
+    /// The requests of apps that have arrived.
     fn take(&mut self) -> Result<Vec<Request>, Failure> {
-        // There are no boards, whose packets this would give.
+        // No boards send to this socket; the loop only reads packets so that requests are received.
         while self.source.next(Duration::ZERO)?.is_some() {}
         Ok(std::iter::from_fn(|| self.source.take_request()).collect())
     }
 
-    /// Answers whoever asked.
+    /// Sends an answer to the app that asked.
     fn answer(&mut self, told: &Told) {
         let Told::Answer(to, answer) = told else { return };
         match answer {
@@ -248,8 +248,8 @@ impl RequestSocket {
     }
 }
 
-/// What has arrived, once something has or patience is over: all of it, so that what is late already is not taken for
-/// later than it is.
+/// All messages that have arrived, once one has or [`PATIENCE`] is over. It takes all of them at once, so that the
+/// backlog does not count as later than it is.
 fn wait<T>(received: &Receiver<T>) -> Vec<T> {
     match received.recv_timeout(PATIENCE) {
         Ok(first) => std::iter::once(first).chain(received.try_iter().take(WAITING)).collect(),

@@ -36,11 +36,11 @@ pub(super) struct KeyArgs {
 }
 
 impl KeyArgs {
-    /// The key of `floor`, whose file is at `path`, for a program that connects these `endpoints` and takes packets where
-    /// it `listens`; with a notice if it has just been made.
+    /// The key of `floor`, whose file is at `path`, for a program that connects these `endpoints` and receives
+    /// packets at `listens`; with a notice if it has just been made.
     ///
-    /// A floor that names no key and lies on this computer alone gets one beside its file at its first start, which keeps
-    /// other users of the computer out.
+    /// A floor without a key that lies on this computer alone gets one beside its file at its first start, which
+    /// excludes other users of the computer.
     pub(super) fn find(
         &self,
         (floor, path): (&Floor, &Path),

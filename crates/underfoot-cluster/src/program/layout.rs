@@ -1,4 +1,4 @@
-//! Layouts of files: read, and read again when they change.
+//! Layouts from files: read at the start, and again after each change.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use underfoot::schema::{self, Diagnostics, Effects, Kinds};
 
 use super::Failure;
 
-/// How often files are looked at.
+/// Interval between two checks of the files.
 const LOOK_EVERY: Duration = Duration::from_millis(250);
 
 /// The layout at `path`, or the built-in one of that name; its warnings are logged.
@@ -39,11 +39,11 @@ pub(super) fn parse(text: &str, geometry: &Geometry) -> Result<Layout, Diagnosti
         .map(|loaded| loaded.layout)
 }
 
-/// When each file was changed, and how long it is.
+/// The modification time and length of each file.
 type Stamp = Vec<(PathBuf, Option<SystemTime>, u64)>;
 
-/// The layout at `path` anew each time its file, or a kind's or an effect's beside it, has changed and been left alone
-/// since the last look.
+/// Reads the layout at `path` again each time its file, or one of a kind or an effect beside it, has changed and has
+/// then stayed the same until the next check.
 pub(super) fn watch(path: PathBuf, geometry: Geometry) -> Receiver<Result<Layout, Failure>> {
     let (changes, changed) = sync_channel(1);
     thread::spawn(move || {

@@ -1,4 +1,4 @@
-//! What the program's commands share.
+//! Code that the program's commands share.
 
 pub(crate) mod gateway;
 pub(crate) mod key;
@@ -31,22 +31,22 @@ use underfoot_cluster::auth::KeyError;
 use underfoot_cluster::gateway::NoGateway;
 use underfoot_cluster::transport::{ENDPOINT, TransportError};
 
-/// Why a command failed, in words for the person who gave it.
+/// The reason why a command failed, in words for the operator.
 #[derive(Debug, Error)]
 pub(crate) enum Failure {
-    /// A file of ours has problems.
+    /// A project file has errors.
     #[error("{0}")]
     Diagnostics(#[from] Diagnostics),
-    /// The packets' source failed.
+    /// The source of packets failed.
     #[error(transparent)]
     Source(#[from] SourceError),
-    /// Events can't be put out.
+    /// An output failed.
     #[error(transparent)]
     Sink(#[from] SinkError),
     /// The node can't start.
     #[error(transparent)]
     Start(#[from] StartError),
-    /// There is no way to the other end.
+    /// The transport to the other end failed.
     #[error(transparent)]
     Transport(#[from] TransportError),
     /// The floor has no areas.
@@ -55,7 +55,7 @@ pub(crate) enum Failure {
     /// The floor's key is missing or not private.
     #[error(transparent)]
     Key(#[from] KeyError),
-    /// The floor names no key, and is not on one computer.
+    /// The floor file names no key, and the floor is not on one computer.
     #[error(
         "{far} may be on another computer, and the computers of a floor identify each other by a key: \
          `underfoot-cluster key {}` makes one; copy it to all of them, and write `key: \"{}\"` into {}",
@@ -69,12 +69,12 @@ pub(crate) enum Failure {
         /// The floor file.
         floor: PathBuf,
     },
-    /// Anything else, said in full.
+    /// Any other reason, as a full sentence.
     #[error("{0}")]
     Other(String),
 }
 
-/// Where the gateway listens: as was `asked`, else as the floor file says, else where it usually does.
+/// The endpoints on which the gateway listens: `asked`, else that of the floor file, else the default.
 fn endpoints(asked: Vec<String>, floor: &Floor) -> Vec<String> {
     if !asked.is_empty() {
         return asked;
@@ -87,7 +87,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A flag that Ctrl-C, a polite kill, a terminal that is closed, and the end of `span` set.
+/// A flag set by SIGINT, SIGTERM, SIGHUP, or the end of `span`.
 fn stop_flag(span: Option<f64>) -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {

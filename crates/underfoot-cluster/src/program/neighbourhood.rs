@@ -13,10 +13,10 @@ use underfoot_cluster::node::{Border, NeighbourSeal, NeighbourSession, SendNote}
 use super::Failure;
 use super::key::session;
 
-/// Notes of neighbours that may wait for the next frame.
+/// Greatest number of neighbours' notes that wait for the next frame.
 const NOTES: usize = 1024;
 
-/// Senders that are remembered besides two nodes for each neighbour: recordings of earlier starts.
+/// Number of remembered senders besides two nodes for each neighbour: recordings of earlier starts.
 const SPARE: usize = 8;
 
 /// The exchange of a node with its neighbours.
@@ -31,7 +31,7 @@ pub(super) struct Neighbourhood {
 }
 
 impl Neighbourhood {
-    /// The exchange of the node of `area`, which takes packets at `listen`.
+    /// The exchange of the node of `area`, which receives packets at `listen`.
     pub(super) fn of(
         (floor, area): (&Floor, &Area),
         listen: SocketAddr,
@@ -59,7 +59,7 @@ fn sender(to: Vec<SocketAddr>, listen: SocketAddr, session: NeighbourSession) ->
     Ok(Box::new(move |number, note| {
         let Some(to) = to.get(number) else { return false };
         session.seal_note(note, &mut sealed);
-        // An error may be the echo of an earlier note to a neighbour that is not there.
+        // The error may belong to an earlier note, to an absent neighbour.
         socket.send_to(&sealed, to).or_else(|_| socket.send_to(&sealed, to)).is_ok()
     }))
 }

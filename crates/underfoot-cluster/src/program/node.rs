@@ -1,4 +1,4 @@
-//! `underfoot-cluster node`: one area is served, and told of.
+//! `underfoot-cluster node`: serves one area and reports to the gateway.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::num::NonZeroUsize;
@@ -31,11 +31,11 @@ use super::teller::{Commander, DATAGRAMS, MESSAGES, Teller};
 use super::worker::Worker;
 use super::{Failure, endpoints, layout, locked, stop_flag};
 
-/// What a node is asked to do.
+/// Options of a node.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Layout file, or the name of a built-in one; the same on all nodes. Without it the node has no controls until the
-    /// gateway gives it a layout; a gateway that has one gives it in any case.
+    /// Layout file, or the name of a built-in one; the same on all nodes. Without it the node has no controls until
+    /// the gateway sends a layout; a gateway with a layout sends it in any case.
     #[arg(value_name = "LAYOUT")]
     layout: Option<PathBuf>,
     /// Floor file with `areas`; the same on all nodes and the gateway, but for calibration.
@@ -44,43 +44,43 @@ pub(crate) struct Args {
     /// The area that this node serves.
     #[arg(long, value_name = "NAME")]
     area: String,
-    /// Where the boards' packets arrive: an address of this machine and a port. Without it, as the floor file says, and
+    /// Address for the boards' packets: one of this machine, with a port. Without it, that of the floor file, and
     /// else 127.0.0.1:9000.
     #[arg(long, value_name = "ADDR", value_parser = read_address)]
     listen: Option<SocketAddr>,
-    /// Where the gateway listens; may be given several times, for a second gateway beside the first. Without it, as the
-    /// floor file says, and else tcp/127.0.0.1:7447.
+    /// Endpoint of the gateway; may be given several times, for a second gateway beside the first. Without it, that
+    /// of the floor file, and else tcp/127.0.0.1:7447.
     #[arg(long, value_name = "ENDPOINT")]
     gateway: Vec<String>,
     #[command(flatten)]
     key: KeyArgs,
     #[command(flatten)]
     sound: SoundArgs,
-    /// On how many threads the feet of a crowd are sensed. Those beyond the first sleep while fewer than a hundred feet
+    /// Number of threads that sense the feet of a crowd. Those beyond the first sleep while fewer than a hundred feet
     /// are in the area, and keep a core busy each while there are more.
     #[arg(long, value_name = "N", default_value_t = NonZeroUsize::MIN)]
     sensing_threads: NonZeroUsize,
-    /// Stop after so many seconds.
+    /// Stop after this many seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
     /// For tests: SIGUSR1 sets this node's clock forward by a second.
     #[arg(long, hide = true)]
     step_clock: bool,
-    /// For measurements: this node's clock goes so many times slower.
+    /// For measurements: slow this node's clock down by this factor.
     #[arg(long, hide = true, default_value_t = 1)]
     slow: u32,
 }
 
-/// Where packets arrive unless anything says otherwise.
+/// Default address for packets.
 const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
-/// Senders that are remembered besides the gateways: recordings of earlier starts.
+/// Number of remembered senders besides the gateways: recordings of earlier starts.
 const SPARE_GATEWAYS: usize = 8;
 
-/// Messages that may wait for the thread that sends them: a fifth of a second.
+/// Greatest number of messages that wait for the sending thread: a fifth of a second.
 const WAITING: usize = 100;
 
-/// Serves an area until told to stop.
+/// Serves an area until a stop.
 pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let floor = schema::load_floor(&args.floor)?;
     let area = area(&floor, &args.area)?;
@@ -129,7 +129,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         .start()?;
     let notices = Notices::start();
     made.into_iter().for_each(|made| notices.say(made));
-    // What tells, and Zenoh's threads, which inherit it.
+    // The priority of the sending thread and of Zenoh's threads, which inherit it.
     claim_priority(Rank::Telling);
     let guard = Arc::new(Mutex::new(Guard::new(&args.area)));
     let refused = Arc::<AtomicU64>::default();
@@ -223,7 +223,7 @@ fn area<'f>(floor: &'f Floor, id: &str) -> Result<&'f Area, Failure> {
     })
 }
 
-/// What the floor's end was.
+/// The reason for the end of the floor's session.
 fn ended(session: &Session) -> Result<(), Failure> {
     while let Some(event) = session.next_event_timeout(Duration::from_secs(2)) {
         match event.kind {

@@ -1,12 +1,12 @@
-//! What a person is told on standard error, by a thread of its own: a reader that stalls holds nobody up.
+//! Notices for the operator on standard error, written by a thread of their own, so that a slow reader never blocks.
 
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread;
 
-/// Notices that may wait; further ones are left out.
+/// Greatest number of waiting notices; further ones are dropped.
 const WAITING: usize = 256;
 
-/// The way to standard error.
+/// A handle to the thread that writes to standard error.
 #[derive(Clone, Debug)]
 pub(super) struct Notices(SyncSender<String>);
 
@@ -18,7 +18,7 @@ impl Notices {
     }
 
     pub(super) fn say(&self, notice: impl Into<String>) {
-        // Who reads so slowly misses some.
+        // With a slow reader, notices are dropped.
         let _ = self.0.try_send(notice.into());
     }
 }

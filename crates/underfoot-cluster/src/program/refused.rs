@@ -5,16 +5,16 @@ use std::time::Duration;
 use underfoot::units::Instant;
 use underfoot_cluster::auth::Refusals;
 
-/// Time between two looks at the counters. Messages before the first answer are no longer counted by then.
+/// Interval between two checks of the counters. Messages before the first answer are no longer counted by then.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
-/// Time between two notices with the same reason.
+/// Interval between two notices with the same reason.
 const QUIET: Duration = Duration::from_secs(60);
 
 /// The messages with one reason.
 #[derive(Clone, Copy, Debug, Default)]
 struct Known {
-    /// Their number at the last look.
+    /// Their number at the last check.
     seen: u64,
     reported: u64,
     reported_at: Option<Instant>,
@@ -35,7 +35,7 @@ impl RefusalNotices {
         }
         self.looked = now;
         let due = self.reasons.iter_mut().zip(refusals.by_reason()).filter_map(|(known, (count, reason))| {
-            // A count that has lasted from one look to the next stays.
+            // A count that lasts from one check to the next is final.
             let lasting = count.min(std::mem::replace(&mut known.seen, count));
             let is_quiet = known.reported_at.is_some_and(|reported| now.since(reported) < QUIET);
             if lasting <= known.reported || is_quiet {

@@ -1,5 +1,5 @@
-//! A node's source in slow motion, so that more nodes than a machine carries can be measured on it: each millisecond of
-//! the floor takes several of the machine.
+//! A node's source in slow motion, so that more nodes than a machine can run can be measured on it: each millisecond
+//! of the floor takes several of the machine.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
 use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
-/// Packets on a clock that goes `times` slower than the machine's.
+/// A source on a clock that runs `times` slower than the machine's.
 pub(super) struct SlowedSource {
     inner: Box<dyn SensorSource>,
     times: u32,
@@ -20,7 +20,7 @@ pub(super) fn slowed(clock: HostClock, times: u32) -> HostClock {
     Arc::new(move || slow(clock(), times))
 }
 
-/// The moment `at` on a clock that goes `times` slower.
+/// The time `at` on a clock that runs `times` slower.
 pub(super) fn slow(at: Instant, times: u32) -> Instant {
     Instant::from_micros(at.micros() / u64::from(times.max(1)))
 }

@@ -9,18 +9,18 @@ use underfoot::sink::{DeviceOptions, OutputDevice};
 use underfoot::sink::{SilentSink, SinkError};
 use underfoot::units::Instant;
 
-/// How the actuators are played.
+/// Options for playing the actuators.
 #[derive(Args, Clone, Debug, Default)]
 pub(super) struct SoundArgs {
     /// The sound card that plays the area's actuators, a channel each: its name or a part of it (`underfoot rack
-    /// devices` lists them), or `paced`, a clock that stands in for one. Without it nothing is felt.
+    /// devices` lists them), or `paced`, a clock that stands in for one. Without it there are no haptics.
     #[cfg(feature = "audio")]
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
 }
 
 impl SoundArgs {
-    /// Opens the actuators of `floor`, on the thread that keeps them.
+    /// Opens the actuators of `floor`; the calling thread keeps them.
     pub(super) fn open(&self, floor: &Floor, start: Instant) -> Result<Actuators, SinkError> {
         #[cfg(feature = "audio")]
         if self.device.is_some() {

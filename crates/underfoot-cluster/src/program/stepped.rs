@@ -1,4 +1,4 @@
-//! A node's source whose clock can be set while it runs, as a person or a time server sets a computer's.
+//! A node's source with a clock that can be set while it runs, as an operator or a time server sets a computer's.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
 use super::Failure;
 
-/// By how much the clock is set.
+/// Size of one step.
 const STEP: Duration = Duration::from_secs(1);
 
-/// How soon after the signal.
+/// Interval between two checks for the signal.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 
 /// The steps of a clock so far, in microseconds.
@@ -25,7 +25,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(1);
 pub(super) struct Steps(Arc<AtomicU64>);
 
 impl Steps {
-    /// Each SIGUSR1 adds one.
+    /// Adds one step at each SIGUSR1.
     pub(super) fn by_signal() -> Result<Self, Failure> {
         let (asked, steps_us) = (Arc::new(AtomicBool::new(false)), Arc::<AtomicU64>::default());
         flag::register(SIGUSR1, Arc::clone(&asked))
@@ -53,7 +53,7 @@ impl Steps {
     }
 }
 
-/// Packets on a clock with steps.
+/// A source on a clock with steps.
 pub(super) struct SteppedSource {
     inner: UdpSource,
     steps: Steps,

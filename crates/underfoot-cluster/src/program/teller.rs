@@ -1,4 +1,4 @@
-//! The thread of a node that sends its messages, and the orders that it follows.
+//! The thread of a node that sends its messages and executes the guard's actions.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex};
@@ -22,13 +22,13 @@ use super::worker::Worker;
 pub(super) const MESSAGES: &str = "messages of gateways";
 pub(super) const DATAGRAMS: &str = "datagrams of neighbours";
 
-/// Time between two tellings of all values, with which a gateway compares what it knows.
+/// Interval between two reports of all values, which a gateway compares with its own.
 const VALUES_EVERY: Duration = Duration::from_millis(500);
 
-/// How often is looked whether gateways are silent.
+/// Interval between two checks for silent gateways.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-/// Does what the guard says.
+/// Executes the guard's actions.
 pub(super) struct Commander {
     pub(super) session: Session,
     pub(super) notices: Notices,
@@ -55,19 +55,19 @@ impl Commander {
             _ => return,
         };
         self.notices.say(notice);
-        // A floor that has ended holds nothing.
+        // A floor whose session has ended holds nothing.
         commands.iter().for_each(|command| _ = self.session.send(Command::Control(command.clone())));
     }
 }
 
-/// Sends what happens, for as long as anything does.
+/// Sends the reports of the floor until its session ends.
 pub(super) struct Teller {
-    /// What all messages have in common.
+    /// The fields that all messages have in common.
     pub(super) head: NodeMessage,
     pub(super) transport: Transport,
     pub(super) session: Arc<Mutex<AuthSession>>,
     pub(super) neighbours: NeighbourSession,
-    /// About messages of gateways and datagrams of neighbours.
+    /// For messages of gateways and datagrams of neighbours.
     pub(super) refused: [RefusalNotices; 2],
     pub(super) guard: Arc<Mutex<Guard>>,
     pub(super) clock: HostClock,
@@ -77,7 +77,7 @@ pub(super) struct Teller {
 }
 
 impl Teller {
-    /// Works until the floor has ended; how many messages could not be sent.
+    /// Runs until the floor's session has ended; returns the number of messages that could not be sent.
     pub(super) fn run(mut self, drafts: &Receiver<Draft>) -> u64 {
         let mut values_told: Option<HostInstant> = None;
         loop {
@@ -129,14 +129,14 @@ impl Teller {
             ..self.head.clone()
         };
         let (body, mut sealed) = (encode(&message), Vec::new());
-        // Last, so that nothing but the way of the message follows the time in it.
+        // Sealed last, so that only the message's transmission follows the time in it.
         locked(&self.session).seal(AuthKind::Node, &body, (self.clock)(), &mut sealed);
         if !self.transport.send(sealed) {
             self.unsent += 1;
         }
     }
 
-    /// What the controls hold that no foot holds.
+    /// The values of the controls that no foot holds.
     fn values(&self) -> Vec<(String, NodeValue)> {
         let snapshot = self.commander.session.snapshot();
         let all = snapshot.layout.widgets.iter().zip(&snapshot.floor.widgets);

@@ -1,4 +1,4 @@
-//! What a node does of what its gateway asks, on a thread of its own: the thread that hears must go on hearing.
+//! The thread that executes a gateway's requests, so that the receiving thread never waits for them.
 
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex};
@@ -18,7 +18,7 @@ use underfoot_cluster::node::{AskedRequests, NodeLayouts};
 use super::notices::Notices;
 use super::{layout, locked};
 
-/// Requests and layouts that may wait; what does not fit comes again.
+/// Greatest number of waiting requests and layouts; the gateway repeats dropped ones.
 const WAITING: usize = 1024;
 
 enum Work {
@@ -26,13 +26,13 @@ enum Work {
     Check(LayoutMessage),
 }
 
-/// What is shared with the thread that works.
+/// The state shared with the worker thread.
 struct State {
     asked: Mutex<AskedRequests>,
     layouts: Mutex<NodeLayouts<Layout>>,
 }
 
-/// The way to the worker, and to what it has done.
+/// A handle to the worker and its results.
 #[derive(Clone)]
 pub(super) struct Worker {
     state: Arc<State>,
@@ -65,7 +65,7 @@ impl Worker {
         Arc::clone(&self.state)
     }
 
-    /// Takes up what a beat of a gateway asks, which came at `now`.
+    /// Queues the requests in a gateway's beat, which arrived at `now`.
     pub(super) fn hear(&self, message: &GatewayMessage, now: Instant) {
         if message.version != VERSION {
             return;
@@ -82,13 +82,13 @@ impl Worker {
         }
     }
 
-    /// Takes up a layout that a gateway has sent, which came at `now`.
+    /// Queues a gateway's layout, which arrived at `now`, for checking.
     pub(super) fn check(&self, message: LayoutMessage, now: Instant) {
         let mut layouts = locked(&self.state.layouts);
         let is_ours = message.version == VERSION && layouts.follows(message.gateway, now);
         if is_ours && layouts.lacks(&message.name) {
             drop(layouts);
-            // A layout that does not fit in the queue comes again.
+            // The gateway repeats a layout that does not fit in the queue.
             self.give(Work::Check(message));
         }
     }
@@ -97,7 +97,7 @@ impl Worker {
         !matches!(self.work.try_send(work), Err(TrySendError::Full(_)))
     }
 
-    /// Puts the layout on the floor that is due at `now`.
+    /// Activates the layout that is due at `now`.
     pub(super) fn change(&self, now: Instant) {
         let due = locked(&self.state.layouts).take_due(now);
         if let Some((name, layout)) = due {
@@ -109,7 +109,7 @@ impl Worker {
         }
     }
 
-    /// How the node stands with layouts, and the answers to be sent.
+    /// The state of the node's layouts, and the answers to send.
     pub(super) fn report(&self) -> (LayoutStanding, Vec<NodeAnswer>) {
         (locked(&self.state.layouts).standing().clone(), locked(&self.state.asked).take_answers())
     }
@@ -128,7 +128,7 @@ fn run(to_do: &Receiver<Work>, state: &State, session: &Session, geometry: Geome
                 locked(&state.asked).answer(NodeAnswer { gateway, number, refused, states });
             }
             Work::Check(LayoutMessage { name, text, .. }) => {
-                // Some of the same layout may wait.
+                // Several copies of the same layout may be in the queue.
                 if locked(&state.layouts).lacks(&name) {
                     let checked = if LayoutName::of(name.revision, &text) == name {
                         layout::parse(&text, &geometry).map_err(|error| error.to_string())
@@ -142,12 +142,12 @@ fn run(to_do: &Receiver<Work>, state: &State, session: &Session, geometry: Geome
     }
 }
 
-/// Does what an app asks; the states of the controls that it is about, or why it was not done.
+/// Executes an app's request; returns the states of the controls that it concerns, or the reason for a refusal.
 fn apply(session: &Session, message: ControlMessage) -> Result<Vec<NodeState>, String> {
     let mut message = message;
     let id = message.id_mut().map(|id| id.as_str().to_owned());
     match &message {
-        // The answer to these says nothing; the gateway has looked whether they can be done.
+        // The answer to these is empty; the gateway has checked that they are possible.
         ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. } => {
             return match session.send(Command::Control(message)) {
                 true => Ok(Vec::new()),

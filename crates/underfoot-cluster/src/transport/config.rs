@@ -58,7 +58,7 @@ pub(super) fn config(
         "gateway": { "south": [] },
         "scouting": { "multicast": { "enabled": false }, "gossip": { "enabled": false } },
         "listen": { "endpoints": listened },
-        // A gateway that starts later is found; one that is not there holds nobody up.
+        // A node finds a gateway that starts later; an absent gateway does not block.
         "connect": {
             "endpoints": connected,
             "exit_on_failure": false,
@@ -66,7 +66,7 @@ pub(super) fn config(
         },
         "transport": {
             "unicast": { "max_sessions": sessions, "accept_timeout": MADE_WITHIN_MS },
-            // How long a dead connection is kept before another one is made.
+            // Time for which a dead connection is kept before a new one is made.
             "link": { "tx": { "lease": 1000 }, "rx": { "max_message_size": 2 * MAX_BYTES } },
             "auth": { "usrpwd": credentials },
         },
@@ -75,7 +75,7 @@ pub(super) fn config(
     Config::from_json5(&settings.to_string())
 }
 
-/// The rules of access: each end puts its own messages and subscribes to those of the other. All else is denied.
+/// The rules of access: each end publishes its own messages and subscribes to those of the other. All else is denied.
 fn access(end: End<'_>) -> Value {
     let all_nodes = format!("{NODES}/*");
     let ((hears, tells), users) = match end {

@@ -1,11 +1,11 @@
-//! Messages through Zenoh, over TCP between endpoints that are named: nothing is looked for by multicast or gossip.
+//! Messages through Zenoh, over TCP between named endpoints, without discovery by multicast or gossip.
 //!
 //! A gateway admits only nodes with the floor's key, no clients, and only messages of nodes and gateways, each in its
-//! direction. This keeps others from listening through it and from using its memory; accepting a message does not depend
-//! on it ([`crate::auth`]).
+//! direction. This keeps others from listening through it and from using its memory; accepting a message does not
+//! depend on it ([`crate::auth`]).
 //!
-//! Whether anybody is alive is not asked of Zenoh, whose sessions outlive a cut cable by seconds: the age of what
-//! messages tell decides.
+//! This module does not ask Zenoh whether the other end is alive, since Zenoh's sessions outlive a cut cable by
+//! seconds: the age of the messages' contents decides.
 
 mod config;
 
@@ -17,24 +17,24 @@ use zenoh::qos::{CongestionControl, Priority};
 use self::config::{config, password_file};
 use crate::auth::Key;
 
-/// Where the gateway listens unless it is told otherwise; Zenoh's own port.
+/// Default endpoint of the gateway; Zenoh's own port.
 pub const ENDPOINT: &str = "tcp/127.0.0.1:7447";
 
-/// Beneath this, nodes tell, each under its area's name.
+/// Key prefix under which nodes publish, each under its area's name.
 const NODES: &str = "underfoot/cluster/node";
 
-/// Here gateways tell.
+/// Key under which gateways publish.
 const GATEWAY: &str = "underfoot/cluster/gateway";
 
-/// Why there is no connection.
+/// The reason why there is no connection.
 #[derive(Debug, Error)]
 pub enum TransportError {
-    /// An endpoint is not one, or the gateway can't listen on it.
+    /// An endpoint is invalid, or the gateway cannot listen on it.
     #[error("{endpoints}: {why}. Endpoints are written like {ENDPOINT}")]
     Endpoints {
-        /// As they were given.
+        /// The endpoints as given.
         endpoints: String,
-        /// What Zenoh said.
+        /// Zenoh's error message.
         why: String,
     },
     /// A gateway hands Zenoh the password of nodes in a file.
@@ -42,14 +42,14 @@ pub enum TransportError {
     Password(std::io::Error),
 }
 
-/// One end: a node's or a gateway's. It goes when this is dropped.
+/// One end: a node's or a gateway's. Dropping it closes it.
 #[derive(Debug)]
 pub struct Transport {
     session: zenoh::Session,
     key: String,
 }
 
-/// Which end.
+/// The kind of end.
 #[derive(Clone, Copy, Debug)]
 enum End<'a> {
     Gateway { areas: &'a [String] },
@@ -62,8 +62,8 @@ fn node_key(area: &str) -> String {
 }
 
 impl Transport {
-    /// A gateway's end, which listens on `endpoints` for the nodes of `areas` that have the same `key`; `hear` is called
-    /// on threads of its own with what they send.
+    /// A gateway's end, which listens on `endpoints` for the nodes of `areas` that have the same `key`; it calls
+    /// `hear` with their messages, on threads of its own.
     ///
     /// # Errors
     /// [`TransportError::Endpoints`] if it can't listen there.
@@ -77,7 +77,7 @@ impl Transport {
     }
 
     /// The end of the node of `area`, which connects to gateways at `endpoints` that have the same `key`, now or when
-    /// they are there; `hear` is called on threads of its own with what they send.
+    /// they start; it calls `hear` with their messages, on threads of its own.
     ///
     /// # Errors
     /// [`TransportError::Endpoints`] if one of them can't be an endpoint.
@@ -114,8 +114,8 @@ impl Transport {
         Ok(Self { session, key })
     }
 
-    /// Sends `bytes` to the other end, if anybody is there and takes them: what can't be sent within a millisecond is
-    /// dropped, and later messages tell that something is missing. Whether it was handed on.
+    /// Sends `bytes` to the other end, if there is one that receives them. A message that cannot be sent within a
+    /// millisecond is dropped; later messages show the gap. Returns whether Zenoh accepted it.
     pub fn send(&self, bytes: Vec<u8>) -> bool {
         let put = self.session.put(self.key.as_str(), ZBytes::from(bytes));
         let put = put.congestion_control(CongestionControl::Drop).priority(Priority::RealTime).express(true);
@@ -131,7 +131,7 @@ mod tests {
 
     use super::*;
 
-    /// Time for which nothing may arrive: a hundred times that of a message.
+    /// Time without a message that counts as silence: a hundred times that of a message.
     const SILENCE: Duration = Duration::from_millis(300);
 
     type Received = Receiver<Vec<u8>>;
@@ -159,7 +159,7 @@ mod tests {
         (Transport::node(&[endpoint.into()], area, key, hear).unwrap(), received)
     }
 
-    /// The first message that arrives while `send` is called again and again.
+    /// The first message that arrives while `send` is called repeatedly.
     fn heard(send: &dyn Fn(), received: &Received) -> Option<Vec<u8>> {
         (0..1000).find_map(|_| {
             send();
@@ -252,7 +252,7 @@ mod tests {
         let (node, at_node) = node(&endpoint, "west", &key());
         assert!(heard(&|| _ = gateway.send(b"back".to_vec()), &at_node).is_some());
         let session = stranger(&endpoint, "peer", Some(&key())).unwrap();
-        // This much passes: the gateway rejects it.
+        // These messages pass Zenoh; the gateway rejects them.
         let told = || session.put("underfoot/cluster/node/west", b"told".to_vec()).wait().unwrap();
         assert!(heard(&told, &at_gateway).is_some());
         while at_gateway.recv_timeout(SILENCE).is_ok() {}

@@ -1,4 +1,4 @@
-//! A control over a border is felt on the tiles of both computers.
+//! A control on a border plays its cues on the tiles of both computers.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::mpsc::sync_channel;
@@ -20,7 +20,7 @@ use crate::hall::{Boards, layout, listening, script};
 
 const RATE: u32 = 48_000;
 
-/// Actuators whose samples a test can look at.
+/// Actuators with samples that a test can read.
 #[derive(Clone)]
 struct Seen(Arc<Mutex<Option<ManualSink>>>);
 
@@ -107,10 +107,10 @@ fn what_belongs_to_one_computer_is_felt_on_the_tiles_of_both() {
     let other =
         (west.counters.lost(), west.counters.untimed(), west.counters.refused(), east.counters.unsent());
     assert!(given > 0 && felt > 0, "{given} given, {felt} felt, {late} late, {other:?}");
-    // What comes later than 50 ms on a busy machine is counted.
+    // Cues later than 50 ms, on a busy machine, are counted.
     assert_eq!((felt + late, other), (given, (0, 0, 0, 0)));
     assert_eq!(west.counters.given(), 0, "the west's own controls have rested");
-    // A machine that stands still for 250 ms makes datagrams stale.
+    // Datagrams become stale if the machine stalls for 250 ms.
     let stale = |of: &Computer| Refusals { stale: of.neighbours.refusals().stale, ..Refusals::default() };
     assert_eq!(west.neighbours.refusals(), stale(&west), "neighbours refuse nothing else of each other");
     assert_eq!(east.neighbours.refusals(), stale(&east));

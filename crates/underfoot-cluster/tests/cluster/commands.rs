@@ -1,4 +1,4 @@
-//! Apps ask the gateway, as they would ask a single floor; and layouts go to all nodes or to none.
+//! Apps send requests to the gateway, as to a single floor; layouts go to all nodes or to none.
 
 use std::net::UdpSocket;
 use std::time::{Duration, Instant};
@@ -51,7 +51,7 @@ fn find(packet: OscPacket, address: &str) -> Option<Vec<OscType>> {
     }
 }
 
-/// A hall whose boards send what an empty floor reads.
+/// A hall with the boards of an empty floor.
 fn running() -> (Hall, Vec<Program>, crate::hall::Boards) {
     let hall = Hall::open();
     let nodes = AREAS.iter().map(|area| hall.bare_node(area)).collect();
@@ -74,7 +74,7 @@ fn a_request_reaches_the_node_of_its_control_and_is_answered_with_what_came_of_i
     app.ask("widget/nothing/set", vec![OscType::Float(0.5)]);
     let why = app.answer("error");
     assert!(format!("{why:?}").contains("widget/nothing/set"), "{why:?}");
-    // Patterns mean controls of all nodes.
+    // Patterns match the controls of all nodes.
     app.ask("widget/*/disable", vec![]);
     app.ask("widget/ticket/get", vec![]);
     let state = app.answer("widget/ticket/state");
@@ -84,10 +84,10 @@ fn a_request_reaches_the_node_of_its_control_and_is_answered_with_what_came_of_i
     app.ask("mute/get", vec![]);
     assert_eq!(app.answer("mute")[0], OscType::Int(1));
     app.ask("widget/ticket/disable", vec![]);
-    // What its node has not confirmed is not kept.
+    // The gateway does not keep a setting that its node has not confirmed.
     app.ask("widget/ticket/get", vec![]);
     assert_eq!(app.answer("widget/ticket/state")[0], OscType::Int(0));
-    // A node that starts anew is what it was; one that is lost is the reason.
+    // A restarted node has the same state as before; a lost one is the reason for a refusal.
     nodes[0].0.kill().unwrap();
     nodes[0].0.wait().unwrap();
     let from = hall.lines.len();
@@ -117,7 +117,7 @@ fn a_layout_that_changes_is_on_all_nodes_or_on_none() {
         app.ask(&format!("widget/{id}/label"), vec![OscType::String("Here".into())]);
         app.ask(&format!("widget/{id}/get"), vec![]);
     };
-    // A file that is wrong goes nowhere.
+    // No node receives a file with an error.
     hall.write_layout(&LAYOUT.replace("\"ticket\", kind: \"button\"", "\"ticket\", kind: \"buton\""));
     hall.await_notice("The last good layout stays");
     hall.write_layout(&LAYOUT.replace("\"ticket\"", "\"entry\"").replace("\"door\"", "\"gatehouse\""));
@@ -126,7 +126,7 @@ fn a_layout_that_changes_is_on_all_nodes_or_on_none() {
         exists(id);
         assert_eq!(app.answer(&format!("widget/{id}/state"))[5], OscType::String("Here".into()));
     }
-    // Whoever comes later gets it.
+    // A node that starts later receives it.
     nodes[2].0.kill().unwrap();
     nodes[2].0.wait().unwrap();
     hall.lines.find(0, "lost", |line| line.area() == Some(("nw", "lost")));

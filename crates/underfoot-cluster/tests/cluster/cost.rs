@@ -1,4 +1,4 @@
-//! The cost of authentication, for a person who measures.
+//! The cost of authentication, as a measurement.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -8,7 +8,7 @@ use underfoot_cluster::auth::{Key, Kind, Role, Session};
 
 use crate::hall::say;
 
-/// Messages of one measurement, and measurements, of which the quickest counts: other programs disturb the rest.
+/// Messages of one measurement, and number of measurements; the fastest counts, as other programs disturb the rest.
 const MESSAGES: usize = 500;
 const ROUNDS: usize = 100;
 

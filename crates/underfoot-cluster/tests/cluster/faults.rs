@@ -1,14 +1,14 @@
-//! Nodes that die, freeze, are cut off or get another time, while a foot holds a control.
+//! Nodes that crash, freeze, are cut off or have their clock set, while a foot holds a control.
 
 use std::time::{Duration, Instant};
 
 use crate::hall::{AREAS, Boards, Hall, Program, say};
 use crate::lines::Line;
 
-/// Longest time from a fault to the moment in which an app reads that what was held is over.
+/// Longest time from a fault until an app reads that the hold is over.
 const LIMIT: Duration = Duration::from_millis(150);
 
-/// Somebody who holds the control over the border again and again; the node of the south-east decides it.
+/// Repeated holds of the control on the border by one person; the south-east's node decides the control.
 pub(crate) fn holding(times: usize) -> String {
     let hold = "Wait(ms: 500), Press(widget: \"drive\", force_n: 110, hold_ms: 2500),".repeat(times);
     format!(
@@ -16,20 +16,20 @@ pub(crate) fn holding(times: usize) -> String {
     )
 }
 
-/// What happens to the south-east's node.
+/// The fault of the south-east's node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Harm {
-    /// `kill -9`; another one is started.
+    /// `kill -9`; then another one starts.
     Kill,
-    /// It stands still for 0.4 s.
+    /// It stops for 0.4 s.
     Freeze,
-    /// Its cable is pulled, and plugged in again 0.4 s later.
+    /// Its cable is unplugged for 0.4 s.
     Cut,
     /// Its clock is set forward by a second.
     SetClock,
 }
 
-/// A hall in which somebody holds `drive`.
+/// A hall in which a person holds `drive`.
 struct Fault {
     hall: Hall,
     nodes: Vec<Program>,
@@ -39,7 +39,7 @@ struct Fault {
 impl Fault {
     fn new(holds: usize) -> Self {
         let hall = Hall::open();
-        // Relays are on this machine; nodes with a network of their own don't reach them.
+        // Relays are on this machine; nodes with a network of their own cannot reach them.
         let node =
             |area: &&str| if hall.namespaces.is_some() { hall.node(area) } else { hall.frail_node(area) };
         let nodes = AREAS.iter().map(node).collect();
@@ -48,7 +48,7 @@ impl Fault {
         Self { hall, nodes, boards }
     }
 
-    /// Waits for the next press that holds for half a second: a busy machine may stall for long enough to lose one.
+    /// Waits for the next press that lasts for half a second: a busy machine may stall for long enough to lose one.
     fn await_hold(&self) {
         loop {
             let from = self.hall.lines.len();
@@ -63,7 +63,7 @@ impl Fault {
         }
     }
 
-    /// One round: how long it took until everything that was held was told to be over.
+    /// One round; returns the time until the end of all holds was reported.
     fn round(&mut self, harm: Harm) -> Duration {
         self.await_hold();
         let from = self.hall.lines.len();
@@ -83,7 +83,7 @@ impl Fault {
         let none = |line: &Line| line.json["held"].as_array().is_some_and(Vec::is_empty);
         let released = lines.find(from, "held: []", none);
         let lost = |line: &Line| line.area() == Some(("se", "lost"));
-        // A clock that is set may cost the node its hold before the gateway knows of it.
+        // A clock that is set may cancel the hold on the node before the gateway notices.
         if harm != Harm::SetClock {
             lines.find(from, "lost", lost);
         }
@@ -110,7 +110,7 @@ impl Fault {
         cancelled.came.max(released.came).saturating_duration_since(begun)
     }
 
-    /// Whether since line `from` nothing was pressed or done that was not pressed anew.
+    /// Checks that since line `from` each event follows a new press.
     fn check_quiet(&self, from: usize) {
         let mut is_pressed = false;
         for line in self.hall.lines.all().iter().skip(from) {
@@ -129,9 +129,9 @@ fn is(line: &Line, what: &str) -> bool {
     line.done().is_some_and(|(id, done)| id == "drive" && done == what)
 }
 
-/// How long each of `rounds` took, in order.
+/// The duration of each of `rounds`, sorted.
 fn rounds(harm: Harm, rounds: usize) -> Vec<Duration> {
-    // A node that comes back costs up to two holds.
+    // A node that comes back takes up to two holds.
     let mut fault = Fault::new(4 * rounds + 3);
     let mut all: Vec<Duration> = (0..rounds).map(|_| fault.round(harm)).collect();
     all.sort();
@@ -199,7 +199,7 @@ fn twenty_clocks_that_are_set() {
     twenty(Harm::SetClock);
 }
 
-/// Holds `drive` so many times while packets of boards are lost and messages between nodes and gateway are late.
+/// Holds `drive` `holds` times while packets of boards are lost and messages between nodes and gateway are late.
 fn hold_over_a_bad_network(holds: usize) {
     let fault = Fault::new(holds + 2);
     let from = fault.hall.lines.len();
@@ -247,8 +247,8 @@ fn a_hold_at_the_gateway_s_death_is_unknown_to_the_next_gateway() {
     fault.check_quiet(0);
 }
 
-/// Lets somebody hold `drive` twenty times while each cable loses one packet in twenty of everything that a node sends and
-/// gets: boards, what neighbours forward, and the gateway's connection. How many holds were cancelled meanwhile.
+/// Holds `drive` twenty times while each cable loses one packet in twenty of all that a node sends and receives:
+/// boards, forwarded packets of neighbours, and the gateway's connection. Returns the number of cancelled holds.
 fn hold_over_lossy_cables(resend_soon: bool) -> usize {
     let fault = Fault::new(60);
     let cables = fault.hall.namespaces.as_ref().expect("UNDERFOOT_NETNS, for cables that can lose something");
@@ -285,6 +285,6 @@ fn cables_that_lose_packets_press_nothing_by_themselves() {
 #[test]
 #[ignore = "a minute or two in real time, with UNDERFOOT_NETNS and nftables"]
 fn what_feet_hold_lasts_over_cables_that_lose_packets_where_tcp_sends_again_soon() {
-    // What is lost three times over is older than 100 ms, and what was held is cancelled: 1 of 20 where this was tried.
+    // A packet lost three times in a row is older than 100 ms, which cancels the hold: 1 of 20 in a trial.
     assert!(hold_over_lossy_cables(true) <= 5);
 }

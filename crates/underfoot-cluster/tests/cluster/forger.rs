@@ -1,5 +1,5 @@
-//! Programs that reach the gateway's port without the floor's key: on an empty floor they hold nothing, and they disturb
-//! no foot on a busy one.
+//! Programs that reach the gateway's port without the floor's key: on an empty floor they hold nothing, and on a busy
+//! one they disturb no foot.
 
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -33,8 +33,8 @@ const EMPTY: &str = r#"Scenario(title: "Empty", steps: [Wait(ms: 60000)])"#;
 /// Another key than the hall's.
 const OTHER: Key = Key::new([8; 32]);
 
-/// A hall in which one node has a second gateway that records its messages. The recorder knows Zenoh's password and not
-/// the floor's key.
+/// A hall in which one node has a second gateway that records its messages. The recorder knows Zenoh's password and
+/// not the floor's key.
 struct Tapped {
     hall: Hall,
     nodes: Vec<Program>,
@@ -85,7 +85,7 @@ impl Tapped {
         }
     }
 
-    /// The number of the first recorded message that is `wanted`, for which it waits.
+    /// The number of the first recorded message for which `wanted` holds, after waiting for it.
     fn find_recorded(&self, wanted: impl Fn(&Vec<u8>) -> bool) -> usize {
         let end = Instant::now() + Duration::from_secs(20);
         loop {

@@ -28,8 +28,8 @@ use crate::link::Link;
 use crate::netns::Namespaces;
 use crate::ports::free_port;
 
-/// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Each has three boards of 6 x 2 tiles: few, since
-/// one machine does the work of six here.
+/// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Each has three boards of 6 x 2 tiles: few,
+/// since one machine does the work of six here.
 fn floor_text() -> String {
     let board = |number: u16| {
         let (west, south) = (number % 2 * 6, number / 2 * 2);
@@ -46,7 +46,7 @@ fn floor_text() -> String {
     format!("Floor(columns: 12, rows: 12, areas: {areas}, boards: [{}])", boards.join(", "))
 }
 
-/// Two controls over borders, of which `drive` is the south-east's, and one in each other area.
+/// Two controls on borders, of which `drive` belongs to the south-east, and one in each other area.
 pub(crate) const LAYOUT: &str = r#"Layout(
     version: 1,
     title: "Hall",
@@ -66,7 +66,7 @@ pub(crate) const LAYOUT: &str = r#"Layout(
     ],
 )"#;
 
-/// Which floor of its kind.
+/// Seed of the simulated floor.
 const SEED: u64 = 1;
 
 /// The areas' names.
@@ -75,7 +75,7 @@ pub(crate) const AREAS: [&str; 4] = ["sw", "se", "nw", "ne"];
 /// A program that ends with the test.
 pub(crate) struct Program(pub(crate) Child);
 
-/// What programs say to a person.
+/// The messages of programs on standard error.
 pub(crate) type Notices = Arc<Mutex<Vec<String>>>;
 
 impl Drop for Program {
@@ -90,8 +90,8 @@ impl Program {
         Self::start_by(Command::new(env!("CARGO_BIN_EXE_underfoot-cluster")), folder, args, notices)
     }
 
-    /// Starts it in a network namespace; `ip` makes way for it, so that it has the process of its own that signals
-    /// reach.
+    /// Starts it in a network namespace; `ip` replaces itself by the program, so that signals reach the program's own
+    /// process.
     fn start_in(namespace: &str, folder: &Path, args: &[&str], notices: &Notices) -> Self {
         let mut ip = Command::new("ip");
         ip.args(["netns", "exec", namespace, env!("CARGO_BIN_EXE_underfoot-cluster")]);
@@ -123,7 +123,7 @@ impl Program {
         }
         let name = args[0].to_owned();
         let said = Arc::clone(notices);
-        // What it says goes where the test's own output goes.
+        // Its standard error goes to the test's own output.
         thread::spawn(move || {
             chatter.lines().map_while(Result::ok).for_each(|line| {
                 println!("{name}: {line}");
@@ -133,7 +133,7 @@ impl Program {
         Self(child)
     }
 
-    /// Asks it to end, and waits until it has.
+    /// Sends SIGTERM and waits until it has ended.
     pub(crate) fn end(mut self) {
         self.signal("-TERM");
         self.0.wait().unwrap();
@@ -145,15 +145,15 @@ impl Program {
     }
 }
 
-/// The hall's floor, calibrated and tared, as one in use is: computers that tare by themselves differ by their sensors'
-/// noise.
+/// The hall's floor, calibrated and tared, like one in use: computers that tare by themselves differ by the noise of
+/// their sensors.
 pub(crate) fn floor() -> Floor {
     let bare = schema::parse_floor(&floor_text(), "hall").unwrap();
     let sim = SimFloor::new(&bare, SimConfig::default(), SEED);
     calibrated(&bare, &sim, SEED).unwrap()
 }
 
-/// The same, whose areas listen on free ports.
+/// The same floor, with areas that listen on free ports.
 pub(crate) fn listening() -> Floor {
     let mut floor = floor();
     floor.areas.iter_mut().for_each(|area| area.listen = Some(([127, 0, 0, 1], free_port()).into()));
@@ -170,7 +170,7 @@ pub(crate) fn script(scenario: &str, floor: &Floor, layout: &Layout) -> Script {
     Scenario::parse("hall", scenario).unwrap().resolve(layout, &floor.geometry).unwrap()
 }
 
-/// What the boards of the hall send.
+/// The source of the hall's board packets.
 pub(crate) fn source(floor: &Floor, script: Script, pace: Pace) -> SimulatedSource {
     SimulatedSource::new(SimFloor::new(floor, SimConfig::default(), SEED), Box::new(script), pace)
 }
@@ -182,12 +182,12 @@ pub(crate) struct Hall {
     pub(crate) layout: Layout,
     /// Between it and the nodes.
     pub(crate) links: [Link; 4],
-    /// Where the gateway takes requests.
+    /// The address on which the gateway receives requests.
     pub(crate) commands: SocketAddr,
     notices: Notices,
     gateway: Program,
     pub(crate) lines: Lines,
-    /// Where nodes run, if each has a network of its own.
+    /// The namespaces of the nodes, if each has a network of its own.
     pub(crate) namespaces: Option<Namespaces>,
 }
 
@@ -197,7 +197,7 @@ impl Hall {
         Self::with_key(Some("hall_of_tests.key"))
     }
 
-    /// A hall whose floor file names the key `key`, which is made, or none.
+    /// A hall with a floor file that names the new key `key`, or none.
     pub(crate) fn with_key(key: Option<&str>) -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("controls.ron"), LAYOUT).unwrap();
@@ -209,7 +209,7 @@ impl Hall {
         }
         let here = namespaces.as_ref().map_or(Ipv4Addr::LOCALHOST, Namespaces::here);
         if namespaces.is_some() {
-            // Boards are on the bridge, and those of the one computer on this machine.
+            // Boards are on the bridge, and those of the single computer on this machine.
             floor.allow = [here, Ipv4Addr::LOCALHOST].map(|address| IpAddr::from(address).into()).into();
         }
         let address = SocketAddr::from((here, free_port()));
@@ -233,12 +233,12 @@ impl Hall {
         self.gateway.0.wait().unwrap();
     }
 
-    /// Starts another gateway in place of one that has been killed; its lines are numbered anew.
+    /// Starts another gateway in place of a killed one; line numbers start again.
     pub(crate) fn start_gateway(&mut self) {
         (self.gateway, self.lines) = start_gateway(self.folder.path(), self.commands, &self.notices);
     }
 
-    /// Ends the gateway; all notices of programs so far, with its last report.
+    /// Ends the gateway; returns all notices of programs so far, with its last report.
     pub(crate) fn end_gateway(&mut self) -> Vec<String> {
         self.gateway.signal("-TERM");
         self.gateway.0.wait().unwrap();
@@ -268,7 +268,7 @@ impl Hall {
         format!("tcp/{}", self.floor.gateway.unwrap())
     }
 
-    /// Starts the node of one area, with nothing but what the floor file says.
+    /// Starts the node of one area with the settings of the floor file only.
     pub(crate) fn node(&self, area: &str) -> Program {
         self.start(area, &["controls.ron"])
     }
@@ -288,12 +288,12 @@ impl Hall {
         self.await_node_layout(revision, AREAS.len());
     }
 
-    /// Waits until so many nodes have said that they have the gateway's layout of that number.
+    /// Waits until `times` nodes have reported the gateway's layout of that number.
     pub(crate) fn await_node_layout(&self, revision: u64, times: usize) {
         self.await_notices(&format!("Layout {revision} is on the floor"), times);
     }
 
-    /// Waits until a program says so.
+    /// Waits until a program prints `text`.
     pub(crate) fn await_notice(&self, text: &str) {
         self.await_notices(text, 1);
     }
@@ -315,7 +315,7 @@ impl Hall {
         self.start(area, &["controls.ron", "--gateway", &self.links[number(area)].endpoint(), "--step-clock"])
     }
 
-    /// Starts the node of one area, with these options besides.
+    /// Starts the node of one area with additional options.
     pub(crate) fn start(&self, area: &str, more: &[&str]) -> Program {
         let node = ["node", "--floor", "hall.ron", "--area", area];
         let (folder, args) = (self.folder.path(), [&node[..], more].concat());
@@ -325,17 +325,17 @@ impl Hall {
         }
     }
 
-    /// Waits until an area is live, as told from line `from` on.
+    /// Waits until an area is live, by the lines from number `from` on.
     pub(crate) fn await_live(&self, area: &str, from: usize) {
         self.lines.find(from, "live", |line| line.area() == Some((area, "live")));
     }
 
-    /// What people do, by a scenario.
+    /// The people of a scenario.
     pub(crate) fn script(&self, scenario: &str) -> Script {
         script(scenario, &self.floor, &self.layout)
     }
 
-    /// Lets each board send to the node of its area, and to `others`, what `script` makes it read.
+    /// Makes each board send its readings of `script` to the node of its area and to `others`.
     pub(crate) fn boards(&self, script: Script, others: &[u16]) -> Boards {
         let others = others.iter().map(|port| SocketAddr::from(([127, 0, 0, 1], *port)));
         let home = |board| self.floor.home(board).and_then(|area| area.listen);
@@ -344,7 +344,7 @@ impl Hall {
         Boards::start(&self.floor, script, targets.collect())
     }
 
-    /// One computer for the whole floor, in this process: where it listens, and what it tells.
+    /// One computer for the whole floor, in this process: its session, port, lines and frames.
     pub(crate) fn single(&self) -> (Session, u16, Lines, Frames) {
         let source = UdpSource::bind(([127, 0, 0, 1], 0).into(), &self.floor).unwrap();
         let (port, clock, lines) = (source.local_addr().unwrap().port(), source.clock(), Lines::default());
@@ -380,16 +380,16 @@ struct Seen {
     events: Vec<(Instant, WidgetId, EventKind)>,
 }
 
-/// When and where each contact was, by its name.
+/// Times and positions of each contact, by its number.
 pub(crate) type Tracks = BTreeMap<u64, Vec<(f64, f64, f64)>>;
 
 impl Frames {
-    /// When and where each contact was.
+    /// Times and positions of each contact.
     pub(crate) fn tracks(&self) -> Tracks {
         self.0.lock().unwrap().tracks.clone()
     }
 
-    /// What was done with each control when: control by control, of each in order.
+    /// The events of all controls, control by control, each in order.
     pub(crate) fn events(&self) -> Vec<(Instant, WidgetId, EventKind)> {
         let mut events = self.0.lock().unwrap().events.clone();
         events.sort_by(|(_, one, _), (_, other, _)| one.cmp(other));
@@ -420,19 +420,19 @@ fn number(area: &str) -> usize {
 /// The hall's boards, which send on a thread of their own.
 pub(crate) struct Boards {
     stop: Arc<AtomicBool>,
-    /// Of a thousand packets to each computer, how many are lost.
+    /// Number of lost packets of a thousand to each computer.
     lost: Arc<AtomicU64>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Boards {
-    /// Lets each board of `floor` send what `script` makes it read to its `targets`.
+    /// Makes each board of `floor` send its readings of `script` to its `targets`.
     pub(crate) fn start(floor: &Floor, script: Script, targets: Vec<Vec<SocketAddr>>) -> Self {
         let (stop, lost) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
         let loss = Arc::clone(&lost);
         // Any sequence without a pattern.
         let mut random = 1_u64;
-        // As boards, from whatever address leads to whom they send.
+        // Like boards, from any address that has a route to the targets.
         let socket = UdpSocket::bind("0.0.0.0:0").unwrap();
         let mut encoder = SensorEncoder::new(floor, SensorFormat::Blob);
         let mut source = source(floor, script, Pace::RealTime);
@@ -449,7 +449,7 @@ impl Boards {
                             if (random >> 33) % 1000 < loss.load(Ordering::Relaxed) {
                                 continue;
                             }
-                            // A node that is not there is no matter of the boards.
+                            // Boards ignore an absent node.
                             let _ = socket.send_to(datagram, target);
                         }
                     }
@@ -462,12 +462,12 @@ impl Boards {
         Self { stop, lost, thread: Some(thread) }
     }
 
-    /// Loses so many of a thousand packets from now on.
+    /// Drops `per_mille` of a thousand packets from now on.
     pub(crate) fn lose(&self, per_mille: u64) {
         self.lost.store(per_mille, Ordering::Relaxed);
     }
 
-    /// Waits until the people have gone.
+    /// Waits until the people have left.
     pub(crate) fn finish(mut self) {
         self.thread.take().unwrap().join().unwrap();
     }
@@ -482,7 +482,7 @@ impl Drop for Boards {
     }
 }
 
-/// Writes a line that a person who measures wants to see.
+/// Prints a line for a measurement.
 pub(crate) fn say(text: &str) {
     let _ = writeln!(std::io::stdout(), "{text}");
 }

@@ -1,4 +1,4 @@
-//! Boards send to one computer, which forwards what its neighbours need.
+//! Boards send to one computer, which forwards the packets that its neighbours need.
 
 use std::sync::Arc;
 use std::thread;
@@ -25,7 +25,7 @@ fn serve(floor: &Floor, id: &str) -> (Session, Arc<ForwardCounters>) {
     (session.realtime().start().unwrap(), forwarded)
 }
 
-/// Waits until `session` shows what is `wanted`.
+/// Waits until `wanted` holds for the state of `session`.
 fn await_state(session: &Session, what: &str, wanted: impl Fn(&Snapshot) -> bool) -> Snapshot {
     let end = Instant::now() + Duration::from_secs(10);
     loop {
@@ -38,7 +38,7 @@ fn await_state(session: &Session, what: &str, wanted: impl Fn(&Snapshot) -> bool
     }
 }
 
-/// How far `tile` can be trusted.
+/// The quality of `tile`.
 fn quality(floor: &Floor, id: &str, snapshot: &Snapshot, tile: (u16, u16)) -> Quality {
     let part = floor.part(floor.area(id).unwrap()).unwrap();
     let index = part.geometry.index(TileId::new(tile.0, tile.1)).unwrap();
@@ -55,7 +55,7 @@ fn what_a_neighbour_forwards_is_sensed_and_its_death_marks_those_tiles_alone() {
     let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
     let targets: Vec<_> = floor.boards.iter().map(homes).collect();
     let _boards = Boards::start(&floor, script(EMPTY, &floor, &layout(&floor)), targets);
-    // (4, 2) is the south-west's, near the border, on a board that nothing sends to the south-east but its home.
+    // (4, 2) is the south-west's, near the border, on a board that only its home forwards to the south-east.
     let live = |snapshot: &Snapshot| {
         snapshot.floor.counters.frames > 200 && quality(&floor, "se", snapshot, (4, 2)) == Quality::Live
     };
@@ -69,7 +69,7 @@ fn what_a_neighbour_forwards_is_sensed_and_its_death_marks_those_tiles_alone() {
     for own in [(6, 2), (9, 4)] {
         assert_eq!(quality(&floor, "se", &snapshot, own), Quality::Live, "{own:?}");
     }
-    // It comes back by itself.
+    // It recovers without a restart of the other.
     let (_west, _) = serve(&floor, "sw");
     await_state(&east, "live again", live);
 }
@@ -91,7 +91,7 @@ fn a_board_that_sends_to_both_is_sensed_once() {
 #[test]
 fn a_control_works_while_the_neighbour_that_senses_the_other_half_of_it_is_dead() {
     let hall = Hall::open();
-    // Nobody serves the south-west, whose border is near.
+    // No node serves the south-west, which is near the border.
     let _nodes: Vec<_> = AREAS.iter().filter(|area| **area != "sw").map(|area| hall.node(area)).collect();
     let press = r#"Scenario(title: "Drive", steps: [Wait(ms: 1500), Enter(from: East, at: (9.4, 8.2)),
         Press(widget: "door", force_n: 140, hold_ms: 300), Leave(to: East)])"#;

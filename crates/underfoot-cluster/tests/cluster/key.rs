@@ -1,4 +1,4 @@
-//! The floor's key: its place, and its demands at a start.
+//! The floor's key: its place, and the checks at a start.
 
 use std::fs;
 use std::path::Path;
@@ -94,7 +94,7 @@ fn a_key_that_is_named_and_missing_is_not_made() {
 
 #[test]
 fn computers_that_are_one_share_a_key_beside_the_floor_file() {
-    // Namespaces are several computers.
+    // Namespaces count as several computers.
     if std::env::var_os("UNDERFOOT_NETNS").is_some() {
         return;
     }

@@ -1,4 +1,4 @@
-//! Lines of JSON that a program tells, each with the moment when it came.
+//! Lines of JSON that a program prints, each with the time of its arrival.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::sync::{Arc, Condvar, Mutex};
@@ -15,15 +15,15 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// When it happened, as it says, in seconds.
+    /// The time in the line, in seconds.
     pub(crate) fn t_s(&self) -> f64 {
         self.json["t_s"].as_f64().unwrap_or(f64::NAN)
     }
 
-    /// The control and what it did.
+    /// The control and its event.
     pub(crate) fn done(&self) -> Option<(String, String)> {
         let text = |name: &str| self.json[name].as_str().map(str::to_owned);
-        // States are no events.
+        // States are not events.
         Some((text("id")?, text("event").filter(|event| event != "state")?))
     }
 
@@ -45,7 +45,7 @@ impl Line {
 pub(crate) struct Lines(Arc<(Mutex<Vec<Line>>, Condvar)>);
 
 impl Lines {
-    /// Reads `out` for as long as it lasts.
+    /// Reads `out` until it ends.
     pub(crate) fn of(out: impl Read + Send + 'static) -> Self {
         let lines = Self::default();
         let told = lines.clone();
@@ -72,7 +72,7 @@ impl Lines {
         self.0.0.lock().unwrap().len()
     }
 
-    /// The first line from number `from` on that is `wanted`, for which it waits.
+    /// The first line from number `from` on for which `wanted` holds, after waiting for it.
     pub(crate) fn find(&self, from: usize, what: &str, wanted: impl Fn(&Line) -> bool) -> Line {
         let end = Instant::now() + Duration::from_secs(30);
         let mut next = from;

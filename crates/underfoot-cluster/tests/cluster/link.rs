@@ -1,4 +1,4 @@
-//! A cable between a node and its gateway: it can be pulled, and it can carry what it carries late.
+//! A cable between a node and its gateway, which can be cut and can delay its bytes.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -7,19 +7,19 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::Duration;
 
-/// How soon a pulled cable carries nothing, and how soon a test that ends leaves nothing behind.
+/// Reaction time of a cut, and of the end of a test.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 
 #[derive(Debug, Default)]
 struct State {
     is_cut: AtomicBool,
     is_over: AtomicBool,
-    /// Longest time that something is late, in milliseconds.
+    /// Greatest delay, in milliseconds.
     jitter_ms: AtomicU64,
 }
 
-/// A relay of a TCP connection. Nobody is told when it is cut: as with a cable, bytes just don't arrive, and those that
-/// wait arrive when it is mended.
+/// A relay of a TCP connection. A cut sends no notice: as with a cable, bytes stop arriving, and the waiting ones
+/// arrive after the repair.
 #[derive(Debug)]
 pub(crate) struct Link {
     port: u16,
@@ -49,7 +49,7 @@ impl Link {
         Self { port: own, state }
     }
 
-    /// Where a node connects.
+    /// The endpoint for a node.
     pub(crate) fn endpoint(&self) -> String {
         format!("tcp/127.0.0.1:{}", self.port)
     }
@@ -62,7 +62,7 @@ impl Link {
         self.state.is_cut.store(false, Ordering::Relaxed);
     }
 
-    /// Carries everything 0 to `ms` late from now on, in order.
+    /// Delays everything by 0 to `ms` from now on, in order.
     pub(crate) fn jitter(&self, ms: u64) {
         self.state.jitter_ms.store(ms, Ordering::Relaxed);
     }
@@ -71,12 +71,12 @@ impl Link {
 impl Drop for Link {
     fn drop(&mut self) {
         self.state.is_over.store(true, Ordering::Relaxed);
-        // The thread that listens wakes and sees it.
+        // The listening thread wakes and sees the flag.
         let _ = TcpStream::connect(SocketAddr::from(([127, 0, 0, 1], self.port)));
     }
 }
 
-/// Carries bytes until one of the ends closes.
+/// Relays bytes until one of the ends closes.
 fn carry(mut from: TcpStream, mut to: TcpStream, state: &State) {
     let _ = from.set_read_timeout(Some(LOOK_EVERY));
     let _ = to.set_nodelay(true);
@@ -96,7 +96,7 @@ fn carry(mut from: TcpStream, mut to: TcpStream, state: &State) {
                 if most > 0 {
                     thread::sleep(Duration::from_micros((random >> 33) % (most * 1000)));
                 }
-                // What was read in the moment of the cut is lost on the way, and sent again when there is one.
+                // Bytes read at the time of the cut are delivered after the repair.
                 while state.is_cut.load(Ordering::Relaxed) && !state.is_over.load(Ordering::Relaxed) {
                     thread::sleep(LOOK_EVERY);
                 }

@@ -1,4 +1,4 @@
-//! What a node costs does not depend on how many there are.
+//! The cost of a node does not depend on the number of nodes.
 
 use std::fs;
 use std::net::{SocketAddr, UdpSocket};
@@ -24,10 +24,10 @@ const SIDE: u16 = 6;
 /// People in each area.
 const PEOPLE: u16 = 2;
 
-/// How long is measured, in seconds of the floor.
+/// Length of the measurement, in seconds of the floor.
 const SECONDS: u64 = 10;
 
-/// Before that, nodes find their levels.
+/// Seconds before it, in which the nodes settle.
 const WARM_UP: u64 = 4;
 
 /// A corridor of `count` areas, each with three boards of its own.
@@ -52,7 +52,7 @@ fn corridor(count: u16) -> Floor {
     floor
 }
 
-/// People who walk to and fro in each area, as long as it takes.
+/// People who walk to and fro in each area for the whole measurement.
 fn crowd(count: u16) -> String {
     let person = |number: u16| {
         let (west, row) = (f32::from(number / PEOPLE * SIDE) + 1.0, 1.5 + 2.5 * f32::from(number % PEOPLE));
@@ -63,7 +63,7 @@ fn crowd(count: u16) -> String {
     format!("Scenario(title: \"Corridor\", {}, others: [{}])", person(0), others.join(", "))
 }
 
-/// Nanoseconds that the threads of a process have run, all of them and the one that senses.
+/// CPU time of a process in nanoseconds: of all its threads, and of the sensing thread.
 fn ran_ns(process: u32) -> (u64, u64) {
     let (mut all, mut sensing) = (0, 0);
     for task in fs::read_dir(format!("/proc/{process}/task")).unwrap() {
@@ -78,7 +78,7 @@ fn ran_ns(process: u32) -> (u64, u64) {
     (all, sensing)
 }
 
-/// Lets boards send for as many seconds of the floor, each millisecond of which takes `slow`, all of a millisecond at
+/// Sends the boards' packets for the seconds of the floor, each millisecond of which takes `slow` and goes out at
 /// once; calls `at` at each second.
 fn send(floor: &Floor, count: u16, slow: u32, mut at: impl FnMut(u64)) {
     let layout = underfoot::layout::Layout::default();
@@ -125,18 +125,18 @@ fn send(floor: &Floor, count: u16, slow: u32, mut at: impl FnMut(u64)) {
     say(&format!("  boards at most {:.0} ms behind", behind.as_secs_f64() * 1e3));
 }
 
-/// What a node costs each millisecond of the floor, in microseconds of a core.
+/// The cost of a node for each millisecond of the floor, in microseconds of a core.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
     /// All of its threads.
     all: f64,
     /// The thread that senses, decides and forwards.
     sensing: f64,
-    /// What `underfoot plan` says of that thread.
+    /// The forecast of `underfoot plan` for that thread.
     forecast: f64,
 }
 
-/// The mean of some nodes; `None` of none.
+/// The mean over nodes; `None` of none.
 fn mean(costs: &[Cost]) -> Option<Cost> {
     let of = |one: fn(&Cost) -> f64| costs.iter().map(one).sum::<f64>() / costs.len() as f64;
     let mean = Cost {
@@ -147,14 +147,14 @@ fn mean(costs: &[Cost]) -> Option<Cost> {
     (!costs.is_empty()).then_some(mean)
 }
 
-/// What nodes at the ends of a corridor cost, and those between two others.
+/// The costs of the nodes at the ends of a corridor, and of those between two others.
 #[derive(Clone, Copy, Debug)]
 struct Costs {
     end: Cost,
     between: Option<Cost>,
 }
 
-/// Starts `count` nodes and their gateway, and says what they cost.
+/// Starts `count` nodes and their gateway, and measures their costs.
 fn measure_nodes(folder: &Path, count: u16, slow: u32, machine: &Machine) -> Costs {
     let floor = corridor(count);
     fs::write(folder.join("corridor.ron"), schema::write_floor(&floor)).unwrap();
@@ -165,7 +165,7 @@ fn measure_nodes(folder: &Path, count: u16, slow: u32, machine: &Machine) -> Cos
         .areas
         .iter()
         .map(|area| {
-            // Without a card that has a thread of its own, the thread that senses would render too.
+            // Without a sound card with its own thread, the sensing thread would render too.
             let node = ["node", "--floor", "corridor.ron", "--area", &area.id, "--device", "paced"];
             let node = [&node[..], &["--slow", &slowness]].concat();
             Program::start(folder, &node, &notices)
@@ -205,15 +205,15 @@ fn measure_nodes(folder: &Path, count: u16, slow: u32, machine: &Machine) -> Cos
         ));
     }
     let counted = |text: &str| notices.lock().unwrap().iter().filter(|line| line.contains(text)).count();
-    // What is lost or comes late on a machine that is busy does not make a node dearer, but is told.
+    // Lost or late packets on a busy machine do not raise a node's cost; the test prints them.
     let (live, lost) = (counted("is live"), counted("is lost"));
     say(&format!("  areas live {live} times, lost {lost} times"));
     assert!(live >= usize::from(count), "{:?}", notices.lock().unwrap());
     costs
 }
 
-/// The constants of a computer: those of the file that `UNDERFOOT_MACHINE` names, as `underfoot plan --json` prints
-/// them, or this one's as this build does its work.
+/// The constants of a computer: those of the file in `UNDERFOOT_MACHINE`, as `underfoot plan --json` prints them, or
+/// this computer's, measured with this build.
 fn machine() -> Machine {
     let Ok(path) = std::env::var("UNDERFOOT_MACHINE") else {
         return measure(Duration::from_secs(1), || {}).unwrap();
@@ -223,7 +223,7 @@ fn machine() -> Machine {
     serde_json::from_value(value.get("machine").unwrap_or(&value).clone()).unwrap()
 }
 
-/// In real time: a thread that sleeps for longer between packets wakes at a higher price.
+/// In real time: a thread that sleeps for longer between packets costs more at each wake-up.
 #[test]
 #[ignore = "a minute, on a machine that does nothing else"]
 fn a_node_costs_what_is_forecast() {
@@ -237,7 +237,7 @@ fn a_node_costs_what_is_forecast() {
     }
 }
 
-/// `UNDERFOOT_SLOW` says how many times slower than real time the floors are, so that sixteen fit on a machine.
+/// `UNDERFOOT_SLOW` sets the factor by which the floors run slower than real time, so that sixteen fit on a machine.
 #[test]
 #[ignore = "two minutes, on a machine that does nothing else"]
 fn a_node_of_sixteen_costs_what_one_of_four_costs() {

@@ -1,4 +1,4 @@
-//! Network namespaces: each node with interfaces, addresses and routes of its own, as on a computer of its own.
+//! Network namespaces: each node has its own interfaces, addresses and routes, as on its own computer.
 
 use std::io::Write;
 use std::net::Ipv4Addr;
@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use crate::hall::AREAS;
 
-/// A namespace for each area, all on one bridge; they are gone when this is dropped.
+/// A namespace for each area, all on one bridge; dropping this deletes them.
 #[derive(Debug)]
 pub(crate) struct Namespaces {
     tag: String,
@@ -21,8 +21,8 @@ fn ip(words: &str) -> Result<(), String> {
     done.status.success().then_some(()).ok_or_else(why)
 }
 
-/// Lets what arrives at `device` be lost so many times of a hundred, by a rule in a table of the device's name; `nft` is
-/// how nftables is run where the device is.
+/// Drops `per_cent` of the packets that arrive at `device`, by a rule in a table of the device's name; `nft` is the
+/// command that runs nftables in the device's namespace.
 fn lose(nft: &[&str], device: &str, table: &str, per_cent: u8) {
     let rules = format!(
         "add table netdev {table}\n\
@@ -36,7 +36,7 @@ fn lose(nft: &[&str], device: &str, table: &str, per_cent: u8) {
 }
 
 impl Namespaces {
-    /// Namespaces, if `UNDERFOOT_NETNS` asks for them; that takes root and Linux's `ip`.
+    /// Namespaces, if `UNDERFOOT_NETNS` is set; they need root and Linux's `ip`.
     pub(crate) fn asked_for() -> Option<Self> {
         std::env::var_os("UNDERFOOT_NETNS").map(|_| Self::open())
     }
@@ -65,7 +65,7 @@ impl Namespaces {
         format!("{}{area}", self.tag)
     }
 
-    /// Loses so many of a hundred packets on the cable of each area's node, both ways, by nftables.
+    /// Drops `per_cent` of the packets on the cable of each area's node, both ways, by nftables.
     pub(crate) fn lose(&self, per_cent: u8) {
         for area in AREAS {
             let name = self.name(area);
@@ -74,7 +74,7 @@ impl Namespaces {
         }
     }
 
-    /// Lets TCP send again after 5 ms what has got lost, both ways, as `docs/large-floors.md` tells to.
+    /// Makes TCP resend lost packets after 5 ms, both ways, as `docs/large-floors.md` describes.
     pub(crate) fn resend_soon(&self) {
         let net = format!("10.213.{}.0/24", self.net);
         let soon = "rto_min 5ms";
@@ -85,22 +85,22 @@ impl Namespaces {
         }
     }
 
-    /// Loses none any more.
+    /// Stops the packet loss.
     pub(crate) fn mend(&self) {
         for area in AREAS {
             let name = self.name(area);
-            // There is none unless some were lost.
+            // The table exists only after a loss.
             let _ = Command::new("nft").args(["delete", "table", "netdev", &name]).output();
             let _ = ip(&format!("netns exec {name} nft delete table netdev {name}"));
         }
     }
 
-    /// Where the gateway and the boards are.
+    /// The address of the gateway and the boards.
     pub(crate) fn here(&self) -> Ipv4Addr {
         Ipv4Addr::new(10, 213, self.net, 1)
     }
 
-    /// Where an area's node is.
+    /// The address of an area's node.
     pub(crate) fn address(&self, area: &str) -> Ipv4Addr {
         let number = AREAS.iter().position(|one| *one == area).unwrap();
         Ipv4Addr::new(10, 213, self.net, 10 + number as u8)
@@ -111,7 +111,7 @@ impl Drop for Namespaces {
     fn drop(&mut self) {
         self.mend();
         for area in AREAS {
-            // Its interfaces, on both sides, go with it.
+            // Its interfaces, on both sides, are deleted with it.
             let _ = ip(&format!("netns del {}", self.name(area)));
         }
         let _ = ip(&format!("link del {}b", self.tag));

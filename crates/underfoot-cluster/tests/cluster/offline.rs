@@ -1,4 +1,4 @@
-//! The same without sockets and clocks: four nodes and a gateway against one computer, each frame of it.
+//! The comparison without sockets and clocks: four nodes and a gateway against one computer, frame by frame.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
@@ -21,7 +21,7 @@ use underfoot_cluster::node::NodeSink;
 use crate::hall::{AREAS, Frames, floor, layout, say, script, source};
 use crate::same::{crowd, distance};
 
-/// Lets one computer serve `part` of the hall, in which people walk about for `rounds`, and tell `sink`.
+/// Runs one computer that serves `part` of the hall, in which people walk about for `rounds`, and reports to `sink`.
 fn serve(
     (whole, controls, rounds): (&Floor, &Layout, usize),
     part: &Floor,
@@ -41,7 +41,7 @@ fn serve(
         .unwrap();
 }
 
-/// What the boards of a part of the hall send, by that part's numbers.
+/// The board packets of a part of the hall, by that part's numbers.
 struct Part {
     source: SimulatedSource,
     /// By the hall's numbers.
@@ -63,10 +63,10 @@ impl SensorSource for Part {
     }
 }
 
-/// What the node of an area sends; its clock is the simulated one.
+/// The messages of the node of an area; its clock is the simulated one.
 fn messages(hall: (&Floor, &Layout, usize), area: &str, node: u64) -> Vec<NodeMessage> {
     let (floor, layout, _) = hall;
-    // One every 2 ms and some for events, of a round of half a minute.
+    // One every 2 ms, and some for events, in a round of half a minute.
     let (out, drafts) = sync_channel(30_000 * hall.2);
     let area = floor.area(area).unwrap();
     let part = floor.part(area).unwrap();
@@ -82,7 +82,7 @@ fn messages(hall: (&Floor, &Layout, usize), area: &str, node: u64) -> Vec<NodeMe
     message.filter(|message| message.frame.is_some()).collect()
 }
 
-/// Lets people walk about for `rounds`, and compares every event, and every contact of every frame.
+/// Runs people for `rounds`, and compares every event, and every contact of every frame.
 fn compare(rounds: usize) {
     let floor = floor();
     let layout = layout(&floor);
@@ -101,7 +101,7 @@ fn compare(rounds: usize) {
         gateway.advance(now).iter().filter_map(Told::report).for_each(|report| joined.report(report));
     }
     assert_eq!(gateway.counters().unpressed, 0, "each hold follows its press");
-    // The same moments, to the microsecond.
+    // The same times, to the microsecond.
     say(&format!("{} events", events.len()));
     assert_eq!(joined.events(), events);
     let tracks = joined.tracks();
@@ -136,8 +136,8 @@ fn compare(rounds: usize) {
     ));
     let others: BTreeSet<u64> = pairs.values().copied().collect();
     assert_eq!((tracks.len(), others.len()), (whole.len(), whole.len()));
-    // How two feet that share tiles divide their load can be decided a millisecond earlier or later: a node looks after the
-    // sensors of its tiles in another order. Measured over eight rounds: 4 of 821,479, by 1.5 mm.
+    // The split of the load between two feet that share tiles may be decided a millisecond earlier or later: a node
+    // processes the sensors of its tiles in another order. Measured over eight rounds: 4 of 821,479, by 1.5 mm.
     assert!(apart * 10_000 <= places, "{apart} of {places}");
     assert!(worst <= 0.01, "{worst} m");
 }

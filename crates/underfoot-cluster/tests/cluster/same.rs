@@ -1,11 +1,11 @@
-//! What the gateway tells is what one computer for the whole floor tells.
+//! The gateway reports the same as one computer for the whole floor.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::hall::{AREAS, Hall, Program, say};
 use crate::lines::Line;
 
-/// Four people who together cross each border in both directions and work each control, `rounds` times.
+/// Four people who together cross each border in both directions and operate each control, `rounds` times.
 pub(crate) fn crowd(rounds: usize) -> String {
     let steps = |enter: &str, round: &str, leave: &str| {
         format!("Wait(ms: 1500), {enter} {} {leave}", round.repeat(rounds))
@@ -36,11 +36,11 @@ pub(crate) fn crowd(rounds: usize) -> String {
     format!("Scenario(title: \"Crowd\", steps: [{south}], others: [{}])", others.join(", "))
 }
 
-/// What was told of one floor.
+/// The reports of one floor.
 struct Account {
-    /// Each event: control, what, when, and which line.
+    /// Each event: control, kind, time, and time of arrival.
     events: Vec<(String, String, f64, std::time::Instant)>,
-    /// The contacts by their names: when and where.
+    /// The contacts by their numbers: times and positions.
     tracks: BTreeMap<u64, Vec<(f64, f64, f64)>>,
 }
 
@@ -56,7 +56,7 @@ impl Account {
         Self { events: lines.iter().filter_map(event).collect(), tracks }
     }
 
-    /// The same with contacts told as seldom as by a gateway, a hundred times a second.
+    /// The same with as few contact reports as a gateway sends, a hundred times a second.
     fn thinned(self) -> Self {
         let thin = |track: Vec<_>| track.into_iter().step_by(10).collect();
         Self { tracks: self.tracks.into_iter().map(|(id, track)| (id, thin(track))).collect(), ..self }
@@ -66,14 +66,14 @@ impl Account {
     fn done(&self) -> Vec<(&str, &str)> {
         let mut all: Vec<_> =
             self.events.iter().map(|(id, done, _, _)| (id.as_str(), done.as_str())).collect();
-        // Events of several controls at the same moment are in no order.
+        // Events of several controls at the same time have no order.
         all.sort_by_key(|(id, _)| *id);
-        // How many values a slider tells on its way depends on when its thinning begins.
+        // The number of reported values of a moving slider depends on the start of its rate limit.
         all.dedup_by(|next, last| next == last && next.1 == "changed");
         all
     }
 
-    /// Says when what happened, for a person who looks for what differs.
+    /// Prints each event with its time, to find differences.
     fn say(&self, name: &str) {
         for (id, done, t_s, _) in &self.events {
             say(&format!("{name}: {t_s:.4} s {id} {done}"));
@@ -93,7 +93,7 @@ impl Account {
     }
 }
 
-/// How far `place` is from the way that a contact went from 2 ms before `t_s` to 2 ms after it; `None` if it was not
+/// The distance of `place` from the path of a contact from 2 ms before `t_s` to 2 ms after it; `None` if it was not
 /// there.
 pub(crate) fn distance(track: &[(f64, f64, f64)], t_s: f64, place: (f64, f64)) -> Option<f64> {
     const APART_S: f64 = 0.002;
@@ -119,15 +119,15 @@ fn quantile(all: &mut [f64], share: f64) -> f64 {
     all[((all.len() - 1) as f64 * share) as usize]
 }
 
-/// How what two computers, or several and one, told of the same floor differs: in seconds, meters and numbers.
+/// The difference between the reports of two accounts of the same floor, in seconds, metres and numbers.
 struct Difference {
-    /// Of each event, how far apart its moments are, and how much later the first ones told of it.
+    /// For each event, the difference of its times, and the delay of the first account's report.
     apart_s: Vec<f64>,
     added_s: Vec<f64>,
-    /// Of each place of a contact, how far it is from the way of its counterpart, which some have not.
+    /// For each position of a contact, its distance from the path of its counterpart; some have none.
     places_m: Vec<f64>,
     unmatched: usize,
-    /// Names, those that are one name of the other, and names of the other that last.
+    /// Number of contacts; those with one counterpart in the other account; the other's lasting ones.
     names: usize,
     others: usize,
     lasting: usize,
@@ -136,7 +136,7 @@ struct Difference {
 impl Difference {
     /// The differences of `here` from `there`.
     fn of(here: &Account, there: &Account) -> Self {
-        // At the same times, but for the start of their clocks.
+        // The same times, but for the start of their clocks.
         let (moments, others) = (here.moments(), there.moments());
         let offset = median(others.iter().map(|(event, (t_s, _))| moments[event].0 - t_s).collect());
         let apart = |event, t_s: f64| (moments[event].0 - t_s - offset).abs();
@@ -151,7 +151,7 @@ impl Difference {
         };
         let added_s = others.iter().map(added).collect();
 
-        // The same contacts under other names, one for one.
+        // The same contacts with other numbers, one for one.
         let mut pairs = BTreeMap::new();
         let (mut places_m, mut unmatched) = (Vec::new(), 0);
         for (id, track) in &here.tracks {
@@ -179,7 +179,7 @@ impl Difference {
             places_m.extend(apart.into_iter().filter_map(|(_, apart)| apart));
         }
         let others: BTreeSet<u64> = pairs.values().copied().collect();
-        // Those that are there for some milliseconds only may not be told of, 100 times a second.
+        // Contacts of a few milliseconds may be missing from reports 100 times a second.
         let lasting = there.tracks.iter().filter(|(_, track)| track.len() > 30);
         for (id, track) in lasting.clone().filter(|(id, _)| !others.contains(id)) {
             say(&format!(
@@ -224,12 +224,12 @@ impl Difference {
     }
 }
 
-/// Lets people walk about for `rounds`, and compares what is told; names, places and times only if that `is_exact`, for
-/// which the machine must have time for six computers.
+/// Runs people for `rounds`, and compares the reports; contacts, places and times only if `is_exact`, for which the
+/// machine must have time for six computers.
 fn walk_about(rounds: usize, is_exact: bool) {
     let hall = Hall::open();
     let nodes: Vec<Program> = AREAS.iter().map(|area| hall.node(area)).collect();
-    // Two computers for the whole floor differ as well: each finds the millisecond of a packet by when it came.
+    // Two computers for the whole floor differ as well: each derives the millisecond of a packet from its arrival.
     let singles: Vec<_> = (0..1 + usize::from(is_exact)).map(|_| hall.single()).collect();
     let ports: Vec<u16> = singles.iter().map(|(_, port, ..)| *port).collect();
     let boards = hall.boards(hall.script(&crowd(rounds)), &ports);
@@ -249,7 +249,7 @@ fn walk_about(rounds: usize, is_exact: bool) {
         Account { tracks: frames.tracks(), ..Account::of(&lines.all()) }
     });
     let mut accounts: Vec<Account> = accounts.collect();
-    // What they have counted, they say at their end.
+    // Programs print their counters at their end.
     nodes.into_iter().for_each(Program::end);
     let joined = Account::of(&hall.lines.all());
     let twin = accounts.drain(1..).next().map(Account::thinned);
@@ -268,8 +268,8 @@ fn walk_about(rounds: usize, is_exact: bool) {
     let Some(twin) = twin else { return };
     Difference::of(&twin, whole).say("one computer again");
 
-    // What the millisecond of a packet changes can decide otherwise whether a foot is one or two. On frames that are the
-    // same, `offline` asks for the same names.
+    // The millisecond of a packet can decide whether a foot counts as one or two. On equal frames, `offline` demands
+    // equal contacts.
     let Difference { mut apart_s, mut places_m, unmatched, names, others, lasting, .. } = difference;
     let most = lasting / 100;
     assert!(others + most >= names, "two names here are one there");

@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 use crate::hall::{AREAS, Hall, Program, say};
 use crate::same::crowd;
 
-/// How long a round of the crowd takes, at least.
+/// Shortest duration of a round of the crowd, in seconds.
 const ROUND_S: u64 = 20;
 
-/// Random numbers by a known seed, so that a run can be done again.
+/// Random numbers from a fixed seed, so that a run can be repeated.
 struct Random(u64);
 
 impl Random {
@@ -20,7 +20,7 @@ impl Random {
     }
 }
 
-/// For so many seconds (or `UNDERFOOT_SOAK_S`), every one to four seconds something happens to a node; then people
+/// For the given seconds (or `UNDERFOOT_SOAK_S`), a fault befalls a node every one to four seconds; then people
 /// leave.
 #[test]
 #[ignore = "ten minutes in real time"]

@@ -1,4 +1,4 @@
-//! The commands of the units for systemd: gateway and node tell their manager that they serve.
+//! The commands of the units for systemd: gateway and node notify their manager when they are ready.
 #![cfg(unix)]
 
 use std::os::unix::net::UnixDatagram;
@@ -9,18 +9,18 @@ use std::time::Duration;
 use crate::ports::free_port;
 use crate::unit_files::Unit;
 
-/// A program that ends with the test, however that ends.
+/// A program that ends with the test in any case.
 struct Ended(Child);
 
 impl Drop for Ended {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Runs the command of a unit; what it tells its manager at first.
+/// Runs the command of a unit; returns its first notification.
 fn first_sign(unit: &str, site: &Path) -> String {
     let notify = site.join(unit);
     let manager = UnixDatagram::bind(&notify).unwrap();

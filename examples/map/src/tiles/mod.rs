@@ -1,4 +1,4 @@
-//! Pictures of a map, named `level/x/y.png` as servers of tiles and the tools that make tiles name them.
+//! Pictures of a map, named `level/x/y.png` as servers and makers of tiles name them.
 
 mod readers;
 mod source;
@@ -13,25 +13,25 @@ use crate::mercator::{Camera, Screen};
 use readers::Readers;
 use source::{Key, NoPicture, Source};
 
-/// Pictures that are kept: some screens full.
+/// Number of pictures that are kept: some full screens.
 const KEPT: usize = 256;
 
-/// After what time a source that could not be reached is tried again.
+/// Time after which an unreachable source is tried again.
 const AGAIN: Duration = Duration::from_secs(10);
 
-/// The tiles of a folder or a server. Where one is missing, the map's own shapes are seen.
+/// The tiles of a folder or a server. Where one is missing, the map's own shapes are visible.
 pub struct Tiles {
     source: Arc<Source>,
     readers: Readers,
     tiles: HashMap<Key, Tile>,
-    /// Until when the source is left alone, and why.
+    /// The time of the next attempt at an unreachable source, and the reason.
     unreachable: Option<(Instant, String)>,
 }
 
-/// What became of a tile.
+/// The state of a tile.
 enum Tile {
     Here(TextureHandle),
-    /// It is missing or can't be read, and is not tried again.
+    /// It is missing or unreadable, and is not tried again.
     Missing,
 }
 
@@ -39,19 +39,19 @@ impl Tiles {
     /// The tiles of a server (`http://127.0.0.1:8080/{z}/{x}/{y}.png`) or a folder.
     ///
     /// # Errors
-    /// What is wrong with it, for people.
+    /// A message for the user.
     pub fn open(place: &str) -> Result<Self, String> {
         let source = Arc::new(Source::open(place)?);
         let readers = Readers::new(Arc::clone(&source));
         Ok(Self { source, readers, tiles: HashMap::new(), unreachable: None })
     }
 
-    /// Why no tiles come, while that is so.
+    /// The reason why no tiles come at present, if any.
     pub fn trouble(&self) -> Option<&str> {
         self.unreachable.as_ref().map(|(_, why)| why.as_str())
     }
 
-    /// Draws the tiles that are seen in `rect` and there by `now`, and asks for the others.
+    /// Draws the visible tiles in `rect` that have arrived by `now`, and requests the others.
     pub fn paint(&mut self, context: &Context, painter: &Painter, rect: Rect, camera: &Camera, now: Instant) {
         self.take_answers(context, now);
         let Some(level) = self.source.level(camera.zoom) else { return };
@@ -74,7 +74,7 @@ impl Tiles {
         }
     }
 
-    /// Keeps what has come; a picture that is there and can't be read is told on standard error.
+    /// Stores the tiles that have arrived; reports an unreadable picture on standard error.
     fn take_answers(&mut self, context: &Context, now: Instant) {
         for (key, answer) in self.readers.answers() {
             let [level, x, y] = key;
@@ -102,7 +102,7 @@ impl Tiles {
     }
 }
 
-/// The tiles of `level` that are seen in `rect`, each with the column and row of its place, which goes on beyond the
+/// The visible tiles of `level` in `rect`, each with the column and row of its place; columns continue beyond the
 /// date line.
 fn seen(rect: Rect, camera: &Camera, level: u32) -> Vec<(Key, [i64; 2])> {
     let count = i64::from(1_u32 << level);
@@ -135,12 +135,12 @@ mod tests {
         Camera { lon, lat: 0.0, zoom }
     }
 
-    /// How many tiles are drawn around the middle of the world at zoom 2, in a window of this width that sees so many
-    /// different ones, once all are known.
+    /// The number of tiles drawn around the middle of the world at zoom 2, once all have been answered, in a window
+    /// of this width with `seen` different visible tiles.
     fn shown(tiles: &mut Tiles, (width, seen): (f32, usize), now: Instant) -> usize {
         let (context, rect) = (Context::default(), Rect::from_min_size(pos2(0.0, 0.0), vec2(width, 500.0)));
         let mut shown = 0;
-        // A reader answers within some milliseconds; five seconds are patience enough for a busy machine.
+        // A reader answers within some milliseconds; five seconds are enough for a busy machine.
         for _ in 0..500 {
             let output = context.run_ui(Default::default(), |ui| {
                 tiles.paint(ui.ctx(), ui.painter(), rect, &camera(0.0, 2.0), now);
@@ -187,13 +187,13 @@ mod tests {
         fs::create_dir(folder.path().join("2/2")).unwrap();
         fs::write(folder.path().join("2/2/1.png"), "no picture").unwrap();
         let mut tiles = Tiles::open(path).unwrap();
-        // Of a level that the folder hasn't got, the nearest one is shown.
+        // For a level that the folder lacks, the nearest one is shown.
         assert_eq!(tiles.source.level(5.8), Some(2));
         assert_eq!(shown(&mut tiles, FOUR, Instant::now()), 2, "two of the four tiles around the middle");
         assert_eq!(tiles.tiles.values().filter(|tile| matches!(tile, Tile::Missing)).count(), 2);
     }
 
-    /// A server that has the tile 2/1/1 and none else, for `answers` requests.
+    /// A server with the tile 2/1/1 only, for `answers` requests.
     fn server(answers: usize) -> String {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap();
@@ -226,7 +226,7 @@ mod tests {
         assert_eq!(shown(&mut tiles, FOUR, Instant::now()), 1, "it has one of the four");
         assert!(tiles.trouble().is_none());
 
-        // A window that is wider than the world, of which it sees a part twice, asks once for each of the eight.
+        // A window wider than the world shows a part of it twice, and requests each of the eight tiles once.
         let mut tiles = Tiles::open(&server(8)).unwrap();
         assert_eq!(shown(&mut tiles, (1500.0, 8), Instant::now()), 1);
         assert!(tiles.trouble().is_none());

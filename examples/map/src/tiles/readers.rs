@@ -1,4 +1,4 @@
-//! Threads that get pictures, so that the map goes on moving meanwhile.
+//! Threads that read pictures, so that the map keeps moving.
 
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -8,13 +8,13 @@ use eframe::egui::{ColorImage, Context};
 
 use super::source::{Key, NoPicture, Source};
 
-/// How many pictures are waited for at once: a server is asked for no more than a browser would.
+/// Number of pictures read at once: no more requests to a server than from a browser.
 const READERS: usize = 4;
 
-/// What became of a tile.
+/// The result for a tile.
 pub type Answer = (Key, Result<ColorImage, NoPicture>);
 
-/// Gets what is wanted at this moment, and forgets what no longer is.
+/// Reads the wanted tiles, and drops those that are no longer wanted.
 pub struct Readers {
     wanted: Arc<Wanted>,
     answers: Receiver<Answer>,
@@ -31,9 +31,9 @@ struct Wanted {
 
 #[derive(Default)]
 struct List {
-    /// The first one last.
+    /// In reverse order: the next one is the last.
     keys: Vec<Key>,
-    /// Those somebody is getting.
+    /// Those that a thread is reading.
     begun: Vec<Key>,
     is_over: bool,
 }
@@ -43,7 +43,7 @@ impl Wanted {
         self.list.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next one to get, for which it waits; `None` once nobody wants any.
+    /// The next one to read, after waiting for it; `None` at the end.
     fn next(&self) -> Option<Key> {
         let mut list = self.lock();
         loop {
@@ -65,12 +65,12 @@ impl Readers {
         Self { wanted: Arc::default(), answers, sender, source, are_there: false }
     }
 
-    /// Gets these, the first one first, in place of those it was told of before and has not begun.
+    /// Reads these, the first one first, in place of earlier ones that have not begun.
     pub fn want(&mut self, context: &Context, keys: impl DoubleEndedIterator<Item = Key>) {
         let mut list = self.wanted.lock();
         list.keys.clear();
         for key in keys.rev() {
-            // A tile may be seen twice.
+            // A tile may be visible twice.
             if !list.begun.contains(&key) && !list.keys.contains(&key) {
                 list.keys.push(key);
             }
@@ -83,7 +83,7 @@ impl Readers {
         }
     }
 
-    /// What has come since the last time.
+    /// The results since the last call.
     pub fn answers(&self) -> impl Iterator<Item = Answer> + '_ {
         self.answers.try_iter().inspect(|(key, _)| self.wanted.lock().begun.retain(|begun| begun != key))
     }

@@ -1,4 +1,4 @@
-//! Where the pictures of a map come from: a folder, or a server of tiles.
+//! Sources of a map's pictures: a folder, or a server of tiles.
 
 use std::fs::{self, File};
 use std::io::{self, Cursor, ErrorKind, Read};
@@ -10,36 +10,36 @@ use image::{ImageReader, Limits};
 use thiserror::Error;
 use ureq::Agent;
 
-/// A level of the map, and how far east and south of its north-west corner a tile is.
+/// A level of the map, and the column and row of a tile from the north-west corner.
 pub type Key = [u32; 3];
 
 /// The longest side of a picture, in pixels.
 const LONGEST: u32 = 2048;
 
-/// Most bytes of a picture: a photograph of that size.
+/// Greatest size of a picture, in bytes: a photograph of that size.
 const MOST_BYTES: u64 = 8 << 20;
 
-/// How long a server may take for a picture.
+/// Time within which a server must send a picture.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// The deepest level there is: a tile of it is less than ten metres.
+/// The deepest level: one of its tiles covers less than ten metres.
 const DEEPEST: u32 = 22;
 
-/// Why there is no picture.
+/// The reason for a missing picture.
 #[derive(Debug, Error)]
 pub enum NoPicture {
-    /// The source hasn't got this tile.
+    /// The source lacks this tile.
     #[error("there is none")]
     Missing,
-    /// What it has can't be read.
+    /// The picture cannot be decoded.
     #[error("{0}")]
     Broken(String),
-    /// The source can't be reached, and may be later.
+    /// The source cannot be reached at present.
     #[error("{0}")]
     Unreachable(String),
 }
 
-/// Where pictures come from.
+/// A source of pictures.
 pub enum Source {
     /// A folder with `level/x/y.png`, and the levels that it has, lowest first.
     Folder(PathBuf, Vec<u32>),
@@ -51,7 +51,7 @@ impl Source {
     /// A server where `place` begins with `http://` or `https://`, else a folder.
     ///
     /// # Errors
-    /// What is wrong with it, for people. Whether a server answers is only found out later.
+    /// A message for the user. Whether a server answers shows only later.
     pub fn open(place: &str) -> Result<Self, String> {
         if place.starts_with("http://") || place.starts_with("https://") {
             return server(place);
@@ -59,7 +59,7 @@ impl Source {
         folder(Path::new(place))
     }
 
-    /// The level whose pictures are nearest to their own size at this zoom.
+    /// The level with pictures nearest to their own size at this zoom.
     pub fn level(&self, zoom: f64) -> Option<u32> {
         match self {
             Self::Server(..) => Some(zoom.round().clamp(0.0, f64::from(DEEPEST)) as u32),
@@ -70,10 +70,10 @@ impl Source {
         }
     }
 
-    /// Gets a picture, for which it waits.
+    /// Reads a picture; blocks until it is there.
     ///
     /// # Errors
-    /// [`NoPicture`] says whether trying again can help.
+    /// [`NoPicture`] shows whether another attempt can help.
     pub fn read(&self, key: Key) -> Result<ColorImage, NoPicture> {
         picture(&self.bytes(key)?)
     }

@@ -3,7 +3,7 @@
 use earcut::Earcut;
 use eframe::egui::{Color32, Mesh, Pos2};
 
-/// From where to where something lies in the world: west, east, north and south.
+/// The extent of a shape in the world: west, east, north and south.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     pub span: [f64; 2],
@@ -28,10 +28,10 @@ impl Bounds {
 /// A polygon with holes.
 #[derive(Debug)]
 pub struct Area {
-    /// Places in the world, three of which each are a triangle by index.
+    /// Places in the world; three indices each form a triangle.
     corners: Vec<[f64; 2]>,
     triangles: Vec<u32>,
-    /// Where each ring begins among the corners.
+    /// Index of each ring's first corner.
     starts: Vec<usize>,
     pub bounds: Bounds,
 }
@@ -58,7 +58,7 @@ impl Area {
         self.starts.iter().zip(ends).filter_map(|(start, end)| self.corners.get(*start..end))
     }
 
-    /// Whether a place is in it; places go on beyond the edge of the world.
+    /// Whether a place is in it; coordinates may lie beyond the edge of the world.
     pub fn contains(&self, at: [f64; 2]) -> bool {
         self.bounds.contains(at) && self.covers(at)
     }
@@ -72,7 +72,7 @@ impl Area {
         })
     }
 
-    /// Adds it to `mesh` in one colour, its corners where `place` says.
+    /// Adds it to `mesh` in one colour; `place` maps its corners.
     pub fn fill(&self, mesh: &mut Mesh, color: Color32, place: impl Fn([f64; 2]) -> Pos2) {
         let first = mesh.vertices.len() as u32;
         for corner in &self.corners {
@@ -82,7 +82,7 @@ impl Area {
     }
 }
 
-/// Size and middle of a ring, both signed alike: twice the sum over its triangles.
+/// Size and middle of a ring, both with the same sign: twice the sum over its triangles.
 pub fn middle(ring: &[[f64; 2]]) -> (f64, [f64; 2]) {
     let pairs = ring.iter().zip(ring.iter().skip(1).chain(ring.first()));
     let (mut area, mut x, mut y) = (0.0, 0.0, 0.0);

@@ -8,10 +8,10 @@ use thiserror::Error;
 
 use crate::mercator::project;
 
-/// Countries, lakes, rivers and cities; see the page beside it for where they are from.
+/// Countries, lakes, rivers and cities; the page beside it names their sources.
 const PACKED: &[u8] = include_bytes!("../../data/world.json.gz");
 
-/// Why there is no map.
+/// The reason for a missing map.
 #[derive(Debug, Error)]
 pub enum NoWorld {
     #[error("the shapes can't be unpacked: {0}")]
@@ -23,7 +23,7 @@ pub enum NoWorld {
 /// A line as its first place and the steps from each place to the next.
 type Steps = Vec<[i64; 2]>;
 
-/// What the file holds: places are whole numbers of a scale.
+/// The content of the file: places are whole numbers of a scale.
 #[derive(Debug, Deserialize)]
 pub struct Atlas {
     scale: [f64; 2],
@@ -35,7 +35,7 @@ pub struct Atlas {
     pub cities: Vec<CityPlace>,
 }
 
-/// Polygons of rings of arcs; an arc that is run through backwards is written as its complement.
+/// Polygons of rings of arcs; the complement of an index is the arc in reverse.
 #[derive(Debug, Deserialize)]
 pub struct CountryShape {
     pub name: String,
@@ -45,7 +45,7 @@ pub struct CountryShape {
 #[derive(Debug, Deserialize)]
 pub struct LakeShape {
     pub name: String,
-    /// From 0, the most important ones, to 5.
+    /// From 0 for the most important ones to 5.
     pub rank: u8,
     pub polygons: Vec<Vec<Steps>>,
 }

@@ -1,4 +1,4 @@
-//! Countries: their areas, where their names stand, and colours that differ from those of neighbours.
+//! Countries: their areas, the places of their names, and colours that differ from those of neighbours.
 
 use earcut::Earcut;
 
@@ -6,17 +6,17 @@ use super::area::{Area, Bounds, middle};
 use super::atlas::CountryShape;
 use super::unroll;
 
-/// Hues that countries have by turns.
+/// Number of hues.
 pub const HUES: usize = 5;
 
 pub struct Country {
     pub name: String,
     pub areas: Vec<Area>,
-    /// Where its name stands, how wide its largest part is and how large that is, in worlds.
+    /// The place of its name, and the width and size of its largest part, in worlds.
     pub middle: [f64; 2],
     pub width: f64,
     pub area: f64,
-    /// No neighbour has the same.
+    /// Differs from the hue of each neighbour.
     pub hue: usize,
 }
 
@@ -30,7 +30,7 @@ fn arc_index(arc: i64) -> usize {
     (if arc < 0 { !arc } else { arc }) as usize
 }
 
-/// Which countries use each of so many arcs.
+/// The countries that use each of the first `arcs` arcs.
 pub fn users(shapes: &[CountryShape], arcs: usize) -> Vec<Vec<usize>> {
     let mut users: Vec<Vec<usize>> = vec![Vec::new(); arcs];
     for (country, shape) in shapes.iter().enumerate() {
@@ -50,7 +50,7 @@ pub fn all(shapes: &[CountryShape], arcs: &[Vec<[f64; 2]>], earcut: &mut Earcut<
     shapes.iter().zip(hues).map(country).collect()
 }
 
-/// A hue for each country: those with the most neighbours choose first.
+/// A hue for each country, beginning with those with the most neighbours.
 fn hues(shapes: &[CountryShape], users: &[Vec<usize>]) -> Vec<usize> {
     let neighbours: Vec<Vec<usize>> = shapes
         .iter()
@@ -70,7 +70,7 @@ fn hues(shapes: &[CountryShape], users: &[Vec<usize>]) -> Vec<usize> {
     for index in order {
         let beside = neighbours.get(index).map_or(&[][..], Vec::as_slice);
         let is_taken = |hue: &usize| beside.iter().any(|other| hues.get(*other) == Some(&Some(*hue)));
-        // Begins elsewhere for each, or the first hue would have most of the world.
+        // The search begins at another hue for each; otherwise the first hue would cover most of the world.
         let own = (0..HUES).map(|hue| (hue + index) % HUES).find(|hue| !is_taken(hue));
         if let Some(hue) = hues.get_mut(index) {
             *hue = Some(own.unwrap_or(index % HUES));
@@ -109,12 +109,12 @@ impl Country {
     }
 
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
-        // A country that reaches over the edge of the world is also beyond it.
+        // A country that extends over the edge of the world is also beyond it.
         [x - 1.0, x, x + 1.0].iter().any(|x| self.areas.iter().any(|area| area.contains([*x, y])))
     }
 }
 
-/// One ring of several arcs, without the points that two of them share; one around a pole goes along its edge.
+/// One ring of several arcs, without their shared points; a ring around a pole goes along the world's edge.
 fn join(ring: &[i64], arcs: &[Vec<[f64; 2]>]) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     for arc in ring {

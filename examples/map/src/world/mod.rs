@@ -27,7 +27,7 @@ pub struct World {
 pub struct Line {
     pub points: Vec<[f64; 2]>,
     pub bounds: Bounds,
-    /// Whether land is on both sides.
+    /// Whether there is land on both sides.
     pub is_border: bool,
 }
 
@@ -37,7 +37,7 @@ pub struct Lake {
     /// The zoom from which it is drawn.
     pub from: f64,
     pub areas: Vec<Area>,
-    /// Where its name stands.
+    /// The place of its name.
     pub middle: [f64; 2],
 }
 
@@ -73,7 +73,7 @@ impl World {
             unroll(&mut points);
             Line { bounds: Bounds::of(&points), points, is_border: users.len() > 1 }
         };
-        // What no country uses is the edge of the world.
+        // Arcs without a country are the edge of the world.
         let used = arcs.into_iter().zip(&users).filter(|(_, users)| !users.is_empty());
         let lines = used.map(line).collect();
         let lakes = atlas.lakes.iter().map(|shape| {
@@ -112,7 +112,7 @@ impl World {
     }
 }
 
-/// From which zoom on a lake of this rank is drawn.
+/// The zoom from which a lake of this rank is drawn.
 fn lake_from(rank: u8) -> f64 {
     match rank {
         0 => 2.0,
@@ -123,7 +123,7 @@ fn lake_from(rank: u8) -> f64 {
     }
 }
 
-/// Lets a line that crosses the edge of the world go on beyond it.
+/// Continues a line that crosses the edge of the world beyond it.
 fn unroll(line: &mut [[f64; 2]]) {
     let mut last = line.first().map_or(0.5, |at| at[0]);
     for at in line {

@@ -43,9 +43,9 @@ fn neighbours_have_different_hues() {
 fn coasts_are_as_fine_as_the_nearest_zoom_shows_them() {
     let world = World::shipped().unwrap();
     let points: usize = world.lines.iter().map(|line| line.points.len()).sum();
-    // Of 1:110 million there are 8,000.
+    // The data at 1:110 million have 8,000.
     assert!(points > 60_000, "{points}");
-    // Crete is 260 km long: 12 points for each of its sides would be a polygon to the eye.
+    // Crete is 260 km long: with 12 points for each of its sides it would look like a polygon.
     let crete = |at: &&[f64; 2]| {
         let (lon, lat) = unproject(**at);
         (23.4..26.4).contains(&lon) && (34.8..35.8).contains(&lat)

@@ -1,13 +1,13 @@
-//! Whose pictures they are, and of which day.
+//! Patient and day of a series.
 
 use dicom_dictionary_std::tags;
 
 use super::attributes::Attributes;
 
-/// Longest name that is shown, in letters.
+/// Longest displayed name, in letters.
 const LONGEST: usize = 64;
 
-/// A line about a series: patient, number, day; empty where the file says none of them.
+/// A line about a series: patient, number, day; empty if the file has none of them.
 pub fn line(file: Attributes) -> String {
     let name = file.text(tags::PATIENT_NAME).and_then(|text| person(&text));
     let number = file.text(tags::PATIENT_ID);
@@ -17,7 +17,7 @@ pub fn line(file: Attributes) -> String {
     parts.filter(|part| !part.is_empty()).collect::<Vec<_>>().join("   ")
 }
 
-/// What the series is called.
+/// The title of the series.
 pub fn title(file: Attributes) -> String {
     let modality = file.text(tags::MODALITY).unwrap_or_default();
     let names = [tags::SERIES_DESCRIPTION, tags::STUDY_DESCRIPTION];
@@ -25,21 +25,21 @@ pub fn title(file: Attributes) -> String {
     clean(&format!("{modality} {name}"))
 }
 
-/// A name for people: family name, given names. Of a name in several scripts, the first one that is there.
+/// A person's name for display: family name, given names. For a name in several scripts, the first non-empty one.
 fn person(text: &str) -> Option<String> {
     let group = text.split('=').find(|group| group.chars().any(char::is_alphanumeric))?;
     let parts = group.split('^').map(str::trim).filter(|part| !part.is_empty());
     Some(parts.take(3).collect::<Vec<_>>().join(", "))
 }
 
-/// A day as `2024-05-17`; old files write points into it.
+/// A day as `2024-05-17`; old files separate its parts by dots.
 fn day(text: &str) -> Option<String> {
     let digits: String = text.chars().filter(char::is_ascii_digit).collect();
     let (year, month, day) = (digits.get(..4)?, digits.get(4..6)?, digits.get(6..8)?);
     Some(format!("{year}-{month}-{day}"))
 }
 
-/// What of a text is shown: no control and direction characters.
+/// The printable part of a text, without control and direction characters.
 fn clean(text: &str) -> String {
     let is_shown = |sign: &char| {
         !sign.is_control()

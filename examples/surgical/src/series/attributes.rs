@@ -1,4 +1,4 @@
-//! What a file says about its pictures: of all of them, or of one frame.
+//! The attributes of a file's pictures: of all of them, or of one frame.
 
 use dicom_core::Tag;
 use dicom_core::value::Value;
@@ -16,7 +16,7 @@ pub struct Attributes<'a>(&'a InMemDicomObject);
 /// Reads the elements that a [guard](super::guard) has let pass.
 ///
 /// # Errors
-/// They contradict themselves.
+/// They are contradictory.
 pub fn parse(known: &[u8], encoding: Encoding) -> Result<InMemDicomObject, Unfit> {
     let read = InMemDicomObject::read_dataset_with_ts(known, &encoding.transfer_syntax());
     read.map_err(|error| Unfit::Damaged(chain(&error)))
@@ -35,14 +35,14 @@ impl<'a> Attributes<'a> {
         self.element(tag).is_some()
     }
 
-    /// A text without blanks around it; `None` where nothing is left of it.
+    /// A text without blanks around it; `None` if it is empty.
     pub fn text(self, tag: Tag) -> Option<String> {
         let text = self.element(tag)?.to_str().ok()?;
         let text = text.trim_matches(|sign: char| sign.is_whitespace() || sign == '\0').to_owned();
         (!text.is_empty()).then_some(text)
     }
 
-    /// Numbers, all of which are finite.
+    /// Numbers, if all of them are finite.
     pub fn numbers(self, tag: Tag) -> Option<Vec<f64>> {
         let numbers = self.element(tag)?.to_multi_float64().ok()?;
         (!numbers.is_empty() && numbers.iter().all(|number| number.is_finite())).then_some(numbers)
@@ -52,10 +52,10 @@ impl<'a> Attributes<'a> {
         self.numbers(tag)?.first().copied()
     }
 
-    /// A number that counts something.
+    /// A count.
     pub fn count(self, tag: Tag) -> Option<usize> {
         let number = self.number(tag)?;
-        // Larger than this nothing is that is counted here.
+        // No count here exceeds 32 bits.
         (0.0..=f64::from(u32::MAX)).contains(&number).then_some(number as usize)
     }
 
@@ -76,7 +76,7 @@ impl<'a> Attributes<'a> {
         self.items(tag).get(index).map(Self)
     }
 
-    /// Where a frame is described: its own group of the macro `group`, the one that all frames share, the file itself.
+    /// The places that describe a frame: its own group of the macro `group`, the shared one, the file itself.
     pub fn of_frame(self, frame: usize, group: Tag) -> impl Iterator<Item = Self> {
         let own = self.item(tags::PER_FRAME_FUNCTIONAL_GROUPS_SEQUENCE, frame);
         let shared = self.item(tags::SHARED_FUNCTIONAL_GROUPS_SEQUENCE, 0);
@@ -84,7 +84,7 @@ impl<'a> Attributes<'a> {
         groups.chain(std::iter::once(self))
     }
 
-    /// Where frames begin among pieces of pixels, if the file says it outside of them.
+    /// Offsets of frames among pieces of pixels, if the file has a table of its own for them.
     pub fn offsets(self) -> Vec<u64> {
         self.element(tags::EXTENDED_OFFSET_TABLE)
             .and_then(|element| element.to_multi_int().ok())

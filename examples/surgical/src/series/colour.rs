@@ -1,4 +1,4 @@
-//! Samples to what is shown: grey values, or red, green and blue.
+//! Converts samples to displayed pixels: grey values, or red, green and blue.
 
 use dicom_core::Tag;
 use dicom_dictionary_std::tags;
@@ -11,7 +11,7 @@ use super::unfit::Unfit;
 /// The pixels of a picture, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
-    /// After the modality's own scale (such as Hounsfield units); what is not a number is shown black.
+    /// After the modality's own scale (such as Hounsfield units); NaN is shown black.
     Grey(Vec<f32>),
     /// Red, green and blue.
     Colour(Vec<[u8; 3]>),
@@ -20,12 +20,12 @@ pub enum Pixels {
 /// The colours of a palette.
 #[derive(Clone, Debug)]
 pub struct Palette {
-    /// The number that stands for the first one.
+    /// The number of the first colour.
     first: i64,
     colours: Vec<[u8; 3]>,
 }
 
-/// Most colours of a palette: their numbers have 16 bits.
+/// Greatest number of colours of a palette: their numbers have 16 bits.
 const MOST_COLOURS: usize = 1 << 16;
 
 impl Palette {
@@ -56,7 +56,7 @@ impl Palette {
             let head = file.numbers(descriptor).ok_or(Unfit::Missing("its palette"))?;
             let &[count, start, bits] = head.as_slice() else { return Err(Unfit::Missing("its palette")) };
             first = start as i64;
-            // Zero stands for all that 16 bits can count.
+            // Zero stands for 65,536 entries.
             let count = if count == 0.0 { MOST_COLOURS } else { count as usize };
             entries(file, data, segmented, count, bits as u32)
         };
@@ -65,19 +65,19 @@ impl Palette {
         Ok(Self { first, colours: colours.collect() })
     }
 
-    /// The colour of a number; those beyond both ends have the colour of that end.
+    /// The colour of a number; numbers beyond an end have the colour of that end.
     fn colour(&self, number: f32) -> [u8; 3] {
         let index = (number as i64 - self.first).clamp(0, self.colours.len() as i64 - 1);
         self.colours.get(index as usize).copied().unwrap_or_default()
     }
 }
 
-/// How strong one colour is in each entry of a palette.
+/// The strength of one colour in each entry of a palette.
 fn entries(file: Attributes, data: Tag, segmented: Tag, count: usize, bits: u32) -> Result<Vec<u8>, Unfit> {
     let missing = || Unfit::Missing("its palette");
     let count = count.min(MOST_COLOURS);
     let words = match file.words(data) {
-        // Entries of 8 bits may be written two in a word, the lower half first.
+        // Entries of 8 bits may be packed two in a word, the lower half first.
         Some(words) if bits == 8 && words.len() < count => {
             words.iter().flat_map(|word| word.to_le_bytes()).map(u16::from).collect()
         }
@@ -89,17 +89,17 @@ fn entries(file: Attributes, data: Tag, segmented: Tag, count: usize, bits: u32)
         return Err(Unfit::pixels(format!("their palette has {there} of {count} colours")));
     }
     let words = words.into_iter().take(count);
-    // Some files say 16 bits, and use 8.
+    // Some files declare 16 bits and use 8.
     let is_deep = bits > 8 && words.clone().any(|word| word > 0xff);
     Ok(words.map(|word| if is_deep { (word >> 8) as u8 } else { word as u8 }).collect())
 }
 
-/// A palette that is written as segments (PS3.3, C.7.9.2): constant, straight, and repeated ones.
+/// Expands a palette in segments (PS3.3, C.7.9.2): constant, linear, and repeated ones.
 fn expanded(words: &[u16], count: usize) -> Result<Vec<u16>, Unfit> {
     let cut = || Unfit::pixels("their palette in segments is damaged");
     let mut found: Vec<u16> = Vec::new();
     let mut at = 0;
-    // Where segments are that one which is repeated may point to.
+    // The positions of segments to which a repetition may point.
     let mut repeated: Option<(usize, usize)> = None;
     while found.len() < count {
         if let Some((left, back)) = repeated
@@ -139,10 +139,10 @@ fn expanded(words: &[u16], count: usize) -> Result<Vec<u16>, Unfit> {
     Ok(found)
 }
 
-/// What is shown of a frame; grey values go through `scale`.
+/// The displayed pixels of a frame; grey values go through `scale`.
 ///
 /// # Errors
-/// Its colours are in a palette, and there is none.
+/// Its colours are in a palette, and the palette is missing.
 pub fn shown(
     samples: Samples,
     palette: Option<&Palette>,
@@ -176,7 +176,7 @@ fn eighth(number: f32, bits: u32) -> u8 {
     }
 }
 
-/// Red, green and blue of brightness and both differences of colour (PS3.3, C.7.6.3.1.2; ITU-R BT.601).
+/// Red, green and blue from brightness and two colour differences (PS3.3, C.7.6.3.1.2; ITU-R BT.601).
 fn rgb([y, blue, red]: [u8; 3]) -> [u8; 3] {
     let [y, blue, red] = [f64::from(y), f64::from(blue) - 128.0, f64::from(red) - 128.0];
     let colours = [y + 1.402 * red, y - 0.344_136 * blue - 0.714_136 * red, y + 1.772 * blue];

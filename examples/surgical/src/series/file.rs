@@ -23,19 +23,19 @@ use super::{Frame, Series, about};
 #[derive(Debug)]
 pub struct Part {
     pub uid: String,
-    /// Where it belongs: place across the slices in millimetres, number, and whether the file says them.
+    /// Its order: place across the slices in millimetres, and number, if the file has them.
     pub place_mm: Option<f64>,
     pub number: Option<f64>,
     pub series: Series,
 }
 
-/// What one file holds; takes its pixels from `room`.
+/// The content of one file; its pixels count against `room`.
 ///
 /// # Errors
 /// The file is not shown.
 pub fn read(path: &Path, room: &mut usize) -> Result<Part, Unfit> {
     let mut left = *room;
-    // A damaged file may trip the libraries that decode it.
+    // A damaged file may make the decoding libraries panic.
     let caught = catch_unwind(AssertUnwindSafe(|| {
         let part = part(path, &bytes(path)?, &mut left)?;
         Ok(part)
@@ -47,7 +47,7 @@ pub fn read(path: &Path, room: &mut usize) -> Result<Part, Unfit> {
 
 fn bytes(path: &Path) -> Result<Vec<u8>, Unfit> {
     let about = fs::metadata(path)?;
-    // A pipe or a device may never end, or never begin.
+    // Reading a pipe or a device may never end, or may block.
     if !about.is_file() {
         return Err(Unfit::NotDicom("it is a pipe, a device or a folder"));
     }
@@ -55,7 +55,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Unfit> {
         return Err(Unfit::Huge);
     }
     let mut bytes = Vec::new();
-    // A file may grow.
+    // The file may have grown since.
     File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > LARGEST_FILE { Err(Unfit::Huge) } else { Ok(bytes) }
 }
@@ -90,7 +90,7 @@ fn is_inverted(form: &Form) -> bool {
     form.colours == (Colours::Grey { is_inverted: true })
 }
 
-/// All frames of a file; takes their pixels from `room`.
+/// All frames of a file; their pixels count against `room`.
 fn frames(guarded: &Guarded, file: Attributes, room: &mut usize) -> Result<(Form, Vec<Frame>), Unfit> {
     let pixels = guarded.pixels.as_ref().ok_or_else(|| without_pixels(file, &guarded.class))?;
     let form = Form::of(file, pixels.numbers)?;
@@ -111,7 +111,7 @@ fn frames(guarded: &Guarded, file: Attributes, room: &mut usize) -> Result<(Form
     Ok((form, frames))
 }
 
-/// Why a file has no pixels: what it is, where it says it.
+/// The reason for a file without pixels: its kind, if the file names it.
 fn without_pixels(file: Attributes, class: &str) -> Unfit {
     let uid = file.text(tags::SOP_CLASS_UID).unwrap_or_else(|| class.to_owned());
     let kind = StandardSopClassDictionary.by_uid(&uid).map(|class| class.name.to_owned());

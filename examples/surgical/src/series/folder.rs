@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use super::told;
 
-/// Most files that are looked at, and how many folders deep.
+/// Greatest number of files that are read, and greatest depth of folders.
 const MOST_FILES: usize = 20_000;
 const DEEPEST: usize = 8;
 
-/// The file at `path`, or those of the folder there and below it, by their names; what is not looked at is told.
+/// The file at `path`, or those of the folder there and below it, by their names; adds skipped ones to `left_out`.
 ///
 /// # Errors
-/// The file or folder can't be read at all.
+/// The file or folder cannot be read at all.
 pub fn files(path: &Path, left_out: &mut Vec<String>) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     if fs::metadata(path)?.is_dir() {
@@ -25,7 +25,7 @@ pub fn files(path: &Path, left_out: &mut Vec<String>) -> io::Result<Vec<PathBuf>
     Ok(files)
 }
 
-/// The files of a folder and of those in it; a folder inside that can't be read is told.
+/// The files of a folder and of those in it; adds unreadable inner folders to `left_out`.
 fn collect(
     folder: &Path,
     depth: usize,

@@ -1,4 +1,4 @@
-//! How pixels are laid out: size, bits, samples, colours.
+//! The layout of pixels: size, bits, samples, colours.
 
 use dicom_dictionary_std::tags;
 
@@ -6,10 +6,10 @@ use super::attributes::Attributes;
 use super::guard::Numbers;
 use super::unfit::Unfit;
 
-/// What samples stand for.
+/// The meaning of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colours {
-    /// Grey values, of which the least is black, or white.
+    /// Grey values; the least one is black, or white.
     Grey {
         is_inverted: bool,
     },
@@ -33,7 +33,7 @@ pub struct Form {
     pub colours: Colours,
     /// Whether each colour has a plane of its own.
     pub is_planar: bool,
-    /// Bits that a sample takes, those of them that count, and the highest of these.
+    /// Number of bits of a sample, number of its significant bits, and position of the highest of these.
     pub allocated: u32,
     pub stored: u32,
     pub high: u32,
@@ -41,10 +41,10 @@ pub struct Form {
 }
 
 impl Form {
-    /// The layout that a file of these numbers tells.
+    /// The layout described by a file with these numbers.
     ///
     /// # Errors
-    /// It tells none, or one that is not read.
+    /// The layout is missing or not supported.
     pub fn of(file: Attributes, numbers: Numbers) -> Result<Self, Unfit> {
         let rows = file.count(tags::ROWS).ok_or(Unfit::Missing("its number of rows"))?;
         let columns = file.count(tags::COLUMNS).ok_or(Unfit::Missing("its number of columns"))?;
@@ -104,7 +104,7 @@ fn colours(name: Option<&str>, samples: usize) -> Result<Colours, Unfit> {
         Some("MONOCHROME1") => Colours::Grey { is_inverted: true },
         Some("MONOCHROME2") => Colours::Grey { is_inverted: false },
         Some("PALETTE COLOR") => Colours::Palette,
-        // The last two are what JPEG 2000 makes of red, green and blue by itself.
+        // The last two are JPEG 2000's own transforms of red, green and blue.
         Some("RGB" | "YBR_RCT" | "YBR_ICT") => Colours::Rgb,
         Some("YBR_FULL") => Colours::Ybr,
         Some("YBR_FULL_422") => Colours::Ybr422,

@@ -1,4 +1,4 @@
-//! How large pixels are, and where in the body a picture lies.
+//! The size of pixels, and the place of a picture in the body.
 
 use dicom_dictionary_std::tags;
 
@@ -7,15 +7,15 @@ use super::attributes::Attributes;
 /// The plane of one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plane {
-    /// Distance between pixels to the right and downwards, in millimetres; `None` where the file does not say it.
+    /// Distance between pixels to the right and downwards, in millimetres; `None` if the file lacks it.
     pub spacing_mm: Option<[f64; 2]>,
-    /// Towards which side of the body its right edge and its lower edge are, in letters such as `L` and `P`.
+    /// The sides of the body at its right and lower edges, in letters such as `L` and `P`.
     pub towards: Option<[String; 2]>,
-    /// How far it lies along the line across it, in millimetres.
+    /// Its position along the line across it, in millimetres.
     pub place_mm: Option<f64>,
 }
 
-/// From what share of a direction on a second letter is written: 15 degrees.
+/// Share of a direction from which a second letter is written: sin 15 degrees.
 const OBLIQUE: f64 = 0.259;
 
 /// Sides of the body with their opposites: right and left, front and back, foot and head.
@@ -28,7 +28,7 @@ impl Plane {
             file.of_frame(frame, group).find_map(|place: Attributes| spacing(&place.numbers(tag)?))
         };
         let spacing_mm = measures(tags::PIXEL_MEASURES_SEQUENCE, tags::PIXEL_SPACING);
-        // Of pictures without a plane: at the detector, and of what has been scanned.
+        // Of pictures without a plane: at the detector, and of scanned film.
         let others = [tags::IMAGER_PIXEL_SPACING, tags::NOMINAL_SCANNED_PIXEL_SPACING];
         let others = || others.into_iter().find_map(|tag| spacing(&file.numbers(tag)?));
         let axes = file
@@ -46,7 +46,7 @@ impl Plane {
     }
 }
 
-/// The letters of the other side.
+/// The letters of the opposite side.
 pub fn opposite(letters: &str) -> String {
     let other = |letter: char| {
         let pair = SIDES.iter().find(|pair| pair.contains(&letter));
@@ -55,7 +55,7 @@ pub fn opposite(letters: &str) -> String {
     letters.chars().map(other).collect()
 }
 
-/// Files say the distance between rows first, which is downwards.
+/// Files give the distance between rows, which is downwards, first.
 fn spacing(numbers: &[f64]) -> Option<[f64; 2]> {
     match numbers {
         [down, right, ..] if *down > 0.0 && *right > 0.0 => Some([*right, *down]),
@@ -73,7 +73,7 @@ fn axes(numbers: &[f64]) -> Option<[[f64; 3]; 2]> {
     Some([unit([a, b, c])?, unit([d, e, f])?])
 }
 
-/// Where a direction leads in the body, whose axes go to its left, its back and its head (PS3.3, C.7.6.2.1.1).
+/// The letters of a direction in the body, with axes to its left, its back and its head (PS3.3, C.7.6.2.1.1).
 fn letters(direction: [f64; 3]) -> String {
     let mut parts: Vec<(f64, char)> = direction
         .iter()
@@ -84,7 +84,7 @@ fn letters(direction: [f64; 3]) -> String {
     parts.iter().filter(|(share, _)| *share >= OBLIQUE).take(2).map(|(_, letter)| letter).collect()
 }
 
-/// The sides that a picture without a plane tells, such as `L\F`.
+/// The sides in the attribute of a picture without a plane, such as `L\F`.
 fn sides(text: &str) -> Option<[String; 2]> {
     let is_side = |letter: char| SIDES.iter().flatten().any(|side| *side == letter);
     let side = |part: &str| {

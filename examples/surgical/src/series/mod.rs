@@ -1,4 +1,4 @@
-//! DICOM files of a folder as series of pictures. A file that can't be shown is left out and named, with the reason.
+//! DICOM files of a folder as series of pictures. Unreadable files are skipped and named, with the reason.
 
 mod about;
 mod attributes;
@@ -33,33 +33,33 @@ pub struct Frame {
 #[derive(Clone, Debug)]
 pub struct Series {
     pub title: String,
-    /// Patient, number and day, as far as the files say them.
+    /// Patient, number and day, if the files have them.
     pub about: String,
     /// Pixels from left to right and from top to bottom.
     pub size: [usize; 2],
-    /// What the files ask for, or what shows all values.
+    /// The window in the files, or else one that shows all values.
     pub window: Window,
     /// Whether the least value is white (MONOCHROME1).
     pub is_inverted: bool,
     pub frames: Vec<Frame>,
 }
 
-/// What a folder gave.
+/// The content of a folder.
 #[derive(Debug, Default)]
 pub struct Found {
     pub series: Vec<Series>,
-    /// One sentence for each file that is not shown, which begins with its name.
+    /// One sentence for each skipped file, which begins with its name.
     pub left_out: Vec<String>,
 }
 
 /// The series in the DICOM file at `path`, or in all files of the folder there and below it.
 ///
-/// A file that is not DICOM, damaged, without a picture, too large or of another size than its series is left out and
-/// told; the others are shown. Slices are ordered by their place, where all of a series have one, or their number, or
+/// A file that is not DICOM, damaged, without a picture, too large or of another size than its series is skipped and
+/// named; the others are shown. Slices are ordered by their place, if all of a series have one, or their number, or
 /// their file's name.
 ///
 /// # Errors
-/// The file or folder can't be read at all.
+/// The file or folder cannot be read at all.
 pub fn read(path: &Path) -> std::io::Result<Found> {
     let mut found = Found::default();
     let files = folder::files(path, &mut found.left_out)?;
@@ -76,10 +76,10 @@ pub fn read(path: &Path) -> std::io::Result<Found> {
     Ok(found)
 }
 
-/// What the one file at `path` holds.
+/// The content of the one file at `path`.
 ///
 /// # Errors
-/// It is not shown.
+/// It cannot be shown.
 pub fn read_file(path: &Path) -> Result<Part, Unfit> {
     file::read(path, &mut MOST_PIXELS.clone())
 }
@@ -89,14 +89,14 @@ fn told(path: &Path, unfit: &Unfit) -> String {
     format!("{name} {unfit}")
 }
 
-/// The parts of one series in their order; those of another size than the first are left out.
+/// The parts of one series in order; parts of another size than the first are skipped.
 fn join(mut parts: Vec<(PathBuf, Part)>, left_out: &mut Vec<String>) -> Option<Series> {
     let by = |key: fn(&Part) -> Option<f64>| {
         move |one: &(PathBuf, Part), other: &(PathBuf, Part)| {
             key(&one.1).unwrap_or(0.0).total_cmp(&key(&other.1).unwrap_or(0.0))
         }
     };
-    // Stable: files come by name, and numbers and places that are the same keep that order.
+    // Stable: files come by name, and equal numbers or places keep that order.
     if parts.iter().all(|(_, part)| part.place_mm.is_some()) {
         parts.sort_by(by(|part| part.place_mm));
     } else if parts.iter().all(|(_, part)| part.number.is_some()) {

@@ -1,23 +1,23 @@
-//! Stored numbers to those of the modality, and which of these are between black and white.
+//! Converts stored numbers to those of the modality, and maps these to grey levels.
 
 use dicom_dictionary_std::tags;
 
 use super::attributes::Attributes;
 use super::colour::Pixels;
 
-/// Which values are between black and white.
+/// The range of values between black and white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     pub level: f64,
     pub width: f64,
 }
 
-/// What the numbers of a frame stand for (PS3.3, C.11.1).
+/// The meaning of a frame's numbers (PS3.3, C.11.1).
 #[derive(Clone, Debug)]
 pub enum Scale {
-    /// A slope, and what is added then.
+    /// `slope * number + intercept`.
     Line { slope: f64, intercept: f64 },
-    /// A table, and the number that stands for its first entry.
+    /// A table, and the number of its first entry.
     Table { first: i64, entries: Vec<u16> },
 }
 
@@ -53,10 +53,10 @@ impl Scale {
 }
 
 impl Window {
-    /// Shows colours as they are.
+    /// Shows colours unchanged.
     pub const COLOURS: Self = Self { level: 127.5, width: 255.0 };
 
-    /// What the file asks for.
+    /// The window in the file.
     pub fn asked(file: Attributes) -> Option<Self> {
         file.of_frame(0, tags::FRAME_VOILUT_SEQUENCE).find_map(|place| {
             let (level, width) = (place.number(tags::WINDOW_CENTER)?, place.number(tags::WINDOW_WIDTH)?);
@@ -78,7 +78,7 @@ impl Window {
         }
         let (least, most) = (f64::from(least), f64::from(most));
         let width = most - least;
-        // Values all alike are in the middle.
+        // If all values are equal, they are in the middle.
         Self { level: 0.5 * (least + most), width: if width > 0.0 { width } else { 1.0 } }
     }
 }

@@ -1,14 +1,14 @@
-//! Why a file is not shown, in words for people.
+//! The reason why a file is not shown, in words for the user.
 
 use thiserror::Error;
 
-/// Largest file that is read, in bytes: beyond the largest series of a day's imaging in one file.
+/// Largest file that is read, in bytes: larger than the largest series of a day's imaging in one file.
 pub const LARGEST_FILE: u64 = 1 << 30;
 
-/// Most pixels that are kept at once, of all series: a gibibyte of them.
+/// Greatest number of pixels kept at once, of all series: a gibibyte of them.
 pub const MOST_PIXELS: usize = 1 << 28;
 
-/// Why a file is not shown. Each reads on from the file's name.
+/// The reason why a file is not shown. Each text continues a sentence that begins with the file's name.
 #[derive(Debug, Error)]
 pub enum Unfit {
     #[error("can't be read: {0}")]
@@ -19,12 +19,12 @@ pub enum Unfit {
     NotDicom(&'static str),
     #[error("is a damaged DICOM file: {0}")]
     Damaged(String),
-    /// What the file is, as the standard names it.
+    /// The kind of the file, by its name in the standard.
     #[error("has no picture: it is a “{0}” without pixels")]
     OtherKind(String),
     #[error("has no picture that can be shown: {0} is missing")]
     Missing(&'static str),
-    /// What the pixels are compressed with or made of.
+    /// The compression or the format of the pixels.
     #[error("has pixels in a format that is not read: {0}")]
     Format(String),
     #[error("has pixels that can't be read: {0}")]

@@ -1,4 +1,5 @@
-//! The reference of addresses is true: each address in it works, and nothing is said that it does not list.
+//! The reference of addresses is correct: each address in it works, and the floor sends no address that it does not
+//! list.
 
 mod requests;
 
@@ -86,7 +87,7 @@ impl Desk {
         Self { server, app }
     }
 
-    /// Sends a message and lets the server take it in.
+    /// Sends a message and waits until the server has received it.
     fn send(&mut self, address: &str, args: Vec<OscType>) {
         let message = OscPacket::Message(OscMessage { addr: address.into(), args });
         let taken = |server: &Server| server.counters().datagrams;
@@ -95,7 +96,7 @@ impl Desk {
         while taken(&self.server) == before {
             self.server.turn().unwrap();
         }
-        // What was received in one turn is met in the next.
+        // Requests received in one turn are processed in the next.
         self.server.turn().unwrap();
     }
 
@@ -122,7 +123,7 @@ impl Desk {
     }
 }
 
-/// The first and the last value that an argument's range allows.
+/// The first and the last value in an argument's range.
 fn examples(argument: &Argument) -> [OscType; 2] {
     match (argument.tag, argument.name.as_str()) {
         ("i|f|T|F", _) => [OscType::Int(0), OscType::Bool(true)],
@@ -177,7 +178,7 @@ fn every_address_in_is_understood_and_does_what_it_says() {
     }
     let counters = desk.server.counters();
     assert_eq!((counters.refused(), counters.denied), (0, 0));
-    // 16 controls, of which the 6 buttons and those that only a foot holds can't be set; each twice.
+    // 16 controls, of which the 6 buttons and those that only a foot holds cannot be set; each twice.
     let expected = [
         ("cancel", 2),
         ("disable", 32),
@@ -194,7 +195,7 @@ fn every_address_in_is_understood_and_does_what_it_says() {
     assert_eq!(tried, expected.map(|(verb, count)| (verb.to_owned(), count)).into());
 }
 
-/// Whether the engine and the answers say that a command took effect.
+/// Checks in the engine and the answers that a command took effect.
 fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscType], address: &str) {
     if path.starts_with("mute/") {
         if verb != "get" {
@@ -209,13 +210,13 @@ fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscTy
         return;
     }
     if path == "cancel" {
-        // Nothing is held here; what it ends is told by the tests of holds.
+        // There is no hold here; the tests of holds cover its end.
         assert!(desk.is_silent());
         return;
     }
     if path == "get" {
         let (mut said, engine) = (BTreeMap::new(), desk.server.engine());
-        // A datagram per control, then the page and what is muted.
+        // A datagram per control, then the page and the muted set.
         for _ in 0..engine.layout().widgets.len() + 2 {
             said.extend(desk.answer());
         }
@@ -229,7 +230,7 @@ fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscTy
         return;
     }
     let Some(id) = path.strip_prefix("widget/").and_then(|path| path.split('/').next()) else {
-        // What was shown is told to whoever asks.
+        // The answer to a request for the page.
         if verb == "set" {
             assert_eq!(desk.server.engine().page().unwrap(), args[0].clone().string().unwrap());
             desk.send(&prefix.address("page/get"), vec![]);
@@ -292,7 +293,7 @@ fn reading_back_gives_what_was_set() {
     desk.send(&widget("slider", "disable"), vec![]);
     desk.send(&widget("slider", "get"), vec![]);
     let answer = desk.answer();
-    // Brought to its steps of a half.
+    // Rounded to its steps of a half.
     assert_eq!(answer[&widget("slider", "value")], [OscType::Float(3.5)]);
     let text = |text: &str| OscType::String(text.into());
     let texts = ["attention", "Zoom"].map(text);
@@ -325,7 +326,7 @@ fn tags(args: &[OscType]) -> Vec<&'static str> {
     args.iter().map(tag).collect()
 }
 
-/// Feet that do anything to every control: what comes of it is in the reference, and all of the reference comes.
+/// Feet with random actions on every control: the reference lists every event, and every listed event occurs.
 #[test]
 fn every_event_is_listed_and_every_listed_event_comes() {
     let page = layout(EVERYTHING);
@@ -335,7 +336,7 @@ fn every_event_is_listed_and_every_listed_event_comes() {
         .entries
         .iter()
         .filter(|entry| entry.direction == Direction::Out && entry.address.contains("/widget/"))
-        // A state that is repeated, not an event.
+        // A repeated state, not an event.
         .filter(|entry| !entry.address.ends_with("/held"))
         .map(|entry| (entry.address.as_str(), entry.arguments.iter().map(|argument| argument.tag).collect()))
         .collect();
@@ -347,7 +348,7 @@ fn every_event_is_listed_and_every_listed_event_comes() {
         let mut now = Instant::START;
         let mut place = Vec2::splat(0.5);
         let mut force = 0.0_f32;
-        // Minutes of a foot that presses, slides, lingers and goes.
+        // Minutes of a foot that presses, slides, lingers and leaves.
         for _ in 0..20_000 {
             if rng.random_bool(0.02) {
                 force = [0.0, 0.0, 100.0, 300.0][rng.random_range(0..4)];

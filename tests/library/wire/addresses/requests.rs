@@ -1,4 +1,4 @@
-//! What apps are answered, and who else hears of it.
+//! The answers to apps' requests, and their other recipients.
 
 use super::*;
 
@@ -19,7 +19,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("widget/slider/range/set", range(0.0, f32::NAN), "takes two numbers"),
         ("mute/set", vec![OscType::Int(2)], "takes 0 or 1"),
         ("mute/tile", vec![OscType::Int(1), OscType::Int(1)], "takes three numbers"),
-        // Understood, and can't be done: refused by the engine.
+        // Valid but impossible: refused by the engine.
         ("widget/nowhere/enable", vec![], r#"there is no control "nowhere""#),
         ("widget/slidr/get", vec![], r#"there is no control "slidr"; did you mean "slider"?"#),
         ("widget/button/set", vec![OscType::Int(1)], "does not hold that type of value"),
@@ -52,7 +52,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
             [address, &unknown].map(|text| OscType::String(text.into()))
         );
     }
-    // What floors send themselves is counted and not answered: an answer to an answer could go on for ever.
+    // Addresses that floors themselves send are counted and not answered: an answer to an answer could loop for ever.
     for address in [
         "/underfoot/error",
         "/underfoot/contacts",
@@ -79,7 +79,7 @@ fn what_one_app_changes_or_asks_is_told_to_all() {
         loop {
             let mut buffer = [0; 2048];
             let length = listener.recv(&mut buffer).unwrap();
-            // Besides, it is told that nobody is on the floor.
+            // Besides, there are reports of an empty floor.
             let packet = rosc::decoder::decode_udp(&buffer[..length]).unwrap().1;
             let OscPacket::Bundle(bundle) = packet else { continue };
             let messages = bundle.content.into_iter().filter_map(|packet| match packet {
@@ -125,7 +125,7 @@ fn a_pattern_asks_every_control_that_it_means() {
     assert_eq!(locked(&desk), ["pad", "stepper"]);
     desk.send("/underfoot/widget/[ps]*/unloc[a-k]", vec![]);
     assert!(locked(&desk).is_empty());
-    // Each control that can't do it answers for itself.
+    // Each control that cannot do it answers separately.
     desk.send("/underfoot/widget/s[wu]*/set", vec![OscType::Int(1)]);
     let answer = desk.answer();
     assert_eq!(answer["/underfoot/error"][0], OscType::String("/underfoot/widget/sure/set".into()));

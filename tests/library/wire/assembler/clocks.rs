@@ -1,4 +1,4 @@
-//! Counters that wrap, start anew or are damaged, and crystals that drift.
+//! Counters that wrap, restart or are damaged, and crystals that drift.
 
 use underfoot::wire::LinkCounters;
 
@@ -11,7 +11,7 @@ fn a_wrapping_counter_leaves_no_trace() {
     let start = u32::MAX - 500;
     let packets = (0..1000)
         .flat_map(|ms| (0..BOARDS).map(move |board| packet(board, ms, ms.into())))
-        // Only the counter wraps: a load that does is not a body's.
+        // Only the counter wraps: a load that wraps would not be a body's.
         .map(|packet| SensorPacket { sequence: start.wrapping_add(packet.sequence), ..packet });
     let frames = feed(&mut assembler, packets);
     assert_eq!(frames.len(), 1000);
@@ -33,7 +33,7 @@ fn a_rebooted_board_is_stale_once_and_back_in_step() {
     });
     let frames = feed(&mut assembler, reboot);
     let stale: Vec<_> = frames.iter().filter(|frame| frame.quality[1] == Quality::Stale).collect();
-    // Believed at its third packet; two slots were waiting for it by then.
+    // Accepted at its third packet; by then two slots were waiting for it.
     assert_eq!(stale.iter().map(|frame| frame.at_us).collect::<Vec<_>>(), [5_031_000, 5_032_000]);
     assert_eq!(frames.last().unwrap().samples[1], 5199.0);
     assert_eq!(frames.len(), 200);
@@ -57,7 +57,7 @@ fn a_damaged_sequence_number_derails_nothing() {
         assert_eq!(frames.len(), clean.len(), "bit {bit}");
         for (frame, clean) in frames.iter().zip(&clean) {
             assert_eq!((frame.at_us, frame.quality), (clean.at_us, clean.quality), "bit {bit}");
-            // The number next in line cannot be told from the true one.
+            // The next number in sequence is indistinguishable from the true one.
             assert!((frame.samples[1] - clean.samples[1]).abs() <= 1.0, "bit {bit}: {frame:?}");
         }
         assert_eq!(assembler.counters().restarts, 0, "bit {bit}");
@@ -119,7 +119,7 @@ fn time_is_that_of_the_clock_whatever_boards_send() {
             while let Some(frame) = assembler.ready() {
                 frames += 1;
                 let ahead = frame.at.micros().cast_signed() - packet.received.micros().cast_signed();
-                // While a pace is measured, in the first second, time may be 100 ms off.
+                // During the first second, while the rate is measured, time may be 100 ms off.
                 let most = if packet.received < Instant::from_millis(1000) { 150_000 } else { 25_000 };
                 assert!(ahead < most && ahead > -most - 1_000_000 / hz as i64, "{hz} Hz: {ahead} us");
             }
@@ -145,7 +145,7 @@ fn a_slow_board_holds_up_none_of_the_others() {
     assert!(frames.len() > 3990, "{}", frames.len());
     let late: Vec<_> = frames.iter().filter(|frame| frame.at_us > 1_000_000).collect();
     assert!(late.iter().all(|frame| frame.quality == LIVE && frame.samples[0] == frame.samples[2]));
-    // Its sample is of that millisecond or of the two before.
+    // Its sample is from that millisecond or one of the two before.
     let behind = |frame: &&Shown| frame.samples[0] - 3.0 * frame.samples[1];
     assert!(late.iter().all(|frame| (-1.0..=4.0).contains(&behind(frame))));
 }

@@ -43,7 +43,7 @@ fn bursts_below_100_ms_are_held_through() {
         let mut frames = Vec::new();
         let mut last = 0;
         for packet in all {
-            // The source finds nothing for a while and lets time pass.
+            // The source finds no packet for a while and only time passes.
             for ms in (last..packet.received.micros() / 1000).skip(1) {
                 frames.extend(poll(&mut assembler, ms));
             }
@@ -126,7 +126,7 @@ fn a_burst_after_200_ms_of_silence_is_swallowed() {
         frames.extend(feed(&mut assembler, steady(1200, 1300)));
 
         assert_eq!(frames[0].quality, [Quality::Stale; 3]);
-        // Nothing older than 20 ms comes through, and time never runs back.
+        // Packets older than 20 ms are dropped, and time never runs backwards.
         assert!(frames[1..].iter().all(|frame| frame.at_us >= 1_180_000), "{:?}", frames[1]);
         assert!(frames.is_sorted_by(|a, b| a.at_us < b.at_us));
         assert_eq!(frames.last(), Some(&Shown { at_us: 1_299_000, samples: [1299.0; 3], quality: LIVE }));
@@ -168,7 +168,7 @@ fn one_unplugged_board_leaves_the_others_alone() {
     let frames = feed(&mut assembler, steady(1000, 3000).filter(|p| p.board != 1));
     assert_eq!(frames.len(), 2000);
     for frame in &frames {
-        // The others wait two slots for it, so 1097 is the frame that is made 100 ms after 999.
+        // The others wait two slots for it, so 1097 is the frame made 100 ms after 999.
         let stale = frame.at_us >= 1_097_000;
         let expected = if stale { Quality::Stale } else { Quality::Live };
         assert_eq!(frame.quality, [Quality::Live, expected, Quality::Live], "{frame:?}");
@@ -176,7 +176,7 @@ fn one_unplugged_board_leaves_the_others_alone() {
         assert_eq!(frame.samples[1], 999.0);
     }
     assert_eq!(assembler.link_state(), LinkState::Partial);
-    // Plugged in again.
+    // Connected again.
     let frames = feed(&mut assembler, steady(3000, 3010));
     assert_eq!(frames.len(), 10);
     assert_eq!(frames[9], Shown { at_us: 3_009_000, samples: [3009.0; 3], quality: LIVE });
@@ -205,7 +205,7 @@ fn a_flapping_link_stays_stale_until_it_is_clean_for_a_second() {
         .filter(|frame| frame.quality[1] == Quality::Live)
         .map(|frame| frame.at_us / 1000)
         .collect();
-    // Live until the first outage is noticed and once more after it; then, up since 6910, not until 7910.
+    // Live until the first outage is detected and once more after it; then, up since 6910, not before 7910.
     assert!(live_ms.contains(&5111));
     assert!(live_ms.iter().all(|ms| !(5300..7910).contains(ms)));
     assert!(live_ms.contains(&7910));

@@ -1,8 +1,7 @@
-//! Packets of several boards become frames, whatever happens to them on the way.
+//! Packets of several boards become frames, after any disturbance on the way.
 //!
-//! The floor here has three rows of two tiles, so three boards of eight
-//! channels. Every channel of a packet carries its sequence number as newtons:
-//! a frame then shows which sample of each board it holds.
+//! The floor here has three rows of two tiles, so three boards of eight channels. Every channel of a packet carries
+//! its sequence number as newtons: a frame then shows which sample of each board it holds.
 
 mod clocks;
 mod losses;
@@ -26,7 +25,7 @@ fn assembler() -> Assembler {
 }
 
 fn at_us(board: u16, sequence: u32, received_us: u64) -> SensorPacket {
-    // Up to 40 kN and down again: beyond 50 kN there are no readings, and no load jumps.
+    // Up to 40 kN and down again: readings beyond 50 kN are invalid, and loads do not jump.
     let newtons = sequence.min(80_000_u32.saturating_sub(sequence));
     let readings = Readings::Newtons([newtons as f32; 8].into_iter().collect());
     SensorPacket { board, sequence, received: Instant::from_micros(received_us), readings }
@@ -36,7 +35,7 @@ fn packet(board: u16, sequence: u32, received_ms: u64) -> SensorPacket {
     at_us(board, sequence, received_ms * 1000)
 }
 
-/// What a frame shows of each board: its sample and how far it can be trusted.
+/// The content of a frame for each board: its sample and quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shown {
     at_us: u64,
@@ -45,7 +44,7 @@ struct Shown {
 }
 
 fn shown(frame: &ForceFrame) -> Shown {
-    // A board's tiles are a row; its first sensor speaks for all.
+    // A board's tiles are a row; its first sensor represents all.
     let rows = [0, 2, 4];
     Shown {
         at_us: frame.at.micros(),
@@ -76,7 +75,7 @@ fn poll(assembler: &mut Assembler, now_ms: u64) -> Vec<Shown> {
     frames
 }
 
-/// All boards, from millisecond `from` to before `until`, numbered like the milliseconds.
+/// Packets of all boards, from millisecond `from` to before `until`, numbered like the milliseconds.
 fn steady(from: u64, until: u64) -> impl Iterator<Item = SensorPacket> + Clone {
     (from..until).flat_map(|ms| (0..BOARDS).map(move |board| packet(board, ms as u32, ms)))
 }

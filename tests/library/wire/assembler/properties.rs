@@ -1,4 +1,4 @@
-//! Streams put out of order, doubled, or made up.
+//! Reordered, duplicated and invented streams.
 
 use proptest::prelude::*;
 
@@ -19,7 +19,7 @@ fn displaced(reach: usize) -> impl Strategy<Value = Vec<SensorPacket>> {
     })
 }
 
-/// The samples of the frames in order, and the packets that were used for them.
+/// The samples of the frames in order, and the packets that the assembler used for them.
 fn used(packets: &[SensorPacket]) -> (Vec<[f32; 3]>, Vec<SensorPacket>) {
     let mut assembler = assembler();
     let mut frames = Vec::new();

@@ -1,4 +1,4 @@
-//! What the packets say, in newtons and qualities.
+//! The content of packets, in newtons and qualities.
 
 use underfoot::floor::{Calibration, Corner, TileId};
 use underfoot::units::Newtons;
@@ -88,7 +88,7 @@ fn strange_but_finite_newtons_stay_as_they_are() {
 #[test]
 fn sensors_at_the_end_of_their_range_are_degraded() {
     let mut floor = floor();
-    // Calibrated: the nominal law would be a reason for uncertainty of its own.
+    // Calibrated, since the nominal law would itself cause uncertainty.
     floor.calibration.fill([Calibration::exponential(0.6, 1.3); 4]);
     let mut assembler = Assembler::new(&floor);
     let counts = [Some(64_224), Some(64_225), Some(65_535), None, Some(0), Some(0), Some(0), Some(0)];

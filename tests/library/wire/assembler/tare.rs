@@ -63,7 +63,7 @@ fn a_board_that_boots_late_is_stale_until_it_is_tared() {
 fn a_floor_that_falls_silent_while_it_is_tared_gives_no_frame_and_is_tared_when_it_returns() {
     let mut assembler = at_start();
     assert_eq!(feed(&mut assembler, loaded(0, 200, |_, _| 7.0)), []);
-    // Every board falls silent: there is nothing to show yet, and asking for frames must come to an end.
+    // Every board falls silent: there is no frame to show, and requests for frames must end.
     for now_ms in [250, 350, 500, 2000] {
         assert_eq!(poll(&mut assembler, now_ms), []);
     }

@@ -11,13 +11,13 @@ use super::native::signed;
 use crate::series::form::{Colours, Form};
 use crate::series::unfit::Unfit;
 
-/// Most passes over a picture: a progressive one makes some ten.
+/// Greatest number of scans over a picture: a progressive one has some ten.
 const MOST_SCANS: usize = 100;
 
 /// The numbers of a JPEG frame.
 ///
 /// # Errors
-/// It is damaged, of another size than the file says, or of a kind that is not read.
+/// It is damaged, its size differs from the file's, or its kind is not supported.
 pub fn decode(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     let markers = jpeg_markers(bytes, None).map_err(|error| unfit(&error, "JPEG"))?;
     let scans = bytes.windows(2).filter(|mark| **mark == [0xff, 0xda]).count();
@@ -32,7 +32,7 @@ pub fn decode(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
 /// The numbers of a JPEG-LS frame.
 ///
 /// # Errors
-/// As for [`decode`]. Pictures in colour are not read.
+/// As for [`decode`]. Pictures in colour are not supported.
 pub fn decode_ls(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     if form.samples > 1 {
         return Err(Unfit::Format("JPEG-LS in colours".into()));
@@ -41,7 +41,8 @@ pub fn decode_ls(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     samples(raster.map_err(|error| unfit(&error, "JPEG-LS"))?, form, form.colours)
 }
 
-/// A codestream without the bytes that make its length even before its end: the decoder takes them for an error.
+/// The codestream without the fill bytes before its end marker, which make its length even and which the decoder
+/// rejects.
 fn without_fill(bytes: &[u8]) -> Cow<'_, [u8]> {
     let end = bytes.windows(2).rposition(|mark| mark == [0xff, 0xd9]);
     let data = end.and_then(|end| bytes.get(..end)).unwrap_or(bytes);
@@ -57,7 +58,7 @@ fn most_bytes(form: &Form) -> usize {
     form.values().saturating_mul(2)
 }
 
-/// The numbers of a decoded picture, if it is as large as the file says.
+/// The numbers of a decoded picture, if it has the file's size.
 fn samples(raster: Raster, form: &Form, colours: Colours) -> Result<Samples, Unfit> {
     let is = [raster.width as usize, raster.height as usize];
     if is != form.size || raster.channels as usize != form.samples {
@@ -78,14 +79,14 @@ fn samples(raster: Raster, form: &Form, colours: Colours) -> Result<Samples, Unf
     Ok(Samples { values, colours, bits })
 }
 
-/// What the components of a picture are: as its own marks say, else as the file does.
+/// The meaning of a picture's components: by its own markers, else by the file.
 fn colours(markers: &JpegMarkers, told: Colours) -> Colours {
     let ids = markers.component_ids.as_slice();
     match told {
         Colours::Grey { .. } | Colours::Palette => told,
         _ if ids == b"RGB" || ids == b"rgb" => Colours::Rgb,
         _ if markers.jfif || markers.adobe_transform == Some(1) => Colours::Ybr,
-        // Decoding has doubled the differences of colour along rows.
+        // The decoder has doubled the colour differences along rows.
         Colours::Ybr422 => Colours::Ybr,
         told => told,
     }

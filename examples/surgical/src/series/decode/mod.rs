@@ -1,4 +1,4 @@
-//! Frames of pixels to numbers.
+//! Decodes frames of pixels to numbers.
 
 mod jpeg;
 mod jpeg2000;
@@ -11,11 +11,11 @@ use super::guard::{Coding, Numbers, Pixels, Stretch, Syntax};
 use super::unfit::Unfit;
 use pieces::Frames;
 
-/// Most pixels of a compressed frame: decoding one takes some 16 bytes for each.
+/// Greatest number of pixels of a compressed frame: decoding takes some 16 bytes for each.
 const MOST_IN_A_FRAME: usize = 1 << 26;
 
-/// Most pixels that a compressed byte may stand for, and how many any frame may have: a picture of one colour takes some
-/// hundred bytes, whatever its size, and few of those are large.
+/// Greatest number of pixels per compressed byte, and the number that any frame may have: a picture of one colour
+/// takes some hundred bytes at any size, and such pictures are rarely large.
 const MOST_IN_A_BYTE: usize = 1000;
 const ALWAYS: usize = 1 << 22;
 
@@ -24,9 +24,9 @@ const ALWAYS: usize = 1 << 22;
 pub struct Samples {
     /// All samples of the first pixel, of the second one, and so on, by rows; as stored.
     pub values: Vec<f32>,
-    /// What they stand for; a decoder may have turned colours into others.
+    /// Their meaning; a decoder may have converted the colours.
     pub colours: Colours,
-    /// How many bits the largest number takes.
+    /// Number of bits of the largest value.
     pub bits: u32,
 }
 
@@ -40,11 +40,11 @@ pub struct Decoder<'a> {
 }
 
 impl<'a> Decoder<'a> {
-    /// For the frames that `bytes` hold at `pixels`; `offsets` is where frames begin among pieces, if the file says it
-    /// outside of them.
+    /// A decoder for the frames that `bytes` hold at `pixels`; `offsets` are those of frames among pieces, if the
+    /// file has a table of its own for them.
     ///
     /// # Errors
-    /// There are fewer bytes, or pieces, than frames need.
+    /// There are fewer bytes, or pieces, than the frames need.
     pub fn new(
         bytes: &'a [u8],
         pixels: &Pixels,
@@ -73,7 +73,7 @@ impl<'a> Decoder<'a> {
     /// Decodes the frame of this number, from 0.
     ///
     /// # Errors
-    /// It is damaged, or made in a way that is not read.
+    /// It is damaged, or its format is not supported.
     pub fn frame(&self, number: usize) -> Result<Samples, Unfit> {
         let form = self.form;
         let compressed = || {

@@ -1,4 +1,4 @@
-//! Pixels that are not compressed, and how samples lie in them.
+//! Uncompressed pixels, and the order of their samples.
 
 use super::Samples;
 use super::pieces::Bits;
@@ -9,11 +9,11 @@ use crate::series::guard::Numbers;
 #[derive(Clone, Copy, Debug)]
 pub struct Order {
     pub is_big_endian: bool,
-    /// Whether bytes are written in pairs, which are turned around in big-endian files.
+    /// Whether bytes are written in pairs, which big-endian files swap.
     pub are_words: bool,
 }
 
-/// How many bits a frame takes.
+/// Number of bits of a frame.
 pub fn bits_of_frame(form: &Form, numbers: Numbers) -> usize {
     let values = match form.colours {
         // Two brightnesses and one of each difference for two pixels.
@@ -44,19 +44,19 @@ pub fn decode(bits: &Bits, form: &Form, numbers: Numbers, order: Order) -> Sampl
     Samples { values: values.collect(), colours: form.colours, bits: form.stored }
 }
 
-/// What of a stored number counts, as the number it stands for.
+/// The significant bits of a stored number, as its value.
 pub fn sample(form: &Form, raw: u64) -> f32 {
     let low = form.high + 1 - form.stored;
     signed(raw >> low, form.stored, form.is_signed) as f32
 }
 
-/// The number in the lowest `bits` of `raw`, in two's complement where it is signed; 1 to 32 bits.
+/// The number in the lowest `bits` of `raw`, in two's complement if it is signed; 1 to 32 bits.
 pub fn signed(raw: u64, bits: u32, is_signed: bool) -> i64 {
     let spare = 64 - bits;
     if is_signed { ((raw << spare) as i64) >> spare } else { ((raw << spare) >> spare) as i64 }
 }
 
-/// The number of this index, of `size` bits; bytes that are missing are zero.
+/// The number at this index, of `size` bits; missing bytes are zero.
 fn whole(bits: &Bits, index: usize, size: u32, order: Order) -> u64 {
     let first = bits.first + index * size as usize;
     let byte = |at: usize| {

@@ -1,4 +1,4 @@
-//! Which bytes belong to which frame.
+//! Assigns bytes to frames.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -7,15 +7,15 @@ use crate::series::unfit::Unfit;
 
 /// The bytes of each frame.
 pub enum Frames<'a> {
-    /// Frames of as many bits each.
+    /// Frames of the same number of bits each.
     Equal { bytes: &'a [u8], bits: usize },
     /// Frames in pieces of a file.
     Pieces { file: &'a [u8], frames: Vec<Vec<Range<usize>>> },
 }
 
-/// Where the bits of a frame lie, which may begin inside a byte.
+/// The bits of a frame, which may begin inside a byte.
 pub struct Bits<'a> {
-    /// Those of all frames.
+    /// The bytes of all frames.
     pub bytes: &'a [u8],
     pub first: usize,
 }
@@ -34,11 +34,11 @@ impl<'a> Frames<'a> {
         Ok(Self::Equal { bytes, bits })
     }
 
-    /// Frames in pieces: one piece for each, or as many as lie between two offsets, or, where there are none, as many as
-    /// there are between two that begin a picture.
+    /// Frames in pieces: one piece for each, or those between two offsets, or, without offsets, those from one piece
+    /// that begins a picture to the next.
     ///
     /// # Errors
-    /// There are fewer pieces than frames, or it does not say which belong together.
+    /// There are fewer pieces than frames, or their grouping is unknown.
     pub fn of_pieces(
         file: &'a [u8],
         table: &Range<usize>,
@@ -77,7 +77,7 @@ impl<'a> Frames<'a> {
         })
     }
 
-    /// The bits of a frame that is not compressed.
+    /// The bits of an uncompressed frame.
     ///
     /// # Errors
     /// There is no such frame.
@@ -92,7 +92,7 @@ fn missing(number: usize) -> Unfit {
     Unfit::pixels(format!("frame {} is missing", number + 1))
 }
 
-/// The pieces of each frame, by where frames begin.
+/// The pieces of each frame, grouped by the starts of frames.
 fn grouped(
     file: &[u8],
     pieces: &[Range<usize>],
@@ -101,7 +101,7 @@ fn grouped(
 ) -> Result<Vec<Vec<Range<usize>>>, Unfit> {
     let first = pieces.first().map_or(0, |piece| piece.start);
     let begins = |piece: &Range<usize>| match offsets {
-        // JPEG and JPEG 2000 begin with marks of their own.
+        // JPEG and JPEG 2000 begin with markers of their own.
         [] => {
             let head = file.get(piece.start..piece.end.min(piece.start + 3)).unwrap_or_default();
             matches!(head, [0xff, 0xd8, 0xff] | [0xff, 0x4f, 0xff])

@@ -7,13 +7,13 @@ use super::native::sample;
 use crate::series::form::Form;
 use crate::series::unfit::Unfit;
 
-/// Bytes of the table of segments: their number and where each begins.
+/// Bytes of the table of segments: their number and their offsets.
 const TABLE: usize = 64;
 
 /// The numbers of a frame.
 ///
 /// # Errors
-/// Its segments are not those that the layout needs, or hold fewer bytes than there are pixels.
+/// The number of segments differs from that of the layout, or they hold fewer bytes than there are pixels.
 pub fn decode(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     let deep = form.allocated as usize / 8;
     let needed = deep * form.samples;
@@ -30,7 +30,7 @@ pub fn decode(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     for (index, start) in starts.iter().enumerate() {
         let end = starts.get(index + 1).copied().unwrap_or(bytes.len());
         let segment = bytes.get(*start..end).ok_or_else(|| Unfit::pixels("a segment of runs is cut"))?;
-        // Two bytes hold a run of 128 at most.
+        // Two bytes hold a run of at most 128.
         if segment.len().saturating_mul(64) < pixels {
             return Err(Unfit::pixels("a segment of runs is too short for as many pixels"));
         }

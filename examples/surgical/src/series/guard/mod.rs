@@ -1,7 +1,7 @@
-//! What a DICOM file says of itself, bounded by its size before any library reads it.
+//! The claims of a DICOM file, bounded by its size before any library reads it.
 //!
-//! A file of some bytes can claim gigabytes: by a length, by nesting, by deflated zeros. Here each length is compared with
-//! the bytes that are there, and only the elements that the viewer knows are handed on; pixels stay where they are.
+//! A file of some bytes can claim gigabytes: by a length, by nesting, by deflated zeros. Here each length is compared
+//! with the present bytes, and only the elements that the viewer knows are passed on; pixels stay in place.
 
 mod syntax;
 mod walk;
@@ -19,22 +19,22 @@ use walk::{Element, Walk};
 
 use super::unfit::Unfit;
 
-/// Most bytes that deflated elements may become.
+/// Greatest size of inflated elements, in bytes.
 const MOST_INFLATED: u64 = 256 << 20;
 
-/// Most bytes of all elements that are handed on.
+/// Greatest size of all elements passed on, in bytes.
 const MOST_KEPT: usize = 64 << 20;
 
-/// Where pixels lie in the file.
+/// The position of pixels in the file.
 #[derive(Clone, Debug)]
 pub enum Stretch {
     /// All frames one behind the other.
     Whole(Range<usize>),
-    /// In pieces, after the table of where frames begin among them.
+    /// In pieces, after the table of frame offsets among them.
     Pieces { table: Range<usize>, pieces: Vec<Range<usize>> },
 }
 
-/// What pixels are.
+/// The type of pixel values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
     Whole,
@@ -46,28 +46,28 @@ pub enum Numbers {
 #[derive(Clone, Debug)]
 pub struct Pixels {
     pub numbers: Numbers,
-    /// Whether they are written as words of 16 bits, which big-endian files turn around.
+    /// Whether they are written as words of 16 bits, which big-endian files swap.
     pub are_words: bool,
     pub stretch: Stretch,
 }
 
-/// A file whose lengths are true.
+/// A file with checked lengths.
 #[derive(Debug)]
 pub struct Guarded<'a> {
-    /// The file, inflated where it was deflated.
+    /// The file, inflated if it was deflated.
     pub bytes: Cow<'a, [u8]>,
     pub syntax: Syntax,
-    /// What kind of file it says it is: the identifier of a class of the standard, or nothing.
+    /// The declared kind of file: the identifier of a class of the standard, or nothing.
     pub class: String,
     /// The elements that the viewer knows, as the file writes them.
     pub known: Vec<u8>,
     pub pixels: Option<Pixels>,
 }
 
-/// Goes over a file.
+/// Checks a file.
 ///
 /// # Errors
-/// It is not a DICOM file, or what it says of itself can't be true.
+/// It is not a DICOM file, or its claims are impossible.
 pub fn guard(bytes: &[u8]) -> Result<Guarded<'_>, Unfit> {
     let Beginning { syntax, class, data } = begin(bytes)?;
     let (bytes, data) = match syntax.is_deflated {
@@ -88,7 +88,7 @@ pub fn guard(bytes: &[u8]) -> Result<Guarded<'_>, Unfit> {
         }
         match walk.element(at) {
             Ok(element) => at = guarded.keep(&bytes, element)?,
-            // What follows the pixels is not needed.
+            // Elements behind the pixels are not needed.
             Err(_) if guarded.pixels.is_some() => break,
             Err(unfit) => return Err(unfit),
         }
@@ -98,7 +98,7 @@ pub fn guard(bytes: &[u8]) -> Result<Guarded<'_>, Unfit> {
 }
 
 impl Guarded<'_> {
-    /// Keeps an element that the viewer knows; gives where the next one begins.
+    /// Keeps an element that the viewer knows; returns the start of the next one.
     fn keep(&mut self, bytes: &[u8], element: Element) -> Result<usize, Unfit> {
         let next = element.next;
         let numbers = match element.tag {
@@ -108,7 +108,7 @@ impl Guarded<'_> {
             _ => None,
         };
         if let Some(numbers) = numbers {
-            // Where no kind is written, pixels are words (PS3.5, A.1).
+            // Without an explicit kind, pixels are words (PS3.5, A.1).
             let are_words = element.vr.is_none_or(|vr| vr == VR::OW);
             let stretch = Stretch::Whole(element.value);
             self.pixels = Some(Pixels { numbers, are_words, stretch });
@@ -126,21 +126,21 @@ impl Guarded<'_> {
     }
 }
 
-/// Where pixels in pieces begin, if that is what the element at `at` is: pixels of a length that is not told.
+/// The start of pixels in pieces, if the element at `at` holds such: pixels of undefined length.
 fn pieces_at(bytes: &[u8], at: usize, encoding: Encoding) -> Option<usize> {
     let take = |at: usize| bytes.get(at..at.checked_add(4)?)?.try_into().ok();
     let [a, b, c, d]: [u8; 4] = take(at)?;
-    // Behind the tag is the length, or a kind and then the length.
+    // The length follows the tag, or the kind.
     let length = if encoding.is_explicit() { at + 8 } else { at + 4 };
     let is_pixels = Tag(encoding.u16([a, b]), encoding.u16([c, d])) == tags::PIXEL_DATA;
     (is_pixels && encoding.u32(take(length)?) == u32::MAX).then_some(length + 4)
 }
 
-/// What a file says before the elements that describe its picture.
+/// The part of a file before the elements that describe its picture.
 struct Beginning {
     syntax: Syntax,
     class: String,
-    /// Where those elements begin.
+    /// The start of those elements.
     data: usize,
 }
 
@@ -148,7 +148,7 @@ fn begin(bytes: &[u8]) -> Result<Beginning, Unfit> {
     const MAGIC: &[u8] = b"DICM";
     let has = |at: usize| bytes.get(at..at + 4).is_some_and(|found| found == MAGIC);
     let is_meta = |at: usize| bytes.get(at..at + 2).is_some_and(|group| group == [2, 0]);
-    // Without its preamble, or without the mark behind it, a file is read as well.
+    // Files without the preamble, or without the mark behind it, are accepted as well.
     let places = [(has(128), 132), (has(0), 4), (is_meta(0), 0), (is_meta(128), 128)];
     let Some((_, start)) = places.into_iter().find(|(is_here, _)| *is_here) else {
         let encoding = guess(bytes, 0).ok_or(Unfit::NotDicom("it does not begin as one"))?;
@@ -175,7 +175,7 @@ fn begin(bytes: &[u8]) -> Result<Beginning, Unfit> {
         (None, Some(encoding)) => Syntax::native(encoding),
         (None, None) => return Err(Unfit::damaged("it does not say how it is written")),
     };
-    // Some files are written in another way than they say.
+    // The encoding of some files differs from the declared one.
     if let Some(guessed) = guessed
         && !syntax.is_deflated
         && guessed.is_explicit() != syntax.encoding.is_explicit()
@@ -185,10 +185,10 @@ fn begin(bytes: &[u8]) -> Result<Beginning, Unfit> {
     Ok(Beginning { syntax, class, data: at })
 }
 
-/// How the element at `at`, which is the first one, seems to be written; `None` if it is none.
+/// The apparent encoding of the first element, at `at`; `None` if it is not an element.
 fn guess(bytes: &[u8], at: usize) -> Option<Encoding> {
     let &[a, b, c, d, kind, other, e, f] = bytes.get(at..at.checked_add(8)?)? else { return None };
-    // A file begins with one of the lowest groups (PS3.6): what identifies it.
+    // A file begins with one of the lowest groups (PS3.6), which hold its identification.
     let is_first = |group: u16| (1..=0x0028).contains(&group) || group == 0x7fe0;
     let is_explicit = VR::from_binary([kind, other]).is_some();
     if is_first(u16::from_le_bytes([a, b])) {
@@ -197,7 +197,7 @@ fn guess(bytes: &[u8], at: usize) -> Option<Encoding> {
         }
         let length = u32::from_le_bytes([kind, other, e, f]);
         let fits = length == u32::MAX || length as usize <= bytes.len() - at;
-        // Far fewer elements than numbers have been given out.
+        // Element numbers in use are far below this.
         let is_tag = u16::from_le_bytes([c, d]) <= 0x4000;
         return (fits && is_tag && a % 2 == 0).then_some(Encoding::Implicit);
     }

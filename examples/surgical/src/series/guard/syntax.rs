@@ -1,4 +1,4 @@
-//! Transfer syntaxes: how the elements of a file are written, and how its pixels are.
+//! Transfer syntaxes: the encodings of a file's elements and of its pixels.
 
 use dicom_transfer_syntax_registry::entries::{
     EXPLICIT_VR_BIG_ENDIAN, EXPLICIT_VR_LITTLE_ENDIAN, IMPLICIT_VR_LITTLE_ENDIAN,
@@ -7,7 +7,7 @@ use dicom_transfer_syntax_registry::{TransferSyntax, TransferSyntaxIndex, Transf
 
 use crate::series::unfit::Unfit;
 
-/// How elements are written.
+/// The encoding of elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     Implicit,
@@ -24,7 +24,7 @@ impl Encoding {
         self == Self::BigEndian
     }
 
-    /// For the library that reads elements.
+    /// The same for the library that reads elements.
     pub fn transfer_syntax(self) -> TransferSyntax {
         match self {
             Self::Implicit => IMPLICIT_VR_LITTLE_ENDIAN.erased(),
@@ -42,7 +42,7 @@ impl Encoding {
     }
 }
 
-/// How pixels are written.
+/// The encoding of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
     Native,
@@ -57,7 +57,7 @@ pub enum Coding {
 pub struct Syntax {
     pub encoding: Encoding,
     pub coding: Coding,
-    /// Whether all elements after the file's own are compressed together.
+    /// Whether all elements after the file's meta elements are compressed together.
     pub is_deflated: bool,
 }
 
@@ -66,10 +66,10 @@ impl Syntax {
         Self { encoding, coding: Coding::Native, is_deflated: false }
     }
 
-    /// The syntax of this identifier.
+    /// The syntax with this identifier.
     ///
     /// # Errors
-    /// It is none that is read; the message names it in words where the standard does.
+    /// It is not supported; the message names it in words if the standard does.
     pub fn of(uid: &str) -> Result<Self, Unfit> {
         let explicit = |coding| Self { coding, ..Self::native(Encoding::Explicit) };
         // PS3.6, annex A.
@@ -95,7 +95,7 @@ fn unknown(uid: &str) -> Unfit {
     }
 }
 
-/// What of a text may be printed.
+/// The printable part of a text.
 fn clean(text: &str) -> String {
     text.chars().filter(|sign| sign.is_ascii_graphic()).take(64).collect()
 }

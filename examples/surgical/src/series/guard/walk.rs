@@ -1,4 +1,4 @@
-//! A walk over the elements of a DICOM file which believes no length before it has compared it with the file's size.
+//! A walk over the elements of a DICOM file that compares each length with the file's size before it uses it.
 
 use std::ops::Range;
 
@@ -9,35 +9,36 @@ use dicom_dictionary_std::StandardDataDictionary;
 use super::syntax::Encoding;
 use crate::series::unfit::Unfit;
 
-/// Most elements of a file, those inside sequences included: some hundred for each of some thousand frames.
+/// Greatest number of elements of a file, including those inside sequences: some hundred for each of some thousand
+/// frames.
 const MOST_ELEMENTS: usize = 1_000_000;
 
-/// How deep sequences may be nested; files in use have some five levels.
+/// Greatest depth of nested sequences; files in use have some five levels.
 const DEEPEST: usize = 32;
 
-/// Stands for a length that is not told.
+/// The value of an undefined length.
 const UNTOLD: u32 = u32::MAX;
 
 const ITEM: Tag = Tag(0xfffe, 0xe000);
 const ITEM_END: Tag = Tag(0xfffe, 0xe00d);
 const SEQUENCE_END: Tag = Tag(0xfffe, 0xe0dd);
 
-/// One element, whose value lies inside the file.
+/// One element, with a value inside the file.
 #[derive(Clone, Debug)]
 pub struct Element {
     pub tag: Tag,
-    /// As the file writes it; `None` where it writes none.
+    /// As the file writes it; `None` if it writes none.
     pub vr: Option<VR>,
     pub start: usize,
     /// Without header and without the delimiter at its end.
     pub value: Range<usize>,
-    /// Where the next element begins.
+    /// The start of the next element.
     pub next: usize,
-    /// Whether its length is not told, but its end marked.
+    /// Whether its length is undefined and its end marked.
     pub is_open: bool,
 }
 
-/// A header, before its length is compared with anything.
+/// A header with an unchecked length.
 struct Header {
     tag: Tag,
     vr: Option<VR>,
@@ -56,20 +57,20 @@ impl<'a> Walk<'a> {
         Self { bytes, encoding, left: MOST_ELEMENTS }
     }
 
-    /// The element at `at`, of which nothing reaches beyond the file.
+    /// The element at `at`, which lies completely inside the file.
     ///
     /// # Errors
-    /// It does, or what is inside it contradicts its length, or there is too much inside it.
+    /// It extends beyond the file, its content contradicts its length, or it has too much content.
     pub fn element(&mut self, at: usize) -> Result<Element, Unfit> {
         let end = self.bytes.len();
         self.element_within(at, end, self.encoding, 0)
     }
 
-    /// The pieces of pixels that begin at `at`, as a sequence of items that are not read further. Without a mark at its
-    /// end, it ends with the file.
+    /// The pieces of pixels that begin at `at`, as a sequence of items with unread content. Without an end mark, it
+    /// ends with the file.
     ///
     /// # Errors
-    /// A piece reaches beyond the file.
+    /// A piece extends beyond the file.
     pub fn fragments(&mut self, at: usize) -> Result<(Vec<Range<usize>>, usize), Unfit> {
         let (mut found, mut at) = (Vec::new(), at);
         loop {
@@ -103,7 +104,7 @@ impl<'a> Walk<'a> {
             return Err(Unfit::damaged(format!("a mark {tag} stands where an element should")));
         }
         if length == UNTOLD {
-            // A sequence of which the kind is not known is written without kinds (PS3.5, 6.2.2, note 2).
+            // A sequence of unknown kind is encoded without kinds (PS3.5, 6.2.2, note 2).
             let inside = if vr == Some(VR::UN) { Encoding::Implicit } else { encoding };
             let next = self.sequence(value, end, true, inside, depth + 1)?;
             return Ok(Element { tag, vr, start: at, value: value..next - 8, next, is_open: true });
@@ -116,7 +117,7 @@ impl<'a> Walk<'a> {
         Ok(Element { tag, vr, start: at, value, next, is_open: false })
     }
 
-    /// Goes over the items from `at` to `end`, or to the mark that ends them; gives where that ends.
+    /// Walks over the items from `at` to `end`, or to the end mark; returns the end.
     fn sequence(
         &mut self,
         mut at: usize,
@@ -145,7 +146,7 @@ impl<'a> Walk<'a> {
         Ok(at)
     }
 
-    /// Goes over the elements of one item.
+    /// Walks over the elements of one item.
     fn items(
         &mut self,
         mut at: usize,
@@ -170,7 +171,7 @@ impl<'a> Walk<'a> {
             let length = encoding.u32(self.take(at + 4)?);
             return Ok(Header { tag, vr: None, length, value: at + 8 });
         }
-        // An unknown kind is read as `UN`, as the library behind this does.
+        // An unknown kind is read as `UN`, like in the library behind this.
         let vr = VR::from_binary(self.take(at + 4)?).unwrap_or(VR::UN);
         if is_short(vr) {
             let length = u32::from(encoding.u16(self.take(at + 6)?));
@@ -180,7 +181,7 @@ impl<'a> Walk<'a> {
         Ok(Header { tag, vr: Some(vr), length, value: at + 12 })
     }
 
-    /// The mark at `at` and its length.
+    /// The item tag at `at` and its length.
     fn item(&self, at: usize, encoding: Encoding) -> Result<(Tag, u32), Unfit> {
         Ok((self.tag(at, encoding)?, encoding.u32(self.take(at + 4)?)))
     }
@@ -196,7 +197,7 @@ impl<'a> Walk<'a> {
             .ok_or_else(|| Unfit::damaged("it ends inside an element"))
     }
 
-    /// From where to where `length` bytes at `at` are, if that is before `end`.
+    /// The range of `length` bytes at `at`, if it lies before `end`.
     fn stretch(&self, tag: Tag, at: usize, length: u32, end: usize) -> Result<Range<usize>, Unfit> {
         let there = end.saturating_sub(at);
         if length as usize > there {
@@ -251,7 +252,7 @@ fn is_short(vr: VR) -> bool {
     )
 }
 
-/// What people call an element.
+/// The name of an element for messages.
 fn name(tag: Tag) -> String {
     match tag {
         ITEM => "an item".into(),

@@ -1,4 +1,4 @@
-//! Files that claim more than they have.
+//! Files with claims beyond their size.
 
 use std::io::Write;
 
@@ -43,7 +43,7 @@ fn a_length_beyond_the_file_is_told_with_its_element() {
 #[test]
 fn a_length_that_is_not_told_is_no_allocation() {
     for uid in [EXPLICIT, IMPLICIT, BIG_ENDIAN] {
-        // Of a text, of words, and of pixels that are not in pieces.
+        // A text, words, and pixels that are not in pieces.
         for (tag, vr) in [(tags::PATIENT_NAME, VR::UT), (tags::LUT_DATA, VR::OW), (tags::PIXEL_DATA, VR::OW)]
         {
             let file = Maker::new(uid).head(tag, vr, OPEN).raw(&[7; 600]);
@@ -138,7 +138,7 @@ fn runs_are_no_more_than_their_bytes_can_hold() {
     );
 }
 
-/// A JPEG 2000 codestream of one part with 8 bits that has heads and no data.
+/// A JPEG 2000 codestream of one component with 8 bits that has headers and no data.
 fn codestream(size: u32, tile: u32, block: u8, precincts: &[u8]) -> Vec<u8> {
     let levels = precincts.len().saturating_sub(1) as u8;
     let long = |numbers: &[u32]| numbers.iter().flat_map(|number| number.to_be_bytes()).collect::<Vec<u8>>();
@@ -168,7 +168,7 @@ fn jpeg_2000_is_bounded_by_what_the_file_says() {
         let why = has_bad_pixels(&file(2000, &stream));
         assert_eq!(why, "JPEG 2000 in too many small parts");
     }
-    // A part of a tile that says it is shorter than its own head would never end.
+    // A tile part with a length below that of its own header would never end.
     let mut looped = whole;
     let at = looped.windows(2).position(|mark| mark == [0xff, 0x90]).unwrap();
     looped[at + 6..at + 10].copy_from_slice(&[0, 0, 0, 2]);
@@ -219,7 +219,7 @@ fn wholes() -> Vec<Vec<u8>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// What is damaged is shown or refused; the reader neither fails nor goes on for ever.
+    /// The reader shows or refuses a damaged file; it neither fails nor loops for ever.
     #[test]
     fn damaged_files_are_shown_or_refused(
         kind in 0_usize..10,

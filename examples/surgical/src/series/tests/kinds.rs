@@ -1,4 +1,4 @@
-//! Each kind of pixels that is read, by a small picture of known values.
+//! Each supported kind of pixels, by a small picture of known values.
 
 use std::io::Write;
 
@@ -43,7 +43,7 @@ fn samples_of_each_size_are_read_in_each_order_of_bytes() {
     for uid in [EXPLICIT, IMPLICIT, BIG_ENDIAN] {
         let is_big = uid == BIG_ENDIAN;
         let eight = Maker::picture(uid, [3, 1], 8);
-        // In big-endian files the bytes of words are turned around, those of bytes are not.
+        // Big-endian files swap the bytes of words and not those of bytes.
         let words: &[u8] = if is_big { &[8, 7, 0, 9] } else { &[7, 8, 9] };
         assert_eq!(greys(&shown(&eight.clone().pixels(VR::OW, words)).unwrap()), [7.0, 8.0, 9.0], "{uid}");
         if uid != IMPLICIT {
@@ -60,7 +60,7 @@ fn samples_of_each_size_are_read_in_each_order_of_bytes() {
 
 #[test]
 fn bits_that_do_not_count_are_left_out_of_signed_numbers() {
-    // 12 bits of 16, the highest of which is 13, with other bits around them.
+    // 12 bits of 16, up to bit 13, with other bits around them.
     let picture = Maker::picture(EXPLICIT, [3, 1], 12).number(tags::HIGH_BIT, 13);
     let stored = [0xc000 | 5 << 2 | 3, 0x3ffc, 0x2000];
     let file = picture.clone().numbers(tags::PIXEL_DATA, VR::OW, &stored);
@@ -106,7 +106,7 @@ fn colours_are_read_in_each_arrangement() {
     // Pure red, and grey.
     let file = Maker::colours(EXPLICIT, [2, 1], "YBR_FULL").pixels(VR::OB, &[76, 85, 255, 90, 128, 128]);
     assert_eq!(colours(&shown(&file).unwrap()), [[254, 0, 0], [90, 90, 90]]);
-    // Two brightnesses share their differences of colour.
+    // Two brightnesses share their colour differences.
     let file = Maker::colours(EXPLICIT, [2, 1], "YBR_FULL_422").pixels(VR::OB, &[76, 90, 128, 128]);
     assert_eq!(colours(&shown(&file).unwrap()), [[76; 3], [90; 3]]);
     // Of 16 bits, the higher half is shown.
@@ -117,7 +117,7 @@ fn colours_are_read_in_each_arrangement() {
     assert_eq!(colours(&shown(&file).unwrap()), [[255, 128, 0]]);
 }
 
-/// A picture with a palette of three colours, the first of which is number 10.
+/// A picture with a palette of three colours, numbered from 10.
 fn palette(bits: u16, tables: [&[u16]; 3]) -> Maker {
     let descriptor = [3, 10, bits];
     Maker::picture(EXPLICIT, [4, 1], 8)
@@ -133,7 +133,7 @@ fn palette(bits: u16, tables: [&[u16]; 3]) -> Maker {
 
 #[test]
 fn palettes_give_each_number_its_colour() {
-    // Those beyond both ends have the colours of the ends.
+    // Numbers beyond an end have the colour of that end.
     let expected = [[255, 0, 7], [255, 0, 7], [2, 128, 8], [3, 255, 9]];
     let deep = palette(16, [&[0xff00, 0x0200, 0x0300], &[0, 0x8000, 0xffff], &[0x0700, 0x0800, 0x0900]]);
     assert_eq!(colours(&shown(&deep).unwrap()), expected);
@@ -146,7 +146,7 @@ fn palettes_give_each_number_its_colour() {
 
 #[test]
 fn a_palette_in_segments_is_expanded() {
-    // A constant, a straight line, and the first of them once more.
+    // A constant, a linear segment, and the first of them again.
     let segments = [0, 1, 0x1000, 1, 3, 0x4000, 2, 1, 0, 0];
     let file = Maker::picture(EXPLICIT, [5, 1], 8)
         .text(tags::PHOTOMETRIC_INTERPRETATION, VR::CS, "PALETTE COLOR")
@@ -188,7 +188,7 @@ fn the_least_value_is_white_where_the_file_says_so() {
     }
 }
 
-/// A run of one value, or values as they are, as run-length encoding writes them.
+/// A run of one value, or literal values, in run-length encoding.
 fn runs(segments: &[&[u8]]) -> Vec<u8> {
     let mut starts = vec![segments.len() as u32];
     let mut at = 64;
@@ -217,14 +217,14 @@ fn runs_are_read_for_samples_of_each_size() {
     assert_eq!(colours(&shown(&file).unwrap()), [[9, 7, 5], [8, 6, 4], [9, 7, 5], [8, 6, 4]]);
 }
 
-/// The small pictures in `streams`, which other programs have compressed: 12 x 10 pixels, or 40 x 36.
+/// The small pictures in `streams`, compressed by other programs: 12 x 10 pixels, or 40 x 36.
 macro_rules! stream {
     ($name:literal) => {
         include_bytes!(concat!("streams/", $name)).as_slice()
     };
 }
 
-/// Whether all values are within `by` of those that were compressed.
+/// Asserts that all values are within `by` of the original ones.
 fn assert_near(values: &[f32], expected: impl Fn(usize, usize) -> i32, columns: usize, by: f32) {
     for (at, value) in values.iter().enumerate() {
         let expected = expected(at % columns, at / columns) as f32;
@@ -289,7 +289,7 @@ fn frames_in_several_pieces_are_put_together() {
     };
     let one = greys(&shown(&frames("1").pieces(&[], &[head, tail])).unwrap());
     let two = [one.clone(), one].concat();
-    // By the table of where frames begin, each piece with 8 bytes before it; and without one, by how frames begin.
+    // By the table of frame offsets, with 8 bytes before each piece; and without one, by the starts of frames.
     let second = (bytes.len() + 2 * 8) as u32;
     for table in [[0, second].as_slice(), &[]] {
         let file = frames("2").pieces(table, &[head, tail, head, tail]);
@@ -381,7 +381,7 @@ fn frames_have_what_their_groups_say() {
         .sequence(tags::PIXEL_VALUE_TRANSFORMATION_SEQUENCE, &[scale]);
     let part = enhanced(&shared, &[empty.clone(), measures("2\\3"), empty]);
     let spacings: Vec<_> = part.series.frames.iter().map(|frame| frame.plane.spacing_mm).collect();
-    // Between rows first in files, to the right first here.
+    // Files give the distance between rows first; here the distance to the right comes first.
     assert_eq!(spacings, [Some([0.25, 0.5]), Some([3.0, 2.0]), Some([0.25, 0.5])]);
     let towards = part.series.frames[1].plane.towards.clone().unwrap();
     assert_eq!(towards, ["P", "F"], "a picture seen from the left");
@@ -403,7 +403,7 @@ fn letters_name_the_sides_of_the_body() {
         letters("L", "F"),
         "a slice from side to side, seen from in front"
     );
-    // By 20 degrees, and by 10, which is not worth a letter.
+    // By 20 degrees, and by 10, which is below the limit for a letter.
     assert_eq!(towards("0.94\\0.342\\0\\0\\0\\-1"), letters("LP", "F"));
     assert_eq!(towards("-0.985\\0.174\\0\\0\\0\\-1"), letters("R", "F"));
     assert_eq!(towards("0\\0\\0\\0\\0\\0"), None);

@@ -1,4 +1,4 @@
-//! Small DICOM files, written byte by byte: their lengths may be untrue.
+//! Small DICOM files, written byte by byte: their lengths may be wrong.
 
 use dicom_core::{Tag, VR};
 use dicom_dictionary_std::{tags, uids};
@@ -8,7 +8,7 @@ use crate::series::guard::Encoding;
 /// The syntax of big-endian files, which the standard has retired.
 pub const BIG_ENDIAN: &str = "1.2.840.10008.1.2.2";
 
-/// A length that is not told.
+/// An undefined length.
 pub const OPEN: u32 = u32::MAX;
 
 const ITEM: Tag = Tag(0xfffe, 0xe000);
@@ -33,7 +33,7 @@ impl Maker {
         Self { encoding, uid, elements: Vec::new() }
     }
 
-    /// A picture of this size with grey values of so many bits, without pixels yet.
+    /// A picture of this size with grey values of `bits` bits, without pixels yet.
     pub fn picture(uid: &'static str, [columns, rows]: [u16; 2], bits: u16) -> Self {
         let allocated = if bits == 1 { 1 } else { bits.next_multiple_of(8).next_power_of_two() };
         Self::new(uid)
@@ -63,7 +63,7 @@ impl Maker {
         if self.encoding.is_big_endian() { number.to_be_bytes() } else { number.to_le_bytes() }
     }
 
-    /// The head of an element with a length that may be untrue.
+    /// The header of an element with a length that may be wrong.
     pub fn head(mut self, tag: Tag, vr: VR, length: u32) -> Self {
         let (group, element) = (self.short(tag.0), self.short(tag.1));
         self.elements.extend([group, element].concat());
@@ -106,7 +106,7 @@ impl Maker {
         self.bytes(tag, vr, &bytes)
     }
 
-    /// A sequence of items, each of which is the elements of a file.
+    /// A sequence of items, each with the elements of a file.
     pub fn sequence(self, tag: Tag, items: &[Self]) -> Self {
         let mut inside = Self { elements: Vec::new(), ..self.clone() };
         for item in items {
@@ -119,7 +119,7 @@ impl Maker {
         self.bytes(tags::PIXEL_DATA, vr, bytes)
     }
 
-    /// Pixels in pieces, after a table of where frames begin.
+    /// Pixels in pieces, after a table of frame offsets.
     pub fn pieces(self, table: &[u32], pieces: &[&[u8]]) -> Self {
         let table: Vec<u8> = table.iter().flat_map(|offset| self.long(*offset)).collect();
         let mut file = self.head(tags::PIXEL_DATA, VR::OB, OPEN).bytes(ITEM, VR::UN, &table);
@@ -134,7 +134,7 @@ impl Maker {
         &self.elements
     }
 
-    /// The elements of the file itself, then `data`.
+    /// The file's meta elements, then `data`.
     pub fn with_data(&self, data: &[u8]) -> Vec<u8> {
         let meta =
             Self::new(uids::EXPLICIT_VR_LITTLE_ENDIAN).text(tags::TRANSFER_SYNTAX_UID, VR::UI, self.uid);

@@ -13,7 +13,7 @@ use super::*;
 use crate::phantom;
 use make::Maker;
 
-/// What the reader makes of a file of these bytes; a failure of a decoder is not caught.
+/// The reader's result for a file of these bytes; a panic of a decoder is not caught.
 fn read_bytes(bytes: &[u8]) -> Result<Part, Unfit> {
     file::part(Path::new("made.dcm"), bytes, &mut MOST_PIXELS.clone())
 }
@@ -41,7 +41,7 @@ fn the_phantom_is_read_as_it_was_written() {
     assert_eq!(plane.towards, Some(["L".to_owned(), "P".to_owned()]));
     assert_eq!(ct.about, "Phantom, Simulated   NOBODY   2024-05-17");
     assert_eq!(ct.window, Window { level: 40.0, width: 400.0 });
-    // Air in a corner, to the noise: the modality's scale has been applied.
+    // Air in a corner, up to the noise: the modality's scale has been applied.
     let greys = |slice: usize| match &ct.frames[slice].pixels {
         Pixels::Grey(values) => values,
         Pixels::Colour(colours) => panic!("{colours:?}"),

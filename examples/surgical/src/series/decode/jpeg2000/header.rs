@@ -1,22 +1,22 @@
-//! What a JPEG 2000 codestream claims, before anything is decoded (ISO/IEC 15444-1, annex A).
+//! The claims of a JPEG 2000 codestream, checked before decoding (ISO/IEC 15444-1, annex A).
 
 use crate::series::form::Form;
 use crate::series::unfit::Unfit;
 
-/// Most bits of a sample.
+/// Greatest number of bits of a sample.
 const MOST_BITS: u32 = 16;
 
-/// Most tiles of a picture: their numbers have 16 bits.
+/// Greatest number of tiles of a picture: their numbers have 16 bits.
 const MOST_TILES: u64 = 65_535;
 
-/// Most bytes that the decoder may need for its blocks and precincts, as estimated here.
+/// Greatest memory of the decoder for blocks and precincts, in bytes, as estimated here.
 const MOST_MEMORY: u64 = 1 << 29;
 
-/// Bytes that it needs for a block with its layers and for a precinct: measured with the smallest ones there are.
+/// Bytes for a block with its layers and for a precinct: measured with the smallest possible ones.
 const BLOCK: u64 = 1024;
 const PRECINCT: u64 = 256;
 
-/// Marks of segments.
+/// Markers of segments.
 const SIZE: u8 = 0x51;
 const CODING: u8 = 0x52;
 const CODING_OF_PART: u8 = 0x53;
@@ -24,19 +24,19 @@ const TILE_PART: u8 = 0x90;
 const DATA: u8 = 0x93;
 const END: u8 = 0xd9;
 
-/// What a codestream says of itself.
+/// The parameters in a codestream's headers.
 #[derive(Debug, Default)]
 pub struct Header {
     size: [u32; 2],
     parts: usize,
     tiles: u64,
-    /// Whether a part is coded with fewer pixels than others.
+    /// Whether a component has fewer pixels than others.
     is_subsampled: bool,
     pub bits: u32,
     pub is_signed: bool,
-    /// Whether three parts are coded as brightness and differences of colour.
+    /// Whether three components are coded as brightness and colour differences.
     pub is_transformed: bool,
-    /// Shares of blocks and precincts for each pixel, the largest anywhere.
+    /// Number of blocks and of precincts per pixel, the greatest anywhere.
     blocks: f64,
     precincts: f64,
 }
@@ -49,11 +49,11 @@ impl Header {
     pub fn read(stream: &[u8]) -> Result<Self, Unfit> {
         let mut header = Self::default();
         let mut at = 2;
-        // Where the part of a tile begins that is read.
+        // The start and length of the present tile part.
         let mut part = None;
         while let Some(&[0xff, mark]) = stream.get(at..at + 2) {
             if mark == DATA {
-                // Goes on behind the data of the part, whose header says how long it is; 0 is to the end.
+                // Continues behind the part's data; its length is in its header, where 0 means to the end.
                 let Some((start, length)) = part.take() else { break };
                 if length == 0 {
                     break;
@@ -85,7 +85,7 @@ impl Header {
                 }
                 TILE_PART => {
                     let length = long(segment, 2)?;
-                    // Shorter than its own header, it would never end.
+                    // With a length below that of its own header, the loop would never end.
                     if length != 0 && length < 14 {
                         return Err(cut());
                     }
@@ -98,10 +98,10 @@ impl Header {
         Ok(header)
     }
 
-    /// Whether it is the picture that the file describes, and one that fits into memory.
+    /// Checks that it is the picture that the file describes, and that it fits into memory.
     ///
     /// # Errors
-    /// It is not.
+    /// A parameter differs, or the memory is too large.
     pub fn check(&self, form: &Form) -> Result<(), Unfit> {
         let is = self.size.map(|side| side as usize);
         if is != form.size || self.parts != form.samples {
@@ -161,7 +161,7 @@ impl Header {
                 let precinct = u32::from(sizes & 0xf) + u32::from(sizes >> 4);
                 let pixels = share(2 * smaller as u32);
                 self.precincts = self.precincts.max(pixels * share(precinct));
-                // A block is no larger than its precinct, which is half as large in the bands of a level.
+                // A block is at most as large as its precinct, which is half as large in the bands of a level.
                 self.blocks = self.blocks.max(pixels * share(precinct.saturating_sub(2)));
             }
         }

@@ -10,16 +10,16 @@ use crate::series::form::{Colours, Form};
 use crate::series::unfit::Unfit;
 use header::Header;
 
-/// How a codestream begins.
+/// First bytes of a codestream.
 const START: [u8; 4] = [0xff, 0x4f, 0xff, 0x51];
 
-/// How far into a frame a codestream may begin: boxes before it are against the standard, and in use.
+/// Greatest offset of a codestream in a frame: boxes before it violate the standard but occur.
 const LATEST_START: usize = 4096;
 
 /// The numbers of a frame.
 ///
 /// # Errors
-/// It is damaged, of another size than the file says, or of a kind that is not read.
+/// It is damaged, its size differs from the file's, or its kind is not supported.
 pub fn decode(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     let start = bytes.windows(START.len()).take(LATEST_START).position(|window| window == START);
     let stream = start
@@ -40,7 +40,7 @@ pub fn decode(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     let number = |value: f32| {
         let value = value.round();
         if header.is_signed {
-            // The decoder gives all numbers from zero on.
+            // The decoder shifts all numbers to start at zero.
             value - half
         } else {
             signed(value as u64, bits, form.is_signed) as f32
@@ -50,7 +50,7 @@ pub fn decode(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     let values = (0..form.values())
         .map(|index| number(at(index / form.samples, index % form.samples).unwrap_or_default()));
     let colours = match form.colours {
-        // Its own transform of colours has been undone.
+        // The decoder has already undone the colour transform.
         Colours::Ybr | Colours::Ybr422 if header.is_transformed => Colours::Rgb,
         Colours::Ybr422 => Colours::Ybr,
         told => told,
