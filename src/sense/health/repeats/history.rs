@@ -26,6 +26,11 @@ impl History {
         self.read[corner] += 1;
     }
 
+    /// Forgets the readings of the sensor at `corner`.
+    pub(super) fn forget(&mut self, corner: usize) {
+        self.read[corner] = 0;
+    }
+
     /// Number of last readings of the sensor at `corner` that equal those a fixed lag before: [`REPEATED`], or 0 if
     /// there are fewer for every lag of 2 to [`MOST_LAG`] readings.
     pub(super) fn cycle(&self, corner: usize) -> u32 {

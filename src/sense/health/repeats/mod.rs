@@ -124,7 +124,7 @@ impl Repeats {
         let Self { noise, watched, count, .. } = self;
         for watch in watched {
             let tile = watch.tile as usize;
-            watch.read(heard.raws[tile], heard.news[tile], now);
+            watch.read(heard.raws[tile], heard.ends[tile], heard.news[tile], now);
             if watch.repeats(noise, heard.ends[tile], &heard.sensors[tile], now) {
                 *count += u64::from(watch.until.is_none());
                 watch.until = Some(now + REPEATED_FOR);
@@ -206,10 +206,16 @@ impl Repeats {
 }
 
 impl Watch {
-    fn read(&mut self, raws: [u16; 4], news: [bool; 4], now: Instant) {
+    fn read(&mut self, raws: [u16; 4], ends: [End; 4], news: [bool; 4], now: Instant) {
         for corner in (0..4).filter(|&corner| news[corner]) {
             self.runs[corner].read(raws[corner], now);
-            self.history.read(corner, raws[corner]);
+            if is_within(ends[corner], raws[corner]) {
+                self.history.read(corner, raws[corner]);
+            } else {
+                // At an end of its range a sensor repeats one value, and nothing follows from that.
+                self.history.forget(corner);
+                self.runs[corner].note_cycle(0);
+            }
         }
     }
 

@@ -119,13 +119,14 @@ fn time_is_that_of_the_clock_whatever_boards_send() {
             while let Some(frame) = assembler.ready() {
                 frames += 1;
                 let ahead = frame.at.micros().cast_signed() - packet.received.micros().cast_signed();
-                // During the first second, while the rate is measured, time may be 100 ms off.
-                let most = if packet.received < Instant::from_millis(1000) { 150_000 } else { 25_000 };
-                assert!(ahead < most && ahead > -most - 1_000_000 / hz as i64, "{hz} Hz: {ahead} us");
+                // A rate is measured over half a second: until then time may lag, and leads by 100 ms at most.
+                let is_measured = packet.received >= Instant::from_millis(1000);
+                let (behind, most) = if is_measured { (25_000, 25_000) } else { (600_000, 110_000) };
+                assert!(ahead < most && ahead > -behind - 1_000_000 / hz as i64, "{hz} Hz: {ahead} us");
             }
         }
         let expected = 7 * hz.min(1000);
-        assert!((expected..=8 * 1000).contains(&frames), "{hz} Hz: {frames} frames");
+        assert!((expected..=8 * 1000 + 100).contains(&frames), "{hz} Hz: {frames} frames");
         let last = assembler.board(0).unwrap();
         let expected = if (150..=1500).contains(&hz) { Quality::Live } else { Quality::Degraded };
         assert_eq!((last.quality, last.loss < 0.01), (expected, true), "{hz} Hz: {last:?}");
@@ -146,6 +147,6 @@ fn a_slow_board_holds_up_none_of_the_others() {
     let late: Vec<_> = frames.iter().filter(|frame| frame.at_us > 1_000_000).collect();
     assert!(late.iter().all(|frame| frame.quality == LIVE && frame.samples[0] == frame.samples[2]));
     // Its sample is from that millisecond or one of the two before.
-    let behind = |frame: &&Shown| frame.samples[0] - 3.0 * frame.samples[1];
+    let behind = |frame: &&Shown| frame.samples[0] - frame.samples[1];
     assert!(late.iter().all(|frame| (-1.0..=4.0).contains(&behind(frame))));
 }
