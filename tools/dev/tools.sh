@@ -110,6 +110,8 @@ version_of() {
 
 install_cargo_tools() {
     has_cargo nextest || install_cargo cargo-nextest
+    # To build these two takes minutes, on a machine that is thrown away each time.
+    [ -z "${WITHOUT_CARGO_TOOLS:-}" ] || return 0
     [[ $(cargo deny --version 2>/dev/null) == cargo-deny\ 0.20.* ]] || install_cargo cargo-deny
     has_cargo cinstall || install_cargo cargo-c
 }

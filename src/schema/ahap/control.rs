@@ -103,12 +103,13 @@ impl Control {
         }
     }
 
-    /// Returns the times between `from` and `to` at which the course bends or jumps; for a jump also the time just
-    /// before.
+    /// Returns the times between `from` and the last millisecond before `to` at which the course bends or jumps; for a
+    /// jump also the time just before.
     pub(super) fn bends(&self, from: f32, to: f32) -> impl Iterator<Item = f32> + '_ {
         let begin = self.points.partition_point(|point| point.t <= from + SAME_S);
         let rest = self.points.get(begin..).unwrap_or_default();
-        rest.iter().map(|point| point.t).take_while(move |t| *t < to - SAME_S)
+        // What happens in the last millisecond belongs to a jump at the end.
+        rest.iter().map(|point| point.t).take_while(move |t| *t < to - JUMP_S - SAME_S)
     }
 
     /// Returns the course with as few points as keep it within `tolerance`.

@@ -99,7 +99,9 @@ impl Pace {
             [pace(first, first + spans)?, pace(first, middle)?, pace(middle, first + spans)?];
         let off = |pace: f64| pace / self.slots - 1.0;
         let is_other = |pace: f64, share: f64| off(pace).abs() > share && off(pace) * off(whole) > 0.0;
-        (is_other(whole, share) && is_other(early, 0.5 * share) && is_other(late, 0.5 * share))
+        // A single gap shifts one half; another rate shifts both alike.
+        let is_steady = (off(early) - off(late)).abs() <= 0.5 * off(whole).abs();
+        (is_steady && is_other(whole, share) && is_other(early, 0.5 * share) && is_other(late, 0.5 * share))
             .then_some(whole)
     }
 
