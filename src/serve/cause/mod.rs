@@ -49,6 +49,7 @@ pub(super) struct CauseWatch {
     looked: Instant,
     /// Counters by kind, each with the time of its last growth.
     datagrams: Growth,
+    packets: Growth,
     refused: Growth,
     limited: Growth,
     candidate: Option<(LinkCause, Instant)>,
@@ -87,6 +88,7 @@ impl CauseWatch {
             usable: Instant::START,
             looked: Instant::START,
             datagrams: Growth::default(),
+            packets: Growth::default(),
             refused: Growth::default(),
             limited: Growth::default(),
             candidate: None,
@@ -124,6 +126,7 @@ impl CauseWatch {
     /// Looks for a cause; returns true when the reported cause changes or ends.
     pub(super) fn update(&mut self, facts: &Facts<'_>, now: Instant) -> bool {
         self.datagrams.update(facts.counters.datagrams + facts.counters.packets, now);
+        self.packets.update(facts.counters.packets, now);
         self.refused.update(facts.counters.refused(), now);
         self.limited.update(facts.counters.limited, now);
         let found = self.find(facts, now);
@@ -204,6 +207,10 @@ impl CauseWatch {
             return Some(LinkCause::BoardsMissing { board, address, missing: boards - live, boards });
         }
         if is_usable {
+            return None;
+        }
+        // Requests of apps alone are no sign of boards.
+        if ![&self.packets, &self.refused].iter().any(|count| count.has_grown(SENT_LATELY, now)) {
             return None;
         }
         let last_refused = match refused {

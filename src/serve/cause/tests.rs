@@ -141,6 +141,16 @@ fn without_another_cause_the_last_refusal_is_told() {
 }
 
 #[test]
+fn requests_of_apps_alone_are_no_board_that_fails() {
+    let mut bench = Bench::new();
+    for ms in 1..5000 {
+        bench.counters.datagrams += 1;
+        bench.run(ms..ms + 1, |_, _| None);
+    }
+    assert_eq!(bench.told, []);
+}
+
+#[test]
 fn a_floor_to_which_nothing_is_sent_has_no_cause() {
     let mut bench = Bench::new();
     bench.run(1..5000, |_, _| None);
