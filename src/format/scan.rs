@@ -18,7 +18,6 @@ pub(crate) struct Scan {
     /// Its brackets and commas, except those in texts and comments.
     pub(crate) marks: Vec<Mark>,
     /// Its comments.
-    #[cfg_attr(not(feature = "edit"), expect(dead_code, reason = "only edits move comments"))]
     pub(crate) comments: Vec<Range<usize>>,
     /// Number of its words, numbers, texts, opening brackets and commas; a parser makes values of these.
     pub(crate) tokens: usize,

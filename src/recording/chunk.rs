@@ -97,9 +97,12 @@ impl Chunk {
     }
 }
 
+/// Decompresses the frame at the beginning of the bytes, which it takes off them, up to a length.
+type Unpack = fn(&mut &[u8], &mut Vec<u8>, u64) -> Result<(), Fault>;
+
 /// Decompresses up to `most` bytes of `packed`; on invalid data, returns the bytes before it and the fault.
 fn decompress(compression: &str, packed: &[u8], most: u64) -> Result<Vec<u8>, (Vec<u8>, Fault)> {
-    let unpack: fn(&mut &[u8], &mut Vec<u8>, u64) -> Result<(), Fault> = match compression {
+    let unpack: Unpack = match compression {
         "" => return Ok(packed.to_vec()),
         "zstd" => zstd_frame,
         "lz4" => lz4_frame,

@@ -241,7 +241,7 @@ impl Session {
     /// Sends a request that apps may also send over the wire, and waits for the answer as a [`Control`] does. Mute
     /// requests go through [`Session::send`].
     ///
-    /// [`Refusal`] has the reason why nothing has changed.
+    /// # Errors
     /// [`Refusal`] says why nothing has changed.
     pub fn ask(&self, message: ControlMessage) -> Result<(), Refusal> {
         let (answer, answered) = sync_channel(1);

@@ -166,8 +166,11 @@ mod tests {
 
     const HEADER: &str = "t_s,col,row,f_sw,f_se,f_nw,f_ne";
 
+    /// A time with the tiles that are loaded then.
+    type Loaded = (f64, Vec<usize>);
+
     /// The instants of a table, each with its loaded tiles, and its problems.
-    fn read(text: &str) -> Result<(Vec<(f64, Vec<usize>)>, Vec<String>), TableError> {
+    fn read(text: &str) -> Result<(Vec<Loaded>, Vec<String>), TableError> {
         let geometry = Geometry::default();
         let mut table = ForceTable::new(text.as_bytes(), geometry)?;
         let mut frame = ForceFrame::empty(&geometry);

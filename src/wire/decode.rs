@@ -520,7 +520,7 @@ mod tests {
             ("widget/zoom/enable", ControlMessage::Enable { id: id.clone() }),
         ] {
             let bare = raw(&format!("/underfoot/{path}"), None, &[]);
-            assert_eq!(decode(&bare).unwrap().controls, [message.clone()], "{path}");
+            assert_eq!(decode(&bare).unwrap().controls, std::slice::from_ref(&message), "{path}");
             assert_eq!(decode(&bundle(&[good_readings(), bare])).unwrap().controls, [message], "{path}");
         }
     }

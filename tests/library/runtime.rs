@@ -212,7 +212,12 @@ fn a_value_beyond_the_range_becomes_the_nearest_end_of_it() {
         for (given, taken) in [(1e6, scale.max), (-1e6, scale.min), (scale.max, scale.max)] {
             match control.set(given) {
                 Ok(()) => {
-                    assert_eq!(control.state().unwrap().value, Some(Value::Number(taken)), "{}", control.id())
+                    assert_eq!(
+                        control.state().unwrap().value,
+                        Some(Value::Number(taken)),
+                        "{}",
+                        control.id()
+                    );
                 }
                 Err(refusal) => assert_eq!(Err(refusal), self::refused(control.id(), SetError::Momentary)),
             }

@@ -98,6 +98,18 @@ mod tests {
     }
 
     #[test]
+    fn a_contact_that_was_split_off_another_presses_no_guarded_control() {
+        let run = Guard::HoldToRun(HoldToRun { max: Duration::from_secs(9), warn: None });
+        for (guard, is_pressed) in [(Guard::Free, true), (run, false)] {
+            let (contact, frame) = pressed(&[130.0], &[]);
+            assert!(is_believed(&contact, guard, &frame) && is_certain(&contact, guard, &frame));
+            let contact = Contact { split: true, ambiguous: true, ..contact };
+            assert_eq!(is_believed(&contact, guard, &frame), is_pressed, "{guard:?}");
+            assert_eq!(is_certain(&contact, guard, &frame), is_pressed, "{guard:?}");
+        }
+    }
+
+    #[test]
     fn what_is_left_without_a_suspected_sensor_keeps_a_button_and_presses_what_runs() {
         let run = Guard::HoldToRun(HoldToRun { max: Duration::from_secs(9), warn: None });
         for (guard, [some, enough]) in [(Guard::Free, [35.0, 45.0]), (run, [55.0, 65.0])] {

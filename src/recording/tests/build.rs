@@ -212,7 +212,7 @@ impl Tool {
         if self.attachments_last {
             data.extend(opening());
         }
-        let mut file = [&mcap::MAGIC[..], &data].concat();
+        let mut file = [mcap::MAGIC, &data].concat();
         let checksum = if self.data_checksum { crc32fast::hash(&file) } else { 0 };
         file.extend(record(op::DATA_END, &checksum.to_le_bytes()));
         if self.summary {

@@ -197,7 +197,7 @@ fn damage_is_named_with_its_place() {
 fn with(records: &[u8]) -> Vec<u8> {
     let head = record(op::HEADER, &[0; 8]);
     let end = [record(op::DATA_END, &[0; 4]), record(op::FOOTER, &[0; 20]), mcap::MAGIC.to_vec()].concat();
-    [&mcap::MAGIC[..], &head, &opening(), records, &end].concat()
+    [mcap::MAGIC, &head, &opening(), records, &end].concat()
 }
 
 fn complaint(records: &[u8]) -> String {
@@ -267,7 +267,7 @@ fn topics_of_others_take_no_memory_and_are_counted() {
 fn a_file_without_a_floor_says_what_it_lacks() {
     let head = record(op::HEADER, &[0; 8]);
     let end = [record(op::DATA_END, &[0; 4]), record(op::FOOTER, &[0; 20]), mcap::MAGIC.to_vec()].concat();
-    let stranger = [&mcap::MAGIC[..], &head, &channel(1, "/camera"), &end].concat();
+    let stranger = [mcap::MAGIC, &head, &channel(1, "/camera"), &end].concat();
     let why = read(stranger).unwrap_err().to_string();
     assert!(why.contains("floor.ron, layout.ron") && why.contains("a tool may have left"), "{why}");
     for file in [Vec::new(), b"not a recording".to_vec(), mcap::MAGIC.to_vec()] {

@@ -7,7 +7,9 @@ use super::*;
 const COLUMNS: [&[&str]; 2] = [&["col", "volts"], &["col", "volts", "newtons"]];
 
 /// The numbers of a table, its problems, and the columns that are not read.
-fn read(bytes: &[u8]) -> Result<(Vec<Vec<f64>>, Vec<String>, Vec<String>), TableError> {
+type Found = (Vec<Vec<f64>>, Vec<String>, Vec<String>);
+
+fn read(bytes: &[u8]) -> Result<Found, TableError> {
     let mut table = Table::new(bytes, &COLUMNS)?;
     let (mut row, mut rows) = (Row::default(), Vec::new());
     let width = COLUMNS[table.header()].len();

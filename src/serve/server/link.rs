@@ -91,7 +91,7 @@ impl LinkWatch {
         match cause {
             Some(cause) => self.notices.warn(now, || cause.to_string()),
             None => {
-                self.notices.info(now, || "the fault of boards or link that was last named is gone".into())
+                self.notices.info(now, || "the fault of boards or link that was last named is gone".into());
             }
         }
     }

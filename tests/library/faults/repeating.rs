@@ -272,7 +272,7 @@ fn a_converter_that_samples_twenty_times_a_second_works_and_holds_no_pedal() {
     let mut sampled: Vec<Readings> = vec![Readings::Counts(Default::default()); 2];
     let mut slow = move |ms: u64, board: u16, readings: &mut Readings| {
         let kept = &mut sampled[usize::from(board)];
-        if ms % 50 == 0 {
+        if ms.is_multiple_of(50) {
             kept.clone_from(readings);
         } else {
             readings.clone_from(kept);
