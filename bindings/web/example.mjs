@@ -40,14 +40,14 @@ try {
   await page.goto(`http://127.0.0.1:${port}/page.html?floor=${address}`);
   const says = (id, text) =>
     page.waitForFunction((id, text) => document.getElementById(id)?.textContent.includes(text), {}, id, text);
-  // The first line holds the range.
-  await says("controls", "0 to 1");
+  // Without packets each control says why it is off.
+  await says("controls", "has not been sensed yet");
   for (const end of ["SIGKILL", "SIGTERM"]) {
     floor.kill(end);
     await says("link", "no connection");
     floor = serve();
     await says("link", "waiting");
-    await says("controls", "0 to 1");
+    await says("controls", "has not been sensed yet");
   }
   console.log("example page: came back after each loss");
   status = 0;

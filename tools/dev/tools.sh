@@ -37,6 +37,9 @@ tool_packages() {
     python3 -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
 }
 
+# Whether LEAVE_OUT, words with blanks between them, has this one.
+is_left_out() { [[ " ${LEAVE_OUT:-} " == *" $1 "* ]]; }
+
 # Says of one tool that it is not there, and what is not tried for that; the run goes on.
 lacks() { say "NOT RUN: $*"; }
 
@@ -110,8 +113,8 @@ version_of() {
 
 install_cargo_tools() {
     has_cargo nextest || install_cargo cargo-nextest
-    # To build these two takes minutes, on a machine that is thrown away each time.
-    [ -z "${WITHOUT_CARGO_TOOLS:-}" ] || return 0
+    # To build these two takes minutes.
+    ! is_left_out cargo-tools || return 0
     [[ $(cargo deny --version 2>/dev/null) == cargo-deny\ 0.20.* ]] || install_cargo cargo-deny
     has_cargo cinstall || install_cargo cargo-c
 }
@@ -151,5 +154,7 @@ install_tools() {
     install_python
     install_web
     install_cargo_tools
+    # The shell forgets where it has found a python3 before.
+    hash -r
     [ $((SECONDS - start)) -lt 2 ] || say "the tools of the tests were installed in $((SECONDS - start)) s"
 }
