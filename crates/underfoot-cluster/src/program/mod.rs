@@ -19,7 +19,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use thiserror::Error;
 use underfoot::floor::Floor;
@@ -87,10 +87,18 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A flag set by SIGINT, SIGTERM, SIGHUP, or the end of `span`.
+/// Signals that end a command: those of a terminal and of a service manager, and of a closed terminal where there is one.
+const ENDS: &[i32] = &[
+    SIGINT,
+    SIGTERM,
+    #[cfg(unix)]
+    signal_hook::consts::SIGHUP,
+];
+
+/// A flag set by each of [`ENDS`], or the end of `span`.
 fn stop_flag(span: Option<f64>) -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM, SIGHUP] {
+    for &signal in ENDS {
         flag::register(signal, Arc::clone(&stop))
             .map_err(|error| Failure::Other(format!("signals can't be handled: {error}")))?;
     }

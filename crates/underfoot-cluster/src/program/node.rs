@@ -111,6 +111,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let (drafts, drafted) = sync_channel(WAITING);
     let sink = NodeSink::new(drafts);
     let held_up = sink.held_up();
+    #[cfg_attr(not(unix), expect(unused_mut, reason = "other systems have no watchdog"))]
     let mut sinks = Fanout::new().with(sink);
     #[cfg(unix)]
     if let Some(watchdog) = Watchdog::of_environment() {

@@ -6,8 +6,6 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use signal_hook::consts::SIGUSR1;
-use signal_hook::flag;
 use underfoot::source::{SensorSource, SourceError, UdpSource};
 use underfoot::units::{HostClock, Instant};
 use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
@@ -25,11 +23,10 @@ const LOOK_EVERY: Duration = Duration::from_millis(1);
 pub(super) struct Steps(Arc<AtomicU64>);
 
 impl Steps {
-    /// Adds one step at each SIGUSR1.
+    /// Adds one step at each SIGUSR1; an error on systems without that signal.
     pub(super) fn by_signal() -> Result<Self, Failure> {
         let (asked, steps_us) = (Arc::new(AtomicBool::new(false)), Arc::<AtomicU64>::default());
-        flag::register(SIGUSR1, Arc::clone(&asked))
-            .map_err(|error| Failure::Other(format!("signals can't be handled: {error}")))?;
+        register(&asked)?;
         let steps = Arc::clone(&steps_us);
         thread::spawn(move || {
             loop {
@@ -51,6 +48,18 @@ impl Steps {
     fn so_far(&self) -> Duration {
         Duration::from_micros(self.0.load(Ordering::Relaxed))
     }
+}
+
+#[cfg(unix)]
+fn register(asked: &Arc<AtomicBool>) -> Result<(), Failure> {
+    signal_hook::flag::register(signal_hook::consts::SIGUSR1, Arc::clone(asked))
+        .map(drop)
+        .map_err(|error| Failure::Other(format!("signals can't be handled: {error}")))
+}
+
+#[cfg(not(unix))]
+fn register(_: &Arc<AtomicBool>) -> Result<(), Failure> {
+    Err(Failure::Other("this system has no signal that steps the clock".into()))
 }
 
 /// A source on a clock with steps.
