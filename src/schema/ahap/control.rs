@@ -108,7 +108,7 @@ impl Control {
     pub(super) fn bends(&self, from: f32, to: f32) -> impl Iterator<Item = f32> + '_ {
         let begin = self.points.partition_point(|point| point.t <= from + SAME_S);
         let rest = self.points.get(begin..).unwrap_or_default();
-        // What happens in the last millisecond belongs to a jump at the end.
+        // A bend in the last millisecond is part of a jump at the end.
         rest.iter().map(|point| point.t).take_while(move |t| *t < to - JUMP_S - SAME_S)
     }
 

@@ -272,22 +272,7 @@ fn an_actuator_that_is_driven_too_long_is_turned_down() {
         "Scenario(title: \"Long\", person: (mass_kg: 70, foot_m: 0.27), steps: [Wait(ms: 1200), \
          Enter(from: South, at: (2.2, 0.5)), Press(widget: \"drive\", force_n: 140, hold_ms: 60000), Wait(ms: 500)])",
     );
-    let output = underfoot()
-        .current_dir(folder.path())
-        .args([
-            "session",
-            "page.ron",
-            "--scenario",
-            "visit.ron",
-            "--calibrate",
-            "--out",
-            "out",
-            "--rate",
-            "8000",
-        ])
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", said(&output));
+    super::session::play(folder.path(), &[]);
     let powers = powers(&folder.path().join("out/actuators.wav"));
     let most = powers.iter().copied().fold(0.0, f32::max);
     // The foot is down from second 5 on.
