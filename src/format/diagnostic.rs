@@ -75,6 +75,12 @@ impl Diagnostic {
             excerpt: Excerpt::default(),
         }
     }
+
+    /// Sets the code of the rule that the file breaks.
+    #[cfg(any(feature = "ergonomics", feature = "letters"))]
+    pub(crate) fn with_code(self, code: &'static str) -> Self {
+        Self { code: Some(code), ..self }
+    }
 }
 
 impl fmt::Display for Diagnostic {

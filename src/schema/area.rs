@@ -27,7 +27,8 @@ pub(super) struct Area {
 impl Area {
     /// Reads the area from the fields `at` and `size`.
     pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
-        let (least, most) = (fields.units().shortest(), fields.units().furthest());
+        let units = Units::of(fields.reader());
+        let (least, most) = (units.shortest(), units.furthest());
         let at = fields.read("at", None, |node| node.pair(-most..=most));
         let size = fields.read("size", None, |node| node.pair(least..=most));
         Some(Self::new(at?, size?))

@@ -11,6 +11,7 @@ use super::node::{Node, is_id};
 use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
+use super::units::Units;
 use crate::format::codec::{At, Written};
 use crate::format::{Codec, Id};
 use crate::layout::Icon;
@@ -128,7 +129,8 @@ impl<'r> Grid<'r> {
 }
 
 fn size(fields: &mut Fields<'_>, is_relative: bool) -> Option<Size> {
-    let (least, most) = (fields.units().shortest(), fields.units().furthest());
+    let units = Units::of(fields.reader());
+    let (least, most) = (units.shortest(), units.furthest());
     fields.read("size", is_relative.then_some(Size::Neighbours), |node| {
         node.pair(least..=most).map(Size::Fixed)
     })

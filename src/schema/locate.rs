@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::diagnostic::{Diagnostic, Diagnostics};
+use super::diagnostic::Diagnostics;
 use super::pairs::Limits;
 use super::places::Places;
 use super::problem::Problem;
@@ -60,7 +60,7 @@ impl Places {
             let problem = Problem { severity: finding.severity, ..Problem::error(span, message) };
             let problem = problem.expected(finding.expected.clone()).help_if(finding.help.clone());
             let located = reader.only(problem).into_iter();
-            located.map(|problem| Diagnostic { code: Some(finding.rule.code), ..problem })
+            located.map(|problem| problem.with_code(finding.rule.code))
         });
         Diagnostics::new(list.collect(), std::iter::empty())
     }

@@ -1,6 +1,6 @@
 //! Places of letters in a layout that no font contains.
 
-use super::diagnostic::{Diagnostic, Diagnostics};
+use super::diagnostic::Diagnostics;
 use super::pairs::Limits;
 use super::places::Places;
 use super::problem::Problem;
@@ -38,8 +38,7 @@ impl Places {
                 .help_if(Some(
                     "install a font that has them where the layout is shown, or write other letters".into(),
                 ));
-            problems
-                .extend(reader.only(problem).into_iter().map(|one| Diagnostic { code: Some(CODE), ..one }));
+            problems.extend(reader.only(problem).into_iter().map(|one| one.with_code(CODE)));
         }
         Diagnostics::new(problems, std::iter::empty())
     }

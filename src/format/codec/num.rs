@@ -9,7 +9,6 @@ use crate::format::hand::Hand;
 use crate::format::node::Node;
 use crate::format::number::Number;
 use crate::format::text::{Entry, Text as RonText, number};
-use crate::units::Newtons;
 
 /// A number. The end of the field's name gives its unit.
 #[derive(Clone, Copy, Debug)]
@@ -98,24 +97,6 @@ impl Scalar for f32 {
 
     fn turned(shown: f32) -> Self {
         shown
-    }
-}
-
-impl Scalar for Newtons {
-    fn of(written: Number, scale: f64) -> Self {
-        Self(f32::of(written, scale))
-    }
-
-    fn to_ron(self, scale: f64) -> String {
-        self.0.to_ron(scale)
-    }
-
-    fn shown(self) -> f32 {
-        self.0
-    }
-
-    fn turned(shown: f32) -> Self {
-        Self(shown)
     }
 }
 
