@@ -98,12 +98,7 @@ pub mod ergonomics;
 pub mod experiment;
 pub mod feel;
 pub mod floor;
-mod format;
 pub mod ground;
-#[cfg(feature = "internals")]
-pub mod label;
-#[cfg(not(feature = "internals"))]
-mod label;
 pub mod layout;
 #[cfg(feature = "letters")]
 pub mod letters;
@@ -139,6 +134,9 @@ pub mod source;
 pub mod units;
 pub mod widget;
 pub mod wire;
+
+#[cfg(feature = "internals")]
+pub use underfoot_format::label;
 
 // Public signatures contain types of these crates.
 pub use {arrayvec, glam, smallvec, triple_buffer};

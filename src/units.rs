@@ -9,8 +9,8 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::format::codec::Scalar;
-use crate::format::number::Number;
+use underfoot_format::codec::Scalar;
+use underfoot_format::number::Number;
 
 /// A force along the floor's normal, in newtons; positive presses the floor down.
 ///

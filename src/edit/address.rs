@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::format::outline::{Element, Outline, OutlineShape};
+use underfoot_format::outline::{Element, Outline, OutlineShape};
 
 /// A list of records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

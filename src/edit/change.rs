@@ -3,7 +3,7 @@
 use super::address::{Address, List, list_of};
 use super::refusal::Refusal;
 use super::splice::{Lines, Piece, Splice, spliced};
-use crate::format::outline::{Outline, OutlineShape};
+use underfoot_format::outline::{Outline, OutlineShape};
 
 /// One change of a layout. In a sequence, each edit addresses the records as the edits before it left them.
 #[derive(Clone, Debug, PartialEq, Eq)]

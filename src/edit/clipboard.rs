@@ -7,8 +7,8 @@ use super::change::Edit;
 use super::document::Document;
 use super::refusal::Refusal;
 use super::splice::{Lines, Piece, spliced};
-use crate::format::outline::Outline;
-use crate::format::source::MAX_BYTES;
+use underfoot_format::outline::Outline;
+use underfoot_format::source::MAX_BYTES;
 
 impl Document {
     /// The text of these records with their comments, one below the other, for a clipboard; ignores records that do

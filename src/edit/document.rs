@@ -10,9 +10,9 @@ use super::refusal::Refusal;
 use super::splice::Piece;
 use crate::ergonomics::{self, Finding};
 use crate::floor::Floor;
-use crate::format::outline::Outline;
 use crate::layout::Layout;
 use crate::schema::{Diagnostics, Kinds, Loaded, parse_layout};
+use underfoot_format::outline::Outline;
 
 /// The byte-order mark, with which a file may begin; it is not part of the text.
 const MARK: &str = "\u{feff}";

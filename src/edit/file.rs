@@ -4,9 +4,9 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::merge::{Merge, merge};
-use crate::format::file::read_bounded;
-use crate::format::source::MAX_BYTES;
 use crate::schema::{SaveError, save_text, write_over};
+use underfoot_format::file::read_bounded;
+use underfoot_format::source::MAX_BYTES;
 
 /// Name of the draft of a layout without a file.
 const UNTITLED: &str = "untitled.ron";

@@ -9,7 +9,7 @@ use super::item::Item;
 use super::place::{RELATIVE, pair};
 use super::refusal::Refusal;
 use super::splice::{Lines, Piece, comments, spliced};
-use crate::format::outline::Outline;
+use underfoot_format::outline::Outline;
 
 impl Document {
     /// The edits that make one group of `items`, and its address: it replaces the first of them, and its place is

@@ -6,11 +6,11 @@ use super::document::Document;
 use super::item::Item;
 use crate::ergonomics::{Finding, Part};
 use crate::floor::Rect;
-use crate::format::describe::{FieldDescription, FieldType};
-use crate::format::text::Entry;
-use crate::format::{Record, Variants};
 use crate::layout::Widget;
 use crate::schema::Diagnostic;
+use underfoot_format::describe::{FieldDescription, FieldType};
+use underfoot_format::text::Entry;
+use underfoot_format::{Record, Variants};
 
 /// The origin of a field's value.
 #[derive(Clone, Debug, PartialEq, Eq)]

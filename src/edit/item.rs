@@ -7,7 +7,7 @@ use glam::Vec2;
 use super::address::{Address, List};
 use super::document::Document;
 use crate::floor::Rect;
-use crate::format::outline::Outline;
+use underfoot_format::outline::Outline;
 
 /// A record that covers a part of the floor.
 #[derive(Clone, Debug, PartialEq)]

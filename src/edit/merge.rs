@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::address::Address;
-use crate::format::outline::Outline;
+use underfoot_format::outline::Outline;
 
 /// The result of merging two changes of one text.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use super::document::Document;
 use super::item::{Item, around};
 use super::refusal::Refusal;
 use crate::floor::Rect;
-use crate::format::number::plain;
 use crate::widget::{Axis, Behaviour, Track};
+use underfoot_format::number::plain;
 
 /// Fields that define a place relative to a neighbour.
 pub(super) const RELATIVE: [&str; 6] =

@@ -1,7 +1,7 @@
 //! Updates the values in a hand-written text from a generated one; the text between the values stays.
 
 use super::splice::{Lines, Splice, spliced};
-use crate::format::outline::{Element, Outline, OutlineShape};
+use underfoot_format::outline::{Element, Outline, OutlineShape};
 
 /// Maximum number of values to update one by one; a file with more differences is a different file.
 const MOST: usize = 2000;

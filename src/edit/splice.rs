@@ -4,8 +4,8 @@
 
 use std::ops::Range;
 
-use crate::format::outline::{Element, Outline, OutlineShape};
-use crate::format::scan::scan;
+use underfoot_format::outline::{Element, Outline, OutlineShape};
+use underfoot_format::scan::scan;
 
 /// One step of indentation.
 const STEP: &str = "    ";

@@ -89,7 +89,7 @@ impl Template {
 }
 
 fn plain(value: f64) -> String {
-    crate::format::number::plain((value * 1e3).round() / 1e3)
+    underfoot_format::number::plain((value * 1e3).round() / 1e3)
 }
 
 #[cfg(test)]

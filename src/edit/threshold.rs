@@ -3,9 +3,9 @@
 use super::address::Address;
 use super::change::Edit;
 use super::document::Document;
-use crate::format::number::plain;
 use crate::units::Newtons;
 use crate::widget::Thresholds;
+use underfoot_format::number::plain;
 
 /// Maximum ratio of release force to press force without chatter under a swaying foot, as the reader's warning
 /// states.

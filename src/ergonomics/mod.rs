@@ -29,8 +29,8 @@ pub use rules::{RULES, Rule, rule};
 pub(crate) use space::{REACH_M, STEP_AWAY_M, footing};
 
 use crate::floor::Floor;
-use crate::format::diagnostic::Severity;
 use crate::layout::{Layout, Widget};
+use underfoot_format::diagnostic::Severity;
 
 /// The aspect of a control that a finding concerns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 
 use super::{Body, CrackRules, EnergyLaw, Ring};
 use crate::floor::Rect;
-use crate::format::{Name, Opt, Own, Rec, num, record};
 use crate::units::Newtons;
 use crate::widget::Axis;
+use underfoot_format::{Name, Opt, Own, Rec, num, record};
 
 /// The area and material of a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Pictures on the faces of controls.
 
-use crate::format::Named;
 use crate::widget::Behaviour;
+use underfoot_format::Named;
 
 /// A picture on a control's face, distinguishable from standing height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

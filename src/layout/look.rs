@@ -4,8 +4,8 @@ use super::Icon;
 use std::fmt;
 use std::str::FromStr;
 
-use crate::format::codec::Spelled;
-use crate::format::{Name, Named, Opt, record};
+use underfoot_format::codec::Spelled;
+use underfoot_format::{Name, Named, Opt, record};
 
 /// An opaque colour in sRGB, written `#rrggbb`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

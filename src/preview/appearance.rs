@@ -10,10 +10,10 @@ use eframe::egui::{Key, Modifiers, PopupCloseBehavior, Ui};
 use super::app::App;
 use super::style;
 use super::style::quiet;
-use crate::format::file::read_bounded;
 use crate::layout::Colour;
 use crate::scene::Theme;
 use crate::schema::save_text;
+use underfoot_format::file::read_bounded;
 
 /// The file's first line.
 const HEAD: &str = "underfoot window 1";

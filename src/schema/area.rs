@@ -10,9 +10,9 @@ use super::node::Node;
 use super::number::plain;
 use super::units::Units;
 use crate::floor::{Geometry, Rect};
-use crate::format::Codec;
-use crate::format::describe::{FieldDescription, FieldType};
-use crate::format::text::Text;
+use underfoot_format::Codec;
+use underfoot_format::describe::{FieldDescription, FieldType};
+use underfoot_format::text::Text;
 
 /// Tolerance within which edges count as touching, in tiles: far below any foot, far above rounding errors.
 const TOUCH: f64 = 1e-6;

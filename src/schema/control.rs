@@ -12,9 +12,9 @@ use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
 use super::units::Units;
-use crate::format::codec::{At, Written};
-use crate::format::{Codec, Id};
 use crate::layout::Icon;
+use underfoot_format::codec::{At, Written};
+use underfoot_format::{Codec, Id};
 
 /// One control. A field that could not be read is `None` and has been reported.
 #[derive(Clone, Debug, PartialEq)]

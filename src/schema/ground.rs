@@ -15,14 +15,14 @@ use super::number::plain;
 use super::problem::Problem;
 use super::units::Units;
 use crate::floor::Geometry;
-use crate::format::codec::By;
-#[cfg(feature = "edit")]
-use crate::format::describe::FieldDescription;
-use crate::format::describe::{Description, FieldType};
-use crate::format::text::Text;
-use crate::format::{Codec, Record};
 use crate::ground::{GrainSpec, GroundSpec, IceSpec, Material, WoodSpec};
 use crate::layout::{Colour, Ground, HEX};
+use underfoot_format::codec::By;
+#[cfg(feature = "edit")]
+use underfoot_format::describe::FieldDescription;
+use underfoot_format::describe::{Description, FieldType};
+use underfoot_format::text::Text;
+use underfoot_format::{Codec, Record};
 
 /// Maximum number of grounds of one layout: each has state for every tile.
 const MOST: usize = 16;

@@ -48,11 +48,9 @@ mod units;
 mod version;
 mod write;
 
-use crate::format::{diagnostic, fields, file, node, number, pairs, problem, reader, source, suggest};
+use underfoot_format::{diagnostic, fields, file, node, number, pairs, problem, reader, source, suggest};
 
 pub use crate::feel::{Effects, NamedEffect};
-#[cfg(feature = "internals")]
-pub use crate::format::describe::{Description, FieldDescription, FieldType};
 #[cfg(any(feature = "internals", test))]
 pub use ahap::{AhapError, read_ahap, write_ahap};
 pub use builtin::{builtin_layout, builtin_layouts};
@@ -73,6 +71,8 @@ pub(crate) use save::write_over;
 pub use save::{SaveError, Saved, save_floor, save_text};
 #[cfg(feature = "save")]
 pub use state::usual_state;
+#[cfg(feature = "internals")]
+pub use underfoot_format::describe::{Description, FieldDescription, FieldType};
 pub use version::FORMAT_VERSION;
 pub use write::write_layout;
 

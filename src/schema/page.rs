@@ -24,10 +24,10 @@ use super::units::{UNITS, Units};
 use super::version::{self, VERSION};
 use crate::feel::Effects;
 use crate::floor::Geometry;
-use crate::format::codec::{At, Distinct, Written};
-use crate::format::{Id, Name, Record, Text, record};
 use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
+use underfoot_format::codec::{At, Distinct, Written};
+use underfoot_format::{Id, Name, Record, Text, record};
 
 /// A valid layout, with its warnings.
 #[derive(Clone, Debug, PartialEq)]

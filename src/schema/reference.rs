@@ -5,10 +5,10 @@ use std::fmt::Write;
 use super::ground;
 use super::suggest::did_you_mean;
 use crate::feel::{EffectKind, Feel, Manner};
-use crate::format::describe::{Description, FieldDescription};
-use crate::format::{Record, Variants};
 use crate::layout::Look;
 use crate::widget::Behaviour;
+use underfoot_format::describe::{Description, FieldDescription};
+use underfoot_format::{Record, Variants};
 
 /// One kind of content of files, with all possible records.
 #[derive(Clone, Debug)]

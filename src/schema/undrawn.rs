@@ -6,7 +6,7 @@ use super::places::Places;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::source::Source;
-use crate::format::outline::Outline;
+use underfoot_format::outline::Outline;
 
 /// The rule's code in `underfoot check --explain`.
 const CODE: &str = "U304";

@@ -2,9 +2,9 @@
 
 use super::reader::Reader;
 use crate::floor::Geometry;
-use crate::format::codec::By;
-use crate::format::{Codec, Name, Named};
 use std::sync::Arc;
+use underfoot_format::codec::By;
+use underfoot_format::{Codec, Name, Named};
 
 /// The unit of the places, sizes and gaps of a layout.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -7,10 +7,10 @@ use glam::Vec2;
 
 use super::Person;
 use crate::floor::Rect;
-use crate::format::codec::By;
-use crate::format::describe::FieldType;
-use crate::format::{Codec, Name, Named, Num, OneOf, Opt, Pair, Rec, Text, choices, list, num, record};
 use crate::units::Newtons;
+use underfoot_format::codec::By;
+use underfoot_format::describe::FieldType;
+use underfoot_format::{Codec, Name, Named, Num, OneOf, Opt, Pair, Rec, Text, choices, list, num, record};
 
 record! {
     /// Actions of people on a floor; playing it needs a layout.

@@ -5,7 +5,7 @@ use super::{
     ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec, SliderSpec,
     StepperSpec, SwitchSpec, Thresholds, Value,
 };
-use crate::format::choices;
+use underfoot_format::choices;
 
 choices! {
     /// The function of a control, with its settings.

@@ -1,8 +1,8 @@
 //! The range, steps and detents of a number.
 
-use crate::format::Faults;
-use crate::format::number::plain;
-use crate::format::{Follow, Num, num, record};
+use underfoot_format::Faults;
+use underfoot_format::number::plain;
+use underfoot_format::{Follow, Num, num, record};
 
 /// Range of values of controls: `f32` still resolves a tenth.
 pub(super) const VALUES: Num = num(-1e6..=1e6);

@@ -19,7 +19,7 @@ use super::number::Number;
 use super::press::Outcome;
 use super::scale::INITIAL;
 use super::{Axis, Emitted, Scale, SetError, Thresholds, Value};
-use crate::format::{Flat, Name, Opt, num, record};
+use underfoot_format::{Flat, Name, Opt, num, record};
 
 use crate::units::Instant;
 

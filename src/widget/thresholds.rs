@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use super::Guard;
 use super::stage::Stage;
-use crate::format::number::plain;
-use crate::format::{Faults, Num, OneOf, num, record};
 use crate::units::Newtons;
+use underfoot_format::number::plain;
+use underfoot_format::{Faults, Num, OneOf, num, record};
 
 /// Range of a dwell or lockout.
 const BRIEF: Num = num(0.0..=2000.0).milli();

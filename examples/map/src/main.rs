@@ -1,5 +1,8 @@
 //! A map of the world, operated with the feet. Without arguments it runs on a simulated floor.
 
+// An app exports nothing: `pub` stands for what the parts use of each other.
+#![allow(unreachable_pub)]
+
 mod app;
 mod chart;
 mod guide;

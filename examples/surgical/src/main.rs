@@ -2,6 +2,9 @@
 //!
 //! An example of a user interface, not a medical device.
 
+// An app exports nothing: `pub` stands for what the parts use of each other.
+#![allow(unreachable_pub)]
+
 mod app;
 mod beam;
 mod chart;

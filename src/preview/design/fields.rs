@@ -10,9 +10,9 @@ use super::Designer;
 use super::inspector::ROW_PX;
 use crate::edit::{Address, Edit, Origin, Property};
 use crate::floor::Rect;
-use crate::format::describe::FieldType;
-use crate::format::number::plain;
-use crate::format::words::unit;
+use underfoot_format::describe::FieldType;
+use underfoot_format::number::plain;
+use underfoot_format::words::unit;
 
 /// Width of a text field, in points.
 const TYPED_PX: f32 = 122.0;

@@ -11,11 +11,11 @@ use super::{Designer, Pane};
 use crate::edit::{Address, Edit, Item, Origin, Property, Section};
 use crate::egui_painter::color;
 use crate::feel::{Effect, Feel, Gesture};
-use crate::format::diagnostic::Severity;
 use crate::layout::Widget;
 use crate::preview::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet, section};
 use crate::scene::{Theme, in_drawn_order};
+use underfoot_format::diagnostic::Severity;
 
 /// The state of the inspector.
 #[derive(Default)]

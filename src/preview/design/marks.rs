@@ -10,9 +10,9 @@ use super::labels::{Labels, label};
 use crate::egui_painter::{ScreenFromFloor, color};
 use crate::ergonomics::{REACH_M, STEP_AWAY_M, footing};
 use crate::floor::Rect;
-use crate::format::diagnostic::Severity;
 use crate::scene::{Shoe, Theme};
 use crate::units::Newtons;
+use underfoot_format::diagnostic::Severity;
 
 impl Designer {
     /// Draws the selection, its guide lines and the findings.

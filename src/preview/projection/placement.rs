@@ -7,8 +7,8 @@ use glam::{DVec2, Vec2};
 
 use super::homography::{Homography, is_convex};
 use crate::floor::Rect;
-use crate::format::file::read_bounded;
 use crate::schema::save_text;
+use underfoot_format::file::read_bounded;
 
 /// The place of the floor on a projector's picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

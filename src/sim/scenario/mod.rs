@@ -15,17 +15,17 @@ use super::person::MoveError;
 use super::script::Script;
 use super::slide::Slide;
 use crate::floor::{Geometry, Rect};
-use crate::format::describe::Description;
-use crate::format::diagnostic::Diagnostics;
-use crate::format::node::Node;
-use crate::format::pairs::Limits;
-use crate::format::problem::Problem;
-use crate::format::reader::Reader;
-use crate::format::source::{Source, read_text};
-use crate::format::suggest::did_you_mean;
-use crate::format::{Record, Variants};
 use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
+use underfoot_format::describe::Description;
+use underfoot_format::diagnostic::Diagnostics;
+use underfoot_format::node::Node;
+use underfoot_format::pairs::Limits;
+use underfoot_format::problem::Problem;
+use underfoot_format::reader::Reader;
+use underfoot_format::source::{Source, read_text};
+use underfoot_format::suggest::did_you_mean;
+use underfoot_format::{Record, Variants};
 
 /// A scenario file, parsed and with its numbers checked, not yet resolved against a layout.
 ///

@@ -15,13 +15,15 @@ use crate::label::{describe as describe_character, first_unfit};
 
 /// Limits that another field sets for numbers of a record, beyond their own range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Within {
-    pub(crate) low: f64,
-    pub(crate) high: f64,
+pub struct Within {
+    /// Minimum.
+    pub low: f64,
+    /// Maximum.
+    pub high: f64,
     /// Name of the limits in messages.
-    pub(crate) noun: &'static str,
+    pub noun: &'static str,
     /// Advice on how to widen the limits, and the field that sets them.
-    pub(crate) wider: &'static str,
+    pub wider: &'static str,
 }
 
 impl Within {
@@ -42,31 +44,33 @@ impl Within {
 
 /// One value of the file, and its name in messages.
 #[derive(Clone, Copy)]
-pub(crate) struct Node<'r> {
-    pub(crate) reader: &'r Reader<'r>,
-    pub(crate) expr: &'r Expr<'r>,
+pub struct Node<'r> {
+    /// The reader of the file.
+    pub reader: &'r Reader<'r>,
+    /// The value as the parser gives it.
+    pub expr: &'r Expr<'r>,
     /// The field that holds the value, or the name for entries of its list.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
 }
 
 impl<'r> Node<'r> {
     /// Returns its place in the text.
-    pub(crate) fn span(&self) -> Range<usize> {
+    pub fn span(&self) -> Range<usize> {
         bytes(self.expr.span())
     }
 
     /// Reports a problem.
-    pub(crate) fn report(&self, problem: Problem) {
+    pub fn report(&self, problem: Problem) {
         self.reader.report(problem);
     }
 
     /// Whether the value is `None`.
-    pub(crate) fn is_none(&self) -> bool {
+    pub fn is_none(&self) -> bool {
         matches!(self.expr, Expr::Option(option) if option.value.is_none())
     }
 
     /// Returns the value inside any `Some(...)` around it.
-    pub(crate) fn inside(mut self) -> Self {
+    pub fn inside(mut self) -> Self {
         while let Expr::Option(option) = self.expr
             && let Some(some) = &option.value
         {
@@ -76,7 +80,7 @@ impl<'r> Node<'r> {
     }
 
     /// Returns the value of the field `name` if this is a `Kind(...)` with that field; reports nothing.
-    pub(crate) fn peek(&self, kind: &'static str, name: &'static str) -> Option<Node<'r>> {
+    pub fn peek(&self, kind: &'static str, name: &'static str) -> Option<Node<'r>> {
         let fields = match self.expr {
             Expr::AnonStruct(node) => &node.fields,
             Expr::Struct(node) if node.name.name == kind => match &node.body {
@@ -90,12 +94,12 @@ impl<'r> Node<'r> {
     }
 
     /// Whether the value is a `Name(...)` with this name, or the name alone.
-    pub(crate) fn is_called(&self, name: &str) -> bool {
+    pub fn is_called(&self, name: &str) -> bool {
         matches!(self.expr, Expr::Struct(node) if node.name.name == name)
     }
 
     /// Returns the text if the value is one; reports nothing.
-    pub(crate) fn peek_text(&self) -> Option<&'r str> {
+    pub fn peek_text(&self) -> Option<&'r str> {
         let Expr::String(text) = self.expr else { return None };
         Some(&text.value)
     }
@@ -109,13 +113,13 @@ impl<'r> Node<'r> {
     }
 
     /// Returns the number if the value is one; reports nothing.
-    pub(crate) fn peek_number(&self) -> Option<f64> {
+    pub fn peek_number(&self) -> Option<f64> {
         let Expr::Number(number) = self.expr else { return None };
         parse_number(&number.raw).ok().map(|number| number.value)
     }
 
     /// Reports that this is not the `expected` thing, and returns `None`.
-    pub(crate) fn mismatch<T>(&self, expected: &str) -> Option<T> {
+    pub fn mismatch<T>(&self, expected: &str) -> Option<T> {
         // The parser has already reported the cause of an error node.
         if !matches!(self.expr, Expr::Error(_)) {
             let message = format!("`{}` must be {expected}", self.name);
@@ -128,7 +132,7 @@ impl<'r> Node<'r> {
     }
 
     /// A finite number within `range`.
-    pub(crate) fn number(&self, range: RangeInclusive<f64>) -> Option<Number> {
+    pub fn number(&self, range: RangeInclusive<f64>) -> Option<Number> {
         let Expr::Number(number) = self.expr else { return self.mismatch("a number") };
         let (name, raw) = (self.name, &number.raw);
         let (message, found) = match parse_number(raw) {
@@ -149,7 +153,7 @@ impl<'r> Node<'r> {
     }
 
     /// A whole number within `range`.
-    pub(crate) fn whole(&self, range: RangeInclusive<u32>) -> Option<u32> {
+    pub fn whole(&self, range: RangeInclusive<u32>) -> Option<u32> {
         let number = self.number(f64::from(*range.start())..=f64::from(*range.end()))?;
         if !number.whole {
             self.report_fraction();
@@ -158,26 +162,26 @@ impl<'r> Node<'r> {
     }
 
     /// Reports that this is not a whole number.
-    pub(crate) fn report_fraction(&self) {
+    pub fn report_fraction(&self) {
         let message = format!("`{}` must be a whole number", self.name);
         self.report(Problem::error(self.span(), message).expected("expected digits only"));
     }
 
     /// A finite number within `range` and within the limits of the surrounding record.
-    pub(crate) fn bounded(&self, range: RangeInclusive<f64>) -> Option<Number> {
+    pub fn bounded(&self, range: RangeInclusive<f64>) -> Option<Number> {
         let number = self.number(range)?;
         let within = self.reader.within();
         within.is_none_or(|within| within.holds(self, f64::from(number.single))).then_some(number)
     }
 
     /// `true` or `false`.
-    pub(crate) fn flag(&self) -> Option<bool> {
+    pub fn flag(&self) -> Option<bool> {
         let Expr::Bool(flag) = self.expr else { return self.mismatch("true or false") };
         Some(flag.value)
     }
 
     /// Text of at most `longest` characters, all of them visible.
-    pub(crate) fn text(&self, longest: usize) -> Option<&'r str> {
+    pub fn text(&self, longest: usize) -> Option<&'r str> {
         let Expr::String(text) = self.expr else { return self.mismatch("text") };
         let length = text.value.chars().count();
         if length > longest {
@@ -204,7 +208,7 @@ impl<'r> Node<'r> {
     }
 
     /// A name that can be part of an OSC address: `a` to `z`, `0` to `9` and `_`, at most 64 of them.
-    pub(crate) fn id(&self) -> Option<&'r str> {
+    pub fn id(&self) -> Option<&'r str> {
         let text = self.text(64)?;
         if is_id(text) {
             return Some(text);
@@ -223,7 +227,7 @@ impl<'r> Node<'r> {
     }
 
     /// Reads one of the names in `choices` and returns its value.
-    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
+    pub fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let all = listed(&names, "or");
         // A list too long to stand beside the carets goes below them.
@@ -249,7 +253,7 @@ impl<'r> Node<'r> {
     }
 
     /// Returns the one of `names` that is written, and the fields in the brackets behind it, if any.
-    pub(crate) fn variant(&self, names: &[&'static str]) -> Option<(&'static str, Fields<'r>)> {
+    pub fn variant(&self, names: &[&'static str]) -> Option<(&'static str, Fields<'r>)> {
         let expected = listed(names, "or");
         let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
         let written = &*variant.name.name;
@@ -268,7 +272,7 @@ impl<'r> Node<'r> {
     }
 
     /// Returns the entries of a list of at most `most`; messages call each of them `entry`.
-    pub(crate) fn list(&self, entry: &'static str, most: usize) -> Option<Vec<Node<'r>>> {
+    pub fn list(&self, entry: &'static str, most: usize) -> Option<Vec<Node<'r>>> {
         let Expr::Seq(list) = self.expr else { return self.mismatch("a list") };
         if list.items.len() > most {
             let message = format!("`{}` has too many entries", self.name);
@@ -280,7 +284,7 @@ impl<'r> Node<'r> {
     }
 
     /// Returns the `N` values of a tuple; the error message shows `pattern`.
-    pub(crate) fn tuple<const N: usize>(&self, pattern: &str) -> Option<[Node<'r>; N]> {
+    pub fn tuple<const N: usize>(&self, pattern: &str) -> Option<[Node<'r>; N]> {
         let elements = match self.expr {
             Expr::Tuple(tuple) => &tuple.elements,
             _ => return self.mismatch(pattern),
@@ -291,7 +295,7 @@ impl<'r> Node<'r> {
     }
 
     /// Two numbers within `range`: east and north.
-    pub(crate) fn pair(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
+    pub fn pair(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
         let [east, north] =
             self.tuple(if self.name == "size" { "(width, depth)" } else { "(east, north)" })?;
         let (east, north) = (east.number(range.clone()), north.number(range));
@@ -299,7 +303,7 @@ impl<'r> Node<'r> {
     }
 
     /// One number within `range` for both directions, or one number for each.
-    pub(crate) fn one_or_two(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
+    pub fn one_or_two(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
         match self.expr {
             Expr::Tuple(_) => self.pair(range),
             _ => self.number(range).map(|number| [number.value; 2]),
@@ -307,7 +311,7 @@ impl<'r> Node<'r> {
     }
 
     /// Returns the named fields of a `Name(...)`; the name is optional.
-    pub(crate) fn fields(&self, name: &'static str) -> Option<Fields<'r>> {
+    pub fn fields(&self, name: &'static str) -> Option<Fields<'r>> {
         let (written, open, fields) = match self.expr {
             Expr::AnonStruct(node) => (None, bytes(&node.open_paren), node.fields.as_slice()),
             Expr::Unit(node) => (None, bytes(&node.span), [].as_slice()),
@@ -334,7 +338,7 @@ impl<'r> Node<'r> {
 }
 
 /// Whether `text` can be part of an OSC address.
-pub(crate) fn is_id(text: &str) -> bool {
+pub fn is_id(text: &str) -> bool {
     (1..=64).contains(&text.len()) && text.chars().all(in_id)
 }
 

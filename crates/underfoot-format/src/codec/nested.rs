@@ -1,15 +1,15 @@
 //! Records within records.
 
 use super::Codec;
-use crate::format::describe::{FieldDescription, FieldType, first_paragraph};
-use crate::format::fields::Fields;
-use crate::format::hand::Hand;
-use crate::format::node::Node;
-use crate::format::record::{Record, Variants};
-use crate::format::text::{Entry, Text as RonText};
+use crate::describe::{FieldDescription, FieldType, first_paragraph};
+use crate::fields::Fields;
+use crate::hand::Hand;
+use crate::node::Node;
+use crate::record::{Record, Variants};
+use crate::text::{Entry, Text as RonText};
 
 /// A record of its own.
-pub(crate) struct Rec;
+pub struct Rec;
 
 impl<T: Record> Codec<T> for Rec {
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
@@ -41,7 +41,7 @@ impl<T: Record> Codec<T> for Rec {
 }
 
 /// A record whose fields stand among those of the record around it.
-pub(crate) struct Flat;
+pub struct Flat;
 
 impl<T: Record> Codec<T> for Flat {
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
@@ -78,7 +78,7 @@ impl<T: Record> Codec<T> for Flat {
 }
 
 /// One of several records, given by its name, with its fields beside the name.
-pub(crate) struct Beside;
+pub struct Beside;
 
 impl<T: Variants> Codec<T> for Beside {
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
@@ -148,7 +148,7 @@ impl<T: Variants> Codec<T> for Beside {
 }
 
 /// One of several records, given by its name, with its fields in brackets behind the name.
-pub(crate) struct OneOf;
+pub struct OneOf;
 
 impl<T: Variants> Codec<T> for OneOf {
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {

@@ -3,7 +3,7 @@
 use strsim::{jaro_winkler, osa_distance};
 
 /// Returns the name among `valid` that resembles `written` most; `None` if none is close.
-pub(crate) fn nearest<'v>(written: &str, valid: impl IntoIterator<Item = &'v str>) -> Option<&'v str> {
+pub fn nearest<'v>(written: &str, valid: impl IntoIterator<Item = &'v str>) -> Option<&'v str> {
     let plain = written.to_lowercase().replace(['-', ' '], "_");
     // A typo changes at most a third of a name; a suggestion beyond that is a guess.
     let most = (plain.chars().count() / 3).max(1);
@@ -22,7 +22,7 @@ pub(crate) fn nearest<'v>(written: &str, valid: impl IntoIterator<Item = &'v str
 }
 
 /// Advice about a name that is not among `valid`: the nearest one, or all of them.
-pub(crate) fn did_you_mean(written: &str, valid: &[&str], quote: char) -> Option<String> {
+pub fn did_you_mean(written: &str, valid: &[&str], quote: char) -> Option<String> {
     let quoted = |name: &str| format!("{quote}{name}{quote}");
     match nearest(written, valid.iter().copied()) {
         Some(name) => Some(format!("did you mean {}?", quoted(name))),
@@ -35,7 +35,7 @@ pub(crate) fn did_you_mean(written: &str, valid: &[&str], quote: char) -> Option
 }
 
 /// Names in a sentence: a, b and c.
-pub(crate) fn listed<S: AsRef<str>>(names: &[S], joint: &str) -> String {
+pub fn listed<S: AsRef<str>>(names: &[S], joint: &str) -> String {
     let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
     match names.as_slice() {
         [] => String::new(),

@@ -21,23 +21,24 @@ pub struct Knob {
 }
 
 /// The callback for each number.
-pub(crate) type Visit<'a> = dyn FnMut(&Knob, &mut f32) + 'a;
+pub type Visit<'a> = dyn FnMut(&Knob, &mut f32) + 'a;
 
 /// Passes each number of a record to a callback, which may change it within its range.
-pub(crate) struct Hand<'v> {
+pub struct Hand<'v> {
     visit: &'v mut Visit<'v>,
     part: String,
     /// Limits of the numbers that are marked as bounded.
-    pub(crate) within: Option<Within>,
+    pub within: Option<Within>,
 }
 
 impl<'v> Hand<'v> {
-    pub(crate) fn new(visit: &'v mut Visit<'v>) -> Self {
+    /// Passes the numbers to `visit`.
+    pub fn new(visit: &'v mut Visit<'v>) -> Self {
         Self { visit, part: String::new(), within: None }
     }
 
     /// Prepends `part` to the name of the part while `show` runs.
-    pub(crate) fn part(&mut self, part: &str, show: impl FnOnce(&mut Self)) {
+    pub fn part(&mut self, part: &str, show: impl FnOnce(&mut Self)) {
         let before = self.part.len();
         if before > 0 {
             self.part.push_str(", ");
@@ -48,7 +49,7 @@ impl<'v> Hand<'v> {
     }
 
     /// Passes one number to the callback and clamps the result to the range; NaN keeps the old value.
-    pub(crate) fn show(&mut self, number: &Num, whole: bool, name: &'static str, value: &mut f32) {
+    pub fn show(&mut self, number: &Num, whole: bool, name: &'static str, value: &mut f32) {
         let (scale, shown) = (number.scale as f32, *value * number.scale as f32);
         let (mut low, mut high) = (number.hand.0 as f32, number.hand.1 as f32);
         if let Some(within) = self.within.filter(|_| number.bounded) {

@@ -6,11 +6,11 @@ mod nested;
 mod num;
 mod written;
 
-pub(crate) use self::distinct::{Distinct, Seen};
-pub(crate) use self::list::{List, list};
-pub(crate) use self::nested::{Beside, Flat, OneOf, Rec};
-pub(crate) use self::num::{Num, Scalar, num};
-pub(crate) use self::written::{At, By, Spelled, Written};
+pub use self::distinct::{Distinct, Seen};
+pub use self::list::{List, list};
+pub use self::nested::{Beside, Flat, OneOf, Rec};
+pub use self::num::{Num, Scalar, num};
+pub use self::written::{At, By, Spelled, Written};
 use super::describe::{FieldDescription, FieldType, first_paragraph};
 use super::fields::Fields;
 use super::hand::Hand;
@@ -18,7 +18,7 @@ use super::node::Node;
 use super::text::{Entry, Text as RonText};
 
 /// Reads and writes a `T`.
-pub(crate) trait Codec<T> {
+pub trait Codec<T> {
     /// Reads `node` over `base`; `None` after it has reported why the value cannot be used.
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T>;
 
@@ -85,7 +85,7 @@ pub(crate) trait Codec<T> {
 }
 
 /// `true` or `false`.
-pub(crate) struct Flag;
+pub struct Flag;
 
 impl Codec<bool> for Flag {
     fn read(&self, node: Node<'_>, _: Option<&bool>) -> Option<bool> {
@@ -106,7 +106,7 @@ impl Codec<bool> for Flag {
 }
 
 /// Text of at most so many characters.
-pub(crate) struct Text(pub(crate) usize);
+pub struct Text(pub usize);
 
 impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Text {
     fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
@@ -127,7 +127,7 @@ impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Text {
 }
 
 /// A name that can be part of an OSC address.
-pub(crate) struct Id;
+pub struct Id;
 
 impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Id {
     fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
@@ -148,13 +148,13 @@ impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Id {
 }
 
 /// Something that files write as one of a few names.
-pub(crate) trait Named: Copy + PartialEq + 'static {
+pub trait Named: Copy + PartialEq + 'static {
     /// Each with its name.
     const ALL: &'static [(&'static str, Self)];
 }
 
 /// One of a few names.
-pub(crate) struct Name;
+pub struct Name;
 
 impl<T: Named> Codec<T> for Name {
     fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
@@ -176,7 +176,7 @@ impl<T: Named> Codec<T> for Name {
 }
 
 /// An optional value: `None`, or the value itself.
-pub(crate) struct Opt<C>(pub(crate) C);
+pub struct Opt<C>(pub C);
 
 impl<T, C: Codec<T>> Codec<Option<T>> for Opt<C> {
     fn read(&self, node: Node<'_>, base: Option<&Option<T>>) -> Option<Option<T>> {
@@ -206,11 +206,13 @@ impl<T, C: Codec<T>> Codec<Option<T>> for Opt<C> {
 }
 
 /// Two numbers in round brackets; messages show `pattern`.
-pub(crate) struct Pair {
-    pub(crate) each: Num,
-    pub(crate) pattern: &'static str,
+pub struct Pair {
+    /// Range and unit of both numbers.
+    pub each: Num,
+    /// The expected form, such as `(low end, high end)`.
+    pub pattern: &'static str,
     /// Names of the two numbers in a tuner.
-    pub(crate) parts: [&'static str; 2],
+    pub parts: [&'static str; 2],
 }
 
 impl<T: Copy + From<[f32; 2]> + Into<[f32; 2]>> Codec<T> for Pair {
@@ -243,10 +245,11 @@ impl<T: Copy + From<[f32; 2]> + Into<[f32; 2]>> Codec<T> for Pair {
 }
 
 /// A value that follows from other fields where it is not written; the rules of the record compute it.
-pub(crate) struct Follow<C> {
-    pub(crate) explicit: C,
+pub struct Follow<C> {
+    /// Codec of the written value.
+    pub explicit: C,
     /// Description, for people, of the value that follows.
-    pub(crate) otherwise: &'static str,
+    pub otherwise: &'static str,
 }
 
 impl<T, C: Codec<T>> Codec<T> for Follow<C> {
@@ -298,7 +301,7 @@ impl<T, C: Codec<T>> Codec<T> for Follow<C> {
 }
 
 /// A value that no file holds: it comes from the base, or is this one.
-pub(crate) struct Own<T>(pub(crate) T);
+pub struct Own<T>(pub T);
 
 impl<T: Clone> Codec<T> for Own<T> {
     fn read(&self, _: Node<'_>, base: Option<&T>) -> Option<T> {

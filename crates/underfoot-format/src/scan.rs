@@ -12,22 +12,21 @@ use super::problem::Problem;
 
 /// Result of a scan.
 #[derive(Default)]
-pub(crate) struct Scan {
+pub struct Scan {
     /// Problems of its quotes, comments and characters.
-    pub(crate) problems: Vec<Problem>,
+    pub problems: Vec<Problem>,
     /// Its brackets and commas, except those in texts and comments.
-    pub(crate) marks: Vec<Mark>,
+    pub marks: Vec<Mark>,
     /// Its comments.
-    #[cfg_attr(not(feature = "edit"), expect(dead_code, reason = "only edits move comments"))]
-    pub(crate) comments: Vec<Range<usize>>,
+    pub comments: Vec<Range<usize>>,
     /// Number of its words, numbers, texts, opening brackets and commas; a parser makes values of these.
-    pub(crate) tokens: usize,
+    pub tokens: usize,
     /// Whether `marks` is reliable in spite of `problems`.
-    pub(crate) certain: bool,
+    pub certain: bool,
 }
 
 /// Scans `text`; stops when it holds more than `most` tokens.
-pub(crate) fn scan(text: &str, most: usize) -> Scan {
+pub fn scan(text: &str, most: usize) -> Scan {
     let mut scanner = Scanner { text, at: 0, misled: false, braces: false, scan: Scan::default() };
     while scanner.step() {
         if scanner.scan.tokens > most {

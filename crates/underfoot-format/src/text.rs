@@ -1,11 +1,11 @@
 //! Values as they are written to files.
 
 /// A named field of a record.
-pub(crate) type Entry = (&'static str, Text);
+pub type Entry = (&'static str, Text);
 
 /// A value in its written form.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Text {
+pub enum Text {
     /// A number, a name or a text in quotes.
     Plain(String),
     /// Values in square brackets.
@@ -19,7 +19,7 @@ const WIDTH: usize = 96;
 
 impl Text {
     /// Formats the value on one line.
-    pub(crate) fn inline(&self) -> String {
+    pub fn inline(&self) -> String {
         match self {
             Self::Plain(text) => text.clone(),
             Self::List(values) => {
@@ -34,7 +34,7 @@ impl Text {
 
     /// Formats the value behind `column` characters of a line at indentation level `indent`, on as many lines as
     /// needed.
-    pub(crate) fn lay_out(&self, indent: usize, column: usize) -> String {
+    pub fn lay_out(&self, indent: usize, column: usize) -> String {
         let whole = self.inline();
         if column + whole.chars().count() <= WIDTH {
             return whole;
@@ -62,7 +62,7 @@ impl Text {
 
 /// Returns the shortest text that reads back as `value` after division by `scale`, without a decimal point where none
 /// is needed.
-pub(crate) fn number(value: f32, scale: f64) -> String {
+pub fn number(value: f32, scale: f64) -> String {
     if !value.is_finite() {
         return "0".to_owned();
     }

@@ -59,7 +59,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A problem of the file at `path` as a whole, for example a missing file.
-    pub(crate) fn of_file(path: &str, message: String, help: Option<String>) -> Self {
+    pub fn of_file(path: &str, message: String, help: Option<String>) -> Self {
         Self {
             severity: Severity::Error,
             code: None,
@@ -77,8 +77,8 @@ impl Diagnostic {
     }
 
     /// Sets the code of the rule that the file breaks.
-    #[cfg(any(feature = "ergonomics", feature = "letters"))]
-    pub(crate) fn with_code(self, code: &'static str) -> Self {
+    #[must_use]
+    pub fn with_code(self, code: &'static str) -> Self {
         Self { code: Some(code), ..self }
     }
 }
@@ -128,7 +128,7 @@ impl Diagnostics {
     pub const LIMIT: usize = 500;
 
     /// Sorts `list` in the order of the text; `without` holds the severities of the problems that were left out.
-    pub(crate) fn new(mut list: Vec<Diagnostic>, without: impl Iterator<Item = Severity>) -> Self {
+    pub fn new(mut list: Vec<Diagnostic>, without: impl Iterator<Item = Severity>) -> Self {
         list.sort_by_key(|problem| (problem.line, problem.column, problem.severity));
         let mut omitted = [0; 2];
         without.for_each(|severity| omitted[severity as usize] += 1);

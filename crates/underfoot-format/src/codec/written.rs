@@ -4,17 +4,18 @@ use std::fmt::Display;
 use std::ops::Range;
 
 use super::Codec;
-use crate::format::describe::FieldType;
-use crate::format::node::Node;
-use crate::format::problem::Problem;
-use crate::format::text::Text as RonText;
+use crate::describe::FieldType;
+use crate::node::Node;
+use crate::problem::Problem;
+use crate::text::Text as RonText;
 
 /// A value, and the bytes where it is written. The place does not count in comparisons.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Written<T> {
-    pub(crate) value: T,
+pub struct Written<T> {
+    /// The value.
+    pub value: T,
     /// Empty if it is not written.
-    pub(crate) at: Range<usize>,
+    pub at: Range<usize>,
 }
 
 impl<T: PartialEq> PartialEq for Written<T> {
@@ -30,7 +31,7 @@ impl<T> From<T> for Written<T> {
 }
 
 /// Reads a value together with its place.
-pub(crate) struct At<C>(pub(crate) C);
+pub struct At<C>(pub C);
 
 impl<T, C: Codec<T>> Codec<Written<T>> for At<C> {
     fn read(&self, node: Node<'_>, base: Option<&Written<T>>) -> Option<Written<T>> {
@@ -52,12 +53,15 @@ impl<T, C: Codec<T>> Codec<Written<T>> for At<C> {
 }
 
 /// A value read by a function.
-pub(crate) struct By<T> {
-    pub(crate) shape: fn() -> FieldType,
-    pub(crate) read: fn(Node<'_>) -> Option<T>,
-    pub(crate) write: fn(&T) -> RonText,
+pub struct By<T> {
+    /// Describes the written form.
+    pub shape: fn() -> FieldType,
+    /// Reads the value; reports why it cannot be used.
+    pub read: fn(Node<'_>) -> Option<T>,
+    /// Returns the text that files hold.
+    pub write: fn(&T) -> RonText,
     /// Any value.
-    pub(crate) stand_in: fn() -> T,
+    pub stand_in: fn() -> T,
 }
 
 impl<T> Codec<T> for By<T> {
@@ -79,17 +83,19 @@ impl<T> Codec<T> for By<T> {
 }
 
 /// A value written as a text in quotes.
-pub(crate) struct Spelled<T> {
+pub struct Spelled<T> {
     /// Description of the valid texts, for people.
-    pub(crate) about: &'static str,
-    pub(crate) parse: fn(&str) -> Option<T>,
+    pub about: &'static str,
+    /// Reads the text; `None` if it is invalid.
+    pub parse: fn(&str) -> Option<T>,
     /// Makes the message from the field's name and its invalid text.
-    pub(crate) wrong: fn(&str, &str) -> String,
-    pub(crate) expected: &'static str,
+    pub wrong: fn(&str, &str) -> String,
+    /// The expected form, shown beside the carets.
+    pub expected: &'static str,
     /// Makes the advice for an invalid text.
-    pub(crate) help: fn(&str) -> Option<String>,
+    pub help: fn(&str) -> Option<String>,
     /// Any value.
-    pub(crate) stand_in: T,
+    pub stand_in: T,
 }
 
 /// Maximum length of a text that stands for a value, in characters.

@@ -9,10 +9,10 @@ use super::excerpt::Excerpt;
 use super::file::read_bytes;
 
 /// Maximum size of a file that is read, in bytes.
-pub(crate) const MAX_BYTES: usize = 4 << 20;
+pub const MAX_BYTES: usize = 4 << 20;
 
 /// The text of one file and where its lines begin.
-pub(crate) struct Source<'t> {
+pub struct Source<'t> {
     name: &'t str,
     text: &'t str,
     /// Bytes of the file before `text`: a byte-order mark, or nothing.
@@ -25,7 +25,7 @@ impl<'t> Source<'t> {
     ///
     /// # Errors
     /// If it is larger than [`MAX_BYTES`].
-    pub(crate) fn new(name: &'t str, text: &'t str) -> Result<Self, Diagnostics> {
+    pub fn new(name: &'t str, text: &'t str) -> Result<Self, Diagnostics> {
         if text.len() > MAX_BYTES {
             return Err(too_large(name).into());
         }
@@ -35,22 +35,22 @@ impl<'t> Source<'t> {
     }
 
     /// Returns the name of the file in diagnostics.
-    pub(crate) fn name(&self) -> &'t str {
+    pub fn name(&self) -> &'t str {
         self.name
     }
 
     /// The text, without a byte-order mark; all places count from its start.
-    pub(crate) fn text(&self) -> &'t str {
+    pub fn text(&self) -> &'t str {
         self.text
     }
 
     /// The line, from 1, that holds the byte at `offset`.
-    pub(crate) fn line(&self, offset: usize) -> usize {
+    pub fn line(&self, offset: usize) -> usize {
         self.line_starts.partition_point(|&start| start <= offset).max(1)
     }
 
     /// A diagnostic whose carets stand under the first line of `span`.
-    pub(crate) fn diagnostic(&self, severity: Severity, span: &Range<usize>, message: String) -> Diagnostic {
+    pub fn diagnostic(&self, severity: Severity, span: &Range<usize>, message: String) -> Diagnostic {
         let start = self.text.floor_char_boundary(span.start);
         let end = self.text.floor_char_boundary(span.end).max(start);
         let line = self.line(start);
@@ -79,7 +79,7 @@ impl<'t> Source<'t> {
 ///
 /// # Errors
 /// If it cannot be opened or read, is not an ordinary file, is larger than [`MAX_BYTES`] or is not UTF-8.
-pub(crate) fn read_text(path: &Path) -> Result<String, Diagnostics> {
+pub fn read_text(path: &Path) -> Result<String, Diagnostics> {
     let name = path.display().to_string();
     let bytes = match read_bytes(path, MAX_BYTES as u64) {
         Ok(bytes) => bytes,

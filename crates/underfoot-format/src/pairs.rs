@@ -6,28 +6,30 @@ use super::problem::Problem;
 
 /// Limits on the content of one file.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Limits {
+pub struct Limits {
     /// Nesting of brackets; bounds the stack of the parser.
-    pub(crate) depth: usize,
+    pub depth: usize,
     /// Entries of one list.
-    pub(crate) entries: usize,
+    pub entries: usize,
     /// Words, numbers, texts, opening brackets and commas in the whole file; bounds the memory of the parser.
-    pub(crate) tokens: usize,
+    pub tokens: usize,
 }
 
 impl Limits {
     /// For layouts and kinds.
-    pub(crate) const LAYOUT: Self = Self { depth: 64, entries: 4096, tokens: 500_000 };
+    pub const LAYOUT: Self = Self { depth: 64, entries: 4096, tokens: 500_000 };
 
     /// For floors, which list every sensor.
-    pub(crate) const FLOOR: Self = Self { entries: 262_144, tokens: 1_200_000, ..Self::LAYOUT };
+    pub const FLOOR: Self = Self { entries: 262_144, tokens: 1_200_000, ..Self::LAYOUT };
 }
 
 /// A round or square bracket or a comma.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Mark {
-    pub(crate) at: usize,
-    pub(crate) character: u8,
+pub struct Mark {
+    /// Its byte in the text.
+    pub at: usize,
+    /// The bracket or comma.
+    pub character: u8,
 }
 
 /// A bracket not yet closed.
@@ -48,7 +50,7 @@ impl Open {
 const MOST: usize = 20;
 
 /// Checks the brackets of `text` and returns their problems.
-pub(crate) fn check(text: &str, marks: &[Mark], limits: Limits) -> Vec<Problem> {
+pub fn check(text: &str, marks: &[Mark], limits: Limits) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut open: Vec<Open> = Vec::new();
     for (index, &Mark { at, character }) in marks.iter().enumerate() {
@@ -136,7 +138,7 @@ fn never_closed(open: &Open) -> Problem {
 /// Returns the entry of a list, tuple or struct that holds the byte at `offset`, with the comma behind it.
 ///
 /// `None` outside of all brackets. The brackets must pair up.
-pub(crate) fn entry_around(marks: &[Mark], offset: usize) -> Option<Range<usize>> {
+pub fn entry_around(marks: &[Mark], offset: usize) -> Option<Range<usize>> {
     let here = marks.partition_point(|mark| mark.at < offset);
     let before = end_of_entry(marks[..here].iter().rev(), *b")]")?;
     let after = end_of_entry(marks[here..].iter(), *b"([")?;

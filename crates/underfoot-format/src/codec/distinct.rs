@@ -4,31 +4,32 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::{Codec, Rec};
-use crate::format::describe::FieldType;
-use crate::format::fields::Fields;
-use crate::format::node::Node;
-use crate::format::problem::Problem;
-use crate::format::record::Record;
-use crate::format::text::Text as RonText;
+use crate::describe::FieldType;
+use crate::fields::Fields;
+use crate::node::Node;
+use crate::problem::Problem;
+use crate::record::Record;
+use crate::text::Text as RonText;
 
 /// Records in square brackets, no two of which may have the same subject.
 ///
 /// The codec also finds conflicts between the readable records when others cannot be read.
-pub(crate) struct Distinct<T> {
+pub struct Distinct<T> {
     /// Name of one record in messages.
-    pub(crate) entry: &'static str,
-    pub(crate) most: usize,
+    pub entry: &'static str,
+    /// Maximum number of records.
+    pub most: usize,
     /// Checks the subject of one record; the first argument is its index in the list.
-    pub(crate) about: fn(usize, &T, &Fields<'_>, &mut Seen),
+    pub about: fn(usize, &T, &Fields<'_>, &mut Seen),
 }
 
 /// Places where subjects are first written.
 #[derive(Default)]
-pub(crate) struct Seen(HashMap<String, Range<usize>>);
+pub struct Seen(HashMap<String, Range<usize>>);
 
 impl Seen {
     /// Reports that `thing`, as messages name it, has been written before.
-    pub(crate) fn check(&mut self, fields: &Fields<'_>, thing: String, span: Range<usize>) {
+    pub fn check(&mut self, fields: &Fields<'_>, thing: String, span: Range<usize>) {
         match self.0.get(&thing) {
             Some(first) => {
                 let problem = Problem::error(span, format!("{thing} comes twice"));

@@ -7,8 +7,8 @@ use super::hand::Hand;
 use super::node::Node;
 use super::text::Entry;
 
-/// A type that files write as named fields in round brackets. [`record!`] implements it.
-pub(crate) trait Record: Clone + PartialEq + 'static {
+/// A type that files write as named fields in round brackets. [`record!`](crate::record!) implements it.
+pub trait Record: Clone + PartialEq + 'static {
     /// Its name in files.
     const NAME: &'static str;
 
@@ -31,8 +31,8 @@ pub(crate) trait Record: Clone + PartialEq + 'static {
     fn stand_in() -> Self;
 }
 
-/// One of several records, distinguished by name. [`choices!`] implements it.
-pub(crate) trait Variants: Clone + PartialEq + 'static {
+/// One of several records, distinguished by name. [`choices!`](crate::choices!) implements it.
+pub trait Variants: Clone + PartialEq + 'static {
     /// The names of all variants.
     const NAMES: &'static [&'static str];
 
@@ -60,7 +60,7 @@ pub(crate) trait Variants: Clone + PartialEq + 'static {
 
 impl Node<'_> {
     /// Reads the record at this node over `base`.
-    pub(crate) fn record<T: Record>(self, base: Option<&T>) -> Option<T> {
+    pub fn record<T: Record>(self, base: Option<&T>) -> Option<T> {
         let mut fields = self.fields(T::NAME)?;
         let read = T::read_fields(&mut fields, base);
         let all = fields.are_read();
@@ -70,13 +70,14 @@ impl Node<'_> {
 }
 
 /// A rule of a record: finds conflicts between its fields and computes derived ones.
-pub(crate) type Rules<T> = fn(&mut T, &mut Faults);
+pub type Rules<T> = fn(&mut T, &mut Faults);
 
 /// Defines a struct and describes it as a record of files.
 ///
 /// Each field is one entry `field: Type = "name in files", codec => default;` below its documentation. The codec
-/// defines the written form (see [`super::codec`]); the codec and the end of the name give the range and unit of a
+/// defines the written form (see [`codec`](crate::codec)); the codec and the end of the name give the range and unit of a
 /// number. A field without a default must be written, unless there is a base.
+#[macro_export]
 macro_rules! record {
     (
         $(#[doc = $doc:expr])*
@@ -92,60 +93,60 @@ macro_rules! record {
             $($(#[doc = $about])* $fvis $field: $ty,)*
         }
 
-        impl $crate::format::Record for $Type {
+        impl $crate::Record for $Type {
             const NAME: &'static str = $ron;
 
             #[allow(unused_mut)]
             fn read_fields(
-                fields: &mut $crate::format::fields::Fields<'_>,
+                fields: &mut $crate::fields::Fields<'_>,
                 base: Option<&Self>,
             ) -> Self {
                 let mut it = Self {
-                    $($field: $crate::format::Codec::<$ty>::read_field(
+                    $($field: $crate::Codec::<$ty>::read_field(
                         &$codec,
                         fields,
                         $name,
                         base.map(|base| &base.$field),
-                        $crate::format::record::default!($($default)?),
+                        $crate::__default!($($default)?),
                     ),)*
                 };
                 $(
-                    let mut faults = $crate::format::Faults::default();
-                    let rules: $crate::format::record::Rules<Self> = $rules;
+                    let mut faults = $crate::Faults::default();
+                    let rules: $crate::record::Rules<Self> = $rules;
                     rules(&mut it, &mut faults);
                     fields.judge(faults, base.is_some());
                 )?
                 it
             }
 
-            fn write_fields(&self, entries: &mut Vec<$crate::format::text::Entry>) {
-                $($crate::format::Codec::<$ty>::write_field(
+            fn write_fields(&self, entries: &mut Vec<$crate::text::Entry>) {
+                $($crate::Codec::<$ty>::write_field(
                     &$codec,
                     &self.$field,
                     $name,
-                    $crate::format::record::default!($($default)?),
+                    $crate::__default!($($default)?),
                     entries,
                 );)*
             }
 
-            fn turn_fields(&mut self, hand: &mut $crate::format::hand::Hand<'_>) {
-                $($crate::format::Codec::<$ty>::turn(&$codec, &mut self.$field, $name, hand);)*
+            fn turn_fields(&mut self, hand: &mut $crate::hand::Hand<'_>) {
+                $($crate::Codec::<$ty>::turn(&$codec, &mut self.$field, $name, hand);)*
             }
 
-            fn describe() -> $crate::format::describe::Description {
+            fn describe() -> $crate::describe::Description {
                 let mut fields = Vec::new();
-                $($crate::format::Codec::<$ty>::describe_field(
+                $($crate::Codec::<$ty>::describe_field(
                     &$codec,
                     $name,
                     &[$($about),*],
-                    $crate::format::record::default!($($default)?),
+                    $crate::__default!($($default)?),
                     &mut fields,
                 );)*
-                $crate::format::describe::Description::new($ron, &[$($doc),*], fields)
+                $crate::describe::Description::new($ron, &[$($doc),*], fields)
             }
 
             fn stand_in() -> Self {
-                Self { $($field: $crate::format::Codec::<$ty>::stand_in(&$codec),)* }
+                Self { $($field: $crate::Codec::<$ty>::stand_in(&$codec),)* }
             }
         }
     };
@@ -154,6 +155,7 @@ macro_rules! record {
 /// Defines an enum. Each variant holds the record that is written under its name, or nothing.
 ///
 /// `=` gives the default variant, if there is one.
+#[macro_export]
 macro_rules! choices {
     (
         $(#[doc = $doc:expr])*
@@ -175,7 +177,7 @@ macro_rules! choices {
             }
         })?
 
-        impl $crate::format::Variants for $Type {
+        impl $crate::Variants for $Type {
             const NAMES: &'static [&'static str] = &[$(stringify!($variant)),*];
 
             fn variant(&self) -> &'static str {
@@ -187,7 +189,7 @@ macro_rules! choices {
             #[allow(unused_variables)]
             fn read_fields(
                 name: &str,
-                fields: &mut $crate::format::fields::Fields<'_>,
+                fields: &mut $crate::fields::Fields<'_>,
                 base: Option<&Self>,
             ) -> Option<Self> {
                 match name {
@@ -196,35 +198,35 @@ macro_rules! choices {
                             Some(Self::$variant(base)) => Some(base),
                             _ => None,
                         };
-                        <$record as $crate::format::Record>::read_fields(fields, base)
+                        <$record as $crate::Record>::read_fields(fields, base)
                     }))?),)*
                     _ => None,
                 }
             }
 
-            fn write_fields(&self, entries: &mut Vec<$crate::format::text::Entry>) {
+            fn write_fields(&self, entries: &mut Vec<$crate::text::Entry>) {
                 $($(if let Self::$variant(record) = self {
-                    <$record as $crate::format::Record>::write_fields(record, entries);
+                    <$record as $crate::Record>::write_fields(record, entries);
                 })?)*
             }
 
-            fn turn_fields(&mut self, hand: &mut $crate::format::hand::Hand<'_>) {
+            fn turn_fields(&mut self, hand: &mut $crate::hand::Hand<'_>) {
                 $($(if let Self::$variant(record) = self {
-                    <$record as $crate::format::Record>::turn_fields(record, hand);
+                    <$record as $crate::Record>::turn_fields(record, hand);
                 })?)*
             }
 
-            fn describe() -> Vec<$crate::format::describe::Description> {
-                vec![$($crate::format::describe::Description::new(
+            fn describe() -> Vec<$crate::describe::Description> {
+                vec![$($crate::describe::Description::new(
                     stringify!($variant),
                     &[$($about),*],
-                    $crate::format::record::fields_of!($($record)?),
+                    $crate::__fields_of!($($record)?),
                 )),*]
             }
 
             fn stand_in() -> Self {
                 let all: &[fn() -> Self] = &[$(|| Self::$variant $((
-                    <$record as $crate::format::Record>::stand_in()
+                    <$record as $crate::Record>::stand_in()
                 ))?),*];
                 all[0]()
             }
@@ -233,17 +235,21 @@ macro_rules! choices {
 }
 
 /// The descriptions of a record's fields; empty without a record.
-macro_rules! fields_of {
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __fields_of {
     () => {
         Vec::new()
     };
     ($record:ident) => {
-        <$record as $crate::format::Record>::describe().fields
+        <$record as $crate::Record>::describe().fields
     };
 }
 
 /// The default of a field, if it has one.
-macro_rules! default {
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __default {
     () => {
         None
     };
@@ -251,5 +257,3 @@ macro_rules! default {
         Some($default)
     };
 }
-
-pub(crate) use {choices, default, fields_of, record};

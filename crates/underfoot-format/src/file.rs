@@ -33,7 +33,7 @@ pub fn open_bounded(path: &Path, most: u64) -> io::Result<BoundedFile> {
 ///
 /// # Errors
 /// Those of [`open_bounded`] except the one for the size.
-pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
+pub fn open_ordinary(path: &Path) -> io::Result<File> {
     // The file type is checked before opening: opening a pipe waits for a writer.
     let metadata = path.metadata()?;
     if metadata.is_dir() {
@@ -49,7 +49,7 @@ pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
 ///
 /// # Errors
 /// Those of [`open_bounded`].
-pub(crate) fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open_bounded(path, most)?.read_to_end(&mut bytes)?;
     Ok(bytes)

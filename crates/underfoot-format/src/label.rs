@@ -47,7 +47,7 @@ pub fn cleaned(text: &str, longest: usize) -> Cow<'_, str> {
 }
 
 /// Describes an unfit character for messages: its kind and its number.
-pub(crate) fn describe(character: char) -> String {
+pub fn describe(character: char) -> String {
     let kind = match character {
         _ if character.is_control() => "a control character",
         '\u{2028}' | '\u{2029}' => "a line break",
@@ -83,7 +83,7 @@ fn is_fit(character: char, before: Option<char>) -> bool {
 }
 
 /// Whether `character` is invisible everywhere, or changes the appearance of others.
-pub(crate) fn is_hidden(character: char) -> bool {
+pub fn is_hidden(character: char) -> bool {
     match character {
         // Signs that span digits in Arabic, Syriac and Kaithi are visible.
         '\u{600}'..='\u{605}'

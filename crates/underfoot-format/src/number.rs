@@ -2,18 +2,18 @@
 
 /// A number as a file holds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Number {
+pub struct Number {
     /// Its value; finite.
-    pub(crate) value: f64,
+    pub value: f64,
     /// The nearest single-precision value; finite.
-    pub(crate) single: f32,
+    pub single: f32,
     /// Whether it was written without point and exponent.
-    pub(crate) whole: bool,
+    pub whole: bool,
 }
 
 /// Reasons why a text that looks like a number cannot be used as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum NotANumber {
+pub enum NotANumber {
     /// `NaN` or `inf`, which no quantity of a floor can be.
     NotFinite,
     /// The value is too large to represent.
@@ -23,7 +23,10 @@ pub(crate) enum NotANumber {
 }
 
 /// Parses a RON number: underscores, `0x`, `0o`, `0b`, exponents and type suffixes are allowed.
-pub(crate) fn parse_number(written: &str) -> Result<Number, NotANumber> {
+///
+/// # Errors
+/// [`NotANumber`] has the reason.
+pub fn parse_number(written: &str) -> Result<Number, NotANumber> {
     let text = written.replace('_', "");
     let (sign, digits) = match text.strip_prefix('-') {
         Some(digits) => (-1.0, digits),
@@ -60,7 +63,7 @@ fn without_suffix(digits: &str, base: u32) -> &str {
 }
 
 /// Formats `value` for people: at most four decimals, without trailing zeros.
-pub(crate) fn plain(value: f64) -> String {
+pub fn plain(value: f64) -> String {
     let rounded = format!("{value:.4}");
     let text = rounded.trim_end_matches('0').trim_end_matches('.');
     if value != 0.0 && value.abs() < 1e-6 {

@@ -4,68 +4,68 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use super::Codec;
-use crate::format::describe::FieldType;
-use crate::format::hand::Hand;
-use crate::format::node::Node;
-use crate::format::number::Number;
-use crate::format::text::{Entry, Text as RonText, number};
+use crate::describe::FieldType;
+use crate::hand::Hand;
+use crate::node::Node;
+use crate::number::Number;
+use crate::text::{Entry, Text as RonText, number};
 
 /// A number. The end of the field's name gives its unit.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Num {
+pub struct Num {
     /// Minimum and maximum in a file.
     range: (f64, f64),
     /// Range of a tuner.
-    pub(in crate::format) hand: (f64, f64),
+    pub(crate) hand: (f64, f64),
     /// Factor from the value to the unit of files.
-    pub(in crate::format) scale: f64,
+    pub(crate) scale: f64,
     /// Whether the number is written even where it equals its default, so that a file keeps its meaning when the
     /// default changes.
     explicit: bool,
     /// Whether the limits of the surrounding record apply as well ([`super::node::Within`]).
-    pub(in crate::format) bounded: bool,
+    pub(crate) bounded: bool,
 }
 
 /// A number within `range`, in the unit of files.
-pub(crate) const fn num(range: RangeInclusive<f64>) -> Num {
+pub const fn num(range: RangeInclusive<f64>) -> Num {
     let range = (*range.start(), *range.end());
     Num { range, hand: range, scale: 1.0, explicit: false, bounded: false }
 }
 
 impl Num {
     /// Limits the range of a tuner.
-    pub(crate) const fn hand(self, hand: RangeInclusive<f64>) -> Self {
+    pub const fn hand(self, hand: RangeInclusive<f64>) -> Self {
         Self { hand: (*hand.start(), *hand.end()), ..self }
     }
 
     /// Milliseconds in files, seconds in values.
-    pub(crate) const fn milli(self) -> Self {
+    pub const fn milli(self) -> Self {
         Self { scale: 1000.0, ..self }
     }
 
     /// Degrees in files, radians in values.
-    pub(crate) const fn degrees(self) -> Self {
+    pub const fn degrees(self) -> Self {
         Self { scale: 180.0 / std::f64::consts::PI, ..self }
     }
 
     /// Written even where it equals its default.
-    pub(crate) const fn explicit(self) -> Self {
+    pub const fn explicit(self) -> Self {
         Self { explicit: true, ..self }
     }
 
     /// Whether a file may hold `value`.
-    pub(crate) fn holds(&self, value: f32) -> bool {
+    pub fn holds(&self, value: f32) -> bool {
         (self.range.0..=self.range.1).contains(&f64::from(value))
     }
 
     /// Applies the limits of the surrounding record as well.
-    pub(crate) const fn bounded(self) -> Self {
+    pub const fn bounded(self) -> Self {
         Self { bounded: true, ..self }
     }
 }
 
 /// A type that files write as a number.
-pub(crate) trait Scalar: Copy + PartialEq {
+pub trait Scalar: Copy + PartialEq {
     /// Whether only whole numbers are values.
     const WHOLE: bool = false;
 

@@ -65,13 +65,15 @@ pub enum FieldType {
 }
 
 impl Description {
-    pub(crate) fn new(name: &'static str, about: &[&str], fields: Vec<FieldDescription>) -> Self {
+    /// Describes the record `name` by the lines of its documentation and by its `fields`.
+    #[must_use]
+    pub fn new(name: &'static str, about: &[&str], fields: Vec<FieldDescription>) -> Self {
         Self { name, about: first_paragraph(about), fields }
     }
 }
 
 /// Joins the lines of a documentation comment up to the first empty one.
-pub(crate) fn first_paragraph(lines: &[&str]) -> String {
+pub fn first_paragraph(lines: &[&str]) -> String {
     let lines = lines.iter().map(|line| line.trim()).take_while(|line| !line.is_empty());
     lines.collect::<Vec<_>>().join(" ")
 }

@@ -10,22 +10,24 @@ use super::syntax;
 
 /// One value of a text and its place. Places count in bytes of the text without a byte-order mark.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Outline {
-    pub(crate) span: Range<usize>,
-    pub(crate) shape: OutlineShape,
+pub struct Outline {
+    /// Its bytes.
+    pub span: Range<usize>,
+    /// Its written form.
+    pub shape: OutlineShape,
     /// The name before the brackets of a record.
-    pub(crate) name: Option<String>,
+    pub name: Option<String>,
     /// Bytes between its brackets; `None` without brackets.
-    pub(crate) inside: Option<Range<usize>>,
+    pub inside: Option<Range<usize>>,
     /// Fields of a record, entries of a list, values of a tuple.
-    pub(crate) elements: Vec<Element>,
+    pub elements: Vec<Element>,
     /// The content of a text in quotes.
-    pub(crate) says: Option<String>,
+    pub says: Option<String>,
 }
 
 /// The written form of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum OutlineShape {
+pub enum OutlineShape {
     /// Named fields in round brackets, or a name alone.
     Record,
     /// Values in square brackets.
@@ -38,11 +40,13 @@ pub(crate) enum OutlineShape {
 
 /// A field of a record, an entry of a list or a value of a tuple.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Element {
+pub struct Element {
     /// The name of a field, and where it is written.
-    pub(crate) field: Option<(String, Range<usize>)>,
-    pub(crate) value: Outline,
-    pub(crate) comma: Option<Range<usize>>,
+    pub field: Option<(String, Range<usize>)>,
+    /// The value.
+    pub value: Outline,
+    /// The comma behind it, if there is one.
+    pub comma: Option<Range<usize>>,
 }
 
 impl Element {
@@ -51,19 +55,19 @@ impl Element {
     }
 
     /// Returns the start of the element; that of a field is the start of its name.
-    pub(crate) fn start(&self) -> usize {
+    pub fn start(&self) -> usize {
         self.field.as_ref().map_or(self.value.span.start, |(_, at)| at.start)
     }
 
     /// Returns the end of the element, its comma included.
-    pub(crate) fn end(&self) -> usize {
+    pub fn end(&self) -> usize {
         self.comma.as_ref().map_or(self.value.span.end, |comma| comma.end)
     }
 }
 
 impl Outline {
     /// Parses `text` into its outline; `None` if it is not RON.
-    pub(crate) fn parse(text: &str) -> Option<Self> {
+    pub fn parse(text: &str) -> Option<Self> {
         let syntax = syntax::parse(text, "value", Limits::LAYOUT);
         let whole = syntax.holes.is_empty();
         syntax.root.filter(|_| whole).map(|root| Self::of(&root))
@@ -134,7 +138,7 @@ impl Outline {
     }
 
     /// Returns the field called `name`.
-    pub(crate) fn field(&self, name: &str) -> Option<&Element> {
+    pub fn field(&self, name: &str) -> Option<&Element> {
         let is_called = |element: &&Element| element.field.as_ref().is_some_and(|(own, _)| own == name);
         self.elements.iter().find(is_called)
     }

@@ -1,7 +1,7 @@
 //! Units and examples of fields, found by their names alone.
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
-pub(crate) fn unit(field: &str) -> &'static str {
+pub fn unit(field: &str) -> &'static str {
     const UNITS: [(&str, &str); 21] = [
         ("_n_s_m", " N s/m"),
         ("_n_m", " N/m"),
@@ -29,7 +29,7 @@ pub(crate) fn unit(field: &str) -> &'static str {
 }
 
 /// An example of a field, for a file that lacks it.
-pub(crate) fn example(field: &str) -> Option<&'static str> {
+pub fn example(field: &str) -> Option<&'static str> {
     Some(match field {
         "version" => "version: 1",
         "title" => "title: \"Map navigation\"",

@@ -19,7 +19,7 @@ use super::source::Source;
 use super::syntax::{self, Syntax};
 
 /// One file being read, and all problems found in it so far.
-pub(crate) struct Reader<'t> {
+pub struct Reader<'t> {
     source: &'t Source<'t>,
     syntax: Syntax<'t>,
     problems: RefCell<Vec<Problem>>,
@@ -33,7 +33,7 @@ pub(crate) struct Reader<'t> {
 
 impl<'t> Reader<'t> {
     /// Parses a file that is expected to hold one `kind` of thing, such as a `Layout`.
-    pub(crate) fn new(source: &'t Source<'t>, kind: &str, limits: Limits) -> Self {
+    pub fn new(source: &'t Source<'t>, kind: &str, limits: Limits) -> Self {
         let mut syntax = syntax::parse(source.text(), kind, limits);
         let problems = RefCell::new(std::mem::take(&mut syntax.problems));
         Self {
@@ -47,80 +47,80 @@ impl<'t> Reader<'t> {
     }
 
     /// The text of the file.
-    pub(crate) fn text(&self) -> &'t str {
+    pub fn text(&self) -> &'t str {
         self.source.text()
     }
 
     /// Returns the root value of the file.
-    pub(crate) fn root(&self, name: &'static str) -> Option<Node<'_>> {
+    pub fn root(&self, name: &'static str) -> Option<Node<'_>> {
         self.syntax.root.as_ref().map(|expr| Node { reader: self, expr, name })
     }
 
     /// Makes `what` available to later reads.
-    pub(crate) fn know<T: Any + Send + Sync>(&self, what: Arc<T>) {
+    pub fn know<T: Any + Send + Sync>(&self, what: Arc<T>) {
         self.known.borrow_mut().insert(TypeId::of::<T>(), what);
     }
 
     /// Returns the context of this type, or its default if there is none.
-    pub(crate) fn known<T: Any + Default + Send + Sync>(&self) -> Arc<T> {
+    pub fn known<T: Any + Default + Send + Sync>(&self) -> Arc<T> {
         let known = self.known.borrow().get(&TypeId::of::<T>()).cloned();
         known.and_then(|known| known.downcast().ok()).unwrap_or_default()
     }
 
     /// The unit of places and sizes, with a space before it.
-    pub(crate) fn length_unit(&self) -> &'static str {
+    pub fn length_unit(&self) -> &'static str {
         self.length_unit.get()
     }
 
     /// Sets the unit in which messages show places and sizes.
-    pub(crate) fn show_lengths_in(&self, unit: &'static str) {
+    pub fn show_lengths_in(&self, unit: &'static str) {
         self.length_unit.set(unit);
     }
 
     /// Returns the limits of bounded numbers, if any.
-    pub(crate) fn within(&self) -> Option<Within> {
+    pub fn within(&self) -> Option<Within> {
         self.within.get()
     }
 
     /// Sets the limits of bounded numbers from now on and returns the previous ones.
-    pub(crate) fn keep_within(&self, within: Option<Within>) -> Option<Within> {
+    pub fn keep_within(&self, within: Option<Within>) -> Option<Within> {
         self.within.replace(within)
     }
 
     /// Returns the name of the file in diagnostics.
-    pub(crate) fn name(&self) -> &'t str {
+    pub fn name(&self) -> &'t str {
         self.source.name()
     }
 
     /// Reports a problem, unless it lies within a syntax error.
-    pub(crate) fn report(&self, problem: Problem) {
+    pub fn report(&self, problem: Problem) {
         if !self.is_broken(&problem.span) {
             self.problems.borrow_mut().push(problem);
         }
     }
 
     /// Whether `span` holds a syntax error, so that a field that seems missing there may have been written.
-    pub(crate) fn is_broken(&self, span: &Range<usize>) -> bool {
+    pub fn is_broken(&self, span: &Range<usize>) -> bool {
         self.syntax.holes.iter().any(|hole| hole.start < span.end && span.start < hole.end)
     }
 
     /// Whether everything read so far is usable.
-    pub(crate) fn is_sound(&self) -> bool {
+    pub fn is_sound(&self) -> bool {
         self.problems.borrow().iter().all(|problem| problem.severity == Severity::Warning)
     }
 
     /// Returns the line of a place, for messages that point to a second place.
-    pub(crate) fn line(&self, span: &Range<usize>) -> usize {
+    pub fn line(&self, span: &Range<usize>) -> usize {
         self.source.line(span.start)
     }
 
     /// Returns this problem alone and drops all others.
-    pub(crate) fn only(&self, problem: Problem) -> Diagnostics {
+    pub fn only(&self, problem: Problem) -> Diagnostics {
         diagnose(self.source, self.syntax.root.as_ref(), problem).into()
     }
 
     /// Returns all problems found so far.
-    pub(crate) fn into_diagnostics(self) -> Diagnostics {
+    pub fn into_diagnostics(self) -> Diagnostics {
         let mut problems = self.problems.take();
         problems.sort_by_key(|problem| (problem.span.start, problem.severity));
         let omitted = problems.split_off(problems.len().min(Diagnostics::LIMIT));
@@ -131,7 +131,10 @@ impl<'t> Reader<'t> {
     }
 
     /// Returns `value` with the warnings if it exists and there are no errors; otherwise all problems.
-    pub(crate) fn conclude<T>(self, value: Option<T>) -> Result<(T, Diagnostics), Diagnostics> {
+    ///
+    /// # Errors
+    /// All problems, if there is no value or one of them is an error.
+    pub fn conclude<T>(self, value: Option<T>) -> Result<(T, Diagnostics), Diagnostics> {
         match value {
             Some(value) if self.is_sound() => Ok((value, self.into_diagnostics())),
             // Every rejection has a reason.
@@ -187,6 +190,7 @@ fn dotted(path: &str) -> String {
     if path.is_empty() || path.starts_with('[') { path.to_owned() } else { format!(".{path}") }
 }
 
-pub(crate) fn bytes(span: &ron2::Span) -> Range<usize> {
+/// Returns the bytes of a place that the parser gives.
+pub fn bytes(span: &ron2::Span) -> Range<usize> {
     span.start_offset..span.end_offset
 }

@@ -15,7 +15,7 @@ use super::words::example;
 ///
 /// Each field that the reader asks for is valid; [`Fields::finish`] then reports the others.
 #[must_use = "unknown and missing fields are only reported by finish()"]
-pub(crate) struct Fields<'r> {
+pub struct Fields<'r> {
     reader: &'r Reader<'r>,
     /// Name of the record in messages.
     noun: String,
@@ -43,7 +43,7 @@ struct FieldUse<'r> {
 
 impl<'r> Fields<'r> {
     /// Reads the `fields` of `node`, a `Name(...)` that begins at `open`.
-    pub(crate) fn new(node: Node<'r>, name: &str, open: Range<usize>, fields: &'r [StructField<'r>]) -> Self {
+    pub fn new(node: Node<'r>, name: &str, open: Range<usize>, fields: &'r [StructField<'r>]) -> Self {
         let written = fields.iter().map(|field| FieldUse { field, taken: false }).collect();
         Self {
             reader: node.reader,
@@ -61,19 +61,19 @@ impl<'r> Fields<'r> {
     }
 
     /// A `name` that stands alone, without fields.
-    pub(crate) fn bare(node: Node<'r>, name: &'static str) -> Self {
+    pub fn bare(node: Node<'r>, name: &'static str) -> Self {
         Self { bare: Some(name), ..Self::new(node, name, node.span(), &[]) }
     }
 
     /// Sets the name of the record in messages.
-    pub(crate) fn set_noun(&mut self, noun: String) {
+    pub fn set_noun(&mut self, noun: String) {
         self.noun = noun;
     }
 
     /// Reads the field `name` with `read`; returns `otherwise` if it is not written.
     ///
     /// Without an `otherwise`, the field is reported as missing.
-    pub(crate) fn read<T>(
+    pub fn read<T>(
         &mut self,
         name: &'static str,
         otherwise: Option<T>,
@@ -91,7 +91,7 @@ impl<'r> Fields<'r> {
     }
 
     /// Returns the value of the field `name` if it is written.
-    pub(crate) fn take(&mut self, name: &'static str) -> Option<Node<'r>> {
+    pub fn take(&mut self, name: &'static str) -> Option<Node<'r>> {
         self.known.push(name);
         let mut found: Option<&'r StructField<'r>> = None;
         for written in self.written.iter_mut().filter(|written| written.field.name.name == name) {
@@ -110,44 +110,44 @@ impl<'r> Fields<'r> {
     }
 
     /// Treats the field `name` as not written, after its problem has been reported.
-    pub(crate) fn refuse(&mut self, name: &str) {
+    pub fn refuse(&mut self, name: &str) {
         self.written.retain(|written| written.field.name.name != name);
     }
 
     /// Marks the field `name` as missing.
-    pub(crate) fn lack(&mut self, name: &'static str) {
+    pub fn lack(&mut self, name: &'static str) {
         self.missing.push(name);
     }
 
     /// Marks the field `name` as unreadable.
-    pub(crate) fn fail(&mut self, name: &'static str) {
+    pub fn fail(&mut self, name: &'static str) {
         self.failed.push(name);
     }
 
     /// Marks the field `name` as unwritten and derived from other fields; rules ignore it.
-    pub(crate) fn follow(&mut self, name: &'static str) {
+    pub fn follow(&mut self, name: &'static str) {
         self.follow.push(name);
     }
 
     /// Whether one of these fields cannot be read.
-    pub(crate) fn have_failed(&self, names: &[&str]) -> bool {
+    pub fn have_failed(&self, names: &[&str]) -> bool {
         self.failed.iter().any(|failed| names.contains(failed))
     }
 
     /// Marks the set of valid fields as unknown.
-    pub(crate) fn allow_unknown(&mut self) {
+    pub fn allow_unknown(&mut self) {
         self.allows_unknown = true;
     }
 
     /// Whether all fields could be read.
-    pub(crate) fn are_read(&self) -> bool {
+    pub fn are_read(&self) -> bool {
         self.failed.is_empty()
     }
 
     /// Reports conflicts between fields if all fields concerned could be read.
     ///
     /// With `is_based`, it ignores conflicts between unwritten fields: the reading of the base has reported them.
-    pub(crate) fn judge(&mut self, faults: Faults, is_based: bool) {
+    pub fn judge(&mut self, faults: Faults, is_based: bool) {
         for Fault { severity, fields, message, expected, help } in faults.0 {
             if fields.iter().any(|field| self.failed.contains(field) || self.follow.contains(field)) {
                 continue;
@@ -162,40 +162,40 @@ impl<'r> Fields<'r> {
     }
 
     /// Returns the reader of the file.
-    pub(crate) fn reader(&self) -> &'r Reader<'r> {
+    pub fn reader(&self) -> &'r Reader<'r> {
         self.reader
     }
 
     /// Returns the place where the fields begin.
-    pub(crate) fn start(&self) -> Range<usize> {
+    pub fn start(&self) -> Range<usize> {
         self.open.clone()
     }
 
     /// Returns the place of the value of `name`, or the start of the fields if it is not written.
-    pub(crate) fn span(&self, name: &str) -> Range<usize> {
+    pub fn span(&self, name: &str) -> Range<usize> {
         self.value_span(name).unwrap_or_else(|| self.start())
     }
 
     /// Returns the place of the value of `name`, if it is written.
-    pub(crate) fn value_span(&self, name: &str) -> Option<Range<usize>> {
+    pub fn value_span(&self, name: &str) -> Option<Range<usize>> {
         let written = self.written.iter().find(|written| written.field.name.name == name)?;
         Some(bytes(written.field.value.span()))
     }
 
     /// Whether the text has a syntax error among the fields.
-    pub(crate) fn are_broken(&self) -> bool {
+    pub fn are_broken(&self) -> bool {
         self.reader.is_broken(&self.extent)
     }
 
     /// Reports a problem.
-    pub(crate) fn report(&self, problem: Problem) {
+    pub fn report(&self, problem: Problem) {
         self.reader.report(problem);
     }
 
     /// Reports unknown fields, and requested fields that are missing.
     ///
     /// If the set of valid fields is unknown, it reports only unknown fields whose name resembles a missing one.
-    pub(crate) fn finish(mut self) {
+    pub fn finish(mut self) {
         let unknown: Vec<&FieldUse<'r>> = self.written.iter().filter(|written| !written.taken).collect();
         for written in unknown {
             let name = &*written.field.name.name;

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use arrayvec::ArrayVec;
 
 use super::Codec;
-use crate::format::describe::FieldType;
-use crate::format::hand::Hand;
-use crate::format::node::Node;
-use crate::format::problem::Problem;
-use crate::format::text::Text as RonText;
+use crate::describe::FieldType;
+use crate::hand::Hand;
+use crate::node::Node;
+use crate::problem::Problem;
+use crate::text::Text as RonText;
 
 /// Values in square brackets.
-pub(crate) struct List<C> {
+pub struct List<C> {
     /// Name of one value in messages.
     entry: &'static str,
     most: usize,
@@ -24,25 +24,25 @@ pub(crate) struct List<C> {
 }
 
 /// At most `most` values in square brackets; messages call each of them `entry`.
-pub(crate) const fn list<C>(entry: &'static str, most: usize, each: C) -> List<C> {
+pub const fn list<C>(entry: &'static str, most: usize, each: C) -> List<C> {
     List { entry, most, each, few: None, turns: true }
 }
 
 impl<C> List<C> {
     /// Edited as a list instead of number by number, since its values depend on each other.
-    pub(crate) const fn still(mut self) -> Self {
+    pub const fn still(mut self) -> Self {
         self.turns = false;
         self
     }
 
     /// Requires at least `least` values; `message` reports fewer.
-    pub(crate) const fn at_least(mut self, least: usize, message: &'static str) -> Self {
+    pub const fn at_least(mut self, least: usize, message: &'static str) -> Self {
         self.few = Some((least, message, None));
         self
     }
 
     /// Adds the advice shown for too few values.
-    pub(crate) const fn help(mut self, help: &'static str) -> Self {
+    pub const fn help(mut self, help: &'static str) -> Self {
         if let Some((_, _, told)) = &mut self.few {
             *told = Some(help);
         }
@@ -70,7 +70,7 @@ impl<C> List<C> {
 }
 
 /// A container of the values of a list.
-pub(crate) trait Listed {
+pub trait Listed {
     /// Type of one value.
     type Each;
 
