@@ -4,7 +4,8 @@ use std::path::Path;
 
 use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Layout;
-use underfoot::sim::{self, Scenario, Script, SimConfig, SimFloor};
+use underfoot::scene::Shoe;
+use underfoot::sim::{self, Foot, Scenario, Script, SimConfig, SimFloor};
 use underfoot::source::Faults;
 
 use super::failure::Failure;
@@ -91,4 +92,16 @@ fn made_for(layout: &Layout, geometry: &Geometry) -> Script {
         );
     }
     visit.script
+}
+
+/// Returns the shoe of a simulated foot, as long as the foot itself.
+pub(crate) fn shoe(foot: &Foot) -> Shoe {
+    Shoe {
+        position: foot.position,
+        heading_rad: foot.heading,
+        length_m: foot.length_m,
+        force: foot.force,
+        roll: foot.roll,
+        left: foot.left,
+    }
 }

@@ -1,6 +1,7 @@
 //! `underfoot reference`: the fields of files.
 
-use underfoot::schema::write_reference;
+use underfoot::schema::{reference, write_reference};
+use underfoot::sim;
 
 use super::failure::Failure;
 
@@ -13,7 +14,9 @@ pub(crate) struct Args {
 
 /// Prints the fields of files: each with its unit, range, default and meaning.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let text = write_reference(args.name.as_deref()).map_err(Failure::Other)?;
+    let mut chapters = reference();
+    chapters.extend(sim::reference());
+    let text = write_reference(&chapters, args.name.as_deref()).map_err(Failure::Other)?;
     outln!("{}", text.trim_end());
     Ok(())
 }

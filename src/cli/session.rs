@@ -16,9 +16,8 @@ use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sim::Script;
+use underfoot::sim::{Pace, Script, SimulatedSource};
 use underfoot::sink::{Fanout, JsonSink, OscSink, WavOptions, WavSink, WhenFull};
-use underfoot::source::{Pace, SimulatedSource};
 use underfoot::units::Instant;
 use underfoot::widget::Value;
 
@@ -221,7 +220,7 @@ impl Camera {
         let snapshot = self.best.map_or(self.now, |(_, snapshot)| snapshot);
         let mut feet = Vec::new();
         script.feet_at(snapshot.at, &mut feet);
-        let shoes: Vec<Shoe> = feet.iter().map(Shoe::from).collect();
+        let shoes: Vec<Shoe> = feet.iter().map(play::shoe).collect();
         let mut scene = Scene::new();
         let view = View {
             show: Show::PICTURE,

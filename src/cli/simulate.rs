@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
 use underfoot::schema;
-use underfoot::sim::{self, Sensing, SimConfig, SimFloor};
+use underfoot::sim::{self, Pace, Sensing, SimConfig, SimFloor, SimulatedSource};
 use underfoot::sink::{Rank, claim_priority};
-use underfoot::source::{Pace, SimulatedSource, SourceError};
+use underfoot::source::SourceError;
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use super::failure::Failure;

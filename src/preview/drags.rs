@@ -14,9 +14,11 @@ use crate::layout::{Layout, Widget};
 use crate::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use crate::sense::Method;
 use crate::serve::Server;
-use crate::sim::{Foot, FootHandle, SimConfig, SimFloor, calibrated, feet_by_hand};
+use crate::sim::{
+    ByHand, Foot, FootHandle, Pace, SimConfig, SimFloor, SimulatedSource, calibrated, feet_by_hand,
+};
 use crate::sink::{EventSink, Report};
-use crate::source::{ByHand, FaultInjector, Faults, Pace, SimulatedSource};
+use crate::source::{FaultInjector, Faults};
 use crate::units::Instant;
 use crate::widget::{Behaviour, EventKind, Value, WidgetEvent};
 use crate::wire::LinkState;

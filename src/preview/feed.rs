@@ -16,9 +16,8 @@ use crate::layout::Layout;
 use crate::recording::TappedPackets;
 use crate::scene::Shoe;
 use crate::schema::{Diagnostics, NamedEffect};
-use crate::sim::ArrivalHandle;
+use crate::sim::{ArrivalHandle, FaultSwitch};
 use crate::sink::{AreaNews, LatencyStages};
-use crate::source::FaultSwitch;
 use crate::widget::{Value, WidgetEvent, WidgetId};
 
 /// A shoe that the window moves; its `length_m` is the length of the sole, one centimetre more than the bare foot.

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 
 use crate::floor::{Floor, SensorId};
-use crate::sim::SensorFault;
-use crate::source::{FaultSwitch, Faults, Outage};
+use crate::sim::{FaultSwitch, SensorFault};
+use crate::source::{Faults, Outage};
 use crate::units::Instant;
 
 /// The faults of the simulated floor.

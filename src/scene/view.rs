@@ -26,21 +26,6 @@ pub struct Shoe {
     pub left: bool,
 }
 
-#[cfg(feature = "sim")]
-impl From<&crate::sim::Foot> for Shoe {
-    /// Creates a shoe of the foot's own length.
-    fn from(foot: &crate::sim::Foot) -> Self {
-        Self {
-            position: foot.position,
-            heading_rad: foot.heading,
-            length_m: foot.length_m,
-            force: foot.force,
-            roll: foot.roll,
-            left: foot.left,
-        }
-    }
-}
-
 /// Accessor of one layer of a [`Show`], for reading or switching it.
 pub type Layer = fn(&mut Show) -> &mut bool;
 

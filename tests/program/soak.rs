@@ -9,8 +9,7 @@ use underfoot::floor::Floor;
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sim::{Foot, FootDriver, Scenario, Script, SimConfig, SimFloor};
-use underfoot::source::{Pace, SimulatedSource};
+use underfoot::sim::{Foot, FootDriver, Pace, Scenario, Script, SimConfig, SimFloor, SimulatedSource};
 use underfoot::units::Instant;
 
 use super::end_to_end::{Served, underfoot};

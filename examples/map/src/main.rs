@@ -22,7 +22,7 @@ use eframe::egui::{self, RawInput, Rect, Vec2, pos2};
 use underfoot::floor::{self, Floor};
 use underfoot::runtime::Session;
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::{FootHandle, Scenario, feet_by_hand};
+use underfoot::sim::{FootHandle, Scenario, feet_by_hand, session_with};
 use underfoot_egui::FootInput;
 
 use crate::app::Picture;
@@ -91,17 +91,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let free =
         layout.regions.iter().find(|region| region.id == "map").map_or(floor::Rect::default(), |it| it.area);
     let (builder, hand) = match (&args.listen, &args.scenario) {
-        (Some(address), _) => (Session::listen(address.as_str()), None),
+        (Some(address), _) => (Session::listen(address.as_str()).floor(hardware), None),
         (None, Some(path)) => {
             let feet = Scenario::load(path)?.resolve(&layout, &geometry)?;
-            (Session::simulated(Box::new(feet)), None)
+            (session_with(&hardware, Box::new(feet))?, None)
         }
         (None, None) => {
             let (hand, driver): (FootHandle, _) = feet_by_hand();
-            (Session::simulated(Box::new(driver)), Some(hand))
+            (session_with(&hardware, Box::new(driver))?, Some(hand))
         }
     };
-    let mut builder = builder.floor(hardware).layout(layout);
+    let mut builder = builder.layout(layout);
     if let Some(path) = &args.record {
         builder = builder.record(path);
     }

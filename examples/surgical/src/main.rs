@@ -27,8 +27,10 @@ use underfoot::floor::{self, Floor};
 use underfoot::layout::Layout;
 use underfoot::runtime::{Session, SessionBuilder};
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated, feet_by_hand};
-use underfoot::source::{FaultInjector, Faults, Pace, SimulatedSource};
+use underfoot::sim::{
+    Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated, feet_by_hand, session_with,
+};
+use underfoot::source::{FaultInjector, Faults};
 use underfoot::widget::Guard;
 use underfoot_egui::FootInput;
 
@@ -120,7 +122,7 @@ fn view(args: Args) -> Result<(), Box<dyn Error>> {
         (None, Some(path)) => (played(path, &hardware, &layout)?, None),
         (None, None) => {
             let (hand, driver) = feet_by_hand();
-            (Session::simulated(Box::new(driver)).floor(hardware), Some(hand))
+            (session_with(&hardware, Box::new(driver))?, Some(hand))
         }
     };
     let mut builder = args.feel.attach(builder.layout(layout));

@@ -7,8 +7,8 @@ use underfoot::engine::Engine;
 use underfoot::floor::Floor;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, Method};
-use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated};
-use underfoot::source::{Pace, SensorSource, SimulatedSource};
+use underfoot::sim::{Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated};
+use underfoot::source::SensorSource;
 use underfoot::widget::{EventKind, Value};
 
 /// The results of some steps.

@@ -4,6 +4,7 @@ use std::sync::mpsc::{SyncSender, TrySendError};
 use std::thread;
 use std::time::Duration;
 
+use crate::cli::play;
 use underfoot::feel::ScopeReader;
 use underfoot::glam::Vec2;
 use underfoot::preview::{EventNews, FootSink, PreviewFoot, ScopeFeed};
@@ -68,7 +69,7 @@ fn foot(shoe: &PreviewFoot) -> Foot {
 
 /// The shoe around a foot.
 pub(super) fn shoe(foot: &Foot) -> PreviewFoot {
-    PreviewFoot { length_m: foot.length_m + SHOE_M, ..PreviewFoot::from(foot) }
+    PreviewFoot { length_m: foot.length_m + SHOE_M, ..play::shoe(foot) }
 }
 
 /// Signals of the actuators, as the window draws them.

@@ -27,9 +27,12 @@ use underfoot::recording::{Recording, TappedPackets};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
-use underfoot::sim::{ArrivalHandle, FootDriver, LoopingScript, arrivals, feet_by_hand, watched};
+use underfoot::sim::{
+    ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
+    feet_by_hand, watched,
+};
 use underfoot::sink::LatencyStages;
-use underfoot::source::{FaultSwitch, Faults, Pace, RehearsalSource, SensorSource, SimulatedSource};
+use underfoot::source::{Faults, SensorSource};
 use underfoot::units::HostClock;
 
 use self::commands::{CommandHandler, Desk};

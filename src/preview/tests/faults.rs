@@ -7,8 +7,8 @@ use egui_kittest::kittest::Queryable;
 use super::Room;
 use crate::floor::Floor;
 use crate::preview::rehearsal::Rehearsal;
-use crate::sim::{FootHandle, SimConfig, SimFloor, feet_by_hand};
-use crate::source::{Faults, Pace, RehearsalSource, SensorSource, SimulatedSource};
+use crate::sim::{FootHandle, Pace, RehearsalSource, SimConfig, SimFloor, SimulatedSource, feet_by_hand};
+use crate::source::{Faults, SensorSource};
 
 /// A window on a simulated floor, with that floor's source; the floor ends with the handle.
 fn room() -> (Room, RehearsalSource, FootHandle) {

@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 use underfoot::floor::{Area, Board, Corner, Floor, Geometry, SensorId, TileBlock, TileId};
 use underfoot::plan::{AreaDemand, Crowd, Machine, measure};
 use underfoot::schema;
-use underfoot::sim::{SimConfig, SimFloor, calibrated};
+use underfoot::sim::{Pace, SimConfig, SimFloor, SimulatedSource, calibrated};
 use underfoot::sink::{Rank, claim_priority};
-use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
+use underfoot::source::{SensorSource, SourceError};
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use crate::hall::{Program, say, script};

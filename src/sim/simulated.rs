@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::floor_clock::{FloorClock, Host, Machine};
-use super::{SensorSource, SourceError};
-use crate::sim::{Foot, FootDriver, SimFloor};
+use super::{Foot, FootDriver, SimFloor};
+use crate::source::{SensorSource, SourceError};
 use crate::units::{HostClock, Instant};
 use crate::wire::SensorPacket;
 
@@ -59,7 +59,8 @@ impl SimulatedSource {
     }
 
     /// As [`SimulatedSource::new`], on a given host.
-    pub(crate) fn on(floor: SimFloor, driver: Box<dyn FootDriver>, pace: Pace, host: Arc<dyn Host>) -> Self {
+    #[must_use]
+    pub fn on(floor: SimFloor, driver: Box<dyn FootDriver>, pace: Pace, host: Arc<dyn Host>) -> Self {
         let clock = match pace {
             Pace::FreeRunning => Clock::Virtual,
             Pace::RealTime => Clock::Host(FloorClock::new(host)),

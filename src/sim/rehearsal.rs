@@ -3,10 +3,10 @@
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
-use super::super::{SensorSource, SimulatedSource, SourceError};
-use super::{FaultInjector, Faults};
+use super::sensor::SensorFault;
+use super::simulated::SimulatedSource;
 use crate::floor::SensorId;
-use crate::sim::SensorFault;
+use crate::source::{FaultInjector, Faults, SensorSource, SourceError};
 use crate::units::Instant;
 use crate::wire::{LinkCause, LinkCounters, SensorPacket};
 
@@ -87,11 +87,10 @@ impl SensorSource for RehearsalSource {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::{Pace, SimulatedSource};
-    use super::super::Outage;
     use super::*;
     use crate::floor::{Corner, Floor, TileId};
-    use crate::sim::{SimConfig, SimFloor, feet_by_hand};
+    use crate::sim::{Pace, SimConfig, SimFloor, feet_by_hand};
+    use crate::source::Outage;
     use crate::wire::Readings;
 
     /// The boards of the next 100 packets.

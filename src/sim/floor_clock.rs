@@ -11,8 +11,8 @@ use crate::units::{HostClock, Instant};
 /// the 100 ms after which a silent board counts as lost, and a press that is 50 ms late does not feel late.
 pub(super) const CATCH_UP: Duration = Duration::from_millis(50);
 
-/// The host of a simulated floor: its elapsed time, and a way to wait.
-pub(crate) trait Host: Send + Sync {
+/// The host of a simulated floor: its elapsed time, and a way to wait. Tests bring their own and set its time.
+pub trait Host: Send + Sync {
     /// Time since some fixed moment; never goes back.
     fn elapsed(&self) -> Duration;
 
