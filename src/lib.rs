@@ -52,9 +52,9 @@
 //! | [`units`] | newtons, instants |
 //!
 //! The features `sim` (a simulated floor with people on it), `scene` and `picture` (a floor drawn), `ergonomics`
-//! (whether feet and eyes can use a layout), `edit` (layouts changed in place), `lab` (figures and accuracy tables)
-//! and `preview` (a window) add a module each; an app without the default features compiles none of them. The feature
-//! `internals`, which the program needs, makes names public that may change in any version.
+//! (whether feet and eyes can use a layout) and `lab` (figures and accuracy tables) add a module each; an app without
+//! the default features compiles none of them. The feature `internals`, which the program needs, makes names public
+//! that may change in any version. The window and the editor of layouts are the crate `underfoot-window`.
 //!
 //! # Path of a packet
 //!
@@ -87,8 +87,6 @@ macro_rules! internal {
 
 #[cfg(feature = "lab")]
 pub mod capacity;
-#[cfg(feature = "edit")]
-pub mod edit;
 #[cfg(feature = "egui")]
 pub mod egui_painter;
 pub mod engine;
@@ -116,8 +114,6 @@ mod parallel;
 pub mod picture;
 #[cfg(feature = "lab")]
 pub mod plan;
-#[cfg(feature = "preview")]
-pub mod preview;
 mod rate_limit;
 #[cfg(feature = "record")]
 pub mod recording;
@@ -140,6 +136,10 @@ pub use underfoot_format::label;
 
 // Public signatures contain types of these crates.
 pub use {arrayvec, glam, smallvec, triple_buffer};
+
+// Samples that tests of several crates share name the library.
+#[cfg(test)]
+extern crate self as underfoot;
 
 /// Detects allocations in audio callbacks during tests.
 #[cfg(test)]

@@ -25,8 +25,7 @@ mod space;
 pub use place_error::{Zone, predicted_error_m};
 pub use press::{PressProposal, PressSpread, propose_press};
 pub use rules::{RULES, Rule, rule};
-#[cfg(feature = "preview")]
-pub(crate) use space::{REACH_M, STEP_AWAY_M, footing};
+pub use space::{REACH_M, STEP_AWAY_M, footing};
 
 use crate::floor::Floor;
 use crate::layout::{Layout, Widget};

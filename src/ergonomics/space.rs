@@ -20,9 +20,9 @@ const SEQUENTIAL_M: f32 = 0.05;
 /// Minimum gap between pedals for one foot, operated in any order (m).
 const RANDOM_M: f32 = 0.10;
 /// Maximum reach of a foot without moving the body (m).
-pub(crate) const REACH_M: f32 = 0.8;
+pub const REACH_M: f32 = 0.8;
 /// Maximum reach with a long step (m).
-pub(crate) const STEP_AWAY_M: f32 = 1.2;
+pub const STEP_AWAY_M: f32 = 1.2;
 /// Half the width and half the length of a shoe: distance of a foot's middle from a stance zone's edges.
 const HALF_SHOE: Vec2 = Vec2::new(0.06, 0.13);
 /// Minimum distance between two adjacent values of a slider (m).
@@ -89,7 +89,8 @@ fn neighbours(subject: &mut Subject<'_>) {
 }
 
 /// Area in which the middle of a foot can be that stands within the zone.
-pub(crate) fn footing(stance: &Stance) -> Rect {
+#[must_use]
+pub fn footing(stance: &Stance) -> Rect {
     let margin = HALF_SHOE.min(0.5 * stance.area.size());
     Rect::new(stance.area.min + margin, stance.area.max - margin)
 }

@@ -45,7 +45,8 @@ impl std::fmt::Debug for Fonts {
 }
 
 /// The fonts of windows and pictures: the default fonts of egui, and one with more signs, such as arrows.
-pub(crate) fn definitions() -> FontDefinitions {
+#[must_use]
+pub fn definitions() -> FontDefinitions {
     let mut all = FontDefinitions::default();
     if let Some(family) = all.families.get_mut(&FontFamily::Proportional) {
         family.push("Hack".into());
@@ -120,7 +121,7 @@ impl Fonts {
 }
 
 /// The letters of `text` for which `has` returns false, each once, as in [`Fonts::missing`].
-pub(crate) fn missing_by(text: &str, mut has: impl FnMut(char) -> bool) -> Vec<char> {
+pub fn missing_by(text: &str, mut has: impl FnMut(char) -> bool) -> Vec<char> {
     let mut missing = Vec::new();
     for letter in text.chars().filter(|letter| !is_unseen(*letter)) {
         if !missing.contains(&letter) && !has(letter) {

@@ -11,9 +11,7 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-pub use fonts::Fonts;
-#[cfg(feature = "preview")]
-pub(crate) use fonts::{definitions, missing_by};
+pub use fonts::{Fonts, definitions, missing_by};
 pub use line::{Line, Sign, Step};
-#[cfg(feature = "preview")]
-pub(crate) use system::Installed;
+#[cfg(feature = "system_fonts")]
+pub use system::Installed;

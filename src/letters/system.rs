@@ -12,7 +12,7 @@ use skrifa::{FontRef, MetadataProvider};
 use unicode_script::{Script, UnicodeScript};
 
 /// The fonts of this computer, listed on first use: that takes a tenth of a second or more.
-pub(crate) struct Installed {
+pub struct Installed {
     fonts: OnceLock<Ranked>,
     /// Returns the language of the system, such as `ja-JP`.
     language: fn() -> Option<String>,
@@ -55,7 +55,9 @@ const FOR_OTHERS: [&str; 9] =
     ["Serif", "Mono", "Nastaliq", "Kufi", "Rashi", "Looped", "Display", "Condensed", "Unjoined"];
 
 impl Installed {
-    pub(crate) fn new() -> Self {
+    /// The fonts of this computer in the order that suits its language.
+    #[must_use]
+    pub fn new() -> Self {
         Self { fonts: OnceLock::new(), language: sys_locale::get_locale }
     }
 

@@ -25,6 +25,7 @@ mod mark;
 mod outline;
 mod pieces;
 #[cfg(test)]
+#[path = "../../tests/support/sample.rs"]
 pub(crate) mod sample;
 mod strip;
 mod terrain;

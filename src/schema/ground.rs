@@ -18,9 +18,7 @@ use crate::floor::Geometry;
 use crate::ground::{GrainSpec, GroundSpec, IceSpec, Material, WoodSpec};
 use crate::layout::{Colour, Ground, HEX};
 use underfoot_format::codec::By;
-#[cfg(feature = "edit")]
-use underfoot_format::describe::FieldDescription;
-use underfoot_format::describe::{Description, FieldType};
+use underfoot_format::describe::{Description, FieldDescription, FieldType};
 use underfoot_format::text::Text;
 use underfoot_format::{Codec, Record};
 
@@ -154,8 +152,8 @@ fn standard(name: &str) -> Material {
 }
 
 /// Returns the fields of a ground with this name; empty if there is no such ground.
-#[cfg(feature = "edit")]
-pub(crate) fn ground_fields(name: &str) -> Vec<FieldDescription> {
+#[must_use]
+pub fn ground_fields(name: &str) -> Vec<FieldDescription> {
     let described = describe().into_iter().find(|description| description.name == name);
     described.map(|description| description.fields).unwrap_or_default()
 }

@@ -58,17 +58,14 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use effect::parse_effect;
 pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
-#[cfg(feature = "edit")]
-pub(crate) use ground::ground_fields;
+pub use ground::ground_fields;
 pub use kind::{Kind, Kinds};
 pub use page::{Loaded, folder_beside, kinds_beside, load_layout, parse_layout};
 pub use places::Places;
 #[cfg(any(feature = "internals", test))]
 pub use reference::{Chapter, reference, write_reference};
-#[cfg(feature = "edit")]
-pub(crate) use save::write_over;
 #[cfg(feature = "save")]
-pub use save::{SaveError, Saved, save_floor, save_text};
+pub use save::{SaveError, Saved, save_floor, save_text, write_over};
 #[cfg(feature = "save")]
 pub use state::usual_state;
 #[cfg(feature = "internals")]

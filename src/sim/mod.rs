@@ -72,8 +72,6 @@ pub use arrivals::{ArrivalError, ArrivalHandle, Arrivals, arrivals};
 pub use drawn_walk::{DrawnWalk, WalkError};
 pub use floor::{Sensing, SimConfig, SimFloor};
 pub use floor_clock::Host;
-#[cfg(all(test, feature = "preview"))]
-pub(crate) use floor_clock::tests::ByHand;
 pub use foot::{Foot, FootDriver, Load};
 pub use footprint::{Cell, Print, shoe_size};
 pub use footwear::Footwear;

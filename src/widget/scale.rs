@@ -80,8 +80,7 @@ impl Scale {
     }
 
     /// Any value from 0 to 1.
-    #[cfg(test)]
-    pub(crate) const UNIT: Self = Self::new(0.0, 1.0);
+    pub const UNIT: Self = Self::new(0.0, 1.0);
 
     /// Any value from `min` to `max`.
     #[must_use]

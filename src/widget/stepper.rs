@@ -66,8 +66,7 @@ record! {
 
 impl Repeat {
     /// No repetition.
-    #[cfg(test)]
-    pub(crate) const NEVER: Self =
+    pub const NEVER: Self =
         Self { after: None, every: Duration::from_millis(250), fastest: Duration::from_millis(60) };
 }
 

@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 #[cfg(feature = "preview")]
-use underfoot::edit::Template;
-#[cfg(feature = "preview")]
 use underfoot::ergonomics;
 #[cfg(feature = "preview")]
 use underfoot::floor::Floor;
 use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Diagnostics, Effects, Kinds, Loaded};
+#[cfg(feature = "preview")]
+use underfoot_window::edit::Template;
 
 use super::failure::Failure;
 use super::fonts::fonts;

@@ -6,10 +6,10 @@ use std::sync::mpsc::{SyncSender, TrySendError};
 use std::time::Duration;
 
 use underfoot::layout::Layout;
-use underfoot::preview::{LayoutCause, LayoutNews, Warnings};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
 use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
+use underfoot_window::preview::{LayoutCause, LayoutNews, Warnings};
 
 /// A recording or a server's floor that reports later layouts to the window.
 pub(super) struct AnnouncingSource<S> {

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::thread;
 
-use underfoot::edit;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::preview::{LayoutCause, LayoutNews, PreviewCommand, Warnings};
 use underfoot::runtime::{ControlsOff, Session};
 use underfoot::schema::{self, Diagnostics, Saved};
 use underfoot::serve::Command;
 use underfoot::wire::ControlMessage;
+use underfoot_window::edit;
+use underfoot_window::preview::{LayoutCause, LayoutNews, PreviewCommand, Warnings};
 
 use super::super::failure::Failure;
 use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};

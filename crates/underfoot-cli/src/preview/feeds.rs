@@ -7,10 +7,10 @@ use std::time::Duration;
 use crate::play;
 use underfoot::feel::ScopeReader;
 use underfoot::glam::Vec2;
-use underfoot::preview::{EventNews, FootSink, PreviewFoot, ScopeFeed};
 use underfoot::runtime::Session;
 use underfoot::sim::{Foot, FootHandle};
 use underfoot::sink::{EventSink, Report};
+use underfoot_window::preview::{EventNews, FootSink, PreviewFoot, ScopeFeed};
 
 /// Passes events on to the window.
 pub(super) struct ToWindow {

@@ -12,11 +12,11 @@ use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::mirror::TextMirror;
-use underfoot::preview::{
-    LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState, Warnings,
-};
 use underfoot::schema::Diagnostics;
 use underfoot::sink::{EventSink, Report};
+use underfoot_window::preview::{
+    LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState, Warnings,
+};
 
 use super::super::failure::Failure;
 use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};

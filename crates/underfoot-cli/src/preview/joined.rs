@@ -12,13 +12,13 @@ use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource, ServerLine};
-use underfoot::preview::{
-    EventNews, LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
-};
 use underfoot::recording::{PacketTap, TappedPackets};
 use underfoot::runtime::Session;
 use underfoot::schema;
 use underfoot::serve::Command;
+use underfoot_window::preview::{
+    EventNews, LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
+};
 
 use super::super::failure::Failure;
 use super::super::layout_args::LayoutArgs;

@@ -19,10 +19,6 @@ use std::time::Duration;
 use underfoot::feel::Renderer;
 use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
-use underfoot::preview::{
-    self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
-    ProjectionOptions, ScopeFeed, ShoeFeed, Warnings, channels,
-};
 use underfoot::recording::{Recording, TappedPackets};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
@@ -34,6 +30,10 @@ use underfoot::sim::{
 use underfoot::sink::LatencyStages;
 use underfoot::source::{Faults, SensorSource};
 use underfoot::units::HostClock;
+use underfoot_window::preview::{
+    self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
+    ProjectionOptions, ScopeFeed, ShoeFeed, Warnings, channels,
+};
 
 use self::commands::{CommandHandler, Desk};
 use self::feeds::{Mouse, Scopes, ToWindow, shoe, stop_and_wait};

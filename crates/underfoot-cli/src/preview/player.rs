@@ -10,13 +10,13 @@ use std::time::Duration;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::preview::{
-    EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels,
-};
 use underfoot::recording::{Mark, MarkKind, Progress, Recording, Speed, Timeline, Transport};
 use underfoot::runtime::Session;
 use underfoot::source::SensorSource;
 use underfoot::units::Instant;
+use underfoot_window::preview::{
+    EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels,
+};
 
 use super::super::failure::Failure;
 use super::LOOK;
@@ -299,7 +299,7 @@ mod tests {
         session::run(&Line::parse_from(arguments.into_iter().chain([file.as_os_str()])).session).unwrap();
 
         let (events, told) = mpsc::sync_channel(100_000);
-        let (_window, program) = underfoot::preview::channels();
+        let (_window, program) = underfoot_window::preview::channels();
         let (mut player, _, layout, mut snapshots) =
             Player::start(&file, ProgramChannels { events, ..program }).unwrap();
         assert!(layout.widget_index("home").is_some());
