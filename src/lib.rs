@@ -52,9 +52,9 @@
 //! | [`units`] | newtons, instants |
 //!
 //! The features `sim` (a simulated floor with people on it), `scene` and `picture` (a floor drawn), `ergonomics`
-//! (whether feet and eyes can use a layout) and `lab` (figures and accuracy tables) add a module each; an app without
-//! the default features compiles none of them. The feature `internals`, which the program needs, makes names public
-//! that may change in any version. The window and the editor of layouts are the crate `underfoot-window`.
+//! (whether feet and eyes can use a layout) add a module each; an app without the default features compiles none of
+//! them. The feature `internals`, which the program needs, makes names public that may change in any version. The
+//! window and the editor of layouts are the crate `underfoot-window`, figures and accuracy tables `underfoot-lab`.
 //!
 //! # Path of a packet
 //!
@@ -85,15 +85,11 @@ macro_rules! internal {
     )*};
 }
 
-#[cfg(feature = "lab")]
-pub mod capacity;
 #[cfg(feature = "egui")]
 pub mod egui_painter;
 pub mod engine;
 #[cfg(feature = "ergonomics")]
 pub mod ergonomics;
-#[cfg(feature = "lab")]
-pub mod experiment;
 pub mod feel;
 pub mod floor;
 pub mod ground;
@@ -112,8 +108,6 @@ pub mod parallel;
 mod parallel;
 #[cfg(feature = "picture")]
 pub mod picture;
-#[cfg(feature = "lab")]
-pub mod plan;
 mod rate_limit;
 #[cfg(feature = "record")]
 pub mod recording;

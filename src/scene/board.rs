@@ -215,7 +215,7 @@ impl Scene {
     }
 
     /// Adds `text` on a small rounded plate around `middle` and returns the plate.
-    pub(crate) fn add_badge(
+    pub fn add_badge(
         &mut self,
         middle: Vec2,
         size_m: f32,

@@ -38,9 +38,7 @@ mod widths;
 pub use board::Scene;
 pub use layers::TOLD;
 pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
-pub use outline::outline_of;
-#[cfg(feature = "lab")]
-pub(crate) use outline::sole;
+pub use outline::{outline_of, sole};
 pub use pieces::{Direction, Piece, in_drawn_order, pieces};
 pub use theme::{Faces, Theme};
 pub use view::{Layer, Shoe, Show, Trail, View};

@@ -115,7 +115,7 @@ const SOLE_STEPS: usize = 4;
 
 /// The sole of a right shoe (mirrored for a left one) around `middle`; `heading_rad` is the direction of the toes,
 /// counter-clockwise from north.
-pub(crate) fn sole(middle: Vec2, heading_rad: f32, length_m: f32, left: bool) -> impl Iterator<Item = Vec2> {
+pub fn sole(middle: Vec2, heading_rad: f32, length_m: f32, left: bool) -> impl Iterator<Item = Vec2> {
     let turn = Vec2::from_angle(heading_rad);
     let side = if left { -1.0 } else { 1.0 };
     (0..SOLE.len() * SOLE_STEPS).map(move |step| {

@@ -7,7 +7,6 @@ use std::num::NonZeroUsize;
 use crate::sense_support::Crowd;
 use crate::sense_support::{Sensors, walk};
 use assert_no_alloc::{assert_no_alloc, violation_count};
-use underfoot::experiment::Visit;
 use underfoot::floor::{Corner, Floor, Geometry, SensorId};
 #[cfg(feature = "threads")]
 use underfoot::parallel::ThreadPool;
@@ -17,6 +16,7 @@ use underfoot::sense::{Assembler, Method, Sensing};
 use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::SensorPacket;
+use underfoot_lab::experiment::Visit;
 
 #[test]
 fn people_on_a_mapped_floor_whose_sensors_break_allocate_nothing() {

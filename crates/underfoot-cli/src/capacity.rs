@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use clap::Args as ClapArgs;
 use serde_json::json;
-use underfoot::capacity::{
-    AssemblyLoad, BankLoad, PacketLoad, RenderLoad, RenderWork, SensingLoad, ServeLoad, modal_error_db,
-};
 use underfoot::floor::Geometry;
 use underfoot::parallel::ThreadPool;
+use underfoot_lab::capacity::{
+    AssemblyLoad, BankLoad, PacketLoad, RenderLoad, RenderWork, SensingLoad, ServeLoad, modal_error_db,
+};
 
 use super::failure::Failure;
 use super::meter::{Measured, Meter};

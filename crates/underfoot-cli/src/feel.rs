@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use serde_json::json;
-use underfoot::experiment::{EffectSheet, Figure};
 use underfoot::feel::{Effect, Gesture};
 use underfoot::picture;
 use underfoot::schema::{
@@ -13,6 +12,7 @@ use underfoot::schema::{
 };
 use underfoot::sink::write_mono;
 use underfoot::units::Newtons;
+use underfoot_lab::experiment::{EffectSheet, Figure};
 
 use super::failure::Failure;
 use super::fonts::fonts;

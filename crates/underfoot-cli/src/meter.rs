@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use underfoot::capacity::SocketLoad;
+use underfoot_lab::capacity::SocketLoad;
 
 use super::failure::Failure;
 use super::progress::Progress;

@@ -1,10 +1,10 @@
 //! Exploration: single feet that are reported as two.
 use std::time::Duration;
-use underfoot::experiment::{Rig, Visit};
 use underfoot::floor::Geometry;
 use underfoot::sense::Method;
 use underfoot::sim::{FloorQuality, Load};
 use underfoot::units::Instant;
+use underfoot_lab::experiment::{Rig, Visit};
 
 #[test]
 #[ignore = "exploration"]

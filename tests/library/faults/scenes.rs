@@ -6,9 +6,6 @@ use std::time::Duration;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 use underfoot::engine::Engine;
-use underfoot::experiment::{
-    FaultHook, Followed, PeopleTable, Rig, Stance, TapScene, TapScore, TapTable, Visit,
-};
 use underfoot::feel::{Cue, CueSender, RendererConfig, renderer};
 use underfoot::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use underfoot::glam::Vec2;
@@ -18,6 +15,9 @@ use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::EventKind;
 use underfoot::wire::Readings;
+use underfoot_lab::experiment::{
+    FaultHook, Followed, PeopleTable, Rig, Stance, TapScene, TapScore, TapTable, Visit,
+};
 
 use crate::support::page;
 

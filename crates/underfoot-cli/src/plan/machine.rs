@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use serde_json::Value;
-use underfoot::plan::{LOADS, Machine, measure};
 use underfoot::schema;
+use underfoot_lab::plan::{LOADS, Machine, measure};
 
 use crate::failure::Failure;
 use crate::progress::Progress;

@@ -8,9 +8,9 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 use serde_json::json;
-use underfoot::plan::{Crowd, MOST_PEOPLE, Plan, PlanError, Size, plan_floor, plan_size};
 use underfoot::schema;
 use underfoot::wire::SensorFormat;
+use underfoot_lab::plan::{Crowd, MOST_PEOPLE, Plan, PlanError, Size, plan_floor, plan_size};
 
 use super::failure::Failure;
 use super::number::{number, patience};
@@ -123,7 +123,7 @@ fn tiles(text: &str) -> Result<(u32, u32), String> {
     let (columns, rows) = text.split_once(['x', 'X']).ok_or_else(expected)?;
     let side = |digits: &str| {
         let side = digits.trim().parse::<u32>().ok();
-        side.filter(|side| (1..=underfoot::plan::MOST_SIDE).contains(side)).ok_or_else(expected)
+        side.filter(|side| (1..=underfoot_lab::plan::MOST_SIDE).contains(side)).ok_or_else(expected)
     };
     Ok((side(columns)?, side(rows)?))
 }

@@ -1,6 +1,6 @@
 //! A plan as a table.
 
-use underfoot::plan::{Limit, Machine, Plan, Resource, Split};
+use underfoot_lab::plan::{Limit, Machine, Plan, Resource, Split};
 
 /// Prints `plan` as a table.
 pub(super) fn print(plan: &Plan) {
