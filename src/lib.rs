@@ -51,10 +51,10 @@
 //! | [`feel`], [`ground`] | haptics: cues, effects, materials, and the renderer of actuator samples |
 //! | [`units`] | newtons, instants |
 //!
-//! The features `sim` (a simulated floor with people on it), `scene` and `picture` (a floor drawn), `ergonomics`
-//! (whether feet and eyes can use a layout) add a module each; an app without the default features compiles none of
-//! them. The feature `internals`, which the program needs, makes names public that may change in any version. The
-//! window and the editor of layouts are the crate `underfoot-window`, figures and accuracy tables `underfoot-lab`.
+//! The feature `sim` adds a simulated floor with people on it; an app without the default features compiles none of
+//! it. The feature `internals`, which the program needs, makes names public that may change in any version. Other
+//! crates draw a floor and review its layout (`underfoot-scene`), show and edit it in a window (`underfoot-window`),
+//! and measure it (`underfoot-lab`).
 //!
 //! # Path of a packet
 //!
@@ -85,17 +85,11 @@ macro_rules! internal {
     )*};
 }
 
-#[cfg(feature = "egui")]
-pub mod egui_painter;
 pub mod engine;
-#[cfg(feature = "ergonomics")]
-pub mod ergonomics;
 pub mod feel;
 pub mod floor;
 pub mod ground;
 pub mod layout;
-#[cfg(feature = "letters")]
-pub mod letters;
 #[cfg(feature = "record")]
 pub mod mirror;
 #[cfg(feature = "internals")]
@@ -106,14 +100,10 @@ mod outgoing;
 pub mod parallel;
 #[cfg(not(feature = "threads"))]
 mod parallel;
-#[cfg(feature = "picture")]
-pub mod picture;
 mod rate_limit;
 #[cfg(feature = "record")]
 pub mod recording;
 pub mod runtime;
-#[cfg(feature = "scene")]
-pub mod scene;
 pub mod schema;
 pub mod sense;
 pub mod serve;
@@ -130,10 +120,6 @@ pub use underfoot_format::label;
 
 // Public signatures contain types of these crates.
 pub use {arrayvec, glam, smallvec, triple_buffer};
-
-// Samples that tests of several crates share name the library.
-#[cfg(test)]
-extern crate self as underfoot;
 
 /// Detects allocations in audio callbacks during tests.
 #[cfg(test)]

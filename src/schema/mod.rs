@@ -27,7 +27,6 @@ mod ground;
 mod inherit;
 mod kind;
 mod lists;
-#[cfg(feature = "ergonomics")]
 mod locate;
 mod page;
 mod pages;
@@ -42,7 +41,6 @@ mod save;
 mod state;
 #[cfg(test)]
 mod tests;
-#[cfg(feature = "letters")]
 mod undrawn;
 mod units;
 mod version;
@@ -60,6 +58,7 @@ pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
 pub use ground::ground_fields;
 pub use kind::{Kind, Kinds};
+pub use locate::{ControlPart, Remark};
 pub use page::{Loaded, folder_beside, kinds_beside, load_layout, parse_layout};
 pub use places::Places;
 #[cfg(any(feature = "internals", test))]

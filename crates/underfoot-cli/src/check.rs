@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use underfoot::ergonomics::{self, RULES};
 use underfoot::floor::Floor;
 use underfoot::schema::{self, Diagnostics};
+use underfoot_scene::ergonomics::{self, RULES};
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
@@ -92,7 +92,7 @@ fn check(path: &std::path::Path, args: &Args, floor: &Floor) -> Diagnostics {
                 outln!("{}", schema::write_layout(&loaded.layout));
             }
             let mut problems = loaded.warnings;
-            problems.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
+            problems.merge(ergonomics::locate(&loaded.places, &ergonomics::review(&loaded.layout, floor)));
             problems.merge(loaded.places.undrawn(|text| fonts().missing(text)));
             problems
         }

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 use underfoot::parallel::ThreadPoolError;
-use underfoot::picture::PictureError;
 use underfoot::recording::RecordingError;
 use underfoot::runtime::StartError;
 use underfoot::schema::{Diagnostics, SaveError};
 use underfoot::sink::SinkError;
 use underfoot::source::SourceError;
+use underfoot_scene::picture::PictureError;
 
 /// The reason why a command failed, in words for its user.
 #[derive(Debug, Error)]

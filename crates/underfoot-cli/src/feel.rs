@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use serde_json::json;
 use underfoot::feel::{Effect, Gesture};
-use underfoot::picture;
 use underfoot::schema::{
     self, Effects, NamedEffect, parse_effect, read_ahap, read_bounded, save_text, write_ahap,
 };
 use underfoot::sink::write_mono;
 use underfoot::units::Newtons;
 use underfoot_lab::experiment::{EffectSheet, Figure};
+use underfoot_scene::picture;
 
 use super::failure::Failure;
 use super::fonts::fonts;

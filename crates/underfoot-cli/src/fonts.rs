@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use underfoot::letters::Fonts;
+use underfoot_scene::letters::Fonts;
 
 /// The built-in fonts, and for letters that they lack those of this computer.
 pub(crate) fn fonts() -> &'static Fonts {

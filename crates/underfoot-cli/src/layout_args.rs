@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 #[cfg(feature = "preview")]
-use underfoot::ergonomics;
-#[cfg(feature = "preview")]
 use underfoot::floor::Floor;
 use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Diagnostics, Effects, Kinds, Loaded};
+#[cfg(feature = "preview")]
+use underfoot_scene::ergonomics;
 #[cfg(feature = "preview")]
 use underfoot_window::edit::Template;
 
@@ -91,7 +91,7 @@ impl LayoutArgs {
             None => self.read(&floor.geometry)?,
         };
         let mut warnings = loaded.warnings;
-        warnings.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
+        warnings.merge(ergonomics::locate(&loaded.places, &ergonomics::review(&loaded.layout, floor)));
         warnings.merge(loaded.places.undrawn(|text| fonts().missing(text)));
         Ok((loaded.layout, warnings))
     }

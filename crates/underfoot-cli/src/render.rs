@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use underfoot::engine::{Engine, Snapshot};
-use underfoot::picture;
-use underfoot::scene::{self, Scene, Show, Theme, View};
 use underfoot::sense::{ForceFrame, Method};
 use underfoot::units::Instant;
+use underfoot_scene::picture;
+use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;

@@ -10,9 +10,7 @@ use std::time::Duration;
 use underfoot::engine::Snapshot;
 use underfoot::feel::{RendererConfig, renderer};
 use underfoot::layout::Layout;
-use underfoot::picture;
 use underfoot::recording::{Recorded, Recorder, WhenBehind};
-use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
@@ -20,6 +18,8 @@ use underfoot::sim::{Pace, Script, SimulatedSource};
 use underfoot::sink::{Fanout, JsonSink, OscSink, WavOptions, WavSink, WhenFull};
 use underfoot::units::Instant;
 use underfoot::widget::Value;
+use underfoot_scene::picture;
+use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
 
 use super::failure::Failure;
 use super::fault_args::FaultArgs;

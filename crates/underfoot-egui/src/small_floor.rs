@@ -4,10 +4,10 @@ use egui::{Context, RawInput, Sense, Ui, ViewportId};
 use underfoot::floor::Geometry;
 use underfoot::glam::Vec2;
 use underfoot::runtime::{Session, Snapshot};
-use underfoot::scene::{Show, Theme};
 use underfoot::sim::{Foot, FootHandle};
 use underfoot::units::Newtons;
 use underfoot::wire::LinkState;
+use underfoot_scene::scene::{Show, Theme};
 
 use crate::{FloorView, FootInput};
 

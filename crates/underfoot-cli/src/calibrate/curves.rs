@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use serde_json::{Value, json};
 use underfoot::floor::{Calibration, CalibrationRecord, Floor, LawKind};
-use underfoot::picture;
 use underfoot::sense::{Candidate, Fit, FitError, Judgement, LoadTable, SensorLoads, Verdict};
+use underfoot_scene::picture;
 
 use super::{MOST_BYTES, count, plot, rounded, today};
 use crate::failure::Failure;

@@ -3,8 +3,8 @@
 use underfoot::floor::{Corner, LawKind, Rect, TileId};
 use underfoot::glam::Vec2;
 use underfoot::layout::Colour;
-use underfoot::scene::{Anchor, Ink, Lettering, Paint, Scene, Stroke, Theme};
 use underfoot::sense::{Judgement, SensorLoads, Verdict};
+use underfoot_scene::scene::{Anchor, Ink, Lettering, Paint, Scene, Stroke, Theme};
 
 /// Size of a panel's plotting area and of the space around it, in metres of the drawing.
 const PANEL: Vec2 = Vec2::new(0.20, 0.15);

@@ -8,7 +8,7 @@ use glam::Vec2;
 
 use underfoot::floor::Rect;
 use underfoot::layout::Colour;
-use underfoot::scene::{Anchor, Ink, Lettering, Paint, Scene, Stroke, Theme};
+use underfoot_scene::scene::{Anchor, Ink, Lettering, Paint, Scene, Stroke, Theme};
 
 /// Theme of all figures, for paper.
 pub(super) const THEME: Theme = Theme::LIGHT;

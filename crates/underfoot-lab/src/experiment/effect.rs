@@ -10,7 +10,7 @@ use super::chart::{Axis, LINE_M, MARGIN_M, Page, Plot, Sample, THEME, Type};
 use underfoot::feel::{Analysis, Band, Effect, Gesture, analyse, audition};
 use underfoot::floor::Rect;
 use underfoot::layout::Colour;
-use underfoot::scene::{Ink, Paint, Scene, Stroke};
+use underfoot_scene::scene::{Ink, Paint, Scene, Stroke};
 
 /// One rendered effect: its waveform, its spectrum and its figures.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! The output of every figure: a drawing, a table, a summary.
 
-use underfoot::scene::Scene;
+use underfoot_scene::scene::Scene;
 
 /// An experiment that can be drawn and written as a table.
 pub trait Figure {

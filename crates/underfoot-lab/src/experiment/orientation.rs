@@ -9,10 +9,10 @@ use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Geometry, Rect};
 use underfoot::layout::Colour;
-use underfoot::scene::{Ink, Paint, Scene, Stroke};
 use underfoot::sense::{Contact, Method};
 use underfoot::sim::{Load, Print};
 use underfoot::units::Newtons;
+use underfoot_scene::scene::{Ink, Paint, Scene, Stroke};
 
 /// A contact across a seam.
 #[derive(Clone, Copy, Debug, PartialEq)]

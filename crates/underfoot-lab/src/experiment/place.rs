@@ -8,9 +8,9 @@ use serde::Serialize;
 use super::errors::{Errors, Summary};
 use super::rig::ExperimentError;
 use super::spot::{Bench, Thing, Way, geometry, spread};
-use underfoot::ergonomics::Zone;
 use underfoot::floor::{Rect, TileId};
 use underfoot::units::Newtons;
+use underfoot_scene::ergonomics::Zone;
 
 /// The compared ways, without and with position maps: indices into [`Way::ALL`].
 const WAYS: [usize; 2] = [1, 2];

@@ -12,11 +12,11 @@ use underfoot::engine::{Engine, Snapshot};
 use underfoot::floor::Geometry;
 use underfoot::ground::GroundEvent;
 use underfoot::layout::Layout;
-use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
 use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 use underfoot::sense::Method;
 use underfoot::sim::{Foot, FootDriver, Gait, PREFERRED_M_S, Scenario};
 use underfoot::units::{Instant, Newtons};
+use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
 
 /// Manner of putting a foot down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

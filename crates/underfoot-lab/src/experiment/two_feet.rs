@@ -10,10 +10,10 @@ use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Corner, Geometry, Rect, TileId};
 use underfoot::layout::Colour;
-use underfoot::scene::{Ink, Paint, Scene, Stroke, sole};
 use underfoot::sense::{Contact, Covariance, ForceFrame, Method};
 use underfoot::sim::{Foot, shoe_size};
 use underfoot::units::Newtons;
+use underfoot_scene::scene::{Ink, Paint, Scene, Stroke, sole};
 
 /// Two feet on 2 x 2 tiles, some 20 cm apart: the left one lands first, the right one half a second later.
 ///

@@ -8,11 +8,11 @@ use super::change::{Edit, is_record};
 use super::history::History;
 use super::refusal::Refusal;
 use super::splice::Piece;
-use underfoot::ergonomics::{self, Finding};
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostics, Kinds, Loaded, parse_layout};
 use underfoot_format::outline::Outline;
+use underfoot_scene::ergonomics::{self, Finding};
 
 /// The byte-order mark, with which a file may begin; it is not part of the text.
 const MARK: &str = "\u{feff}";
@@ -111,7 +111,7 @@ impl Document {
     #[must_use]
     pub fn review(&self) -> Diagnostics {
         let mut all = self.warnings().clone();
-        all.merge(self.loaded.places.locate(&self.findings()));
+        all.merge(underfoot_scene::ergonomics::locate(&self.loaded.places, &self.findings()));
         all
     }
 

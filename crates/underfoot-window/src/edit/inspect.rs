@@ -4,13 +4,13 @@ use super::address::{Address, List};
 use super::change::Edit;
 use super::document::Document;
 use super::item::Item;
-use underfoot::ergonomics::{Finding, Part};
 use underfoot::floor::Rect;
 use underfoot::layout::Widget;
 use underfoot::schema::Diagnostic;
 use underfoot_format::describe::{FieldDescription, FieldType};
 use underfoot_format::text::Entry;
 use underfoot_format::{Record, Variants};
+use underfoot_scene::ergonomics::{Finding, Part};
 
 /// The origin of a field's value.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -33,10 +33,10 @@ use super::turns::Turns;
 use super::walks::Walks;
 use super::watch::Watch;
 use super::zoom::Zoom;
-use underfoot::egui_painter::Palette;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
-use underfoot::scene::{self, Scene, Shoe, Show, Theme};
+use underfoot_scene::egui_painter::Palette;
+use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme};
 
 /// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);
@@ -292,7 +292,7 @@ impl eframe::App for App {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        underfoot::egui_painter::color(self.theme.canvas).to_normalized_gamma_f32()
+        underfoot_scene::egui_painter::color(self.theme.canvas).to_normalized_gamma_f32()
     }
 
     fn persist_egui_memory(&self) -> bool {

@@ -11,9 +11,9 @@ use super::app::App;
 use super::style;
 use super::style::quiet;
 use underfoot::layout::Colour;
-use underfoot::scene::Theme;
 use underfoot::schema::save_text;
 use underfoot_format::file::read_bounded;
+use underfoot_scene::scene::Theme;
 
 /// The file's first line.
 const HEAD: &str = "underfoot window 1";

@@ -11,9 +11,9 @@ use super::app::App;
 use super::feed::{LayoutCause, PreviewCommand};
 use super::rehearsal::Rehearsal;
 use super::style::{panel_colour, panel_frame, pill, quiet, selectable, toggle};
-use underfoot::egui_painter::color;
-use underfoot::scene::{Show, Theme, in_drawn_order};
 use underfoot::wire::LinkState;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::{Show, Theme, in_drawn_order};
 
 /// Width of the window below which the top bar takes two lines, in points.
 const TWO_LINES: f32 = 1010.0;

@@ -92,7 +92,7 @@ impl App {
         let Some(designer) = &self.designer else { return };
         let theme = &self.theme;
         let ink = if designer.is_saved() { theme.quiet } else { theme.ink };
-        let name = egui::RichText::new(designer.title()).color(underfoot::egui_painter::color(ink));
+        let name = egui::RichText::new(designer.title()).color(underfoot_scene::egui_painter::color(ink));
         let hint = if designer.is_saved() { "Saved" } else { "Not saved: Ctrl+S saves it" };
         ui.add(egui::Label::new(name).truncate()).on_hover_text(hint);
         if !self.is_designing()

@@ -15,10 +15,10 @@ use super::pointer::{pressed_at, way_while_down};
 use super::touches::Touch;
 use super::watch::{Banner, Weight};
 use super::zoom::Zoom;
-use underfoot::egui_painter::{self, ScreenFromFloor, color};
 use underfoot::floor::TileId;
-use underfoot::scene::{self, Show, Theme, View};
 use underfoot::widget::{Behaviour, Value};
+use underfoot_scene::egui_painter::{self, ScreenFromFloor, color};
+use underfoot_scene::scene::{self, Show, Theme, View};
 
 /// Radius of the standing foot's handle, in points: easy to hit with a mouse.
 const HANDLE: f32 = 13.0;

@@ -1,7 +1,7 @@
 //! The window: a simulated or real floor, drawn on the screen and used with the mouse.
 //!
 //! [`run`] shows the content of its [`PreviewInput`]; sensing, sound and outputs run on other threads and never wait
-//! for the window. Only this module and [`underfoot::egui_painter`] depend on egui.
+//! for the window. Only this module and [`underfoot_scene::egui_painter`] depend on egui.
 
 mod app;
 mod appearance;
@@ -60,7 +60,7 @@ use std::path::PathBuf;
 use eframe::egui;
 use thiserror::Error;
 
-use underfoot::scene::Theme;
+use underfoot_scene::scene::Theme;
 
 /// The initial state of the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,9 +123,9 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
         let app = app::App::new(lookout::start(input, &context.egui_ctx), &options);
         style::apply(&context.egui_ctx, &app.theme);
-        context.egui_ctx.set_fonts(underfoot::letters::definitions());
+        context.egui_ctx.set_fonts(underfoot_scene::letters::definitions());
         // Missing letters come from the fonts of this computer, as in pictures.
-        context.egui_ctx.add_font_provider(std::sync::Arc::new(underfoot::letters::Installed::new()));
+        context.egui_ctx.add_font_provider(std::sync::Arc::new(underfoot_scene::letters::Installed::new()));
         // The window has its own text size, which it stores.
         context.egui_ctx.options_mut(|options| options.zoom_with_keyboard = false);
         Ok(Box::new(app) as Box<dyn eframe::App>)

@@ -8,9 +8,9 @@ use super::app::App;
 use super::feed::{ServerLink, ServerState};
 use super::panel::grouped;
 use super::style::panel_frame;
-use underfoot::egui_painter::color;
 use underfoot::layout::Colour;
 use underfoot::sink::{LatencyMeter, LatencyStages};
+use underfoot_scene::egui_painter::color;
 
 /// Interval at which latencies are summarised, in seconds: slow enough to read.
 const EVERY_S: f64 = 0.5;

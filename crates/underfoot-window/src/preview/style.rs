@@ -6,9 +6,9 @@ use eframe::egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2,
 };
 
-use underfoot::egui_painter::color;
 use underfoot::layout::Colour;
-use underfoot::scene::Theme;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Gives every widget of `ctx` the colours of `theme`.
 pub(super) fn apply(ctx: &egui::Context, theme: &Theme) {

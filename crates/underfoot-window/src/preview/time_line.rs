@@ -12,9 +12,9 @@ use eframe::egui::{
 use super::app::App;
 use super::playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 use super::style::{panel_frame, quiet, selectable};
-use underfoot::egui_painter::color;
 use underfoot::layout::Colour;
-use underfoot::scene::Theme;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Time between frames during playback: the head takes longer than that for a pixel.
 const PICTURE: Duration = Duration::from_millis(33);

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use eframe::egui::epaint::PathShape;
 use eframe::egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2};
 
-use underfoot::egui_painter::color;
 use underfoot::feel::{Analysis, Effect, Gesture, analyse, audition};
-use underfoot::scene::Theme;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Sample rate that covers the band of the actuators.
 const RATE: u32 = 12_000;

@@ -1,8 +1,8 @@
 //! Trails of contacts.
 
 use underfoot::engine::Snapshot;
-use underfoot::scene::Trail;
 use underfoot::sense::ContactId;
+use underfoot_scene::scene::Trail;
 
 /// Lifetime of a point, in seconds.
 const KEPT_S: f64 = 2.0;

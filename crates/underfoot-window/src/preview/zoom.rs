@@ -2,8 +2,8 @@
 
 use eframe::egui::{Pos2, Rect, Vec2, vec2};
 
-use underfoot::egui_painter::ScreenFromFloor;
 use underfoot::floor;
+use underfoot_scene::egui_painter::ScreenFromFloor;
 
 /// Maximum zoom relative to the whole floor: a tile fills the view of a floor of 24 x 16.
 const NEAREST: f32 = 16.0;

@@ -9,10 +9,10 @@ use eframe::egui::{Key, Margin, Panel, Ui, WidgetInfo};
 use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
 use crate::preview::style::{is_entered, panel_colour, panel_frame, pill, quiet, toggle};
-use underfoot::egui_painter::color;
 use underfoot::floor::Rect;
-use underfoot::scene::Theme;
 use underfoot::schema;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// The action of a menu entry.
 type Action = fn(&mut Designer);

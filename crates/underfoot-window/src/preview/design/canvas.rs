@@ -8,11 +8,11 @@ use eframe::egui::{Sense, Ui, WidgetInfo};
 
 use super::Designer;
 use crate::edit::{Address, Item, List};
-use underfoot::egui_painter::{self, Palette, ScreenFromFloor};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
-use underfoot::scene::{self, Show, Theme, View};
+use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor};
+use underfoot_scene::scene::{self, Show, Theme, View};
 
 impl Designer {
     /// Shows the floor in the remaining part of the window.

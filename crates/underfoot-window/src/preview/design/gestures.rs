@@ -7,9 +7,9 @@ use glam::Vec2;
 use super::Designer;
 use crate::edit::{Address, Edges, Grid, Guide, Item, List};
 use crate::preview::pointer::way_while_down;
-use underfoot::egui_painter::ScreenFromFloor;
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
+use underfoot_scene::egui_painter::ScreenFromFloor;
 
 /// Half the side of a handle, and the distance within which the pointer grabs it, in points.
 pub(super) const HANDLE: f32 = 5.0;

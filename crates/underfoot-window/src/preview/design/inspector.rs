@@ -11,11 +11,11 @@ use super::{Designer, Pane};
 use crate::edit::{Address, Edit, Item, Origin, Property, Section};
 use crate::preview::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet, section};
-use underfoot::egui_painter::color;
 use underfoot::feel::{Effect, Feel, Gesture};
 use underfoot::layout::Widget;
-use underfoot::scene::{Theme, in_drawn_order};
 use underfoot_format::diagnostic::Severity;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::{Theme, in_drawn_order};
 
 /// The state of the inspector.
 #[derive(Default)]

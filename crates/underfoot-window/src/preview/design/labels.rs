@@ -5,8 +5,8 @@ use std::sync::Arc;
 use eframe::egui;
 use eframe::egui::{Align2, Color32, FontId, Galley, Pos2, pos2, vec2};
 
-use underfoot::egui_painter::color;
-use underfoot::scene::Theme;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Text beside controls that avoids the text of other controls.
 pub(super) struct Labels {

@@ -10,8 +10,8 @@ use super::palette::go_on;
 use super::{Designer, Pane};
 use crate::edit::{Address, List};
 use crate::preview::style::quiet;
-use underfoot::egui_painter::color;
-use underfoot::scene::{Theme, in_drawn_order};
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::{Theme, in_drawn_order};
 
 impl Designer {
     /// Lists the records of the page on display, to be selected by name.

@@ -7,12 +7,12 @@ use glam::Vec2;
 use super::Designer;
 use super::gestures::{HANDLE, Trial, can_be_sized, handles};
 use super::labels::{Labels, label};
-use underfoot::egui_painter::{ScreenFromFloor, color};
-use underfoot::ergonomics::{REACH_M, STEP_AWAY_M, footing};
 use underfoot::floor::Rect;
-use underfoot::scene::{Shoe, Theme};
 use underfoot::units::Newtons;
 use underfoot_format::diagnostic::Severity;
+use underfoot_scene::egui_painter::{ScreenFromFloor, color};
+use underfoot_scene::ergonomics::{REACH_M, STEP_AWAY_M, footing};
+use underfoot_scene::scene::{Shoe, Theme};
 
 impl Designer {
     /// Draws the selection, its guide lines and the findings.

@@ -33,12 +33,12 @@ use eframe::egui;
 use super::feed::PreviewCommand;
 use super::zoom::Zoom;
 use crate::edit::{Address, Document, Edit, Item, LayoutFile, Refusal};
-use underfoot::ergonomics::Finding;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::letters;
-use underfoot::scene::Scene;
 use underfoot::schema::{Diagnostic, Diagnostics, Kinds};
+use underfoot_scene::ergonomics::Finding;
+use underfoot_scene::letters;
+use underfoot_scene::scene::Scene;
 
 pub(super) use threshold::Threshold;
 pub use underfoot::schema::usual_state;

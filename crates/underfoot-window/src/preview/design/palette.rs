@@ -8,12 +8,12 @@ use glam::Vec2;
 use super::{Designer, Pane};
 use crate::edit::{Address, Edit, List};
 use crate::preview::style::{panel_frame, section};
-use underfoot::egui_painter::{self, Palette, ScreenFromFloor, color};
 use underfoot::engine::Snapshot;
 use underfoot::floor::{Geometry, Rect};
 use underfoot::layout::{Layout, Widget};
-use underfoot::scene::{self, Scene, Show, Theme, View};
 use underfoot::widget::WidgetId;
+use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
+use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
 /// Size of a control of about one tile: 16 cm and more suit a shoe (rule U101).
 const SMALL_M: Vec2 = Vec2::new(0.18, 0.16);

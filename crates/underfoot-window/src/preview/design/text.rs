@@ -11,8 +11,8 @@ use eframe::egui::{Margin, Panel, ScrollArea, TextEdit, Ui, WidgetInfo};
 use super::{Designer, Pane};
 use crate::edit::Address;
 use crate::preview::style::{panel_frame, quiet};
-use underfoot::egui_painter::color;
-use underfoot::scene::Theme;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// The text editor.
 #[derive(Default)]

@@ -5,9 +5,9 @@ use eframe::egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetIn
 
 use super::super::app::App;
 use super::{TileMark, Walk};
-use underfoot::egui_painter::{ScreenFromFloor, color};
 use underfoot::floor::Corner;
 use underfoot::serve::SensorVerdict;
+use underfoot_scene::egui_painter::{ScreenFromFloor, color};
 
 impl App {
     /// Covers the floor with the state of its tiles.

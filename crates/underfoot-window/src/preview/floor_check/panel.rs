@@ -8,9 +8,9 @@ use eframe::egui::{
 use super::super::app::App;
 use super::super::style::{is_entered, panel_frame, quiet, section, selectable};
 use super::{Walk, felt_words};
-use underfoot::egui_painter::color;
 use underfoot::layout::Colour;
 use underfoot::serve::{FeltTwice, STEP_N, SensorVerdict, WalkTest, WiringTask, WiringWalk};
+use underfoot_scene::egui_painter::color;
 
 /// A request of the user in this panel.
 #[derive(Clone, Copy)]

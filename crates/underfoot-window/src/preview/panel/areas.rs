@@ -4,8 +4,8 @@ use eframe::egui::Ui;
 
 use super::super::app::App;
 use super::super::style::{row, section};
-use underfoot::egui_painter::color;
 use underfoot::sink::AreaState;
+use underfoot_scene::egui_painter::color;
 
 impl App {
     /// Shows the state of each area and the uncertainty of its event times; nothing on a floor of one computer.

@@ -4,8 +4,8 @@ use eframe::egui::Ui;
 
 use super::super::app::App;
 use super::super::style::{Row, quiet, row, section};
-use underfoot::egui_painter::color;
 use underfoot::wire::LinkState;
+use underfoot_scene::egui_painter::color;
 
 /// Minimum number of lines, so that nothing below moves when feet appear and disappear.
 const LINES: usize = 3;

@@ -8,8 +8,8 @@ use super::super::app::App;
 use super::super::feed::PreviewCommand;
 use super::super::off_hint::why_off;
 use super::super::style::quiet;
-use underfoot::egui_painter::color;
 use underfoot::widget::{Behaviour, Value};
+use underfoot_scene::egui_painter::color;
 
 impl App {
     /// Offers the requests of an app for each control: set its value, disable it.

@@ -8,12 +8,12 @@ use eframe::egui::{ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 use super::super::app::App;
 use super::super::messages::Happened;
 use super::super::style::{Row, quiet, section};
-use underfoot::egui_painter::color;
 use underfoot::engine::IgnoredPress;
-use underfoot::scene::Theme;
 use underfoot::sink::event_line;
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, Value, WidgetEvent};
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Height of one line, in points.
 const LINE: f32 = 18.0;

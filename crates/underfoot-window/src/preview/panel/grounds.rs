@@ -5,8 +5,8 @@ use eframe::egui::{CollapsingHeader, Ui};
 
 use super::super::app::App;
 use super::link::{figure, grouped};
-use underfoot::egui_painter::color;
 use underfoot::ground::{GroundState, Material};
+use underfoot_scene::egui_painter::color;
 
 impl App {
     /// Shows the events of each ground on the page: one line, until the user opens it.

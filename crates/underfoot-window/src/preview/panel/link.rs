@@ -5,11 +5,11 @@ use eframe::egui::{CollapsingHeader, Ui};
 
 use super::super::app::App;
 use super::super::style::{quiet, row};
-use underfoot::egui_painter::color;
 use underfoot::feel::DeviceState;
-use underfoot::scene::Theme;
 use underfoot::sense::Quality;
 use underfoot::wire::{LinkCounters, LinkState};
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 impl App {
     /// Shows the state of the sensors, and lists those with faults.

@@ -49,7 +49,7 @@ impl App {
         let ink = if walks.refused.is_some() { theme.warning } else { theme.quiet };
         ui.allocate_ui(eframe::egui::vec2(ui.available_width(), WORDS), |ui| {
             ui.set_min_height(WORDS);
-            let words = quiet(&theme, words).size(12.5).color(underfoot::egui_painter::color(ink));
+            let words = quiet(&theme, words).size(12.5).color(underfoot_scene::egui_painter::color(ink));
             ui.add(Label::new(words).wrap());
         });
     }

@@ -10,11 +10,11 @@ use super::super::app::App;
 use super::super::design::Threshold;
 use super::super::presses::Press;
 use super::super::style::{panel_colour, plot_button, quiet, row, section};
-use underfoot::egui_painter::color;
-use underfoot::ergonomics::{PressSpread, propose_press};
-use underfoot::scene::{Theme, in_drawn_order};
 use underfoot::units::Newtons;
 use underfoot::widget::{Thresholds, WidgetId};
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::ergonomics::{PressSpread, propose_press};
+use underfoot_scene::scene::{Theme, in_drawn_order};
 
 /// Height of the strip of presses, in points.
 const STRIP: f32 = 40.0;

@@ -7,10 +7,10 @@ use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, Ui, Widget
 use super::super::app::App;
 use super::super::scopes::peak;
 use super::super::style::{quiet, section};
-use underfoot::egui_painter::color;
 use underfoot::floor::Floor;
 use underfoot::floor::TileId;
-use underfoot::scene::Theme;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Height of one scope, in points.
 const HEIGHT: f32 = 36.0;

@@ -8,12 +8,12 @@ use super::super::app::App;
 use super::super::feed::PreviewCommand;
 use super::super::plots::Series;
 use super::super::style::{panel_colour, plot_button, quiet, section};
-use underfoot::egui_painter::color;
 use underfoot::engine::TileState;
 use underfoot::floor::{Corner, TileId};
 use underfoot::layout::Colour;
-use underfoot::scene::Theme;
 use underfoot::sense::Quality;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Force of a full bar: the end of the nominal sensor's range, in newtons.
 const FULL: f32 = 400.0;

@@ -12,10 +12,10 @@ use super::super::app::App;
 use super::super::feed::PreviewCommand;
 use super::super::style::{is_entered, panel_frame, quiet, section};
 use super::super::trace::Trace;
-use underfoot::egui_painter::color;
 use underfoot::feel::{Effect, EffectKind, Gesture, Knob};
-use underfoot::scene::Theme;
 use underfoot::schema::{NamedEffect, write_named_effect};
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Pause of the hand after which the effect is played automatically, in seconds.
 const RESTS_S: f64 = 0.12;

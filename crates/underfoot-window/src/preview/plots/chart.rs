@@ -8,10 +8,10 @@ use egui_plot::{GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, Plot
 
 use super::series::Unit;
 use crate::preview::design::Threshold;
-use underfoot::egui_painter::color;
-use underfoot::scene::Theme;
 use underfoot::units::Newtons;
 use underfoot::widget::WidgetId;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Height of the area around a threshold's line that the pointer can grab, in points.
 const GRIP: f32 = 11.0;

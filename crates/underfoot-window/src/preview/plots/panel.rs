@@ -15,10 +15,10 @@ use super::{MOST, SPANS};
 use crate::preview::app::App;
 use crate::preview::design::Threshold;
 use crate::preview::style::{panel_frame, quiet, toggle};
-use underfoot::egui_painter::color;
-use underfoot::scene::Theme;
 use underfoot::units::Newtons;
 use underfoot::widget::WidgetId;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Height of a line of the list, in points.
 const LINE: f32 = 20.0;

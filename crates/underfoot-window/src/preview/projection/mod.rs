@@ -21,8 +21,8 @@ use glam::{DVec2, Vec2};
 use self::awake::Awake;
 use self::placement::{Placement, usual_file};
 use super::app::App;
-use underfoot::egui_painter::{self, Palette, ScreenFromFloor, color};
-use underfoot::scene::{self, Scene, Show, Theme, View};
+use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
+use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
 /// Radius of a corner's handle, in points.
 const HANDLE: f32 = 22.0;

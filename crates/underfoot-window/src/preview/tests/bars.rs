@@ -3,7 +3,7 @@
 use eframe::egui::accesskit::Role;
 
 use super::*;
-use underfoot::scene::Theme;
+use underfoot_scene::scene::Theme;
 
 #[test]
 fn a_lost_floor_is_said_across_the_view() {

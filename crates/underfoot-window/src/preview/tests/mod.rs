@@ -34,12 +34,12 @@ use underfoot::feel::{DeviceState, DeviceStatus};
 use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::ground::{Crack, GroundCounters, GroundState};
 use underfoot::layout::Layout;
-use underfoot::scene::Show;
 use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 use underfoot::sense::ContactId;
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value, WidgetEvent, WidgetId};
 use underfoot::wire::LinkState;
+use underfoot_scene::scene::Show;
 
 pub(super) fn event(at_ms: u64, id: &str) -> WidgetEvent {
     WidgetEvent {
