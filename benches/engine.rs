@@ -14,9 +14,9 @@ use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, ForceFrame, Method};
-use underfoot::sim::{self, FootDriver, Performance, Person, Scenario, Script, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::wire::{Batch, Decoder, SensorEncoder, SensorFormat, SensorPacket};
+use underfoot_sim::{self as sim, FootDriver, Performance, Person, Scenario, Script, SimConfig, SimFloor};
 
 /// Two walkers, up and down the floor for longer than the measurement.
 const WALKERS: &str = r#"

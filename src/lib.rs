@@ -51,10 +51,9 @@
 //! | [`feel`], [`ground`] | haptics: cues, effects, materials, and the renderer of actuator samples |
 //! | [`units`] | newtons, instants |
 //!
-//! The feature `sim` adds a simulated floor with people on it; an app without the default features compiles none of
-//! it. The feature `internals`, which the program needs, makes names public that may change in any version. Other
-//! crates draw a floor and review its layout (`underfoot-scene`), show and edit it in a window (`underfoot-window`),
-//! and measure it (`underfoot-lab`).
+//! The feature `internals`, which the program needs, makes names public that may change in any version. Other crates
+//! simulate a floor with people on it (`underfoot-sim`), draw a floor and review its layout (`underfoot-scene`), show
+//! and edit it in a window (`underfoot-window`), and measure it (`underfoot-lab`).
 //!
 //! # Path of a packet
 //!
@@ -107,8 +106,6 @@ pub mod runtime;
 pub mod schema;
 pub mod sense;
 pub mod serve;
-#[cfg(feature = "sim")]
-pub mod sim;
 pub mod sink;
 pub mod source;
 pub mod units;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use underfoot::floor::Floor;
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::Scenario;
+use underfoot_sim::Scenario;
 
 use crate::pages::{Page, pages};
 

@@ -7,11 +7,11 @@ use std::time::Duration;
 use underfoot::engine::ValueRange;
 use underfoot::floor::Floor;
 use underfoot::runtime::{EndReason, Event, Kind, Refusal, Session, SessionBuilder, StartError};
-use underfoot::sim::{self, Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::{EventKind, OffReason, SetError, Value, WidgetId};
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{self as sim, Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated};
 
 use crate::support::layout;
 

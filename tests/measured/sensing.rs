@@ -13,10 +13,10 @@ use underfoot::parallel::ThreadPool;
 #[cfg(feature = "threads")]
 use underfoot::sense::ForceFrame;
 use underfoot::sense::{Assembler, Method, Sensing};
-use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::SensorPacket;
 use underfoot_lab::experiment::Visit;
+use underfoot_sim::{self as sim, Foot, SensorFault, SimConfig, SimFloor};
 
 #[test]
 fn people_on_a_mapped_floor_whose_sensors_break_allocate_nothing() {

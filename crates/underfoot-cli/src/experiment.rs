@@ -7,12 +7,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use clap::Subcommand;
 use serde::Serialize;
 use underfoot::ground::IceSpec;
-use underfoot::sim::FloorQuality;
 use underfoot_lab::experiment::{
     ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, PlaceTable,
     PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
 };
 use underfoot_scene::picture;
+use underfoot_sim::FloorQuality;
 
 use super::failure::Failure;
 use super::fonts::fonts;

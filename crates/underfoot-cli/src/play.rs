@@ -4,9 +4,9 @@ use std::path::Path;
 
 use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Layout;
-use underfoot::sim::{self, Foot, Scenario, Script, SimConfig, SimFloor};
 use underfoot::source::Faults;
 use underfoot_scene::scene::Shoe;
+use underfoot_sim::{self as sim, Foot, Scenario, Script, SimConfig, SimFloor};
 
 use super::failure::Failure;
 

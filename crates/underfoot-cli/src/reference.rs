@@ -1,7 +1,7 @@
 //! `underfoot reference`: the fields of files.
 
 use underfoot::schema::{reference, write_reference};
-use underfoot::sim;
+use underfoot_sim as sim;
 
 use super::failure::Failure;
 

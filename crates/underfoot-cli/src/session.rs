@@ -14,12 +14,12 @@ use underfoot::recording::{Recorded, Recorder, WhenBehind};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sim::{Pace, Script, SimulatedSource};
 use underfoot::sink::{Fanout, JsonSink, OscSink, WavOptions, WavSink, WhenFull};
 use underfoot::units::Instant;
 use underfoot::widget::Value;
 use underfoot_scene::picture;
 use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
+use underfoot_sim::{Pace, Script, SimulatedSource};
 
 use super::failure::Failure;
 use super::fault_args::FaultArgs;

@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
 use underfoot::schema;
-use underfoot::sim::{self, Pace, Sensing, SimConfig, SimFloor, SimulatedSource};
 use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::SourceError;
 use underfoot::wire::{SensorEncoder, SensorFormat};
+use underfoot_sim::{self as sim, Pace, Sensing, SimConfig, SimFloor, SimulatedSource};
 
 use super::failure::Failure;
 use super::fault_args::FaultArgs;

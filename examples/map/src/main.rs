@@ -22,8 +22,8 @@ use eframe::egui::{self, RawInput, Rect, Vec2, pos2};
 use underfoot::floor::{self, Floor};
 use underfoot::runtime::Session;
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::{FootHandle, Scenario, feet_by_hand, session_with};
 use underfoot_egui::FootInput;
+use underfoot_sim::{FootHandle, Scenario, feet_by_hand, session_with};
 
 use crate::app::Picture;
 use crate::guide::Guide;

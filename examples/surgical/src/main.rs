@@ -27,12 +27,12 @@ use underfoot::floor::{self, Floor};
 use underfoot::layout::Layout;
 use underfoot::runtime::{Session, SessionBuilder};
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::{
-    Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated, feet_by_hand, session_with,
-};
 use underfoot::source::{FaultInjector, Faults};
 use underfoot::widget::Guard;
 use underfoot_egui::FootInput;
+use underfoot_sim::{
+    Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated, feet_by_hand, session_with,
+};
 
 use crate::app::Shelf;
 use crate::feel::Feel;

@@ -2,9 +2,9 @@
 use std::time::Duration;
 use underfoot::floor::Geometry;
 use underfoot::sense::Method;
-use underfoot::sim::{FloorQuality, Load};
 use underfoot::units::Instant;
 use underfoot_lab::experiment::{Rig, Visit};
+use underfoot_sim::{FloorQuality, Load};
 
 #[test]
 #[ignore = "exploration"]

@@ -10,7 +10,6 @@ use underfoot::feel::{Cue, CueSender, RendererConfig, renderer};
 use underfoot::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{ForceFrame, Method, Quality, Trouble};
-use underfoot::sim::{Foot, SensorFault};
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::EventKind;
@@ -18,6 +17,7 @@ use underfoot::wire::Readings;
 use underfoot_lab::experiment::{
     FaultHook, Followed, PeopleTable, Rig, Stance, TapScene, TapScore, TapTable, Visit,
 };
+use underfoot_sim::{Foot, SensorFault};
 
 use crate::support::page;
 

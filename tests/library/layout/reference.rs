@@ -1,7 +1,7 @@
 //! The reference of the format agrees with its reader.
 
 use underfoot::schema::{self, Chapter};
-use underfoot::sim;
+use underfoot_sim as sim;
 
 const HEAD: &str = "# What files may say\n\n\
     Every field of layouts, kinds, controls, effects, grounds, floors and scenarios, made by `underfoot reference` from the descriptions that the \

@@ -37,7 +37,9 @@ fn ron_files(folder: &str) -> Vec<PathBuf> {
 #[test]
 fn files_are_ordinary_ron() {
     let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-    let files = ["layouts", "widgets", "effects", "src/sim/scenarios"].into_iter().flat_map(ron_files);
+    let files = ["layouts", "widgets", "effects", "crates/underfoot-sim/src/scenarios"]
+        .into_iter()
+        .flat_map(ron_files);
     let mut texts: Vec<String> = files.map(|path| fs::read_to_string(path).unwrap()).collect();
     texts.push(write_layout(&shipped("all_controls")));
     texts.push(write_floor(&Floor::default()));

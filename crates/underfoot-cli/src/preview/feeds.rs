@@ -8,8 +8,8 @@ use crate::play;
 use underfoot::feel::ScopeReader;
 use underfoot::glam::Vec2;
 use underfoot::runtime::Session;
-use underfoot::sim::{Foot, FootHandle};
 use underfoot::sink::{EventSink, Report};
+use underfoot_sim::{Foot, FootHandle};
 use underfoot_window::preview::{EventNews, FootSink, PreviewFoot, ScopeFeed};
 
 /// Passes events on to the window.

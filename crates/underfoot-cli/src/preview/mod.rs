@@ -23,13 +23,13 @@ use underfoot::recording::{Recording, TappedPackets};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
-use underfoot::sim::{
-    ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
-    feet_by_hand, watched,
-};
 use underfoot::sink::LatencyStages;
 use underfoot::source::{Faults, SensorSource};
 use underfoot::units::HostClock;
+use underfoot_sim::{
+    ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
+    feet_by_hand, watched,
+};
 use underfoot_window::preview::{
     self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
     ProjectionOptions, ScopeFeed, ShoeFeed, Warnings, channels,

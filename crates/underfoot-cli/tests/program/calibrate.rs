@@ -9,8 +9,8 @@ use std::process::{Command, Output, Stdio};
 use crate::sender::{ANY_PORT, Sender, simulated, small_floor, standing};
 use underfoot::floor::{Calibration, Floor, TileId};
 use underfoot::schema::{load_floor, save_floor};
-use underfoot::sim;
 use underfoot::units::Newtons;
+use underfoot_sim as sim;
 
 fn underfoot(folder: &Path, args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_underfoot")).args(args).current_dir(folder).output().unwrap()

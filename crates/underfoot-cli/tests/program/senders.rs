@@ -6,8 +6,8 @@ use std::process::Stdio;
 use std::time::Duration;
 
 use underfoot::floor::Floor;
-use underfoot::sim::{SimConfig, SimFloor};
 use underfoot::wire::{SensorEncoder, SensorFormat, SensorPacket};
+use underfoot_sim::{SimConfig, SimFloor};
 
 use super::end_to_end::{Served, terminate, underfoot};
 use crate::ports::free_port;

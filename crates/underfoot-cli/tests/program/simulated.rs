@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use underfoot::floor::{Floor, Geometry};
 use underfoot::schema::load_floor;
-use underfoot::sim::{self, SimConfig, SimFloor};
+use underfoot_sim::{self as sim, SimConfig, SimFloor};
 
 use crate::end_to_end::{said, underfoot};
 use crate::ports::free_port;

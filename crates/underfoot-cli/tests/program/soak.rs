@@ -9,8 +9,8 @@ use underfoot::floor::Floor;
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sim::{Foot, FootDriver, Pace, Scenario, Script, SimConfig, SimFloor, SimulatedSource};
 use underfoot::units::Instant;
+use underfoot_sim::{Foot, FootDriver, Pace, Scenario, Script, SimConfig, SimFloor, SimulatedSource};
 
 use super::end_to_end::{Served, underfoot};
 use super::output::{ended, memory_kb};

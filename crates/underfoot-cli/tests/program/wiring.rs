@@ -5,7 +5,7 @@ use std::process::Stdio;
 
 use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
-use underfoot::sim::SimFloor;
+use underfoot_sim::SimFloor;
 
 use super::end_to_end::underfoot;
 use super::sender::{Sender, simulated, small_floor, standing};

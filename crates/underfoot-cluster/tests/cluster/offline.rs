@@ -9,7 +9,6 @@ use underfoot::floor::{Board, Floor};
 use underfoot::layout::Layout;
 use underfoot::sense::Method;
 use underfoot::serve::Server;
-use underfoot::sim::{Pace, SimulatedSource};
 use underfoot::sink::EventSink;
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
@@ -18,6 +17,7 @@ use underfoot_cluster::auth::Echo;
 use underfoot_cluster::gateway::{Gateway, Told};
 use underfoot_cluster::message::{NodeMessage, VERSION, fingerprint};
 use underfoot_cluster::node::NodeSink;
+use underfoot_sim::{Pace, SimulatedSource};
 
 use crate::hall::{AREAS, Frames, floor, layout, say, script, source};
 use crate::same::{crowd, distance};

@@ -5,8 +5,8 @@ use std::time::Duration;
 use glam::Vec2;
 
 use underfoot::floor::{Floor, Geometry};
-use underfoot::sim::{Performance, Person, Script, SimConfig, SimFloor};
 use underfoot::units::Instant;
+use underfoot_sim::{Performance, Person, Script, SimConfig, SimFloor};
 
 /// Side (tiles) of the stretch of floor that two people cross.
 const STRETCH: u16 = 6;

@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use super::errors::Errors;
 use super::rig::Rig;
 use underfoot::sense::{Contact, ContactId};
-use underfoot::sim::Load;
+use underfoot_sim::Load;
 
 /// Force above which a foot counts as down, in newtons.
 pub const DOWN_N: f32 = 10.0;

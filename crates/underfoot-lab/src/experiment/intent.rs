@@ -17,9 +17,9 @@ use underfoot::floor::{Geometry, Rect};
 use underfoot::layout::{Layout, Widget};
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::{Method, Sensing};
-use underfoot::sim::{FloorQuality, Load};
 use underfoot::units::Instant;
 use underfoot::widget::{Behaviour, Confirm, EventKind, Guard, HoldToRun, WidgetEvent};
+use underfoot_sim::{FloorQuality, Load};
 
 /// Force above which a foot counts as down (N).
 const DOWN_N: f32 = 20.0;

@@ -11,9 +11,9 @@ use rand_pcg::Pcg64Mcg;
 use super::rig::ExperimentError;
 use underfoot::floor::Rect;
 use underfoot::layout::{Layout, Widget};
-use underfoot::sim::{MoveError, Performance, Person, Script};
 use underfoot::units::Newtons;
 use underfoot::widget::{Behaviour, Guard};
+use underfoot_sim::{MoveError, Performance, Person, Script};
 
 /// Walking speeds, in metres per second: slow, usual, brisk.
 ///

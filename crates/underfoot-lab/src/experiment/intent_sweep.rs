@@ -14,8 +14,8 @@ use super::wilson::Counted;
 use underfoot::floor::{Geometry, Rect};
 use underfoot::layout::{Colour, Layout};
 use underfoot::schema::{Kinds, parse_layout};
-use underfoot::sim::FloorQuality;
 use underfoot_scene::scene::{Ink, Scene, Stroke};
+use underfoot_sim::FloorQuality;
 
 /// Sides of the buttons in centimetres, and their press thresholds in newtons.
 const SIZES_CM: [f32; 5] = [8.0, 12.0, 16.0, 20.0, 24.0];

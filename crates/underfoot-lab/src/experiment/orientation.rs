@@ -10,9 +10,9 @@ use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Geometry, Rect};
 use underfoot::layout::Colour;
 use underfoot::sense::{Contact, Method};
-use underfoot::sim::{Load, Print};
 use underfoot::units::Newtons;
 use underfoot_scene::scene::{Ink, Paint, Scene, Stroke};
+use underfoot_sim::{Load, Print};
 
 /// A contact across a seam.
 #[derive(Clone, Copy, Debug, PartialEq)]

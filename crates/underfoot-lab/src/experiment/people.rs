@@ -14,8 +14,8 @@ use super::errors::Summary;
 use super::follow::{Followed, Follower, Truth};
 use super::rig::{ExperimentError, FaultHook, Rig};
 use underfoot::floor::Geometry;
-use underfoot::sim::{FloorQuality, Load, MoveError, Performance, Person, Script};
 use underfoot::units::Instant;
+use underfoot_sim::{FloorQuality, Load, MoveError, Performance, Person, Script};
 
 /// Activity of a person at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -14,9 +14,9 @@ use underfoot::ground::GroundEvent;
 use underfoot::layout::Layout;
 use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 use underfoot::sense::Method;
-use underfoot::sim::{Foot, FootDriver, Gait, PREFERRED_M_S, Scenario};
 use underfoot::units::{Instant, Newtons};
 use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
+use underfoot_sim::{Foot, FootDriver, Gait, PREFERRED_M_S, Scenario};
 
 /// Manner of putting a foot down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -233,7 +233,7 @@ impl Pond {
         Ok(pond)
     }
 
-    fn pass(&mut self, loads: &[underfoot::sim::Load]) {
+    fn pass(&mut self, loads: &[underfoot_sim::Load]) {
         let Self { rig, engine, events, .. } = self;
         rig.step(loads.iter().copied(), |frame| events.extend_from_slice(engine.step(frame).grounds));
     }

@@ -13,11 +13,12 @@ use underfoot::feel::Cue;
 use underfoot::floor::{Floor, Geometry, PositionMap, SensorId};
 use underfoot::layout::Layout;
 use underfoot::sense::{Assembler, ForceFrame, Method, Sensing, SensingConfig, SensorUncertainty, TileLoad};
-use underfoot::sim::{
-    self, CalibrationError, FloorQuality, Load, MappingError, MoveError, SensorFault, SimConfig, SimFloor,
-};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Readings, SensorPacket};
+use underfoot_sim::{
+    self as sim, CalibrationError, FloorQuality, Load, MappingError, MoveError, SensorFault, SimConfig,
+    SimFloor,
+};
 
 /// Standard deviation of a sensor's zero drift since the tare (N).
 pub const OFFSET_N: f32 = 0.5;
@@ -256,7 +257,7 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use underfoot::sim::Print;
+    use underfoot_sim::Print;
 
     fn load(force: f32) -> Load {
         Load { print: Print::Point, position: Vec2::splat(0.2), heading: 0.0, force: Newtons(force) }

@@ -10,9 +10,9 @@ use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Corner, Geometry, Rect, TileId};
 use underfoot::sense::Method;
-use underfoot::sim::{Load, Print};
 use underfoot::units::Newtons;
 use underfoot_scene::scene::{Anchor, Ink, Paint, Scene, Stroke};
+use underfoot_sim::{Load, Print};
 
 /// One point load.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,8 @@ use super::METHODS;
 use super::follow::{Followed, Follower, Truth};
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::Geometry;
-use underfoot::sim::{FloorQuality, Load, MoveError, Scene, SceneKind};
 use underfoot::units::Instant;
+use underfoot_sim::{FloorQuality, Load, MoveError, Scene, SceneKind};
 
 /// Scenes of people and objects ([`SceneKind`]) on floors of several qualities, by method.
 ///

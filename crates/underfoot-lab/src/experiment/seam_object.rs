@@ -10,9 +10,9 @@ use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Geometry, Rect, TileId};
 use underfoot::sense::Method;
-use underfoot::sim::{Load, Print};
 use underfoot::units::Newtons;
 use underfoot_scene::scene::{Anchor, Ink, Paint, Scene, Stroke};
+use underfoot_sim::{Load, Print};
 
 /// Measurement of the object at one angle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,8 +10,8 @@ use super::follow::ELLIPSE_95;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Geometry, TileId};
 use underfoot::sense::{Covariance, Method, Sensing};
-use underfoot::sim::{Load, Print};
 use underfoot::units::Newtons;
+use underfoot_sim::{Load, Print};
 
 /// Forces of the single contacts (N).
 pub const FORCES_N: [f32; 4] = [50.0, 100.0, 200.0, 400.0];

@@ -21,9 +21,9 @@ use underfoot::floor::{Geometry, Rect};
 use underfoot::layout::Layout;
 use underfoot::schema::{Kinds, parse_layout};
 use underfoot::sense::{ContactId, ForceFrame};
-use underfoot::sim::{FloorQuality, Foot, shoe_size};
 use underfoot::units::Newtons;
 use underfoot::widget::EventKind;
+use underfoot_sim::{FloorQuality, Foot, shoe_size};
 
 /// Stance of the heavy foot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -11,9 +11,9 @@ use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Corner, Geometry, Rect, TileId};
 use underfoot::layout::Colour;
 use underfoot::sense::{Contact, Covariance, ForceFrame, Method};
-use underfoot::sim::{Foot, shoe_size};
 use underfoot::units::Newtons;
 use underfoot_scene::scene::{Ink, Paint, Scene, Stroke, sole};
+use underfoot_sim::{Foot, shoe_size};
 
 /// Two feet on 2 x 2 tiles, some 20 cm apart: the left one lands first, the right one half a second later.
 ///

@@ -14,14 +14,14 @@ use underfoot::layout::{Layout, Widget};
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::Server;
-use underfoot::sim::{
-    Foot, FootHandle, Host, Pace, SimConfig, SimFloor, SimulatedSource, calibrated, feet_by_hand,
-};
 use underfoot::sink::{EventSink, Report};
 use underfoot::source::{FaultInjector, Faults};
 use underfoot::units::Instant;
 use underfoot::widget::{Behaviour, EventKind, Value, WidgetEvent};
 use underfoot::wire::LinkState;
+use underfoot_sim::{
+    Foot, FootHandle, Host, Pace, SimConfig, SimFloor, SimulatedSource, calibrated, feet_by_hand,
+};
 
 struct Mouse(FootHandle);
 

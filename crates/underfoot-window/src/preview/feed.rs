@@ -15,10 +15,10 @@ use underfoot::floor::{Floor, TileId};
 use underfoot::layout::Layout;
 use underfoot::recording::TappedPackets;
 use underfoot::schema::{Diagnostics, NamedEffect};
-use underfoot::sim::{ArrivalHandle, FaultSwitch};
 use underfoot::sink::{AreaNews, LatencyStages};
 use underfoot::widget::{Value, WidgetEvent, WidgetId};
 use underfoot_scene::scene::Shoe;
+use underfoot_sim::{ArrivalHandle, FaultSwitch};
 
 /// A shoe that the window moves; its `length_m` is the length of the sole, one centimetre more than the bare foot.
 pub type PreviewFoot = Shoe;

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 
 use underfoot::floor::{Floor, SensorId};
-use underfoot::sim::{FaultSwitch, SensorFault};
 use underfoot::source::{Faults, Outage};
 use underfoot::units::Instant;
+use underfoot_sim::{FaultSwitch, SensorFault};
 
 /// The faults of the simulated floor.
 pub(super) struct Rehearsal {

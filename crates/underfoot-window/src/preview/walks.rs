@@ -10,10 +10,10 @@ use glam::Vec2;
 use super::app::App;
 use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
-use underfoot::sim::{ArrivalHandle, DrawnWalk, Script};
 use underfoot::widget::WidgetId;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
 use underfoot_scene::scene::in_drawn_order;
+use underfoot_sim::{ArrivalHandle, DrawnWalk, Script};
 
 /// Minimum distance of a new point of a line from the last one, in metres.
 const STEP_M: f32 = 0.01;

@@ -11,9 +11,9 @@ use serde_json::Value;
 use underfoot::floor::{Floor, Geometry};
 use underfoot::glam::Vec2;
 use underfoot::schema::save_floor;
-use underfoot::sim::{self, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
+use underfoot_sim::{self as sim, SimConfig, SimFloor};
 
 use super::tape::{MIDDLE, events, foot};
 use crate::end_to_end::{Served, terminate, underfoot};

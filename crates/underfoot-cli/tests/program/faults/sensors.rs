@@ -2,9 +2,9 @@
 
 use underfoot::floor::{Corner, Exponential};
 use underfoot::glam::Vec2;
-use underfoot::sim::{PartConfig, Sensing, SensorFault};
 use underfoot::units::Newtons;
 use underfoot::wire::{Readings, SensorPacket};
+use underfoot_sim::{PartConfig, Sensing, SensorFault};
 
 use super::tape::{BUTTON, CLICK, MIDDLE, PEDAL, Tape, foot};
 use crate::end_to_end::{channels, underfoot};

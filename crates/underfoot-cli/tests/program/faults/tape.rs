@@ -10,10 +10,10 @@ use underfoot::layout::Layout;
 use underfoot::recording::{Recorded, Recorder, WhenBehind};
 use underfoot::schema::{Kinds, parse_layout};
 use underfoot::sense::Method;
-use underfoot::sim::{self, Foot, Sensing, SensorFault, SimConfig, SimFloor};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{self as sim, Foot, Sensing, SensorFault, SimConfig, SimFloor};
 
 use crate::end_to_end::{said, underfoot};
 

@@ -12,9 +12,9 @@ use std::time::{Duration, Instant as HostInstant};
 use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::schema::save_floor;
-use underfoot::sim::{self, Foot, PartConfig, Sensing, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
+use underfoot_sim::{self as sim, Foot, PartConfig, Sensing, SimConfig, SimFloor};
 
 use super::client::Client;
 use crate::end_to_end::underfoot;

@@ -8,10 +8,10 @@ use super::super::app::App;
 use super::super::rehearsal::{PacketFaults, Rehearsal};
 use super::super::style::quiet;
 use underfoot::floor::{Corner, SensorId, TileId};
-use underfoot::sim::SensorFault;
 use underfoot::units::Newtons;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
+use underfoot_sim::SensorFault;
 
 /// Force on a sensor beside its plate, as under a jammed plate: that of a light foot.
 const PINCHED: Newtons = Newtons(60.0);

@@ -7,8 +7,8 @@ use egui_kittest::kittest::Queryable;
 use super::Room;
 use crate::preview::rehearsal::Rehearsal;
 use underfoot::floor::Floor;
-use underfoot::sim::{FootHandle, Pace, RehearsalSource, SimConfig, SimFloor, SimulatedSource, feet_by_hand};
 use underfoot::source::{Faults, SensorSource};
+use underfoot_sim::{FootHandle, Pace, RehearsalSource, SimConfig, SimFloor, SimulatedSource, feet_by_hand};
 
 /// A window on a simulated floor, with that floor's source; the floor ends with the handle.
 fn room() -> (Room, RehearsalSource, FootHandle) {

@@ -7,14 +7,14 @@ use egui_kittest::kittest::Queryable;
 use super::*;
 use crate::preview::floor_check::FloorCheck;
 use underfoot::recording::{TappedPackets, TappedSource};
-use underfoot::sim::{SensorFault, SimConfig, SimFloor};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{SensorFault, SimConfig, SimFloor};
 
 /// A floor with boards that the test reads; two of them may be interchanged.
 struct Boards {
     sim: SimFloor,
-    feet: Arc<Mutex<Vec<underfoot::sim::Foot>>>,
+    feet: Arc<Mutex<Vec<underfoot_sim::Foot>>>,
     swapped: bool,
     waiting: std::collections::VecDeque<SensorPacket>,
     ms: u32,
@@ -47,7 +47,7 @@ impl SensorSource for Boards {
 struct Site {
     room: Room,
     source: TappedSource,
-    feet: Arc<Mutex<Vec<underfoot::sim::Foot>>>,
+    feet: Arc<Mutex<Vec<underfoot_sim::Foot>>>,
 }
 
 impl Site {
@@ -58,7 +58,7 @@ impl Site {
             sim.set_fault(sensor, Some(SensorFault::Open));
         }
         let (tap, packets) = TappedPackets::new();
-        let feet = Arc::<Mutex<Vec<underfoot::sim::Foot>>>::default();
+        let feet = Arc::<Mutex<Vec<underfoot_sim::Foot>>>::default();
         let (waiting, ms) = (std::collections::VecDeque::new(), 0);
         let boards = Boards { sim, feet: Arc::clone(&feet), swapped, waiting, ms };
         let source = tap.source(Box::new(boards), floor.geometry);
@@ -92,10 +92,10 @@ impl Site {
     }
 }
 
-fn foot(at: Vec2) -> underfoot::sim::Foot {
+fn foot(at: Vec2) -> underfoot_sim::Foot {
     let force = Newtons(500.0);
     let mut foot =
-        underfoot::sim::Foot { position: at, heading: 0.0, length_m: 0.2, force, roll: 0.5, left: false };
+        underfoot_sim::Foot { position: at, heading: 0.0, length_m: 0.2, force, roll: 0.5, left: false };
     foot.position += at - foot.centre_of_pressure();
     foot
 }

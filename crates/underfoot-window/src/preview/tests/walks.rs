@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::preview::walks::Walks;
-use underfoot::sim::{Arrivals, FootDriver, Scenario, arrivals, feet_by_hand};
+use underfoot_sim::{Arrivals, FootDriver, Scenario, arrivals, feet_by_hand};
 
 /// A window, and the floor for the people.
 fn room() -> (Room, Arrivals) {
