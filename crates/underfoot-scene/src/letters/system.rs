@@ -54,6 +54,12 @@ const FOR_SCREENS: [&str; 20] = [
 const FOR_OTHERS: [&str; 9] =
     ["Serif", "Mono", "Nastaliq", "Kufi", "Rashi", "Looped", "Display", "Condensed", "Unjoined"];
 
+impl Default for Installed {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Installed {
     /// The fonts of this computer in the order that suits its language.
     #[must_use]
