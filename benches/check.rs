@@ -3,9 +3,9 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use underfoot::ergonomics;
 use underfoot::floor::{Floor, Geometry};
 use underfoot::schema::{Kinds, parse_layout};
+use underfoot_scene::ergonomics;
 
 /// A layout of 500 controls on 24 x 24 tiles, each in an entry of its own; `wrong` puts an error into each.
 fn page(wrong: bool) -> String {
@@ -29,7 +29,7 @@ fn check(text: &str, kinds: &Kinds, floor: &Floor) -> usize {
     match parse_layout(text, "page.ron", kinds, &floor.geometry) {
         Ok(loaded) => {
             let mut problems = loaded.warnings;
-            problems.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
+            problems.merge(ergonomics::locate(&loaded.places, &ergonomics::review(&loaded.layout, floor)));
             problems.to_string().len()
         }
         Err(problems) => problems.to_string().len(),

@@ -1,6 +1,6 @@
 //! The cost of packets on their way from datagram to frame, and the cost of hostile ones.
 //!
-//! `cargo bench --bench decode --no-default-features --features lab`
+//! `cargo bench -p underfoot --bench decode --no-default-features --features internals`
 
 #![allow(missing_docs, clippy::unwrap_used)]
 

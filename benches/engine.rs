@@ -1,4 +1,4 @@
-//! The cost of one frame: `cargo bench --bench engine --no-default-features --features lab`.
+//! The cost of one frame: `cargo bench -p underfoot --bench engine --no-default-features --features internals`.
 //!
 //! Also the cost of 500 controls against that of 20, on a floor of 24 x 24 tiles with ten people. Elsewhere two
 //! people walk on the paper's floor with the map layout; the frames are recorded first, so that the bench measures
@@ -14,9 +14,9 @@ use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, ForceFrame, Method};
-use underfoot::sim::{self, FootDriver, Performance, Person, Scenario, Script, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::wire::{Batch, Decoder, SensorEncoder, SensorFormat, SensorPacket};
+use underfoot_sim::{self as sim, FootDriver, Performance, Person, Scenario, Script, SimConfig, SimFloor};
 
 /// Two walkers, up and down the floor for longer than the measurement.
 const WALKERS: &str = r#"

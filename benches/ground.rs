@@ -9,10 +9,10 @@ use underfoot::engine::Snapshot;
 use underfoot::floor::Geometry;
 use underfoot::glam;
 use underfoot::ground::Grounds;
-use underfoot::scene::{self, Scene, Theme, View};
 use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 use underfoot::sense::{Contact, ContactId, ForceFrame, TileLoad};
 use underfoot::units::{Instant, Newtons};
+use underfoot_scene::scene::{self, Scene, Theme, View};
 
 /// Number of pieces of crack at which the stamping ends.
 const PIECES: usize = 2000;

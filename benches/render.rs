@@ -7,7 +7,7 @@
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use underfoot::capacity::{BankLoad, RenderLoad, RenderWork};
+use underfoot_lab::capacity::{BankLoad, RenderLoad, RenderWork};
 
 fn whole_renderer(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("renderer, 36 channels");

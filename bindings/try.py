@@ -30,7 +30,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-VISIT = (Path(__file__).parent.parent / "tests/program/visit.ron").read_text()
+VISIT = (Path(__file__).parent.parent / "crates/underfoot-cli/tests/program/visit.ron").read_text()
 PAGE = """Layout(
     version: 1,
     regions: [(id: "floor", at: (0, 2), size: (6, 4))],

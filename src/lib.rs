@@ -51,10 +51,9 @@
 //! | [`feel`], [`ground`] | haptics: cues, effects, materials, and the renderer of actuator samples |
 //! | [`units`] | newtons, instants |
 //!
-//! The features `sim` (a simulated floor with people on it), `scene` and `picture` (a floor drawn), `ergonomics`
-//! (whether feet and eyes can use a layout), `edit` (layouts changed in place), `lab` (figures and accuracy tables)
-//! and `preview` (a window) add a module each; an app without the default features compiles none of them. The feature
-//! `internals`, which the program needs, makes names public that may change in any version.
+//! The feature `internals`, which the program needs, makes names public that may change in any version. Other crates
+//! simulate a floor with people on it (`underfoot-sim`), draw a floor and review its layout (`underfoot-scene`), show
+//! and edit it in a window (`underfoot-window`), and measure it (`underfoot-lab`).
 //!
 //! # Path of a packet
 //!
@@ -85,28 +84,11 @@ macro_rules! internal {
     )*};
 }
 
-#[cfg(feature = "lab")]
-pub mod capacity;
-#[cfg(feature = "edit")]
-pub mod edit;
-#[cfg(feature = "egui")]
-pub mod egui_painter;
 pub mod engine;
-#[cfg(feature = "ergonomics")]
-pub mod ergonomics;
-#[cfg(feature = "lab")]
-pub mod experiment;
 pub mod feel;
 pub mod floor;
-mod format;
 pub mod ground;
-#[cfg(feature = "internals")]
-pub mod label;
-#[cfg(not(feature = "internals"))]
-mod label;
 pub mod layout;
-#[cfg(feature = "letters")]
-pub mod letters;
 #[cfg(feature = "record")]
 pub mod mirror;
 #[cfg(feature = "internals")]
@@ -117,28 +99,21 @@ mod outgoing;
 pub mod parallel;
 #[cfg(not(feature = "threads"))]
 mod parallel;
-#[cfg(feature = "picture")]
-pub mod picture;
-#[cfg(feature = "lab")]
-pub mod plan;
-#[cfg(feature = "preview")]
-pub mod preview;
 mod rate_limit;
 #[cfg(feature = "record")]
 pub mod recording;
 pub mod runtime;
-#[cfg(feature = "scene")]
-pub mod scene;
 pub mod schema;
 pub mod sense;
 pub mod serve;
-#[cfg(feature = "sim")]
-pub mod sim;
 pub mod sink;
 pub mod source;
 pub mod units;
 pub mod widget;
 pub mod wire;
+
+#[cfg(feature = "internals")]
+pub use underfoot_format::label;
 
 // Public signatures contain types of these crates.
 pub use {arrayvec, glam, smallvec, triple_buffer};

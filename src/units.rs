@@ -9,6 +9,9 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use underfoot_format::codec::Scalar;
+use underfoot_format::number::Number;
+
 /// A force along the floor's normal, in newtons; positive presses the floor down.
 ///
 /// Any `f32` is representable, NaN included: code that accepts outside numbers checks them with
@@ -37,6 +40,25 @@ impl Newtons {
     #[must_use]
     pub fn abs(self) -> Self {
         Self(self.0.abs())
+    }
+}
+
+/// Written in newtons.
+impl Scalar for Newtons {
+    fn of(written: Number, scale: f64) -> Self {
+        Self(f32::of(written, scale))
+    }
+
+    fn to_ron(self, scale: f64) -> String {
+        self.0.to_ron(scale)
+    }
+
+    fn shown(self) -> f32 {
+        self.0
+    }
+
+    fn turned(shown: f32) -> Self {
+        Self(shown)
     }
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lines of code in `src`, for each module of the top level: tools/lines.py [REVISION [REVISION]].
+"""Lines of code of each module of the library and of each crate beside it: tools/lines.py [REVISION [REVISION]].
 
 Of one revision (HEAD unless told), or of two with what changed between them. Blank lines, comments (those of
 documentation too) and what is compiled for tests only do not count.
@@ -90,13 +90,15 @@ def without_tests(code):
 
 
 def count(revision):
-    """Lines of code by module."""
-    packed = subprocess.run(["git", "archive", revision, "src"], check=True, capture_output=True).stdout
+    """Lines of code by module or crate."""
+    listed = subprocess.run(["git", "ls-tree", "--name-only", revision, "src", "crates"], check=True, capture_output=True)
+    folders = listed.stdout.decode().split()
+    packed = subprocess.run(["git", "archive", revision, *folders], check=True, capture_output=True).stdout
     with tarfile.open(fileobj=io.BytesIO(packed)) as archive:
         files = {
             member.name: archive.extractfile(member).read().decode()
             for member in archive
-            if member.name.endswith(".rs")
+            if re.match(r"(crates/[^/]+/)?src/.*\.rs$", member.name)
         }
     codes, tests = {}, set()
     for name, text in files.items():
@@ -112,6 +114,7 @@ def count(revision):
     lines = collections.Counter()
     for name, code in codes.items():
         if not any(name == test + ".rs" or name.startswith(test + "/") for test in tests):
+            # Of the crates beside the library, each is one.
             module = name.split("/")[1].removesuffix(".rs")
             lines[module] += sum(1 for line in code.splitlines() if line.strip())
     return lines
@@ -119,12 +122,12 @@ def count(revision):
 
 def main(revisions):
     counts = [count(revision) for revision in revisions]
-    print(f"{'module':16}" + "".join(f"{revision[:12]:>14}" for revision in revisions), end="")
+    print(f"{'module':20}" + "".join(f"{revision[:12]:>14}" for revision in revisions), end="")
     print(f"{'change':>10}" if len(counts) == 2 else "")
     rows = sorted(set().union(*counts)) + ["all"]
     for row in rows:
         of_row = [count.total() if row == "all" else count[row] for count in counts]
-        print(f"{row:16}" + "".join(f"{lines:14,}" for lines in of_row), end="")
+        print(f"{row:20}" + "".join(f"{lines:14,}" for lines in of_row), end="")
         print(f"{of_row[1] - of_row[0]:+10,}" if len(counts) == 2 else "")
 
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use underfoot::floor::Floor;
 use underfoot::schema;
-use underfoot::sim::{self, SimConfig, SimFloor};
+use underfoot_sim::{self as sim, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::wire::{SensorEncoder, SensorFormat, SensorPacket};
 

@@ -4,7 +4,7 @@ use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, ForceFrame, ForceTable, LoadTable, PressTable};
-use underfoot::sim::Scenario;
+use underfoot_sim::Scenario;
 use underfoot::source::Faults;
 use underfoot::units::Instant;
 use underfoot::wire::{Batch, Decoder};

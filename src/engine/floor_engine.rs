@@ -131,8 +131,7 @@ impl Engine {
     }
 
     /// As [`Engine::step`] with given contacts: one sensing for many layouts on the same floor.
-    #[cfg(feature = "lab")]
-    pub(crate) fn step_given<'a>(&'a mut self, frame: &ForceFrame, contacts: &'a [Contact]) -> Step<'a> {
+    pub fn step_given<'a>(&'a mut self, frame: &ForceFrame, contacts: &'a [Contact]) -> Step<'a> {
         self.respond(frame, Some(contacts))
     }
 

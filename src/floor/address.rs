@@ -4,7 +4,7 @@ use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 
 use thiserror::Error;
 
-use crate::format::codec::Spelled;
+use underfoot_format::codec::Spelled;
 
 /// An address and a port in files.
 pub(crate) const ADDRESS: Spelled<SocketAddr> = Spelled {

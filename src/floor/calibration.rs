@@ -4,8 +4,8 @@ use std::fmt;
 
 use super::laws::{self, Divider, Exponential, Linear, Power};
 use super::significant::Significant;
-use crate::format::choices;
 use crate::units::Newtons;
+use underfoot_format::choices;
 
 choices! {
     /// The law of one force sensor, with the part's own two numbers.

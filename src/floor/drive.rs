@@ -2,8 +2,8 @@
 
 use glam::Vec2;
 
-use crate::format::{num, record};
 use crate::units::Newtons;
+use underfoot_format::{num, record};
 
 record! {
     /// The amplifiers behind a floor's actuators and the coils they drive, all alike.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::{Rect, TileBlock};
-use crate::format::Named;
+use underfoot_format::Named;
 
 /// One tile, by column (east) and row (north), both from 0 at the south-west.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]

@@ -1,7 +1,7 @@
 //! The laws of force sensors: newtons as a function of the voltage.
 
 use super::exp::exp;
-use crate::format::{Num, num, record};
+use underfoot_format::{Num, num, record};
 
 record! {
     /// `f = a exp(b v)`: the law of the paper's conditioned force-sensing resistors.

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::format::codec::Spelled;
+use underfoot_format::codec::Spelled;
 
 /// One address or a range of them, in CIDR notation (RFC 4632).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::format::codec::Spelled;
+use underfoot_format::codec::Spelled;
 
 /// A day of the calendar, in UTC; written `2026-11-20`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -37,9 +37,8 @@ impl Crack {
     ///
     /// # Source
     /// Stefan's law: the thickness of new ice grows with the square root of time.
-    #[cfg_attr(not(feature = "scene"), allow(dead_code))]
     #[must_use]
-    pub(crate) fn openness(&self, now: Instant, refreeze_s: Option<f32>) -> f32 {
+    pub fn openness(&self, now: Instant, refreeze_s: Option<f32>) -> f32 {
         let age_s = now.since(self.born).as_secs_f32();
         refreeze_s.map_or(1.0, |whole_s| 1.0 - (age_s / whole_s).clamp(0.0, 1.0).sqrt())
     }

@@ -1,6 +1,6 @@
 //! The mass on a damped spring below each tile.
 
-use crate::format::{num, record};
+use underfoot_format::{num, record};
 
 record! {
     /// The elastic sheet under one tile.

@@ -1,6 +1,6 @@
 //! A power law of energies.
 
-use crate::format::{Num, num, record};
+use underfoot_format::{Num, num, record};
 
 /// Range of the energies of single events.
 const JOULES: Num = num(0.0001..=1000.0);

@@ -12,8 +12,8 @@ use rand_pcg::Pcg64Mcg;
 
 use super::Crack;
 use crate::floor::Rect;
-use crate::format::{Own, num, record};
 use crate::units::Instant;
+use underfoot_format::{Own, num, record};
 
 record! {
     /// The rules for the growth of cracks.

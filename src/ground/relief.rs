@@ -63,7 +63,7 @@ impl Relief {
 
     /// Wear of the point in this column and row at `now`, 0 to 1; 0 beyond the grid.
     #[must_use]
-    pub(crate) fn depth(&self, column: u32, row: u32, now: Instant) -> f32 {
+    pub fn depth(&self, column: u32, row: u32, now: Instant) -> f32 {
         if column >= self.columns {
             return 0.0;
         }

@@ -5,8 +5,8 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use crate::feel::{Click, MAX_MODES, Mode};
-use crate::format::{Num, num, record};
 use crate::units::Newtons;
+use underfoot_format::{Num, num, record};
 
 /// Range of the frequencies of modes.
 const HZ: Num = num(20.0..=1000.0);

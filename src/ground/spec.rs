@@ -2,9 +2,9 @@
 
 use super::{Body, CrackRules, EnergyLaw, Ring};
 use crate::floor::Rect;
-use crate::format::{Name, Opt, Own, Rec, num, record};
 use crate::units::Newtons;
 use crate::widget::Axis;
+use underfoot_format::{Name, Opt, Own, Rec, num, record};
 
 /// The area and material of a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,7 +99,7 @@ impl IceSpec {
     /// A Poisson process with the one-sided kinetic energy as its rate (paper, section 4.1.1); the threshold and the
     /// weakness of broken ice are ours, and with both at zero it is the paper's.
     #[must_use]
-    pub(crate) fn onsets_per_s(&self, kinetic_j: f64, depth: f32) -> f64 {
+    pub fn onsets_per_s(&self, kinetic_j: f64, depth: f32) -> f64 {
         let beyond = (kinetic_j - f64::from(self.calm_j)).max(0.0);
         f64::from(self.onsets_per_j_s) * beyond * f64::from(1.0 + self.sheet.weakening * depth)
     }

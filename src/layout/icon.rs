@@ -1,7 +1,7 @@
 //! Pictures on the faces of controls.
 
-use crate::format::Named;
 use crate::widget::Behaviour;
+use underfoot_format::Named;
 
 /// A picture on a control's face, distinguishable from standing height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -85,7 +85,7 @@ impl Icon {
 
     /// Whether controls of this behaviour have room for an icon on their faces; the others show their value there.
     #[must_use]
-    pub(crate) const fn is_shown_on(behaviour: &Behaviour) -> bool {
+    pub const fn is_shown_on(behaviour: &Behaviour) -> bool {
         matches!(behaviour, Behaviour::Button(_) | Behaviour::Hold(_) | Behaviour::Switch(_))
     }
 }

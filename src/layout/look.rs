@@ -4,8 +4,8 @@ use super::Icon;
 use std::fmt;
 use std::str::FromStr;
 
-use crate::format::codec::Spelled;
-use crate::format::{Name, Named, Opt, record};
+use underfoot_format::codec::Spelled;
+use underfoot_format::{Name, Named, Opt, record};
 
 /// An opaque colour in sRGB, written `#rrggbb`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -38,7 +38,7 @@ impl Colour {
 
     /// Relative luminance, 0 to 1.
     #[must_use]
-    pub(crate) fn luminance(self) -> f32 {
+    pub fn luminance(self) -> f32 {
         let linear = |byte: u8| {
             let share = f32::from(byte) / 255.0;
             if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }

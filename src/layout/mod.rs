@@ -107,7 +107,7 @@ impl Layout {
 impl Widget {
     /// Whether it is on page number `page`.
     #[must_use]
-    pub(crate) fn is_on(&self, page: usize) -> bool {
+    pub fn is_on(&self, page: usize) -> bool {
         self.page.is_none_or(|own| own == page)
     }
 

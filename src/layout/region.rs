@@ -1,7 +1,7 @@
 //! Regions, in which feet operate controls, and zones where people stand.
 
 use crate::floor::Rect;
-use crate::format::Named;
+use underfoot_format::Named;
 
 /// Rule that selects the contacts in a region that operate its controls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -7,8 +7,8 @@ use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 use serde_json::{Value, json};
 
-use crate::label::{self, MAX_LABEL};
 use crate::widget::OffReason;
+use underfoot_format::label::{self, MAX_LABEL};
 
 /// Maximum length of a reason in characters, such as the problems of a layout.
 const MOST_OF_A_REASON: usize = 4096;

@@ -14,10 +14,10 @@ use super::records::{RawRecord, RecordingBytes, Records, State};
 use super::replay::{ReplaySource, Speed};
 use super::{FLOOR, LAYOUT, LEARNT, METADATA, NOISE, RecordingError, VERSION};
 use crate::floor::{Floor, FloorFile};
-use crate::format::file::open_ordinary;
 use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
+use underfoot_format::file::open_ordinary;
 
 /// A recording that is open for replay.
 #[derive(Debug)]

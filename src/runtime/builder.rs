@@ -62,8 +62,6 @@ pub struct SessionBuilder {
 enum Feed {
     Listen(String),
     Given(Box<dyn SensorSource>, HostClock),
-    #[cfg(feature = "sim")]
-    Simulated(Box<dyn crate::sim::FootDriver>),
 }
 
 /// Why a session can't start.
@@ -87,9 +85,6 @@ pub enum StartError {
     /// The layout is missing, or was checked for a different floor than the final one.
     #[error("name the layout, after the floor that it lies on")]
     NoLayout,
-    /// The simulated floor can't be calibrated.
-    #[error("the simulated floor can't be calibrated: {0}")]
-    Simulation(String),
     /// The floor can't be recorded.
     #[cfg(feature = "record")]
     #[error(transparent)]
@@ -133,11 +128,6 @@ impl SessionBuilder {
 
     pub(super) fn fed_by(source: Box<dyn SensorSource>, clock: HostClock) -> Self {
         Self::new(Feed::Given(source, clock))
-    }
-
-    #[cfg(feature = "sim")]
-    pub(super) fn simulated(driver: Box<dyn crate::sim::FootDriver>) -> Self {
-        Self::new(Feed::Simulated(driver))
     }
 
     /// Sets the floor's hardware; the default is the paper's 6 x 6 tiles. Call it before the layout is set.
@@ -392,19 +382,6 @@ impl Feed {
                 Ok((Box::new(source), clock, floor))
             }
             Self::Given(source, clock) => Ok((source, clock, floor)),
-            #[cfg(feature = "sim")]
-            Self::Simulated(driver) => {
-                use crate::sim::{SimConfig, SimFloor, calibrated};
-                use crate::source::{Pace, SimulatedSource};
-                /// Seed of the simulated floor.
-                const SEED: u64 = 1;
-                let sim = SimFloor::new(&floor, SimConfig::default(), SEED);
-                let floor = calibrated(&floor, &sim, SEED)
-                    .map_err(|error| StartError::Simulation(error.to_string()))?;
-                let source = SimulatedSource::new(sim, driver, Pace::RealTime);
-                let clock = source.clock();
-                Ok((Box::new(source), clock, floor))
-            }
         }
     }
 }

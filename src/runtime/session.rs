@@ -96,13 +96,6 @@ impl Session {
         Ok(Self::source(Box::new(source), clock).floor(floor).layout(layout).method(method))
     }
 
-    /// A session on a simulated floor, calibrated as in the lab, with the feet that `driver` moves.
-    #[cfg(feature = "sim")]
-    #[must_use]
-    pub fn simulated(driver: Box<dyn crate::sim::FootDriver>) -> SessionBuilder {
-        SessionBuilder::simulated(driver)
-    }
-
     pub(super) fn new(inner: Inner) -> Self {
         Self(Arc::new(inner))
     }

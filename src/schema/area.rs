@@ -10,9 +10,9 @@ use super::node::Node;
 use super::number::plain;
 use super::units::Units;
 use crate::floor::{Geometry, Rect};
-use crate::format::Codec;
-use crate::format::describe::{FieldDescription, FieldType};
-use crate::format::text::Text;
+use underfoot_format::Codec;
+use underfoot_format::describe::{FieldDescription, FieldType};
+use underfoot_format::text::Text;
 
 /// Tolerance within which edges count as touching, in tiles: far below any foot, far above rounding errors.
 const TOUCH: f64 = 1e-6;
@@ -27,7 +27,8 @@ pub(super) struct Area {
 impl Area {
     /// Reads the area from the fields `at` and `size`.
     pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
-        let (least, most) = (fields.units().shortest(), fields.units().furthest());
+        let units = Units::of(fields.reader());
+        let (least, most) = (units.shortest(), units.furthest());
         let at = fields.read("at", None, |node| node.pair(-most..=most));
         let size = fields.read("size", None, |node| node.pair(least..=most));
         Some(Self::new(at?, size?))

@@ -15,9 +15,9 @@ use super::node::Node;
 use super::place::{Beside, Placing, Spot};
 use super::problem::Problem;
 use super::suggest::{did_you_mean, nearest};
-use crate::format::codec::By;
-use crate::format::describe::FieldType;
-use crate::format::text::Text;
+use underfoot_format::codec::By;
+use underfoot_format::describe::FieldType;
+use underfoot_format::text::Text;
 
 /// Reads the entries of `widgets` into controls.
 pub(super) const WIDGETS: By<Vec<Control>> = By {

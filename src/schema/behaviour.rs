@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::fields::Fields;
 use super::problem::Problem;
-use crate::format::Variants;
 use crate::widget::{Behaviour, Guard};
+use underfoot_format::Variants;
 
 /// A walking foot is on a control for less than this.
 const STEP: Duration = Duration::from_millis(250);

@@ -11,9 +11,10 @@ use super::node::{Node, is_id};
 use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
-use crate::format::codec::{At, Written};
-use crate::format::{Codec, Id};
+use super::units::Units;
 use crate::layout::Icon;
+use underfoot_format::codec::{At, Written};
+use underfoot_format::{Codec, Id};
 
 /// One control. A field that could not be read is `None` and has been reported.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,7 +129,8 @@ impl<'r> Grid<'r> {
 }
 
 fn size(fields: &mut Fields<'_>, is_relative: bool) -> Option<Size> {
-    let (least, most) = (fields.units().shortest(), fields.units().furthest());
+    let units = Units::of(fields.reader());
+    let (least, most) = (units.shortest(), units.furthest());
     fields.read("size", is_relative.then_some(Size::Neighbours), |node| {
         node.pair(least..=most).map(Size::Fixed)
     })

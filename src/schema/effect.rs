@@ -15,10 +15,10 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version::{self, FORMAT_VERSION, VERSION};
 use crate::feel::{Effect, Effects, NamedEffect};
-use crate::format::codec::By;
-use crate::format::describe::FieldType;
-use crate::format::text::Text;
-use crate::format::{Flat, Record, record};
+use underfoot_format::codec::By;
+use underfoot_format::describe::FieldType;
+use underfoot_format::text::Text;
+use underfoot_format::{Flat, Record, record};
 
 /// The shipped effects, read once, since normalising each takes a while.
 static BUILTIN: LazyLock<Effects> = LazyLock::new(|| {

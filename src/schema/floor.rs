@@ -18,8 +18,8 @@ use super::version::{self, FORMAT_VERSION, VERSION};
 use crate::floor::{
     ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
 };
-use crate::format::codec::{Distinct, Text};
-use crate::format::{Flag, Flat, Opt, Rec, Record, list, record};
+use underfoot_format::codec::{Distinct, Text};
+use underfoot_format::{Flag, Flat, Opt, Rec, Record, list, record};
 
 /// Reads the floor that the file at `path` describes.
 ///

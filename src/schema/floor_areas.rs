@@ -7,8 +7,8 @@ use super::floor_codecs::{TILE, TILES};
 use super::problem::Problem;
 use super::reader::Reader;
 use crate::floor::{ADDRESS, Area, Geometry, TileBlock, TileId};
-use crate::format::codec::{At, Distinct, Seen, Written};
-use crate::format::{Id, Opt, record};
+use underfoot_format::codec::{At, Distinct, Seen, Written};
+use underfoot_format::{Id, Opt, record};
 
 record! {
     /// The tiles of a large floor that one computer serves.

@@ -7,10 +7,10 @@ use super::fields::Fields;
 use super::node::Node;
 use super::problem::Problem;
 use crate::floor::{Corner, Geometry, GeometryError, Response, SensorId, TileId};
-use crate::format::codec::By;
-use crate::format::describe::{FieldDescription, FieldType};
-use crate::format::text::{Entry, Text};
-use crate::format::{Codec, Follow, Name, Num, Opt, Record, num, record};
+use underfoot_format::codec::By;
+use underfoot_format::describe::{FieldDescription, FieldType};
+use underfoot_format::text::{Entry, Text};
+use underfoot_format::{Codec, Follow, Name, Num, Opt, Record, num, record};
 
 record! {
     /// Places of tiles and sensors.

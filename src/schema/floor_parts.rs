@@ -8,10 +8,10 @@ use crate::floor::{
     Actuator, Board, Calibration, CalibrationRecord, Corner, DAY, Day, Floor, Loudspeaker, MapRecord,
     PositionMap, Response, SensorId, TileId,
 };
-use crate::format::codec::{At, Beside, Seen, Spelled, Written};
-use crate::format::{Faults, Flat, Name, Num, Opt, Pair, list, num, record};
 use crate::units::Newtons;
 use crate::wire::MAX_CHANNELS;
+use underfoot_format::codec::{At, Beside, Seen, Spelled, Written};
+use underfoot_format::{Faults, Flat, Name, Num, Opt, Pair, list, num, record};
 
 record! {
     /// A board and its sensors, as whole tiles or sensor by sensor.

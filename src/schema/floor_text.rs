@@ -2,8 +2,8 @@
 
 use super::floor::FloorRecord;
 use crate::floor::{Floor, LawKind};
-use crate::format::Record;
-use crate::format::text::Text;
+use underfoot_format::Record;
+use underfoot_format::text::Text;
 
 /// Comments above each field, and the comment in place of a field that is not written.
 const COMMENTS: [(&str, &[&str], Option<&str>); 12] = [

@@ -15,14 +15,12 @@ use super::number::plain;
 use super::problem::Problem;
 use super::units::Units;
 use crate::floor::Geometry;
-use crate::format::codec::By;
-#[cfg(feature = "edit")]
-use crate::format::describe::FieldDescription;
-use crate::format::describe::{Description, FieldType};
-use crate::format::text::Text;
-use crate::format::{Codec, Record};
 use crate::ground::{GrainSpec, GroundSpec, IceSpec, Material, WoodSpec};
 use crate::layout::{Colour, Ground, HEX};
+use underfoot_format::codec::By;
+use underfoot_format::describe::{Description, FieldDescription, FieldType};
+use underfoot_format::text::Text;
+use underfoot_format::{Codec, Record};
 
 /// Maximum number of grounds of one layout: each has state for every tile.
 const MOST: usize = 16;
@@ -154,8 +152,8 @@ fn standard(name: &str) -> Material {
 }
 
 /// Returns the fields of a ground with this name; empty if there is no such ground.
-#[cfg(feature = "edit")]
-pub(crate) fn ground_fields(name: &str) -> Vec<FieldDescription> {
+#[must_use]
+pub fn ground_fields(name: &str) -> Vec<FieldDescription> {
     let described = describe().into_iter().find(|description| description.name == name);
     described.map(|description| description.fields).unwrap_or_default()
 }

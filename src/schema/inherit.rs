@@ -20,10 +20,10 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::suggest::did_you_mean;
 use super::version;
-use crate::format::Record;
-use crate::format::codec::By;
-use crate::format::describe::FieldType;
-use crate::format::text::Text;
+use underfoot_format::Record;
+use underfoot_format::codec::By;
+use underfoot_format::describe::FieldType;
+use underfoot_format::text::Text;
 
 /// The parent of a kind.
 #[derive(Clone, Copy)]

@@ -12,10 +12,10 @@ use super::node::Node;
 use super::problem::Problem;
 use super::version::{FORMAT_VERSION, VERSION};
 use crate::feel::{Effects, Feel};
-use crate::format::codec::Beside;
-use crate::format::{Flat, Id, Opt, Rec, Record, Text, record};
 use crate::layout::Look;
 use crate::widget::Behaviour;
+use underfoot_format::codec::Beside;
+use underfoot_format::{Flat, Id, Opt, Rec, Record, Text, record};
 
 record! {
     /// One kind of control: behaviour, feel and look of its widgets, which they may override.

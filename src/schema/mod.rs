@@ -27,7 +27,6 @@ mod ground;
 mod inherit;
 mod kind;
 mod lists;
-#[cfg(feature = "ergonomics")]
 mod locate;
 mod page;
 mod pages;
@@ -42,17 +41,14 @@ mod save;
 mod state;
 #[cfg(test)]
 mod tests;
-#[cfg(feature = "letters")]
 mod undrawn;
 mod units;
 mod version;
 mod write;
 
-use crate::format::{diagnostic, fields, file, node, number, pairs, problem, reader, source, suggest};
+use underfoot_format::{diagnostic, fields, file, node, number, pairs, problem, reader, source, suggest};
 
 pub use crate::feel::{Effects, NamedEffect};
-#[cfg(feature = "internals")]
-pub use crate::format::describe::{Description, FieldDescription, FieldType};
 #[cfg(any(feature = "internals", test))]
 pub use ahap::{AhapError, read_ahap, write_ahap};
 pub use builtin::{builtin_layout, builtin_layouts};
@@ -60,19 +56,19 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use effect::parse_effect;
 pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
-#[cfg(feature = "edit")]
-pub(crate) use ground::ground_fields;
+pub use ground::ground_fields;
 pub use kind::{Kind, Kinds};
+pub use locate::{ControlPart, Remark};
 pub use page::{Loaded, folder_beside, kinds_beside, load_layout, parse_layout};
 pub use places::Places;
 #[cfg(any(feature = "internals", test))]
 pub use reference::{Chapter, reference, write_reference};
-#[cfg(feature = "edit")]
-pub(crate) use save::write_over;
 #[cfg(feature = "save")]
-pub use save::{SaveError, Saved, save_floor, save_text};
+pub use save::{SaveError, Saved, save_floor, save_text, write_over};
 #[cfg(feature = "save")]
 pub use state::usual_state;
+#[cfg(feature = "internals")]
+pub use underfoot_format::describe::{Description, FieldDescription, FieldType};
 pub use version::FORMAT_VERSION;
 pub use write::write_layout;
 

@@ -24,10 +24,10 @@ use super::units::{UNITS, Units};
 use super::version::{self, VERSION};
 use crate::feel::Effects;
 use crate::floor::Geometry;
-use crate::format::codec::{At, Distinct, Written};
-use crate::format::{Id, Name, Record, Text, record};
 use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
+use underfoot_format::codec::{At, Distinct, Written};
+use underfoot_format::{Id, Name, Record, Text, record};
 
 /// A valid layout, with its warnings.
 #[derive(Clone, Debug, PartialEq)]
@@ -182,7 +182,7 @@ impl Page {
     /// Reads the layout at `node`; the flag says whether all of it could be read.
     fn read(node: Node<'_>) -> Option<(Self, bool)> {
         let mut fields = node.fields(LayoutRecord::NAME)?;
-        node.reader.count_in(Units::default());
+        Units::default().apply_to(node.reader);
         let record = LayoutRecord::read_fields(&mut fields, None);
         let good = fields.are_read();
         let regions_at = fields.value_span("regions").unwrap_or_else(|| node.span());

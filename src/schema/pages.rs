@@ -15,10 +15,10 @@ use super::lists::MAX_WIDGETS;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
-use crate::format::codec::{At, Distinct, Written};
-use crate::format::{Id, Text, record};
 use crate::layout;
 use crate::widget::{Behaviour, WidgetId};
+use underfoot_format::codec::{At, Distinct, Written};
+use underfoot_format::{Id, Text, record};
 
 record! {
     /// One of the pages of a layout; one is shown at a time.

@@ -6,6 +6,7 @@ use super::area::Area;
 use super::fields::Fields;
 use super::node::Node;
 use super::problem::Problem;
+use super::units::Units;
 
 /// Side of the neighbour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +72,7 @@ impl<'r> Placing<'r> {
             .filter_map(|(name, side)| Some((name, side, fields.take(name)?)))
             .collect::<Vec<_>>();
         sides.sort_by_key(|(_, _, node)| node.span().start);
-        let far = fields.units().furthest();
+        let far = Units::of(fields.reader()).furthest();
         let gap = fields.read("gap", Some(0.0), |node| node.number(0.0..=far).map(|number| number.value));
         let align = fields.read("align", Some(Align::Middle), |node| node.choice(&ALIGNS));
         let Some(&(name, side, node)) = sides.first() else {

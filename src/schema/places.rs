@@ -1,6 +1,5 @@
 //! Places of the parts of a layout in its text.
 
-#[cfg(feature = "edit")]
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -8,7 +7,6 @@ use super::control::ControlSpans;
 
 /// Places of the controls of a layout in its text; later findings point to them.
 #[derive(Clone, Debug)]
-#[cfg_attr(not(feature = "ergonomics"), expect(dead_code, reason = "only a review points at these"))]
 pub struct Places {
     pub(super) name: Arc<str>,
     pub(super) text: Arc<str>,
@@ -30,8 +28,8 @@ impl Places {
 
     /// Returns the bytes of the id of the control at `index`, or of its grid's ids, in the text without a byte-order
     /// mark.
-    #[cfg(feature = "edit")]
-    pub(crate) fn id_span(&self, index: usize) -> Option<Range<usize>> {
+    #[must_use]
+    pub fn id_span(&self, index: usize) -> Option<Range<usize>> {
         self.widgets.get(index).map(|written| written.id.clone())
     }
 }

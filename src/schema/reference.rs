@@ -5,10 +5,10 @@ use std::fmt::Write;
 use super::ground;
 use super::suggest::did_you_mean;
 use crate::feel::{EffectKind, Feel, Manner};
-use crate::format::describe::{Description, FieldDescription};
-use crate::format::{Record, Variants};
 use crate::layout::Look;
 use crate::widget::Behaviour;
+use underfoot_format::describe::{Description, FieldDescription};
+use underfoot_format::{Record, Variants};
 
 /// One kind of content of files, with all possible records.
 #[derive(Clone, Debug)]
@@ -24,7 +24,9 @@ pub struct Chapter {
 }
 
 impl Chapter {
-    fn new(name: &'static str, about: &'static str, mut records: Vec<Description>) -> Self {
+    /// A chapter of these records; the fields that all of them have become common.
+    #[must_use]
+    pub fn new(name: &'static str, about: &'static str, mut records: Vec<Description>) -> Self {
         // Fields that all records share are listed once.
         let is_common = |field: &FieldDescription| {
             let has = |record: &Description| {
@@ -53,8 +55,7 @@ pub fn reference() -> Vec<Chapter> {
         EffectKind::describe(),
     );
     effects.common.extend(Manner::describe().fields);
-    #[cfg_attr(not(feature = "sim"), expect(unused_mut, reason = "scenarios are for simulated floors"))]
-    let mut chapters = vec![
+    vec![
         Chapter::new(
             "layouts",
             "A page of controls on a floor: a file in `layouts/`.",
@@ -91,41 +92,27 @@ pub fn reference() -> Vec<Chapter> {
             "A real or simulated floor: a file for `--floor`.",
             vec![super::floor::FloorRecord::describe()],
         ),
-    ];
-    #[cfg(feature = "sim")]
-    {
-        let (scenario, steps) = crate::sim::Scenario::describe();
-        let about =
-            "What people do on a simulated floor: a file, such as one for `underfoot session --scenario`.";
-        chapters.push(Chapter::new("scenarios", about, vec![scenario]));
-        chapters.push(Chapter::new(
-            "steps",
-            "What a person does in a scenario, one step after the other.",
-            steps,
-        ));
-    }
-    chapters
+    ]
 }
 
-/// Writes the reference as Markdown: all of it, or only the chapter or record called `name`.
+/// Writes `chapters` as Markdown: all of them, or only the chapter or record called `name`.
 ///
 /// # Errors
 /// Says that there is no such name, and suggests similar ones.
-pub fn write_reference(name: Option<&str>) -> Result<String, String> {
-    let chapters = reference();
+pub fn write_reference(chapters: &[Chapter], name: Option<&str>) -> Result<String, String> {
     let is_meant = |other: &str| name.is_none_or(|name| name.eq_ignore_ascii_case(other));
     let mut text = String::new();
-    for chapter in &chapters {
+    for chapter in chapters {
         let whole = is_meant(chapter.name);
         if whole {
             heading(&mut text, 2, chapter.name, chapter.about, &chapter.common);
         }
         for record in chapter.records.iter().filter(|record| whole || is_meant(record.name)) {
             heading(&mut text, 3, record.name, &record.about, &record.fields);
-            parts(&mut text, &chapters, record.name, &record.fields);
+            parts(&mut text, chapters, record.name, &record.fields);
         }
         if whole {
-            parts(&mut text, &chapters, chapter.name, &chapter.common);
+            parts(&mut text, chapters, chapter.name, &chapter.common);
         }
     }
     if text.is_empty() {

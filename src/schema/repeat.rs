@@ -3,6 +3,7 @@
 use super::node::Node;
 use super::problem::Problem;
 use super::suggest::did_you_mean;
+use super::units::Units;
 
 /// Maximum number of columns or rows of one grid.
 const MOST: u32 = 256;
@@ -33,7 +34,7 @@ pub(super) struct Cell {
 impl<'r> Repeat<'r> {
     pub(super) fn read(node: Node<'r>) -> Option<Self> {
         let mut fields = node.fields("Repeat")?;
-        let far = fields.units().furthest();
+        let far = Units::of(fields.reader()).furthest();
         let rows = fields.read("rows", Some(1), |node| node.whole(1..=MOST));
         // One of the two must be written, otherwise there is no repetition.
         let alone = fields.value_span("rows").map(|_| 1);

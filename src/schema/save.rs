@@ -76,8 +76,7 @@ pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
 ///
 /// # Errors
 /// Those of [`save_text`].
-#[cfg(feature = "edit")]
-pub(crate) fn write_over(text: &str, path: &Path) -> Result<(), SaveError> {
+pub fn write_over(text: &str, path: &Path) -> Result<(), SaveError> {
     write(text, path, false).map(|_| ())
 }
 

@@ -1,11 +1,10 @@
 //! Units of layouts: tiles or metres.
 
-use super::fields::Fields;
 use super::reader::Reader;
 use crate::floor::Geometry;
-use crate::format::codec::By;
-use crate::format::{Codec, Name, Named};
 use std::sync::Arc;
+use underfoot_format::codec::By;
+use underfoot_format::{Codec, Name, Named};
 
 /// The unit of the places, sizes and gaps of a layout.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,30 +66,23 @@ impl Named for Units {
 pub(super) const UNITS: By<Units> = By {
     shape: || Codec::<Units>::shape(&Name),
     read: |node| {
-        let units = Name.read(node, None)?;
-        node.reader.count_in(units);
+        let units: Units = Name.read(node, None)?;
+        units.apply_to(node.reader);
         Some(units)
     },
     write: |units| Name.write(units),
     stand_in: Units::default,
 };
 
-impl Reader<'_> {
-    /// Returns the unit of places and sizes.
-    pub(super) fn units(&self) -> Units {
-        *self.known()
+impl Units {
+    /// Returns the unit of places and sizes in the file that `reader` reads.
+    pub(super) fn of(reader: &Reader<'_>) -> Self {
+        *reader.known()
     }
 
-    /// Sets the unit of places and sizes from now on.
-    pub(super) fn count_in(&self, units: Units) {
-        self.know(Arc::new(units));
-        self.show_lengths_in(units.suffix());
-    }
-}
-
-impl Fields<'_> {
-    /// Returns the unit of places and sizes.
-    pub(super) fn units(&self) -> Units {
-        self.reader().units()
+    /// Sets the unit of the places and sizes that `reader` reads from now on.
+    pub(super) fn apply_to(self, reader: &Reader<'_>) {
+        reader.know(Arc::new(self));
+        reader.show_lengths_in(self.suffix());
     }
 }

@@ -3,7 +3,7 @@
 use super::diagnostic::Diagnostics;
 use super::problem::Problem;
 use super::reader::Reader;
-use crate::format::{Num, num};
+use underfoot_format::{Num, num};
 
 /// The version of the formats that this program reads and writes.
 pub const FORMAT_VERSION: u32 = 1;

@@ -2,10 +2,10 @@
 
 use super::version::FORMAT_VERSION;
 use crate::floor::Rect;
-use crate::format::text::{Entry, Text};
-use crate::format::{Codec, Name, Rec, Record, Variants};
 use crate::ground::Material;
 use crate::layout::{Ground, HEX, Layout, Widget};
+use underfoot_format::text::{Entry, Text};
+use underfoot_format::{Codec, Name, Rec, Record, Variants};
 
 /// Writes the file that describes `layout`, in metres; [`super::parse_layout`] reads it.
 ///

@@ -51,7 +51,7 @@ impl ForceFrame {
     /// Adds a point load, divided among the tile's four sensors as by an ideal rigid plate.
     ///
     /// A load beyond the floor, or one that is not finite, adds nothing. For apps without hardware and for tests;
-    /// `crate::sim` has plates, feet and sensors with their faults.
+    /// a simulated floor has plates, feet and sensors with their faults.
     ///
     /// # Source
     /// Eq. 2 of the paper solved for four equal springs: `f_i = F/4 (1 + s_i . a)`, with the load's

@@ -4,9 +4,9 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::format::suggest::{listed, nearest};
 use crate::layout::Layout;
 use crate::widget::{SetError, WidgetId};
+use underfoot_format::suggest::{listed, nearest};
 
 /// Reason for which a floor rejected a request of an app; the floor is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -41,9 +41,7 @@ pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, outp
 #[cfg(any(feature = "wav", feature = "record"))]
 pub(crate) use disk::Disk;
 pub use fanout::Fanout;
-pub use json::JsonSink;
-#[cfg(feature = "preview")]
-pub(crate) use json::event_line;
+pub use json::{JsonSink, event_line};
 pub use manual::ManualSink;
 #[cfg(feature = "wav")]
 pub use mono::write_mono;

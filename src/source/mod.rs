@@ -1,21 +1,11 @@
-//! Sources of sensor packets: a socket, a simulated floor, a recording.
+//! Sources of sensor packets: a socket; simulated floors and recordings implement the same trait.
 
 #[cfg(any(feature = "internals", test))]
 mod fault;
-#[cfg(feature = "sim")]
-mod floor_clock;
-#[cfg(feature = "sim")]
-mod simulated;
 mod udp;
 
 #[cfg(any(feature = "internals", test))]
 pub use fault::{BadFault, Bursts, FaultInjector, Faults, Outage, Stall};
-#[cfg(feature = "sim")]
-pub use fault::{FaultSwitch, RehearsalSource};
-#[cfg(all(test, feature = "preview"))]
-pub(crate) use floor_clock::tests::ByHand;
-#[cfg(feature = "sim")]
-pub use simulated::{Pace, SimulatedSource};
 pub use udp::{ForwardCounters, Seal, Sealed, UdpSource};
 
 use std::net::SocketAddr;

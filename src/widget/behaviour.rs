@@ -5,7 +5,7 @@ use super::{
     ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec, SliderSpec,
     StepperSpec, SwitchSpec, Thresholds, Value,
 };
-use crate::format::choices;
+use underfoot_format::choices;
 
 choices! {
     /// The function of a control, with its settings.
@@ -97,7 +97,7 @@ impl Behaviour {
     /// Possible for controls that accept one number from an app: a finite range, at most a million, and no narrower
     /// than the step.
     #[must_use]
-    pub(crate) fn with_range(&self, least: f32, greatest: f32) -> Option<Self> {
+    pub fn with_range(&self, least: f32, greatest: f32) -> Option<Self> {
         let mut other = self.clone();
         let (scale, initial) = match &mut other {
             Self::Slider(spec) => (&mut spec.scale, &mut spec.initial),

@@ -35,9 +35,9 @@ use super::moment::{FootInput, Machine, Moment};
 use super::press::Outcome;
 use super::stage::Stage;
 use super::{Direction, Emitted, EventKind, Guard, Thresholds};
-use crate::format::number::plain;
-use crate::format::{Faults, Flat, Name, Named, Opt, num, record};
 use crate::units::{Instant, Newtons};
+use underfoot_format::number::plain;
+use underfoot_format::{Faults, Flat, Name, Named, Opt, num, record};
 
 record! {
     /// A push button: `Pressed`, then `Released` and `Clicked`, or `Cancelled`.

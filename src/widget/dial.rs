@@ -20,7 +20,7 @@ use super::press::Outcome;
 use super::scale::INITIAL;
 use super::track::wrapped;
 use super::{Emitted, Scale, SetError, Thresholds, Value};
-use crate::format::{Flat, num, record};
+use underfoot_format::{Flat, num, record};
 
 record! {
     /// A dial.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::format::{Opt, choices, num, record};
+use underfoot_format::{Opt, choices, num, record};
 
 choices! {
     /// The condition besides force for a control to act.

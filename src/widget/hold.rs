@@ -12,7 +12,7 @@
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
-use crate::format::{Flat, record};
+use underfoot_format::{Flat, record};
 
 record! {
     /// A control that is on while a foot holds it.

@@ -19,9 +19,9 @@ use glam::Vec2;
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
-use crate::format::number::plain;
-use crate::format::{Flat, num, record};
 use crate::units::Instant;
+use underfoot_format::number::plain;
+use underfoot_format::{Flat, num, record};
 
 record! {
     /// A direction pad for leaning.

@@ -63,7 +63,7 @@ internal! {
     use input::{Input};
 }
 
-use crate::format::Named;
+use underfoot_format::Named;
 
 /// An axis of the floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -18,8 +18,8 @@ use super::press::Outcome;
 use super::scale::QUANTUM;
 use super::scale::{VALUES, WIDTHS};
 use super::{Emitted, EventKind, Scale, SetError, Thresholds, Value};
-use crate::format::number::plain;
-use crate::format::{Faults, Flat, Follow, Num, Pair, record};
+use underfoot_format::number::plain;
+use underfoot_format::{Faults, Flat, Follow, Num, Pair, record};
 
 /// A pair of numbers, eastwards and northwards.
 const fn pair(each: Num) -> Pair {

@@ -14,9 +14,9 @@
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, Scale, SetError, Thresholds, Value};
-use crate::format::number::plain;
-use crate::format::{Flat, Opt, num, record};
 use crate::units::Newtons;
+use underfoot_format::number::plain;
+use underfoot_format::{Flat, Opt, num, record};
 
 record! {
     /// A pedal: force to value. `deadband` and `full` are scaled with the press threshold where that is a share of

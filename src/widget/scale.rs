@@ -1,8 +1,8 @@
 //! The range, steps and detents of a number.
 
-use crate::format::Faults;
-use crate::format::number::plain;
-use crate::format::{Follow, Num, num, record};
+use underfoot_format::Faults;
+use underfoot_format::number::plain;
+use underfoot_format::{Follow, Num, num, record};
 
 /// Range of values of controls: `f32` still resolves a tenth.
 pub(super) const VALUES: Num = num(-1e6..=1e6);
@@ -80,8 +80,7 @@ impl Scale {
     }
 
     /// Any value from 0 to 1.
-    #[cfg(test)]
-    pub(crate) const UNIT: Self = Self::new(0.0, 1.0);
+    pub const UNIT: Self = Self::new(0.0, 1.0);
 
     /// Any value from `min` to `max`.
     #[must_use]

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use super::moment::{FootInput, Machine, Moment};
 use super::press::Outcome;
 use super::{Axis, Emitted, EventKind, SetError, Thresholds, Value};
-use crate::format::{Flat, Follow, Name, Text, list, num, record};
+use underfoot_format::{Flat, Follow, Name, Text, list, num, record};
 
 /// Maximum number of options: more are too narrow for a foot on any control within reach.
 const MOST: usize = 12;

@@ -25,7 +25,7 @@ use super::scale::INITIAL;
 use super::scale::QUANTUM;
 use super::track::TrackFields;
 use super::{Emitted, Scale, SetError, Thresholds, Track, Value};
-use crate::format::{Flat, OneOf, choices, num, record};
+use underfoot_format::{Flat, OneOf, choices, num, record};
 
 record! {
     /// A slider: the foot's place along its track is its value, or moves it.

@@ -1,11 +1,11 @@
 //! Pairs of thresholds; the second is derived from the first.
 
-use crate::format::describe::{FieldDescription, FieldType, first_paragraph};
-use crate::format::fields::Fields;
-use crate::format::node::Node;
-use crate::format::problem::Problem;
-use crate::format::text::{Entry, Text};
-use crate::format::{Codec, Num};
+use underfoot_format::describe::{FieldDescription, FieldType, first_paragraph};
+use underfoot_format::fields::Fields;
+use underfoot_format::node::Node;
+use underfoot_format::problem::Problem;
+use underfoot_format::text::{Entry, Text};
+use underfoot_format::{Codec, Num};
 
 /// A pair of thresholds in two fields, which may be absent; the second is derived from the first unless it is
 /// written.

@@ -19,7 +19,7 @@ use super::number::Number;
 use super::press::Outcome;
 use super::scale::INITIAL;
 use super::{Axis, Emitted, Scale, SetError, Thresholds, Value};
-use crate::format::{Flat, Name, Opt, num, record};
+use underfoot_format::{Flat, Name, Opt, num, record};
 
 use crate::units::Instant;
 
@@ -66,8 +66,7 @@ record! {
 
 impl Repeat {
     /// No repetition.
-    #[cfg(test)]
-    pub(crate) const NEVER: Self =
+    pub const NEVER: Self =
         Self { after: None, every: Duration::from_millis(250), fastest: Duration::from_millis(60) };
 }
 

@@ -10,7 +10,7 @@
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
-use crate::format::{Flag, Flat, record};
+use underfoot_format::{Flag, Flat, record};
 
 record! {
     /// A switch: each completed press toggles it.

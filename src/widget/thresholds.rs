@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use super::Guard;
 use super::stage::Stage;
-use crate::format::number::plain;
-use crate::format::{Faults, Num, OneOf, num, record};
 use crate::units::Newtons;
+use underfoot_format::number::plain;
+use underfoot_format::{Faults, Num, OneOf, num, record};
 
 /// Range of a dwell or lockout.
 const BRIEF: Num = num(0.0..=2000.0).milli();
@@ -89,7 +89,7 @@ impl Thresholds {
     /// `press` and `release` stay without shares, or while the weight is unknown (`None`, or not positive). A press
     /// threshold is at least 10 N.
     #[must_use]
-    pub(crate) fn for_weight(self, weight: Option<Newtons>) -> Self {
+    pub fn for_weight(self, weight: Option<Newtons>) -> Self {
         match (self.share, weight) {
             (Some(share), Some(weight)) if weight.is_finite() && weight > Newtons::ZERO => {
                 let press = (weight * share.press).max(LEAST_PRESS);

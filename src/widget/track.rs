@@ -4,12 +4,12 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::Vec2;
 
-use crate::format::describe::{FieldDescription, FieldType};
-use crate::format::fields::Fields;
-use crate::format::node::Node;
-use crate::format::problem::Problem;
-use crate::format::text::{Entry, Text};
-use crate::format::{Codec, Num, Pair, num};
+use underfoot_format::describe::{FieldDescription, FieldType};
+use underfoot_format::fields::Fields;
+use underfoot_format::node::Node;
+use underfoot_format::problem::Problem;
+use underfoot_format::text::{Entry, Text};
+use underfoot_format::{Codec, Num, Pair, num};
 
 /// The track of a slider, through the middle of its area.
 ///

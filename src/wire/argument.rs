@@ -6,7 +6,7 @@ use rosc::OscType;
 use crate::floor::TileId;
 use crate::widget::{Indicator, Value};
 
-pub use crate::label::MAX_LABEL;
+pub use underfoot_format::label::MAX_LABEL;
 
 /// The arguments that a command takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

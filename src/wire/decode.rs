@@ -11,8 +11,8 @@ use super::message::ControlMessage;
 use super::sensor_message::RawMessage;
 use super::{LinkCause, LinkCounters, Prefix, SensorPacket};
 use crate::floor::Floor;
-use crate::format::suggest::nearest;
 use crate::units::Instant;
+use underfoot_format::suggest::nearest;
 
 /// Reason for which a datagram, or one message of a bundle, is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

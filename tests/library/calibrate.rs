@@ -7,9 +7,9 @@ use underfoot::floor::{Calibration, Corner, Day, Floor, Geometry, LawKind, Senso
 use underfoot::glam::Vec2;
 use underfoot::sense::{Assembler, Fit, LoadPoint, LoadTable, PressTable, SensorLoads, Verdict};
 use underfoot::serve::{ForceWatch, TareFailure, take_tare};
-use underfoot::sim::{self, Load, PartConfig, Print, SensorFault, SimConfig, SimFloor};
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::Newtons;
+use underfoot_sim::{self as sim, Load, PartConfig, Print, SensorFault, SimConfig, SimFloor};
 
 #[test]
 fn simulated_parts_come_back_within_one_percent_through_two_percent_of_noise() {

@@ -7,9 +7,9 @@ use underfoot::engine::{Engine, FootRole, Snapshot};
 use underfoot::floor::Floor;
 use underfoot::glam;
 use underfoot::sense::{Assembler, Method};
-use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated};
-use underfoot::source::{Pace, SensorSource, SimulatedSource};
+use underfoot::source::SensorSource;
 use underfoot::widget::Value;
+use underfoot_sim::{Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated};
 
 use crate::support::page;
 

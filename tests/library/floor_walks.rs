@@ -3,9 +3,9 @@
 use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::glam::Vec2;
 use underfoot::serve::{SensorVerdict, WalkTest, WiringTask, WiringWalk};
-use underfoot::sim::{Foot, SensorFault, SimFloor};
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{Foot, SensorFault, SimFloor};
 
 use crate::sender::{simulated, small_floor, standing};
 
@@ -148,7 +148,7 @@ fn a_sensor_that_does_not_answer_is_named_and_no_other() {
 fn packets_of_other_floors_change_nothing() {
     let (floor, other) = (small_floor(), Floor::default());
     let (mut test, mut walk) = (WalkTest::new(&floor), WiringWalk::new(&floor));
-    let mut sim = SimFloor::new(&other, underfoot::sim::SimConfig::default(), 3);
+    let mut sim = SimFloor::new(&other, underfoot_sim::SimConfig::default(), 3);
     pass(&mut sim, 400, &[], |packet| {
         test.take(packet);
         walk.take(packet);

@@ -1,7 +1,7 @@
 //! Whether controls follow the intent of feet, on a small scale: `underfoot experiment intent` counts twenty
 //! thousand.
 
-use underfoot::experiment::{Figure, Guarded, IntentEffort, IntentSweep, IntentTable};
+use underfoot_lab::experiment::{Figure, Guarded, IntentEffort, IntentSweep, IntentTable};
 
 #[test]
 fn people_who_cross_and_use_every_shipped_layout_get_what_they_mean() {

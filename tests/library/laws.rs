@@ -5,9 +5,9 @@ use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;
 use underfoot::floor::{Calibration, Floor, Geometry, LawKind};
 use underfoot::sense::{Assembler, Comparison, LoadPoint, LoadTable, Quality};
-use underfoot::sim::{self, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Readings, SensorPacket};
+use underfoot_sim::{self as sim, SimConfig, SimFloor};
 
 /// The spacing of a bench's loads.
 #[derive(Clone, Copy, Debug)]

@@ -6,10 +6,10 @@ use underfoot::engine::{Engine, Ignored, Snapshot};
 use underfoot::floor::{Corner, Floor, FloorFile, Geometry, SensorId};
 use underfoot::layout::Layout;
 use underfoot::sense::{Assembler, CalibrationFault, ForceFrame, Method, Quality, Tare};
-use underfoot::sim::{self, SensorFault, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::OffReason;
 use underfoot::wire::{Readings, SensorPacket};
+use underfoot_sim::{self as sim, SensorFault, SimConfig, SimFloor};
 
 use crate::support::{Walker, page};
 

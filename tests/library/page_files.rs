@@ -5,7 +5,7 @@ use std::path::Path;
 
 use underfoot::floor::Floor;
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::Scenario;
+use underfoot_sim::Scenario;
 
 use crate::pages::{Page, pages};
 
@@ -95,7 +95,8 @@ fn every_place_in_the_source_is_there() {
     let mut functions = 0;
     for page in pages() {
         for span in page.code() {
-            let is_path = ["src/", "tests/", "benches/", "examples/"].iter().any(|at| span.starts_with(at));
+            let is_path =
+                ["src/", "crates/", "tests/", "benches/", "examples/"].iter().any(|at| span.starts_with(at));
             if !is_path || span.contains([' ', '*', '<']) {
                 continue;
             }
@@ -119,7 +120,7 @@ fn every_place_in_the_source_is_there() {
 #[test]
 fn every_source_file_says_what_it_is() {
     let mut folders: Vec<_> =
-        ["src", "tests", "benches", "examples"].map(|at| Path::new(ROOT).join(at)).into();
+        ["src", "crates", "tests", "benches", "examples"].map(|at| Path::new(ROOT).join(at)).into();
     let mut count = 0;
     while let Some(folder) = folders.pop() {
         for entry in folder.read_dir().unwrap() {

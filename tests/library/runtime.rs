@@ -7,11 +7,11 @@ use std::time::Duration;
 use underfoot::engine::ValueRange;
 use underfoot::floor::Floor;
 use underfoot::runtime::{EndReason, Event, Kind, Refusal, Session, SessionBuilder, StartError};
-use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated};
-use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
+use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::{EventKind, OffReason, SetError, Value, WidgetId};
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{self as sim, Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated};
 
 use crate::support::layout;
 
@@ -287,8 +287,8 @@ fn an_app_hears_why_a_control_is_off_on_a_floor_without_calibration() {
 fn a_floor_simulated_in_the_same_process_is_calibrated() {
     let page = layout("all_controls");
     let text = "Scenario(title: \"nobody\", steps: [Wait(ms: 1500)])";
-    let feet = Scenario::parse("nobody", text).unwrap().resolve(&page, &Floor::default().geometry).unwrap();
-    let session = Session::simulated(Box::new(feet)).layout(page).start().unwrap();
+    let scenario = Scenario::parse("nobody", text).unwrap();
+    let session = sim::session(page, &scenario).unwrap().start().unwrap();
     let ended = session.events().last().unwrap();
     assert_eq!(ended.kind, Kind::Ended(EndReason::SourceEnded));
     assert_eq!(session.snapshot().floor.health.uncalibrated, 0);

@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use underfoot::engine::{Engine, Snapshot};
-use underfoot::experiment::{Rig, Visit};
 use underfoot::floor::Geometry;
 use underfoot::layout::CursorRule;
 use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 use underfoot::sense::{ForceFrame, Method, Quality};
-use underfoot::sim::Foot;
 use underfoot::units::Instant;
+use underfoot_lab::experiment::{Rig, Visit};
+use underfoot_sim::Foot;
 
 /// The frames of one person's visit, `times` as heavy, and its length in milliseconds.
 fn visit(geometry: Geometry, times: f32) -> (Vec<ForceFrame>, u64) {

@@ -9,11 +9,11 @@ use underfoot::engine::Engine;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::sense::{Assembler, Method};
-use underfoot::sim::{self, Foot, FootDriver, Scenario, Script, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::corrupt::Corruptor;
 use underfoot::wire::{Batch, Decoder, LinkCounters, SensorEncoder, SensorFormat, SensorPacket};
+use underfoot_sim::{self as sim, Foot, FootDriver, Scenario, Script, SimConfig, SimFloor};
 
 /// Ten simulated minutes.
 const MILLIS: u32 = 600_000;

@@ -7,16 +7,16 @@ use std::num::NonZeroUsize;
 use crate::sense_support::Crowd;
 use crate::sense_support::{Sensors, walk};
 use assert_no_alloc::{assert_no_alloc, violation_count};
-use underfoot::experiment::Visit;
 use underfoot::floor::{Corner, Floor, Geometry, SensorId};
 #[cfg(feature = "threads")]
 use underfoot::parallel::ThreadPool;
 #[cfg(feature = "threads")]
 use underfoot::sense::ForceFrame;
 use underfoot::sense::{Assembler, Method, Sensing};
-use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::SensorPacket;
+use underfoot_lab::experiment::Visit;
+use underfoot_sim::{self as sim, Foot, SensorFault, SimConfig, SimFloor};
 
 #[test]
 fn people_on_a_mapped_floor_whose_sensors_break_allocate_nothing() {

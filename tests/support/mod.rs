@@ -11,10 +11,10 @@ use underfoot::glam;
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, Contact, Cursor, ForceFrame, Method};
-use underfoot::sim::{self, Foot, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, WidgetEvent};
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{self as sim, Foot, SimConfig, SimFloor};
 
 /// Time in which a foot applies or removes its force: fast, but possible for a foot.
 const RAMP_MS: u64 = 40;

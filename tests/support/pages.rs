@@ -16,7 +16,8 @@ const LANGUAGES: [&str; 11] =
 
 /// All pages, in order of their names.
 pub fn pages() -> Vec<Page> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let root = folders.find(|folder| folder.join("ARCHITECTURE.md").is_file()).unwrap();
     let mut names: Vec<String> = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"].map(String::from).into();
     for file in root.join("docs").read_dir().unwrap() {
         let name = file.unwrap().file_name().into_string().unwrap();

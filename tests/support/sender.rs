@@ -9,9 +9,9 @@ use std::time::Duration;
 
 use underfoot::floor::{Floor, Geometry};
 use underfoot::glam::Vec2;
-use underfoot::sim::{Foot, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{SensorEncoder, SensorFormat, SensorPacket};
+use underfoot_sim::{Foot, SimConfig, SimFloor};
 
 /// Any free port.
 pub const ANY_PORT: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0);

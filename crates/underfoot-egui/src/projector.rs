@@ -3,7 +3,7 @@
 use egui::{Color32, Context, ViewportBuilder, ViewportId};
 use underfoot::floor::Geometry;
 use underfoot::runtime::Snapshot;
-use underfoot::scene::{Show, Theme};
+use underfoot_scene::scene::{Show, Theme};
 
 use crate::FloorView;
 

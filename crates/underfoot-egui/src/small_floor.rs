@@ -4,10 +4,10 @@ use egui::{Context, RawInput, Sense, Ui, ViewportId};
 use underfoot::floor::Geometry;
 use underfoot::glam::Vec2;
 use underfoot::runtime::{Session, Snapshot};
-use underfoot::scene::{Show, Theme};
-use underfoot::sim::{Foot, FootHandle};
 use underfoot::units::Newtons;
 use underfoot::wire::LinkState;
+use underfoot_scene::scene::{Show, Theme};
+use underfoot_sim::{Foot, FootHandle};
 
 use crate::{FloorView, FootInput};
 
@@ -26,7 +26,7 @@ pub struct SmallFloor {
 }
 
 impl SmallFloor {
-    /// A small floor in these colours. `hand` moves the foot of a simulated floor ([`underfoot::sim::feet_by_hand`]);
+    /// A small floor in these colours. `hand` moves the foot of a simulated floor ([`underfoot_sim::feet_by_hand`]);
     /// without it, this only shows the floor.
     #[must_use]
     pub fn new(theme: Theme, hand: Option<FootHandle>) -> Self {

@@ -2,11 +2,11 @@
 
 use egui::accesskit::Role;
 use egui::{Response, Sense, Ui, WidgetInfo};
-use underfoot::egui_painter::{self, Palette, ScreenFromFloor};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
-use underfoot::scene::{self, Scene, Show, Theme, View};
+use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor};
+use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
 /// Floor, feet and controls in an egui app: a drawing of a snapshot, without any effect on it.
 ///

@@ -10,12 +10,12 @@ use underfoot::engine::{FootRole, FootState, Snapshot};
 use underfoot::floor;
 use underfoot::glam;
 use underfoot::layout::Layout;
-use underfoot::scene::{Show, Theme};
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Contact, ContactId};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::LinkState;
 use underfoot_egui::{FloorView, FootInput, FootSlider};
+use underfoot_scene::scene::{Show, Theme};
 
 const WINDOW: Vec2 = vec2(600.0, 600.0);
 

@@ -8,10 +8,10 @@ use eframe::egui::{
 };
 use underfoot::floor::{self, Geometry};
 use underfoot::runtime::Snapshot;
-use underfoot::scene::Theme;
-use underfoot::sim::FootHandle;
 use underfoot::wire::LinkState;
 use underfoot_egui::{FootInput, Projector, SmallFloor};
+use underfoot_scene::scene::Theme;
+use underfoot_sim::FootHandle;
 
 use crate::chart;
 use crate::guide::Guide;

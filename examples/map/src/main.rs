@@ -1,5 +1,8 @@
 //! A map of the world, operated with the feet. Without arguments it runs on a simulated floor.
 
+// An app exports nothing: `pub` stands for what the parts use of each other.
+#![allow(unreachable_pub)]
+
 mod app;
 mod chart;
 mod guide;
@@ -19,8 +22,8 @@ use eframe::egui::{self, RawInput, Rect, Vec2, pos2};
 use underfoot::floor::{self, Floor};
 use underfoot::runtime::Session;
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::{FootHandle, Scenario, feet_by_hand};
 use underfoot_egui::FootInput;
+use underfoot_sim::{FootHandle, Scenario, feet_by_hand, session_with};
 
 use crate::app::Picture;
 use crate::guide::Guide;
@@ -88,17 +91,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let free =
         layout.regions.iter().find(|region| region.id == "map").map_or(floor::Rect::default(), |it| it.area);
     let (builder, hand) = match (&args.listen, &args.scenario) {
-        (Some(address), _) => (Session::listen(address.as_str()), None),
+        (Some(address), _) => (Session::listen(address.as_str()).floor(hardware), None),
         (None, Some(path)) => {
             let feet = Scenario::load(path)?.resolve(&layout, &geometry)?;
-            (Session::simulated(Box::new(feet)), None)
+            (session_with(&hardware, Box::new(feet))?, None)
         }
         (None, None) => {
             let (hand, driver): (FootHandle, _) = feet_by_hand();
-            (Session::simulated(Box::new(driver)), Some(hand))
+            (session_with(&hardware, Box::new(driver))?, Some(hand))
         }
     };
-    let mut builder = builder.floor(hardware).layout(layout);
+    let mut builder = builder.layout(layout);
     if let Some(path) = &args.record {
         builder = builder.record(path);
     }

@@ -9,9 +9,9 @@ use eframe::egui::{
 };
 use underfoot::floor::{self, Geometry};
 use underfoot::runtime::Snapshot;
-use underfoot::scene::Theme;
-use underfoot::sim::FootHandle;
 use underfoot_egui::{FootInput, Projector, SmallFloor};
+use underfoot_scene::scene::Theme;
+use underfoot_sim::FootHandle;
 
 use crate::beam::Cause;
 use crate::chart::{Film, Screen};

@@ -2,6 +2,9 @@
 //!
 //! An example of a user interface, not a medical device.
 
+// An app exports nothing: `pub` stands for what the parts use of each other.
+#![allow(unreachable_pub)]
+
 mod app;
 mod beam;
 mod chart;
@@ -24,10 +27,12 @@ use underfoot::floor::{self, Floor};
 use underfoot::layout::Layout;
 use underfoot::runtime::{Session, SessionBuilder};
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated, feet_by_hand};
-use underfoot::source::{FaultInjector, Faults, Pace, SimulatedSource};
+use underfoot::source::{FaultInjector, Faults};
 use underfoot::widget::Guard;
 use underfoot_egui::FootInput;
+use underfoot_sim::{
+    Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated, feet_by_hand, session_with,
+};
 
 use crate::app::Shelf;
 use crate::feel::Feel;
@@ -117,7 +122,7 @@ fn view(args: Args) -> Result<(), Box<dyn Error>> {
         (None, Some(path)) => (played(path, &hardware, &layout)?, None),
         (None, None) => {
             let (hand, driver) = feet_by_hand();
-            (Session::simulated(Box::new(driver)).floor(hardware), Some(hand))
+            (session_with(&hardware, Box::new(driver))?, Some(hand))
         }
     };
     let mut builder = args.feel.attach(builder.layout(layout));

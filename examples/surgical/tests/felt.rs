@@ -7,9 +7,9 @@ use underfoot::engine::Engine;
 use underfoot::floor::Floor;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, Method};
-use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated};
-use underfoot::source::{Pace, SensorSource, SimulatedSource};
+use underfoot::source::SensorSource;
 use underfoot::widget::{EventKind, Value};
+use underfoot_sim::{Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated};
 
 /// The results of some steps.
 struct Felt {

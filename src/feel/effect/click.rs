@@ -3,8 +3,8 @@
 use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 
-use crate::format::{List, Num, Rec, list, num, record};
 use crate::units::Newtons;
+use underfoot_format::{List, Num, Rec, list, num, record};
 
 /// Range of a mode's frequency, in hertz.
 pub const MODE_HZ: std::ops::RangeInclusive<f32> = 20.0..=1000.0;

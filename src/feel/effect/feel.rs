@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::click::SHARE;
 use super::reading::Played;
 use super::{Effect, Use};
-use crate::format::{Opt, record};
+use underfoot_format::{Opt, record};
 
 record! {
     /// The effects of a control; each may be absent.

@@ -5,7 +5,7 @@ use super::Knob;
 use super::{Effect, EffectKind};
 use crate::feel::Lasting;
 #[cfg(any(feature = "internals", test))]
-use crate::format::{Record, Variants, hand::Hand};
+use underfoot_format::{Record, Variants, hand::Hand};
 
 impl Effect {
     /// Passes every number of the effect to `visit`, which may change it within its range; then balances models to

@@ -4,12 +4,12 @@ use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 
 use super::click::{HZ, LEVEL, SHARE};
-use crate::format::describe::FieldType;
-use crate::format::hand::Hand;
-use crate::format::node::Node;
-use crate::format::text::Text;
-use crate::format::{Codec, Flat, List, Num, Own, Rec, list, num, record};
 use crate::units::Newtons;
+use underfoot_format::describe::FieldType;
+use underfoot_format::hand::Hand;
+use underfoot_format::node::Node;
+use underfoot_format::text::Text;
+use underfoot_format::{Codec, Flat, List, Num, Own, Rec, list, num, record};
 
 /// Range of slip speeds in files, in metres per second.
 const SPEED: Num = num(0.01..=5.0);

@@ -27,8 +27,8 @@ pub use stops::{Detents, EndStop, MAX_MARKS, Push};
 pub use tone::{MAX_POINTS, Tone, TonePoint};
 
 use self::reading::BandFields;
-pub use crate::format::hand::Knob;
-use crate::format::{Flat, Opt, Rec, Variants, choices, num, record};
+pub use underfoot_format::hand::Knob;
+use underfoot_format::{Flat, Opt, Rec, Variants, choices, num, record};
 
 /// One effect, with its band, ducking and priority.
 #[derive(Clone, Debug, PartialEq)]

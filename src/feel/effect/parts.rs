@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::reading::Played;
 use super::{Clicks, Effect, EffectKind, MAX_PARTS, Manner, Part, PartKind, Tone, TonePoint, Use};
 use crate::feel::MODE_HZ;
-use crate::format::describe::FieldType;
-use crate::format::hand::Hand;
-use crate::format::node::{Node, Within};
-use crate::format::problem::Problem;
-use crate::format::text::Text;
-use crate::format::{Codec, List, Rec, list, num, record};
+use underfoot_format::describe::FieldType;
+use underfoot_format::hand::Hand;
+use underfoot_format::node::{Node, Within};
+use underfoot_format::problem::Problem;
+use underfoot_format::text::Text;
+use underfoot_format::{Codec, List, Rec, list, num, record};
 
 record! {
     /// One part of a sequence.

@@ -3,18 +3,18 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use ron2::ast::Expr;
+use underfoot_format::ron2::ast::Expr;
 
 use super::{Band, Clicks, Effect, EffectKind, Manner, Use};
 use crate::feel::Click;
-use crate::format::codec::{By, Text as Words};
-use crate::format::describe::FieldType;
-use crate::format::node::{Node, Within};
-use crate::format::number::plain;
-use crate::format::problem::Problem;
-use crate::format::suggest::{did_you_mean, listed, nearest};
-use crate::format::text::{Entry, Text};
-use crate::format::{Codec, Id, Num, Pair, Record, Variants, num, record};
+use underfoot_format::codec::{By, Text as Words};
+use underfoot_format::describe::FieldType;
+use underfoot_format::node::{Node, Within};
+use underfoot_format::number::plain;
+use underfoot_format::problem::Problem;
+use underfoot_format::suggest::{did_you_mean, listed, nearest};
+use underfoot_format::text::{Entry, Text};
+use underfoot_format::{Codec, Id, Num, Pair, Record, Variants, num, record};
 
 record! {
     /// An effect with a name.

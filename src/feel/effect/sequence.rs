@@ -8,7 +8,7 @@ use super::parts::Parts;
 use super::tone::{STRENGTH, TIME, check_order};
 use super::{MAX_POINTS, Tone, TonePoint};
 use crate::feel::Click;
-use crate::format::{Rec, list, record};
+use underfoot_format::{Rec, list, record};
 
 /// Maximum number of parts of a sequence: each held part has a key of its own, of which a foot has 256 (see
 /// [`crate::feel::key`]) and other effects have the first 16. The longest of Apple's own patterns have some 150 taps.

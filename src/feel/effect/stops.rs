@@ -5,7 +5,7 @@ use arrayvec::ArrayVec;
 use super::Hum;
 use super::click::SHARE;
 use crate::feel::Click;
-use crate::format::{Flat, Opt, Pair, Rec, list, num, record};
+use underfoot_format::{Flat, Opt, Pair, Rec, list, num, record};
 
 /// Maximum number of marks of a row of detents.
 pub const MAX_MARKS: usize = 8;

@@ -4,8 +4,8 @@ use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 
 use super::click::{HZ, LEVEL, SHARE};
-use crate::format::{Faults, Num, Opt, Rec, list, num, record};
 use crate::units::Newtons;
+use underfoot_format::{Faults, Num, Opt, Rec, list, num, record};
 
 /// Maximum number of points of a curve; the same as in an AHAP parameter curve.
 pub const MAX_POINTS: usize = 16;

@@ -6,7 +6,7 @@ use super::TableError;
 use super::lines::{Line, Lines};
 use super::record::{Record, Splitter};
 use super::shown;
-use crate::format::suggest::nearest;
+use underfoot_format::suggest::nearest;
 
 /// Separators of tables; the first is the usual one.
 const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];

@@ -7,13 +7,13 @@ use super::Server;
 use super::haptics::MuteError;
 use super::limited::Limited;
 use crate::engine::PageShown;
-use crate::label::{self, MAX_LABEL};
 use crate::outgoing::{write_control, write_error, write_mute, write_page};
 use crate::rate_limit::RateLimit;
 use crate::serve::{Refusal, request};
 use crate::sink::Report;
 use crate::widget::{SetError, WidgetId};
 use crate::wire::{ControlMessage, Prefix, Request};
+use underfoot_format::label::{self, MAX_LABEL};
 
 /// Limit on reports of all controls on request: a burst of `MOST_TOLD` controls, then one per `TOLD_EVERY`; about 5
 /// us each, so that endless requests use a twentieth of the sensing thread's time.

@@ -20,9 +20,7 @@ use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
 use crate::engine::ControlState;
 use crate::units::Instant;
-#[cfg(feature = "preview")]
-use crate::widget::WidgetEvent;
-use crate::widget::{EventKind, WidgetId};
+use crate::widget::{EventKind, WidgetEvent, WidgetId};
 use crate::wire::LinkState;
 
 /// Writes one JSON object per event and line.
@@ -253,8 +251,8 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
 }
 
 /// Returns one event as [`JsonSink`] writes it, without the end of the line.
-#[cfg(feature = "preview")]
-pub(crate) fn event_line(event: &WidgetEvent) -> String {
+#[must_use]
+pub fn event_line(event: &WidgetEvent) -> String {
     let mut line = Vec::new();
     // Writing to a vector cannot fail.
     let _ = write_line(&Job::Told(OwnedReport::Event(event.clone())), &mut line);

@@ -1,7 +1,5 @@
 //! Faults between the boards and the floor program: lost, duplicated, delayed and damaged packets, and outages.
 
-#[cfg(feature = "sim")]
-mod live;
 mod nemesis;
 mod spec;
 #[cfg(test)]
@@ -19,8 +17,6 @@ use super::{SensorSource, SourceError};
 use crate::units::Instant;
 use crate::wire::{LinkCause, LinkCounters, Readings, Request, SensorPacket};
 
-#[cfg(feature = "sim")]
-pub use self::live::{FaultSwitch, RehearsalSource};
 pub use self::spec::BadFault;
 
 /// Faults on the way from the boards; by default none.
@@ -112,8 +108,7 @@ impl<S: SensorSource> FaultInjector<S> {
     }
 
     /// Replaces the faults from now on; packets on the way arrive as already decided.
-    #[cfg(feature = "sim")]
-    fn set_faults(&mut self, faults: Faults) {
+    pub fn set_faults(&mut self, faults: Faults) {
         self.faults = faults;
     }
 

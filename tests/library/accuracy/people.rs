@@ -4,12 +4,12 @@
 
 use std::time::Duration;
 
-use underfoot::experiment::{Followed, PeopleTable, Rig};
 use underfoot::floor::Geometry;
 use underfoot::glam::Vec2;
 use underfoot::sense::{Contact, Method};
-use underfoot::sim::{Foot, Performance, Person, Script};
 use underfoot::units::Instant;
+use underfoot_lab::experiment::{Followed, PeopleTable, Rig};
+use underfoot_sim::{Foot, Performance, Person, Script};
 
 #[test]
 fn both_feet_of_people_who_walk_turn_and_stand() {

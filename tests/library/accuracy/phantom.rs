@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use underfoot::experiment::{Rig, Visit};
 use underfoot::floor::Geometry;
 use underfoot::sense::{Contact, Method};
-use underfoot::sim::{FloorQuality, Load};
 use underfoot::units::Instant;
+use underfoot_lab::experiment::{Rig, Visit};
+use underfoot_sim::{FloorQuality, Load};
 
 /// Force of a foot that stands alone, and the most that another may carry meanwhile, in newtons.
 const ALONE_N: f32 = 400.0;

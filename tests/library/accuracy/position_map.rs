@@ -7,9 +7,9 @@ use std::fmt::Write;
 use underfoot::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{Assembler, Method, Quality, Sensing};
-use underfoot::sim::{self, Load, PartConfig, Print, SensorFault, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{self as sim, Load, PartConfig, Print, SensorFault, SimConfig, SimFloor};
 
 /// One simulated floor, read through its calibration twice: without and with maps.
 struct Bench {

@@ -1,6 +1,6 @@
 //! Position error of one contact on floors of the paper's parts: tables as snapshots, compared with the goals.
 
-use underfoot::experiment::{SeamTable, SpotTable, Thing, Way};
+use underfoot_lab::experiment::{SeamTable, SpotTable, Thing, Way};
 
 #[test]
 fn one_contact_over_a_whole_tile() {

@@ -2,7 +2,7 @@
 //!
 //! `underfoot experiment feet --people 100` makes the same table of more people.
 
-use underfoot::experiment::TapTable;
+use underfoot_lab::experiment::TapTable;
 
 #[test]
 fn a_heavy_foot_beside_a_region_leaves_its_cursor_alone() {

@@ -8,9 +8,9 @@ use std::time::Duration;
 use underfoot::floor::{Floor, Geometry, TileId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{Assembler, CursorPicker, Method, Sensing};
-use underfoot::sim::{self, Foot, Load, Print, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{self as sim, Foot, Load, Print, SimConfig, SimFloor};
 
 /// A simulated floor with the sensing behind it.
 struct Bench {

@@ -20,7 +20,7 @@ const NOT_YET: &str = "not yet built";
 const IMPOSSIBLE: &str = "Not possible: ";
 
 /// Folders of tests that start programs of this workspace as processes.
-const RUNNING: [&str; 2] = ["tests/program/", "crates/underfoot-cluster/tests/cluster/"];
+const RUNNING: [&str; 2] = ["crates/underfoot-cli/tests/program/", "crates/underfoot-cluster/tests/cluster/"];
 
 /// The tests of one row, as `file:function`.
 #[derive(Default)]

@@ -7,10 +7,10 @@ use underfoot::feel::Cue;
 use underfoot::floor::{Floor, Geometry, SensorId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{Assembler, Contact, Method, Quality, Tare, TareRules};
-use underfoot::sim::{self, Foot, Load, Sensing, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::EventKind;
 use underfoot::wire::{Readings, SensorPacket};
+use underfoot_sim::{self as sim, Foot, Load, Sensing, SimConfig, SimFloor};
 
 use crate::support::page;
 

@@ -3,9 +3,9 @@
 use underfoot::floor::{Corner, Rect, SensorId, TileId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{Quality, Trouble};
-use underfoot::sim::{Load, Print, Sensing, SensorFault};
 use underfoot::units::Newtons;
 use underfoot::widget::{Behaviour, EventKind};
+use underfoot_sim::{Load, Print, Sensing, SensorFault};
 
 use super::bench::Bench;
 use super::desk::{at_the_map, clicks, middle, quality, sensor, tile_of, trouble};

@@ -2,9 +2,9 @@
 
 use underfoot::floor::{Corner, SensorId, TileId};
 use underfoot::sense::Trouble;
-use underfoot::sim::{PartConfig, Sensing, SensorFault};
 use underfoot::units::Newtons;
 use underfoot::widget::EventKind;
+use underfoot_sim::{PartConfig, Sensing, SensorFault};
 
 use super::bench::{BUTTON, Bench};
 
@@ -90,7 +90,7 @@ fn s4_drift_beyond_a_fifth_of_the_range_is_a_trouble() {
     // For boards that send newtons, the range is the nominal 406 N: the limit is 81 N, 81 minutes away. To shorten
     // the test, it uses a sensor of 20 N.
     use underfoot::floor::{Calibration, Floor, Geometry};
-    use underfoot::sim::{SimConfig, SimFloor};
+    use underfoot_sim::{SimConfig, SimFloor};
     let mut floor = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
     let weak = Calibration::exponential(0.5, 0.738);
     floor.calibration.fill([weak; 4]);

@@ -12,11 +12,11 @@ use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::sense::Method;
 use underfoot::serve::Server;
-use underfoot::sim::{self, SimConfig, SimFloor};
 use underfoot::sink::{OscSink, SilentSink};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{self as sim, SimConfig, SimFloor};
 
 use super::bench::foot;
 use crate::support::page;

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use underfoot::sense::Quality;
-use underfoot::sim::{PartConfig, Sensing};
 use underfoot::widget::EventKind;
+use underfoot_sim::{PartConfig, Sensing};
 
 use super::bench::{BUTTON, Bench};
 

@@ -2,9 +2,9 @@
 
 use underfoot::feel::{RendererConfig, renderer};
 use underfoot::floor::{Floor, Geometry};
-use underfoot::sim::Sensing;
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::widget::EventKind;
+use underfoot_sim::Sensing;
 
 use super::bench::{BUTTON, Bench};
 

@@ -7,12 +7,14 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sim::{self, Foot, FootDriver, Scenario, Script, SimConfig, SimFloor};
 use underfoot::sink::{EventSink, Report};
-use underfoot::source::{FaultInjector, Faults, Pace, SimulatedSource};
+use underfoot::source::{FaultInjector, Faults};
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, WidgetEvent};
 use underfoot::wire::LinkState;
+use underfoot_sim::{
+    self as sim, Foot, FootDriver, Pace, Scenario, Script, SimConfig, SimFloor, SimulatedSource,
+};
 
 use crate::support::layout;
 

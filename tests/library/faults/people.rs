@@ -4,11 +4,11 @@
 use std::time::Duration;
 
 use underfoot::engine::{FootRole, Snapshot};
-use underfoot::experiment::{Guarded, IntentEffort, IntentTable};
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::units::Newtons;
 use underfoot::widget::{Behaviour, Confirm, EventKind, Guard, HoldToRun};
+use underfoot_lab::experiment::{Guarded, IntentEffort, IntentTable};
 
 use super::desk::{FIRM, at_the_map, clicks, middle};
 use crate::support::{Walker, layout};

@@ -5,10 +5,10 @@ use std::time::Duration;
 use underfoot::engine::Ignored;
 use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
-use underfoot::sim::{PartConfig, Sensing};
 use underfoot::widget::EventKind::{self, Cancelled, Clicked, Pressed, Released};
 use underfoot::widget::OffReason;
 use underfoot::wire::Readings;
+use underfoot_sim::{PartConfig, Sensing};
 
 use super::bench::{BUTTON, Bench, foot};
 

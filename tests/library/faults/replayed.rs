@@ -7,7 +7,7 @@ use underfoot::wire::SensorPacket;
 
 use super::bench::{Bench, foot};
 use underfoot::glam::Vec2;
-use underfoot::sim::SimConfig;
+use underfoot_sim::SimConfig;
 
 /// The packets of boards during a press, repeated on an empty floor, at any pace.
 #[test]

@@ -6,18 +6,18 @@ use std::time::Duration;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 use underfoot::engine::Engine;
-use underfoot::experiment::{
-    FaultHook, Followed, PeopleTable, Rig, Stance, TapScene, TapScore, TapTable, Visit,
-};
 use underfoot::feel::{Cue, CueSender, RendererConfig, renderer};
 use underfoot::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{ForceFrame, Method, Quality, Trouble};
-use underfoot::sim::{Foot, SensorFault};
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::EventKind;
 use underfoot::wire::Readings;
+use underfoot_lab::experiment::{
+    FaultHook, Followed, PeopleTable, Rig, Stance, TapScene, TapScore, TapTable, Visit,
+};
+use underfoot_sim::{Foot, SensorFault};
 
 use crate::support::page;
 

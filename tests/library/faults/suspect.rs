@@ -3,9 +3,9 @@
 use underfoot::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{Quality, Trouble};
-use underfoot::sim::{Sensing, SensorFault, SimConfig, SimFloor};
 use underfoot::units::Newtons;
 use underfoot::widget::{EventKind, OffReason};
+use underfoot_sim::{Sensing, SensorFault, SimConfig, SimFloor};
 
 use super::bench::{BUTTON, Bench, foot};
 use super::desk::{at_the_map, clicks, quality, sensor, tile_of, trouble};
@@ -81,7 +81,7 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_runs_nothing_that_must_be_he
     bench.run(1000);
     assert_eq!(bench.events, [], "no app can switch it on");
     // The same floor, calibrated.
-    let measured = underfoot::sim::calibrated(&floor, &sim, 3).unwrap();
+    let measured = underfoot_sim::calibrated(&floor, &sim, 3).unwrap();
     assert_eq!(measured.uncalibrated().count(), 0);
     let mut bench = Bench::with_floor(&measured, sim);
     hold(&mut bench);

@@ -5,9 +5,9 @@ use std::time::Duration;
 use underfoot::floor::{Floor, Geometry};
 use underfoot::glam::Vec2;
 use underfoot::sense::{Assembler, Quality, Tare};
-use underfoot::sim::{self, Foot, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
+use underfoot_sim::{self as sim, Foot, SimConfig, SimFloor};
 
 use super::bench::foot;
 

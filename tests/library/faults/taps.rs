@@ -2,10 +2,10 @@
 //!
 //! The region is one button; each of a scene's six touches should press it once, and there should be no other press.
 
-use underfoot::experiment::{Stance, TapScene};
 use underfoot::floor::{Geometry, SensorId};
 use underfoot::sense::Trouble;
-use underfoot::sim::SensorFault;
+use underfoot_lab::experiment::{Stance, TapScene};
+use underfoot_sim::SensorFault;
 
 use super::scenes::{Break, Coupled, Tapped, offset, tapped, under_the_stance, under_the_taps};
 use super::visits::{creeping, hum, newtons, nominal, plain, weak};

@@ -1,9 +1,9 @@
 //! Readings that no foot on a working converter causes: a whole board that repeats, a row that jumps.
 
 use underfoot::sense::Quality;
-use underfoot::sim::{PartConfig, Sensing};
 use underfoot::widget::EventKind::{Cancelled, Clicked, Pressed, Released};
 use underfoot::wire::{LinkState, Readings};
+use underfoot_sim::{PartConfig, Sensing};
 
 use super::bench::{BUTTON, Bench};
 

@@ -5,12 +5,12 @@
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
-use underfoot::experiment::{Rig, Visit};
 use underfoot::floor::{Corner, Exponential, Floor, Geometry, SensorId};
 use underfoot::sense::{Assembler, Quality, Tare, TareOutcome, TareRules, Trouble};
-use underfoot::sim::{self, PartConfig, Sensing, SensorFault, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
+use underfoot_lab::experiment::{Rig, Visit};
+use underfoot_sim::{self as sim, PartConfig, Sensing, SensorFault, SimConfig, SimFloor};
 
 use super::scenes::{Break, Coupled, Hum, Visited, busiest_tile, offset, visited};
 

@@ -1,7 +1,7 @@
 //! The frozen pond against its model, on 100,000 events.
 
-use underfoot::experiment::PondLaws;
 use underfoot::ground::IceSpec;
+use underfoot_lab::experiment::PondLaws;
 
 /// 100,000 events of the experiment. A sample from the model fails a test at 0.001 for one of a thousand seeds; this
 /// seed is fixed, so it passes unless the model changes.

@@ -2,10 +2,10 @@
 
 use crate::support::{Walker, layout, page};
 use underfoot::engine::Snapshot;
-use underfoot::experiment::{Manner, PondWalk};
 use underfoot::glam::Vec2;
 use underfoot::ground::GroundState;
 use underfoot::units::Newtons;
+use underfoot_lab::experiment::{Manner, PondWalk};
 
 /// One foot of 70 kg.
 const WEIGHT: Newtons = Newtons(690.0);

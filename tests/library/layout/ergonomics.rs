@@ -1,11 +1,11 @@
 //! Rules for feet: their thresholds, and the agreement of the numbers behind them with measurements.
 
-use underfoot::ergonomics::{self, RULES, Zone, predicted_error_m};
-use underfoot::experiment::PlaceTable;
 use underfoot::floor::{Floor, PositionMap, Rect};
 use underfoot::glam::Vec2;
 use underfoot::schema::{Kinds, Severity, parse_layout};
 use underfoot::units::Newtons;
+use underfoot_lab::experiment::PlaceTable;
+use underfoot_scene::ergonomics::{self, RULES, Zone, predicted_error_m};
 
 /// Codes of the findings about the controls of a layout with these fields, errors with an exclamation mark.
 fn found(fields: &str) -> Vec<String> {

@@ -7,7 +7,6 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use underfoot::ergonomics;
 use underfoot::feel::{Clicks, EffectKind};
 use underfoot::floor::{
     Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, LawKind, MapRecord,
@@ -20,6 +19,7 @@ use underfoot::schema::{
 };
 use underfoot::units::Newtons;
 use underfoot::widget::Behaviour;
+use underfoot_scene::ergonomics;
 
 /// One change of a file.
 #[derive(Clone, Debug)]
@@ -172,7 +172,7 @@ proptest! {
                 check_layout(&loaded.layout);
                 // Places are in the text, for any finding.
                 let found = ergonomics::review(&loaded.layout, &Floor::default());
-                for problem in &loaded.places.locate(&found) {
+                for problem in &ergonomics::locate(&loaded.places, &found) {
                     let text = std::str::from_utf8(&bytes).unwrap();
                     prop_assert!(text.get(problem.span.clone()).is_some(), "{:?}", problem);
                 }

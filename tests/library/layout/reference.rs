@@ -1,11 +1,21 @@
 //! The reference of the format agrees with its reader.
 
-use underfoot::schema::{reference, write_reference};
+use underfoot::schema::{self, Chapter};
+use underfoot_sim as sim;
 
 const HEAD: &str = "# What files may say\n\n\
     Every field of layouts, kinds, controls, effects, grounds, floors and scenarios, made by `underfoot reference` from the descriptions that the \
     reader goes by. Units are the ends of names: `press_n` is in newtons, `dwell_ms` in milliseconds. A kind made \
     `from` another, a widget of a kind and an effect made `from` another take from it what they don't write.\n\n";
+
+/// The chapters that `underfoot reference` prints.
+fn reference() -> Vec<Chapter> {
+    schema::reference().into_iter().chain(sim::reference()).collect()
+}
+
+fn write_reference(name: Option<&str>) -> Result<String, String> {
+    schema::write_reference(&reference(), name)
+}
 
 /// After a change of a record run this with `UPDATE_EXPECTED=1` and check the differences.
 #[test]

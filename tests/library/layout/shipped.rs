@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use underfoot::ergonomics;
 use underfoot::feel::{Click, Clicks, Effect, EffectKind, Lasting};
 use underfoot::floor::{Floor, Geometry, Rect};
 use underfoot::glam::Vec2;
@@ -16,6 +15,7 @@ use underfoot::schema::{
 };
 use underfoot::units::Newtons;
 use underfoot::widget::{Behaviour, Track};
+use underfoot_scene::ergonomics;
 
 fn parse(text: &str, name: &str) -> Result<Loaded, Diagnostics> {
     parse_layout(text, name, &Kinds::builtin(), &Geometry::default())
@@ -37,7 +37,9 @@ fn ron_files(folder: &str) -> Vec<PathBuf> {
 #[test]
 fn files_are_ordinary_ron() {
     let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-    let files = ["layouts", "widgets", "effects", "src/sim/scenarios"].into_iter().flat_map(ron_files);
+    let files = ["layouts", "widgets", "effects", "crates/underfoot-sim/src/scenarios"]
+        .into_iter()
+        .flat_map(ron_files);
     let mut texts: Vec<String> = files.map(|path| fs::read_to_string(path).unwrap()).collect();
     texts.push(write_layout(&shipped("all_controls")));
     texts.push(write_floor(&Floor::default()));
@@ -183,7 +185,7 @@ fn problems(text: &str, name: &str) -> Diagnostics {
             |loaded| {
                 let mut problems = loaded.warnings;
                 let found = ergonomics::review(&loaded.layout, &Floor::default());
-                problems.merge(loaded.places.locate(&found));
+                problems.merge(ergonomics::locate(&loaded.places, &found));
                 problems
             },
         )

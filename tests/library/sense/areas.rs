@@ -3,8 +3,8 @@
 use glam::Vec2;
 use underfoot::floor::{Area, Floor, Geometry, TileBlock, TileId};
 use underfoot::sense::{ForceFrame, Method, Sensing};
-use underfoot::sim::{Performance, Person, Script, SimConfig, SimFloor};
 use underfoot::units::Instant;
+use underfoot_sim::{Performance, Person, Script, SimConfig, SimFloor};
 
 /// One computer: its area, and the part of the floor that it senses.
 struct Computer {

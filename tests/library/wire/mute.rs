@@ -12,11 +12,11 @@ use underfoot::layout::Layout;
 use underfoot::schema::{Kinds, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::Server;
-use underfoot::sim::{self, Foot};
 use underfoot::sink::{OscSink, WavOptions, WavSink, WhenFull};
 use underfoot::source::UdpSource;
 use underfoot::units::{HostClock, Instant, Newtons};
 use underfoot::wire::Prefix;
+use underfoot_sim::{self as sim, Foot};
 
 use crate::sender::{ANY_PORT, Sender, simulated, small_floor, standing};
 

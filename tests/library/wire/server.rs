@@ -12,12 +12,12 @@ use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::schema::Effects;
 use underfoot::sense::{Method, Quality};
 use underfoot::serve::{Command, Ended, Server};
-use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
 use underfoot::sink::{ActuatorSink, EventSink, ManualSink, Report, SinkError};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value, WidgetId};
 use underfoot::wire::{ControlMessage, LinkState, Request, SensorPacket};
+use underfoot_sim::{self as sim, Foot, SensorFault, SimConfig, SimFloor};
 
 /// Packets of a foot on `home`, with silences in between, in which only the clock advances.
 struct Visit {

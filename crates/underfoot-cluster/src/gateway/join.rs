@@ -108,7 +108,7 @@ impl Joiner {
     }
 
     /// Takes the contacts that the node of `area` saw at `at`, a time at or after that of its last frame.
-    pub(super) fn frame(&mut self, area: usize, at: Instant, contacts: Vec<NodeContact>) {
+    pub(super) fn frame(&mut self, area: usize, at: Instant, contacts: &[NodeContact]) {
         let Some(view) = self.views.get_mut(area) else { return };
         view.live = true;
         let ended: Vec<u32> =
@@ -116,9 +116,9 @@ impl Joiner {
         if view.frames.len() == FRAMES {
             view.frames.pop_front();
         }
-        view.frames.push_back((at, contacts.clone()));
+        view.frames.push_back((at, contacts.to_vec()));
         ended.into_iter().for_each(|id| self.end(area, id, at));
-        for contact in &contacts {
+        for contact in contacts {
             self.check(area, contact, at);
         }
         let of_view = |joints: &HashMap<u32, u32>| -> Vec<(u32, Vec2)> {

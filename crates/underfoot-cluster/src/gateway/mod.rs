@@ -404,7 +404,7 @@ impl Gateway {
                 self.counters.late += u64::from(at < self.told_until);
                 self.out.push(Told::Event(told));
             }
-            Item::Frame { contacts } => self.joiner.frame(number, at, contacts),
+            Item::Frame { contacts } => self.joiner.frame(number, at, &contacts),
             Item::Held { held, values } => {
                 self.counters.unpressed += area.presses.hold(&held);
                 let changed = values.map(|values| area.presses.compare(&values, at)).unwrap_or_default();

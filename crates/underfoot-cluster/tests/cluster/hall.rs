@@ -15,13 +15,13 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::Session;
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::{Scenario, Script, SimConfig, SimFloor, calibrated};
 use underfoot::sink::{EventSink, JsonSink, Rank, Report, claim_priority};
-use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError, UdpSource};
+use underfoot::source::{SensorSource, SourceError, UdpSource};
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, WidgetId};
 use underfoot::wire::{SensorEncoder, SensorFormat};
 use underfoot_cluster::auth::Key;
+use underfoot_sim::{Pace, Scenario, Script, SimConfig, SimFloor, SimulatedSource, calibrated};
 
 use crate::lines::Lines;
 use crate::link::Link;

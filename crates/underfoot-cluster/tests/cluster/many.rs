@@ -8,12 +8,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use underfoot::floor::{Area, Board, Corner, Floor, Geometry, SensorId, TileBlock, TileId};
-use underfoot::plan::{AreaDemand, Crowd, Machine, measure};
 use underfoot::schema;
-use underfoot::sim::{SimConfig, SimFloor, calibrated};
 use underfoot::sink::{Rank, claim_priority};
-use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
+use underfoot::source::{SensorSource, SourceError};
 use underfoot::wire::{SensorEncoder, SensorFormat};
+use underfoot_lab::plan::{AreaDemand, Crowd, Machine, measure};
+use underfoot_sim::{Pace, SimConfig, SimFloor, SimulatedSource, calibrated};
 
 use crate::hall::{Program, say, script};
 use crate::ports::free_port;

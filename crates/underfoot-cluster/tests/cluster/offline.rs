@@ -10,13 +10,14 @@ use underfoot::layout::Layout;
 use underfoot::sense::Method;
 use underfoot::serve::Server;
 use underfoot::sink::EventSink;
-use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
+use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
 use underfoot_cluster::auth::Echo;
 use underfoot_cluster::gateway::{Gateway, Told};
 use underfoot_cluster::message::{NodeMessage, VERSION, fingerprint};
 use underfoot_cluster::node::NodeSink;
+use underfoot_sim::{Pace, SimulatedSource};
 
 use crate::hall::{AREAS, Frames, floor, layout, say, script, source};
 use crate::same::{crowd, distance};

@@ -26,7 +26,7 @@ pub fn decode(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
     }
     let colours = colours(&markers, form.colours);
     let raster = jpeg_decode_tiff_limited(bytes, None, JpegColor::AsCoded, most_bytes(form));
-    samples(raster.map_err(|error| unfit(&error, "JPEG"))?, form, colours)
+    samples(&raster.map_err(|error| unfit(&error, "JPEG"))?, form, colours)
 }
 
 /// The numbers of a JPEG-LS frame.
@@ -38,7 +38,7 @@ pub fn decode_ls(bytes: &[u8], form: &Form) -> Result<Samples, Unfit> {
         return Err(Unfit::Format("JPEG-LS in colours".into()));
     }
     let raster = jpegls_decode_limited(&without_fill(bytes), most_bytes(form));
-    samples(raster.map_err(|error| unfit(&error, "JPEG-LS"))?, form, form.colours)
+    samples(&raster.map_err(|error| unfit(&error, "JPEG-LS"))?, form, form.colours)
 }
 
 /// The codestream without the fill bytes before its end marker, which make its length even and which the decoder
@@ -59,7 +59,7 @@ fn most_bytes(form: &Form) -> usize {
 }
 
 /// The numbers of a decoded picture, if it has the file's size.
-fn samples(raster: Raster, form: &Form, colours: Colours) -> Result<Samples, Unfit> {
+fn samples(raster: &Raster, form: &Form, colours: Colours) -> Result<Samples, Unfit> {
     let is = [raster.width as usize, raster.height as usize];
     if is != form.size || raster.channels as usize != form.samples {
         let ([width, height], [columns, rows]) = (is, form.size);

@@ -1,0 +1,107 @@
+//! Options for a simulated floor, and the scenario played on it.
+
+use std::path::Path;
+
+use underfoot::floor::{Floor, Geometry};
+use underfoot::layout::Layout;
+use underfoot::source::Faults;
+use underfoot_scene::scene::Shoe;
+use underfoot_sim::{self as sim, Foot, Scenario, Script, SimConfig, SimFloor};
+
+use super::failure::Failure;
+
+/// Options of the simulated floor on which a scenario is played.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct SimArgs {
+    /// Seed of the floor: it determines sensors and noise.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Perfect sensors: alike, exact, without noise, sending newtons.
+    #[arg(long)]
+    pub(crate) ideal: bool,
+    /// Also press known points on every tile and use the resulting position maps.
+    #[arg(long, conflicts_with = "ideal")]
+    pub(crate) mapped: bool,
+}
+
+impl Default for SimArgs {
+    fn default() -> Self {
+        Self { seed: 1, ideal: false, mapped: false }
+    }
+}
+
+impl SimArgs {
+    /// Configuration of the simulated floor.
+    pub(crate) fn config(&self) -> SimConfig {
+        if self.ideal { SimConfig::ideal() } else { SimConfig::default() }
+    }
+
+    /// A simulated floor wired as `floor`, and `floor` after the work in the lab: calibrated, tared and perhaps
+    /// mapped.
+    pub(crate) fn calibrated(&self, floor: &Floor) -> Result<(SimFloor, Floor), Failure> {
+        let sim = SimFloor::new(floor, self.config(), self.seed);
+        let floor = self.measured(floor, &sim)?;
+        Ok((sim, floor))
+    }
+
+    /// `floor` as a lab measures its simulation `sim`.
+    pub(crate) fn measured(&self, floor: &Floor, sim: &SimFloor) -> Result<Floor, Failure> {
+        let floor = sim::calibrated(floor, sim, self.seed)
+            .map_err(|error| Failure::Other(format!("the simulated floor can't be calibrated: {error}")))?;
+        if !self.mapped {
+            return Ok(floor);
+        }
+        sim::mapped(&floor, sim, self.seed)
+            .map_err(|error| Failure::Other(format!("the simulated floor can't be mapped: {error}")))
+    }
+}
+
+/// The scenario in `file`, or the built-in session if it fits `layout`, or a visit to each of its controls; without
+/// controls, a stroll. Also returns the faults of the scenario.
+pub(crate) fn script(
+    file: Option<&Path>,
+    layout: &Layout,
+    geometry: &Geometry,
+) -> Result<(Script, Faults), Failure> {
+    let scenario = match file {
+        Some(path) => Scenario::load(path)?,
+        None if layout.widgets.is_empty() => Scenario::parse("the built-in stroll", Scenario::STROLL)?,
+        None => {
+            let session = Scenario::parse("the built-in session", Scenario::SESSION)?;
+            let script = session.resolve(layout, geometry).unwrap_or_else(|_| made_for(layout, geometry));
+            return Ok((script, Faults::default()));
+        }
+    };
+    let mut faults = Faults::default();
+    for written in scenario.faults() {
+        let fault: Faults = written.parse().map_err(|error| {
+            let file = file.unwrap_or(Path::new("the built-in scenario")).display();
+            Failure::Other(format!("{file}: {error}"))
+        })?;
+        faults = faults.and(fault);
+    }
+    Ok((scenario.resolve(layout, geometry)?, faults))
+}
+
+/// A visit to the controls of `layout`.
+fn made_for(layout: &Layout, geometry: &Geometry) -> Script {
+    let visit = sim::visit(layout, geometry);
+    for id in &visit.missed {
+        tracing::warn!(
+            "the visitor finds no place from which a foot reaches \"{id}\", or no way to its page"
+        );
+    }
+    visit.script
+}
+
+/// Returns the shoe of a simulated foot, as long as the foot itself.
+pub(crate) fn shoe(foot: &Foot) -> Shoe {
+    Shoe {
+        position: foot.position,
+        heading_rad: foot.heading,
+        length_m: foot.length_m,
+        force: foot.force,
+        roll: foot.roll,
+        left: foot.left,
+    }
+}

@@ -1,0 +1,453 @@
+//! `underfoot preview`: the window, with its floor served on a thread of its own.
+
+mod announced;
+mod commands;
+mod feeds;
+mod followed;
+mod joined;
+mod player;
+
+use std::net::SocketAddr;
+use std::panic::{self, AssertUnwindSafe};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+use underfoot::feel::Renderer;
+use underfoot::floor::{Floor, read_address};
+use underfoot::layout::Layout;
+use underfoot::recording::{Recording, TappedPackets};
+use underfoot::runtime::{EndReason, Kind, Session};
+use underfoot::schema;
+use underfoot::sense::Method;
+use underfoot::sink::LatencyStages;
+use underfoot::source::{Faults, SensorSource};
+use underfoot::units::HostClock;
+use underfoot_sim::{
+    ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
+    feet_by_hand, watched,
+};
+use underfoot_window::preview::{
+    self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
+    ProjectionOptions, ScopeFeed, ShoeFeed, Warnings, channels,
+};
+
+use self::commands::{CommandHandler, Desk};
+use self::feeds::{Mouse, Scopes, ToWindow, shoe, stop_and_wait};
+use self::followed::Followed;
+use self::joined::Joined;
+use self::player::Player;
+use super::actuate::ActuateArgs;
+use super::failure::Failure;
+use super::fault_args::say_what_is_rehearsed;
+use super::floor_args::FloorArgs;
+use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
+use super::output;
+use super::outputs::OutputArgs;
+use super::play::{self, SimArgs};
+use super::run::end;
+use super::senders::{BoardArgs, CommandArgs};
+use super::stop::stop_flag;
+
+/// Options of `underfoot preview`.
+#[derive(clap::Args, Debug, Default)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    layout: LayoutArgs,
+    #[command(flatten)]
+    floor: FloorArgs,
+    /// Show a real floor, whose packets arrive here.
+    #[arg(long, value_name = "ADDR", value_parser = read_address, conflicts_with_all = ["scenario", "session"])]
+    listen: Option<SocketAddr>,
+    /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. The window then sends
+    /// nothing to outputs or actuators.
+    #[arg(long, value_name = "ADDR", value_parser = read_address, conflicts_with_all = SERVED_HERE, conflicts_with_all = ["floor", "grid"])]
+    join: Option<SocketAddr>,
+    /// Show a floor from the JSON lines in this file, `-` for standard input: the output of `underfoot-cluster
+    /// gateway --json --json-contacts` or `underfoot run --json --json-contacts`, with the same layout and floor. The
+    /// window then sends nothing to outputs or actuators.
+    #[arg(long, value_name = "FILE", conflicts_with_all = SERVED_HERE, conflicts_with = "join")]
+    follow: Option<PathBuf>,
+    #[command(flatten)]
+    boards: BoardArgs,
+    #[command(flatten)]
+    commands: CommandArgs,
+    /// Show a scenario played on the simulated floor, instead of the mouse's feet.
+    #[arg(long, value_name = "FILE")]
+    scenario: Option<PathBuf>,
+    /// Show the built-in session played on the simulated floor.
+    #[arg(long, conflicts_with = "scenario")]
+    session: bool,
+    /// Record the floor into this file and replace an existing one; `underfoot preview FILE` shows it again.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Open the window for a projector at once, over the whole screen: the controls alone, laid onto the floor.
+    #[arg(long)]
+    project: bool,
+    /// The screen that the projection fills, counted from 0.
+    #[arg(long, value_name = "NUMBER", requires = "project")]
+    monitor: Option<usize>,
+    /// File that remembers where the floor's corners are on the projection, in place of the usual one.
+    #[arg(long, value_name = "FILE")]
+    corners: Option<PathBuf>,
+    #[command(flatten)]
+    sim: SimArgs,
+    #[command(flatten)]
+    outputs: OutputArgs,
+    #[command(flatten)]
+    actuate: ActuateArgs,
+    /// The paper's plain sensing: one contact per group of connected tiles.
+    #[arg(long)]
+    eq4: bool,
+}
+
+/// Options of a floor that is served and felt here; a floor served elsewhere is only shown.
+const SERVED_HERE: [&str; 27] = [
+    "listen",
+    "allow",
+    "pin",
+    "commands",
+    "allow_commands",
+    "scenario",
+    "session",
+    "record",
+    "seed",
+    "ideal",
+    "mapped",
+    "osc",
+    "no_osc",
+    "osc_prefix",
+    "tuio",
+    "tuio2",
+    "tuio_profiles",
+    "json",
+    "json_contacts",
+    "wav",
+    "rate",
+    "sound",
+    "device",
+    "block",
+    "resample",
+    "delay_ms",
+    "eq4",
+];
+
+/// Interval between two updates of the window's data: half of a frame.
+const LOOK: Duration = Duration::from_millis(8);
+
+/// Whether a window can probably be opened.
+pub(crate) fn has_display() -> bool {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
+}
+
+/// Seed that determines the packets affected by the faults of a scenario.
+const FAULT_SEED: u64 = 1;
+
+/// Time for which the floor stays empty before the scenario starts again.
+const PAUSE: Duration = Duration::from_secs(3);
+
+/// Opens the window and serves its floor on a thread of its own until the window is closed.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    if !has_display() {
+        return Err(Failure::NoWindow("there is no display".into()));
+    }
+    if let Some(path) = args.recording() {
+        return replayed(args, path);
+    }
+    if let Some(address) = args.join {
+        return joined(args, address);
+    }
+    if let Some(path) = &args.follow {
+        return followed(args, path);
+    }
+    let floor = args.floor.load()?;
+    let (layout, warnings) = args.layout.reviewed(&floor)?;
+    let stage = args.stage(&floor, &layout)?;
+
+    let (window, ProgramChannels { events, layouts, notices, commands }) = channels();
+    let (scope_sender, scopes) = mpsc::channel();
+
+    // If several sound cards are tried, the last one plays.
+    let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
+    let latency = LatencyStages::default();
+    let told = notices.clone();
+    // The window may be closed.
+    let notice = move |text| drop(told.try_send(text));
+    let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
+    let (tap, packets) = TappedPackets::new();
+    let source = tap.source(stage.source, floor.geometry);
+    let mut session = Session::source(Box::new(source), stage.clock)
+        .floor(stage.floor.clone())
+        .layout(layout.clone())
+        .method(if args.eq4 { Method::Eq4 } else { Method::default() })
+        .prefix(args.outputs.prefix.osc_prefix.clone())
+        .sink(args.outputs.open(&floor.geometry)?)
+        .sink(ToWindow { events, missed: 0 })
+        .actuators(actuators)
+        .latency(latency.clone());
+    if let Some(path) = &args.record {
+        session = session.record(path);
+    }
+    let session = session.start()?;
+    let signals = SignalWatch::start(&session)?;
+
+    let desk = Desk { session: session.clone(), layouts };
+    let watch = desk.watch(&args.layout)?;
+    let choices = args.choices();
+    let handler = CommandHandler {
+        files: args.layout.clone(),
+        watch,
+        choices: choices.clone(),
+        floor,
+        desk,
+        controls_off: None,
+    };
+    handler.process_commands(commands, notices);
+
+    let scopes = scopes.try_iter().last().flatten();
+    let scopes = scopes.map(|reader| Box::new(Scopes::new(reader)) as Box<dyn ScopeFeed>);
+    let (floor, layout) = (Arc::new(stage.floor), Arc::new(layout));
+    let input = PreviewInput {
+        warnings: Warnings::from(&warnings),
+        scopes,
+        latency: Some(latency),
+        feet: stage.feet,
+        faults: stage.faults,
+        people: stage.people,
+        packets: Some(packets),
+        shoes: stage.shoes,
+        choices,
+        effects: args.layout.kinds()?.effects().iter().cloned().collect(),
+        design: args.design()?,
+        ..PreviewInput::new(floor, layout, stage.name, session.take_snapshots(), window)
+    };
+    // The floor ends in order, even after a failure of the window.
+    let options = args.window();
+    let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &options)));
+    session.stop();
+    let end = end(&session);
+    drop(signals);
+    match shown.unwrap_or_else(|reason| panic::resume_unwind(reason)) {
+        Ok(()) => match end.kind {
+            Kind::Ended(EndReason::Failed) => Err(Failure::Other(end.message().into())),
+            Kind::Ended(EndReason::Panicked) => {
+                Err(Failure::Other("sensing failed; please report it".into()))
+            }
+            _ => Ok(()),
+        },
+        Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),
+    }
+}
+
+/// Ends the floor and its recording in order when a signal ends the program: the window itself could not, since it
+/// does not draw while another covers it.
+struct SignalWatch {
+    is_over: Arc<AtomicBool>,
+}
+
+impl SignalWatch {
+    fn start(session: &Session) -> Result<Self, Failure> {
+        /// Interval between two checks of the flag.
+        const EVERY: Duration = Duration::from_millis(50);
+        let (stop, session, is_over) = (stop_flag()?, session.clone(), Arc::<AtomicBool>::default());
+        let watch = Self { is_over: Arc::clone(&is_over) };
+        thread::spawn(move || {
+            while !stop.load(Ordering::Relaxed) {
+                if is_over.load(Ordering::Relaxed) {
+                    return;
+                }
+                thread::sleep(EVERY);
+            }
+            stop_and_wait(&session);
+            std::process::exit(i32::from(!output::finish()));
+        });
+        Ok(watch)
+    }
+}
+
+impl Drop for SignalWatch {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Shows a recording; its events go to no other program.
+fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
+    let (window, program) = channels();
+    let (player, floor, layout, snapshots) = Player::start(path, program)?;
+    let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
+    let input = PreviewInput {
+        playback: Some(Box::new(player)),
+        ..PreviewInput::new(Arc::new(floor), layout, name, snapshots, window)
+    };
+    preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
+}
+
+/// Shows a server's floor.
+fn joined(args: &Args, address: SocketAddr) -> Result<(), Failure> {
+    let (window, program) = channels();
+    let joined = Joined::start(address, program, args.layout.clone())?;
+    let server = Some(joined.feed());
+    let design = match args.layout.layout {
+        Some(_) => args.design()?,
+        None => Some(args.design_of("the server’s layout", joined.layout_text, None)),
+    };
+    let floor = Arc::new(joined.floor);
+    let input = PreviewInput {
+        server,
+        packets: Some(joined.packets),
+        design,
+        ..PreviewInput::new(floor, joined.layout, address.to_string(), joined.snapshots, window)
+    };
+    preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
+}
+
+/// Shows a floor from JSON lines.
+fn followed(args: &Args, path: &Path) -> Result<(), Failure> {
+    let floor = args.floor.load()?;
+    let (layout, warnings) = args.layout.reviewed(&floor)?;
+    let (window, program) = channels();
+    let followed = Followed::start(path, program, &args.layout, &floor, layout.clone())?;
+    let input = PreviewInput {
+        warnings: Warnings::from(&warnings),
+        server: Some(followed.feed),
+        ..PreviewInput::new(Arc::new(floor), Arc::new(layout), followed.name, followed.snapshots, window)
+    };
+    preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
+}
+
+/// The source of packets, with its description.
+struct Stage {
+    floor: Floor,
+    source: Box<dyn SensorSource>,
+    clock: HostClock,
+    name: String,
+    feet: Option<Box<dyn FootSink>>,
+    shoes: Option<ShoeFeed>,
+    faults: Option<FaultSwitch>,
+    people: Option<ArrivalHandle>,
+}
+
+impl Args {
+    /// The recording, if one is given in place of a layout.
+    fn recording(&self) -> Option<&Path> {
+        self.layout.path().filter(|path| Recording::is_at(path))
+    }
+
+    /// Initial options of the window.
+    fn window(&self) -> PreviewOptions {
+        let projection = ProjectionOptions {
+            open: self.project,
+            keeps_awake: true,
+            monitor: self.monitor,
+            corners: self.corners.clone(),
+        };
+        let settings = Some(preview::usual_state().join("window"));
+        PreviewOptions { projection, settings, ..PreviewOptions::default() }
+    }
+
+    fn stage(&self, floor: &Floor, layout: &Layout) -> Result<Stage, Failure> {
+        if let Some(address) = self.listen {
+            let prefix = self.outputs.prefix.osc_prefix.clone();
+            let source = self.commands.open(self.boards.bind(address, floor)?.with_prefix(prefix))?;
+            return Ok(Stage {
+                floor: floor.clone(),
+                clock: source.clock(),
+                source: Box::new(source),
+                name: format!("floor on port {}", address.port()),
+                feet: None,
+                shoes: None,
+                faults: None,
+                people: None,
+            });
+        }
+        let mut faults = Faults::default();
+        let (driver, name, feet): (Box<dyn FootDriver>, _, Option<Box<dyn FootSink>>) =
+            if self.session || self.scenario.is_some() {
+                let (script, rehearsed) = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
+                faults = rehearsed;
+                (Box::new(LoopingScript::new(script, PAUSE)), "scenario on a simulated floor", None)
+            } else {
+                let (handle, driver) = feet_by_hand();
+                (Box::new(driver), "simulated floor", Some(Box::new(Mouse(handle))))
+            };
+        let (people, driver) = arrivals(driver);
+        let (driver, mut seen) = watched(Box::new(driver));
+        let shoes: ShoeFeed = Box::new(move |shoes| {
+            shoes.clear();
+            shoes.extend(seen.read().iter().map(shoe));
+        });
+        let (sim, floor) = self.sim.calibrated(floor)?;
+        let driver = Box::new(driver);
+        let source = SimulatedSource::new(sim, driver, Pace::RealTime);
+        let clock = source.clock();
+        say_what_is_rehearsed(&faults);
+        let (source, switch) = RehearsalSource::new(source, faults, FAULT_SEED);
+        Ok(Stage {
+            floor,
+            clock,
+            source: Box::new(source),
+            faults: Some(switch),
+            people: Some(people),
+            name: name.into(),
+            feet,
+            shoes: Some(shoes),
+        })
+    }
+
+    /// The text of the layout, for the designer.
+    fn design(&self) -> Result<Option<DesignInput>, Failure> {
+        let path = self.layout.path().map(std::path::Path::to_path_buf);
+        let name = self.layout.layout.as_deref().and_then(std::path::Path::to_str).unwrap_or(DEFAULT_LAYOUT);
+        let text = match &path {
+            Some(_) if self.layout.begun().is_some() => Some(String::new()),
+            Some(path) => std::fs::read_to_string(path).ok(),
+            None => schema::builtin_layout(name).map(str::to_owned),
+        };
+        Ok(text.map(|text| self.design_of(name, text, path)))
+    }
+
+    /// A layout with this name, text and file, for the designer.
+    fn design_of(&self, name: &str, text: String, path: Option<PathBuf>) -> DesignInput {
+        let files = self.layout.clone();
+        let kinds_of = Box::new(move |path: Option<&std::path::Path>| {
+            let layout = path.map(std::path::Path::to_path_buf);
+            LayoutArgs { layout, ..files.clone() }.kinds().map(Arc::new)
+        });
+        let state = preview::usual_state();
+        DesignInput { name: name.to_owned(), text, path, kinds_of, state }
+    }
+
+    /// The layout given and the built-in ones.
+    fn choices(&self) -> Vec<String> {
+        let given = self.layout.path().map(|path| path.display().to_string());
+        given.into_iter().chain(schema::builtin_layouts().map(String::from)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Args as _;
+
+    use super::{Args, SERVED_HERE};
+
+    /// Options of the view, for a floor served here or elsewhere, and the hidden one that explains where a layout stands.
+    const SHOWN: [&str; 11] = [
+        "_option", "layout", "widgets", "effects", "floor", "grid", "join", "follow", "project", "monitor",
+        "corners",
+    ];
+
+    #[test]
+    fn every_option_is_of_a_floor_served_here_or_of_any() {
+        let command = Args::augment_args(clap::Command::new("preview"));
+        let mut options: Vec<&str> = command.get_arguments().map(|option| option.get_id().as_str()).collect();
+        let mut known: Vec<&str> = SERVED_HERE.into_iter().chain(SHOWN).collect();
+        options.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(options, known);
+    }
+}

@@ -1,0 +1,44 @@
+//! The program `underfoot` itself: processes, sockets, files, and its description in the pages.
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../../../../tests/support/pages.rs"]
+mod pages;
+#[path = "../../../../tests/support/ports.rs"]
+mod ports;
+#[path = "../../../../tests/support/sender.rs"]
+mod sender;
+#[path = "../../../../tests/support/units.rs"]
+mod units;
+
+mod app;
+mod areas;
+mod calibrate;
+mod clients;
+mod console;
+#[cfg(all(feature = "preview", target_os = "linux"))]
+mod desktop;
+mod earlier_files;
+mod end_to_end;
+mod faults;
+mod holds;
+mod hostile_pages;
+mod input;
+#[cfg(target_os = "linux")]
+mod letters;
+mod mirror;
+mod output;
+mod page_commands;
+mod plan;
+mod rack;
+mod recordings;
+mod senders;
+mod service;
+mod simulated;
+mod soak;
+mod storage;
+mod strange_boards;
+mod systemd;
+mod tables;
+mod unit_files;
+mod web;
+mod wiring;

@@ -1,0 +1,284 @@
+//! Accuracy of all contacts in scenes that are hard to sense, on floors with errors.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::METHODS;
+use super::follow::{Followed, Follower, Truth};
+use super::rig::{ExperimentError, Rig};
+use underfoot::floor::Geometry;
+use underfoot::units::Instant;
+use underfoot_sim::{FloorQuality, Load, MoveError, Scene, SceneKind};
+
+/// Scenes of people and objects ([`SceneKind`]) on floors of several qualities, by method.
+///
+/// One person acts in every scene on a floor of each quality with parts drawn from the person's seed; the floor is
+/// empty for a second between scenes. Feet, knees, wheels and sticks all count as feet: they are down from 10 N on,
+/// as in [`super::PeopleTable`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneTable {
+    floors: Vec<FloorQuality>,
+    /// One entry per scene ([`SceneKind::ALL`]), floor and method ([`METHODS`]).
+    scores: Vec<Vec<[Followed; 2]>>,
+    people: usize,
+}
+
+/// Interval between two samples of the errors (ms).
+const SAMPLE_MS: u64 = 10;
+
+/// Time that the floor is empty before each scene (ms).
+const EMPTY_MS: u32 = 1000;
+
+impl SceneTable {
+    /// Creates an empty table of scenes on floors of these qualities.
+    #[must_use]
+    pub fn on(floors: &[FloorQuality]) -> Self {
+        let none = vec![Default::default(); floors.len()];
+        Self { floors: floors.to_vec(), scores: vec![none; SceneKind::ALL.len()], people: 0 }
+    }
+
+    /// Simulates the person drawn from `seed` in all scenes on a floor of each quality.
+    ///
+    /// # Errors
+    /// Errors of [`Rig::of_quality`]; [`ExperimentError::Move`], which no seed should cause.
+    pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
+        let geometry = Geometry::default();
+        for (slot, floor) in self.floors.iter().enumerate() {
+            let mut rig = Rig::of_quality(geometry, *floor, seed)?;
+            for (kind, scores) in SceneKind::ALL.into_iter().zip(&mut self.scores) {
+                let scene = scene(kind, seed, &geometry)?;
+                rig.hold(EMPTY_MS, &[], |_| {});
+                if let Some(scores) = scores.get_mut(slot) {
+                    play(&mut rig, &scene, scores);
+                }
+            }
+        }
+        self.people += 1;
+        Ok(())
+    }
+
+    /// Adds all people of another table with the same floors.
+    pub fn append(&mut self, other: Self) {
+        let scores = self.scores.iter_mut().flatten().flatten();
+        for (score, others) in scores.zip(other.scores.into_iter().flatten().flatten()) {
+            score.append(others);
+        }
+        self.people += other.people;
+    }
+
+    /// Returns the result of one scene on one floor, by method ([`METHODS`]); `None` for a floor that is not in the
+    /// table.
+    #[must_use]
+    pub fn score(&self, kind: SceneKind, floor: FloorQuality) -> Option<&[Followed; 2]> {
+        let scene = SceneKind::ALL.iter().position(|&other| other == kind)?;
+        let slot = self.floors.iter().position(|&other| other == floor)?;
+        self.scores.get(scene)?.get(slot)
+    }
+
+    /// Returns all lines, for programs: scene by scene, the floors in their order, each method; all scenes together
+    /// last.
+    pub fn lines(&self) -> impl Iterator<Item = SceneLine> + '_ {
+        let each = SceneKind::ALL
+            .into_iter()
+            .zip(&self.scores)
+            .flat_map(|(kind, scores)| self.rows(kind.name(), scores.iter().cloned()));
+        let all = (0..self.floors.len()).map(|slot| {
+            let mut whole: [Followed; 2] = Default::default();
+            for score in self.scores.iter().filter_map(|scores| scores.get(slot)) {
+                whole.iter_mut().zip(score).for_each(|(whole, score)| whole.append(score.clone()));
+            }
+            whole
+        });
+        each.chain(self.rows("all scenes", all))
+    }
+
+    fn rows<'a>(
+        &'a self,
+        scene: &'static str,
+        scores: impl Iterator<Item = [Followed; 2]> + 'a,
+    ) -> impl Iterator<Item = SceneLine> + 'a {
+        self.floors.iter().zip(scores).flat_map(move |(floor, scores)| {
+            let methods = METHODS.map(|(_, method)| method);
+            methods
+                .into_iter()
+                .zip(scores)
+                .map(move |(method, score)| SceneLine::of(scene, *floor, method, score))
+        })
+    }
+}
+
+/// The scene of one person: each kind draws independently from the person's seed.
+fn scene(kind: SceneKind, seed: u64, geometry: &Geometry) -> Result<Scene, MoveError> {
+    Scene::of(kind, seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ kind as u64, geometry)
+}
+
+fn play(rig: &mut Rig, scene: &Scene, scores: &mut [Followed; 2]) {
+    let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));
+    let (mut loads, mut truth) = (Vec::<Load>::new(), Vec::<Truth>::new());
+    for milli in 1..=scene.duration().as_millis() as u64 {
+        loads.clear();
+        scene.loads_at(Instant::from_millis(milli), &mut loads);
+        truth.clear();
+        truth.extend(loads.iter().filter_map(|load| Truth::of(load, rig)));
+        rig.step(loads.iter().copied(), |frame| {
+            for ((sensing, follower), score) in methods.iter_mut().zip(scores.iter_mut()) {
+                let contacts = sensing.update(frame);
+                follower.compare(&truth, contacts, milli.is_multiple_of(SAMPLE_MS), score);
+            }
+        });
+    }
+}
+
+/// One line of a [`SceneTable`]; shares are 0 to 1, and `None` without a sample.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneLine {
+    /// Name of the scene, or `all scenes`.
+    pub scene: &'static str,
+    /// Quality of the floors.
+    pub floor: &'static str,
+    /// Method of computing contacts.
+    pub method: &'static str,
+    /// Number of feet to find: one per foot that is down in a sample of 10 ms.
+    pub feet: usize,
+    /// Share of feet found within 5 cm.
+    pub within_5cm: f32,
+    /// Share of samples with several feet down in which all were found within 5 cm.
+    pub all_within_5cm: Option<f32>,
+    /// Median error of the found feet, in centimetres.
+    pub median_cm: Option<f32>,
+    /// 95th percentile of the error of the found feet, in centimetres.
+    pub p95_cm: Option<f32>,
+    /// Share of feet without a contact within a shoe's length.
+    pub missed: f32,
+    /// Number of contacts without a foot, as a share of the feet.
+    pub extra: f32,
+    /// Number of touchdowns.
+    pub steps: usize,
+    /// Changes of a foot's identity per 1000 touchdowns.
+    pub changes_per_1000_steps: Option<f32>,
+    /// Share of found feet with the true position inside the 95 % ellipse.
+    pub inside_95: Option<f32>,
+    /// Share of the time of one foot alone in which its contact was ambiguous.
+    pub ambiguous: Option<f32>,
+}
+
+impl SceneLine {
+    fn of(scene: &'static str, floor: FloorQuality, method: &'static str, score: Followed) -> Self {
+        let some = |of: usize, share: f32| (of > 0).then_some(share);
+        let (all_within_5cm, ambiguous) = (
+            some(score.several, score.share_all_within_5cm()),
+            some(score.one_foot.count(), score.share_ambiguous()),
+        );
+        let (feet, missed, extra) = (score.feet, score.share_missed(), score.share_extra());
+        let (steps, changes) = (score.steps, score.swaps_per_1000_steps());
+        let inside = score.inside[0] + score.inside[1];
+        let mut errors = score.one_foot;
+        errors.append(score.two_feet);
+        let found = errors.count();
+        let near = errors.share_within(0.05) * found as f32;
+        let cm = |share| errors.quantile(share).map(|error| 100.0 * error);
+        Self {
+            scene,
+            floor: floor.name(),
+            method,
+            feet,
+            within_5cm: near / feet.max(1) as f32,
+            all_within_5cm,
+            median_cm: cm(0.5),
+            p95_cm: cm(0.95),
+            missed,
+            extra,
+            steps,
+            changes_per_1000_steps: changes,
+            inside_95: some(found, inside as f32 / found.max(1) as f32),
+            ambiguous,
+        }
+    }
+}
+
+impl fmt::Display for SceneTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "everything that presses, {} people of 20 to 140 kg in each scene on floors of 6 x 6 tiles",
+            self.people
+        )?;
+        writeln!(
+            f,
+            "                                    within 5 cm     error, cm                            changes per  inside  one foot"
+        )?;
+        writeln!(
+            f,
+            "scene             faults    method     each    all  median    p95  missed   extra  steps  1000 steps    95 %  ambiguous"
+        )?;
+        let mut last = "";
+        for line in self.lines() {
+            if last != line.scene && !last.is_empty() {
+                writeln!(f)?;
+            }
+            let percent = |share: Option<f32>| {
+                share.map_or_else(|| "-".into(), |share| format!("{:.1}%", 100.0 * share))
+            };
+            let plain = |value: Option<f32>| value.map_or_else(|| "-".into(), |value| format!("{value:.1}"));
+            writeln!(
+                f,
+                "{:18}{:10}{:8}{:>7}{:>7}{:>8}{:>7}{:>7.2}%{:>7.2}%{:>7}{:>12}{:>8}{:>11}",
+                if last == line.scene { "" } else { line.scene },
+                line.floor,
+                line.method,
+                percent(Some(line.within_5cm)),
+                percent(line.all_within_5cm),
+                plain(line.median_cm),
+                plain(line.p95_cm),
+                100.0 * line.missed,
+                100.0 * line.extra,
+                line.steps,
+                plain(line.changes_per_1000_steps),
+                percent(line.inside_95),
+                percent(line.ambiguous),
+            )?;
+            last = line.scene;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_has_a_line_for_each_floor_and_method_and_the_sum_of_all() {
+        let floors = [FloorQuality::Ideal, FloorQuality::Severe];
+        let mut table = SceneTable::on(&floors);
+        table.add_person(5).unwrap();
+        let lines: Vec<SceneLine> = table.lines().collect();
+        assert_eq!(lines.len(), (SceneKind::ALL.len() + 1) * 2 * 2);
+        assert!(lines.iter().all(|line| line.feet > 50 && line.steps > 0), "{table}");
+        for slot in 0..4 {
+            let scenes = lines.iter().skip(slot).step_by(4).take(SceneKind::ALL.len());
+            let whole = lines.get(4 * SceneKind::ALL.len() + slot).unwrap();
+            assert_eq!(whole.feet, scenes.map(|line| line.feet).sum::<usize>());
+        }
+        let standing = table.score(SceneKind::Press, FloorQuality::Ideal).unwrap();
+        assert!(standing[0].share_missed() < 0.6);
+        assert!(table.score(SceneKind::Press, FloorQuality::Paper).is_none());
+    }
+
+    #[test]
+    fn tables_of_two_people_add_up_in_any_order_and_repeat() {
+        let one = |seed| {
+            let mut table = SceneTable::on(&[FloorQuality::Moderate]);
+            table.add_person(seed).unwrap();
+            table
+        };
+        let (first, second) = (one(1), one(2));
+        let (mut both, mut other) = (first.clone(), second.clone());
+        both.append(second.clone());
+        other.append(first.clone());
+        assert_eq!(both.to_string(), other.to_string());
+        assert_ne!(both.to_string(), first.to_string());
+        assert_eq!(second, one(2));
+    }
+}

@@ -1,0 +1,203 @@
+//! Room for shoes: sizes, gaps, reach, and the position error of a foot.
+
+use std::ops::Range;
+
+use glam::Vec2;
+
+use super::{Part, Subject, cm, predicted_error_m};
+use underfoot::floor::{Geometry, Rect, TileId};
+use underfoot::layout::{Stance, Widget};
+use underfoot::widget::{Axis, Behaviour, Guard, Mapping};
+
+/// Feet miss a control with a shorter side (m).
+const MISSED_M: f32 = 0.05;
+/// A shoe covers a control with a shorter side (m).
+const SMALL_M: f32 = 0.10;
+/// Half the width of a foot (m).
+const HALF_FOOT_M: f32 = 0.055;
+/// Minimum gap between pedals for one foot, operated in sequence (m).
+const SEQUENTIAL_M: f32 = 0.05;
+/// Minimum gap between pedals for one foot, operated in any order (m).
+const RANDOM_M: f32 = 0.10;
+/// Maximum reach of a foot without moving the body (m).
+pub const REACH_M: f32 = 0.8;
+/// Maximum reach with a long step (m).
+pub const STEP_AWAY_M: f32 = 1.2;
+/// Half the width and half the length of a shoe: distance of a foot's middle from a stance zone's edges.
+const HALF_SHOE: Vec2 = Vec2::new(0.06, 0.13);
+/// Minimum distance between two adjacent values of a slider (m).
+const STEP_M: f32 = 0.01;
+/// Tolerance for rounding errors (m).
+const SLACK_M: f32 = 1e-4;
+
+pub(super) fn review(subject: &mut Subject<'_>) {
+    size(subject);
+    neighbours(subject);
+    reach(subject);
+    stance_tiles(subject);
+    place_error(subject);
+    steps(subject);
+}
+
+fn size(subject: &mut Subject<'_>) {
+    let (size, part) = target(subject.widget);
+    let side = size.min_element();
+    let expected = format!("it is {} x {}", cm(size.x), cm(size.y));
+    if side < MISSED_M - SLACK_M {
+        let message = format!("{part}{} is smaller than feet can hit", subject.name());
+        subject.error("U101", Part::Size, message, expected);
+    } else if side < SMALL_M - SLACK_M {
+        let message = format!("{part}{} is smaller than a shoe is wide", subject.name());
+        subject.warning("U101", Part::Size, message, expected);
+    }
+}
+
+/// Name of a guard, and the gaps below which the review reports an error and a warning.
+fn gaps(guard: Guard) -> (&'static str, f32, f32) {
+    match guard {
+        Guard::Free => ("", 0.0, SEQUENTIAL_M),
+        Guard::Confirm { .. } => ("`Confirm` ", 0.0, HALF_FOOT_M),
+        Guard::HoldToRun { .. } => ("`HoldToRun` ", HALF_FOOT_M, RANDOM_M),
+    }
+}
+
+fn neighbours(subject: &mut Subject<'_>) {
+    let area = subject.widget.area;
+    let (word, least, wanted) = gaps(subject.widget.behaviour.thresholds().guard);
+    let distance = |other: &Rect| (other.min - area.max).max(area.min - other.max).max(Vec2::ZERO).length();
+    let nearest = subject
+        .others()
+        .map(|other| (distance(&other.area), other))
+        .filter(|(gap, _)| *gap < wanted - SLACK_M)
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((gap, other)) = nearest else { return };
+    // Of two controls with the same guard, the review reports the later one.
+    let (_, other_least, other_wanted) = gaps(other.behaviour.thresholds().guard);
+    let is_theirs = (other_least, other_wanted) > (least, wanted);
+    let is_later =
+        subject.layout.widgets.iter().position(|widget| widget.id == other.id) > Some(subject.index);
+    if is_theirs || (is_later && (other_least, other_wanted) == (least, wanted)) {
+        return;
+    }
+    let message = format!("{} is too close to \"{}\"", subject.name(), other.id);
+    let expected = format!("{} apart; {word}controls need {}", cm(gap), cm(wanted));
+    if gap < least - SLACK_M {
+        subject.error("U102", Part::Place, message, expected);
+    } else {
+        subject.warning("U102", Part::Place, message, expected);
+    }
+}
+
+/// Area in which the middle of a foot can be that stands within the zone.
+#[must_use]
+pub fn footing(stance: &Stance) -> Rect {
+    let margin = HALF_SHOE.min(0.5 * stance.area.size());
+    Rect::new(stance.area.min + margin, stance.area.max - margin)
+}
+
+fn reach(subject: &mut Subject<'_>) {
+    let centre = subject.widget.area.centre();
+    let distances = subject.layout.stances.iter().map(|stance| footing(stance).distance(centre));
+    let Some(reach) = distances.min_by(f32::total_cmp) else { return };
+    if reach <= REACH_M + SLACK_M {
+        return;
+    }
+    let expected = format!("{reach:.2} m from the nearest place to stand");
+    if reach > STEP_AWAY_M {
+        let message = format!("{} is beyond a step from every stance zone", subject.name());
+        subject.error("U103", Part::Place, message, expected);
+    } else {
+        let message = format!("{} is out of reach of a foot from every stance zone", subject.name());
+        subject.warning("U103", Part::Place, message, expected);
+    }
+}
+
+/// South-western and north-eastern tile under `area`.
+fn tiles(geometry: &Geometry, area: Rect) -> (TileId, TileId) {
+    let inset = Vec2::splat(1e-3);
+    let tile = |corner: Vec2| {
+        let at = (corner / geometry.pitch_m()).floor().as_u16vec2();
+        let near = |at: u16, range: Range<u16>| at.clamp(range.start, range.end - 1);
+        let block = geometry.block();
+        TileId::new(near(at.x, block.column_range()), near(at.y, block.row_range()))
+    };
+    (tile(area.min + inset), tile(area.max - inset))
+}
+
+fn stance_tiles(subject: &mut Subject<'_>) {
+    let geometry = subject.floor.geometry;
+    let (first, last) = tiles(&geometry, subject.widget.area);
+    let apart = |low: u16, high: u16, other_low: u16, other_high: u16| {
+        // Number of rows or columns between the two.
+        i32::from(other_low.max(low)) - i32::from(other_high.min(high)) - 1
+    };
+    let too_near = |stance: &&Stance| {
+        let (south_west, north_east) = tiles(&geometry, stance.area);
+        let columns = apart(first.column, last.column, south_west.column, north_east.column);
+        let rows = apart(first.row, last.row, south_west.row, north_east.row);
+        // Another rule reports overlaps.
+        columns.max(rows) < 1 && !stance.area.overlaps(subject.widget.area)
+    };
+    let Some(stance) = subject.layout.stances.iter().find(too_near) else { return };
+    let zone = if stance.label.is_empty() { String::new() } else { format!(" \"{}\"", stance.label) };
+    let message = format!("{} has no free tile between it and the stance zone{zone}", subject.name());
+    subject.warning("U104", Part::Place, message, "the two feet share sensors".into());
+}
+
+fn place_error(subject: &mut Subject<'_>) {
+    let widget = subject.widget;
+    let press = widget.behaviour.thresholds().press;
+    let error = predicted_error_m(subject.floor, widget.area, press);
+    let (size, part) = target(widget);
+    let half = 0.5 * size.min_element();
+    let expected = format!(
+        "found within {} in 95 of 100 cases at {:.0} N, its edge is {} from its middle",
+        cm(error),
+        press.0,
+        cm(half)
+    );
+    if error > half + SLACK_M {
+        let message = format!("{part}{} is smaller than the error of finding a foot here", subject.name());
+        subject.error("U105", Part::Size, message, expected);
+    } else if error > 0.5 * half + SLACK_M {
+        let message = format!("{part}{} is small for the error of finding a foot here", subject.name());
+        subject.warning("U105", Part::Size, message, expected);
+    }
+}
+
+fn steps(subject: &mut Subject<'_>) {
+    let size = subject.widget.area.size();
+    let step = match &subject.widget.behaviour {
+        Behaviour::Slider(slider) if slider.mapping == Mapping::Absolute => {
+            let share = slider.scale.step / slider.scale.range();
+            // Measured at the middle, where a straight track and an arc have the same step.
+            let [from, to] = [0.5, 0.5 + share].map(|share| slider.track.place_at(share, size) * size);
+            (slider.scale.step > 0.0).then(|| from.distance(to))
+        }
+        Behaviour::Pad(pad) => {
+            let axes =
+                [(pad.x(), size.x), (pad.y(), size.y)].into_iter().filter(|(scale, _)| scale.step > 0.0);
+            axes.map(|(scale, length)| length * scale.step / scale.range()).min_by(f32::total_cmp)
+        }
+        _ => None,
+    };
+    let Some(step) = step.filter(|step| *step < STEP_M - SLACK_M) else { return };
+    let message = format!("{} has steps finer than a foot can hold", subject.name());
+    subject.warning("U106", Part::Step, message, format!("{} from one value to the next", cm(step)));
+}
+
+/// Size of the smallest part of a control that a foot must hit, and the name of that part.
+fn target(widget: &Widget) -> (Vec2, &'static str) {
+    let size = widget.area.size();
+    let split = |axis: Axis, parts: f32| match axis {
+        Axis::East => Vec2::new(size.x / parts, size.y),
+        Axis::North => Vec2::new(size.x, size.y / parts),
+    };
+    match &widget.behaviour {
+        Behaviour::Selector(selector) => {
+            (split(selector.axis, selector.options.len().max(1) as f32), "each option of ")
+        }
+        Behaviour::Stepper(stepper) => (split(stepper.axis, 2.0), "each half of "),
+        _ => (size, ""),
+    }
+}

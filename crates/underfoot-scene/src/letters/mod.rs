@@ -1,0 +1,19 @@
+//! Lines of text as outlines, and the characters that no font has.
+//!
+//! The fonts within the program come first, so that Latin, Greek, Cyrillic and emoji look the same everywhere. With
+//! the feature `system_fonts`, missing letters come from the fonts of this computer; the window uses the same fonts
+//! in the same order.
+
+mod fonts;
+mod line;
+#[cfg(feature = "system_fonts")]
+mod system;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod undrawn_tests;
+
+pub use fonts::{Fonts, definitions, missing_by};
+pub use line::{Line, Sign, Step};
+#[cfg(feature = "system_fonts")]
+pub use system::Installed;

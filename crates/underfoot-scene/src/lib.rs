@@ -1,0 +1,18 @@
+//! What a floor of underfoot looks like, and whether feet and eyes can use it.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`scene`] | a floor and its layout as a drawing |
+//! | `egui_painter` | scenes drawn by egui (feature `egui`) |
+//! | `letters` | lines of text as outlines, and which characters no font has (feature `letters`) |
+//! | `picture` | scenes as PNG and SVG files (feature `picture`) |
+//! | [`ergonomics`] | what is hard to reach, see or press on a layout |
+
+#[cfg(feature = "egui")]
+pub mod egui_painter;
+pub mod ergonomics;
+#[cfg(feature = "letters")]
+pub mod letters;
+#[cfg(feature = "picture")]
+pub mod picture;
+pub mod scene;

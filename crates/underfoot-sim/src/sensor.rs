@@ -1,0 +1,400 @@
+//! One force-sensing resistor and its converter: newtons in, volts and counts out.
+
+use std::f32::consts::TAU;
+
+use rand::{Rng, RngExt};
+use rand_pcg::Pcg64Mcg;
+
+use underfoot::floor::{Calibration, Exponential};
+use underfoot::units::Newtons;
+
+/// Tolerances of the sensors of a simulated floor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PartConfig {
+    /// The law of an average part.
+    pub nominal: Exponential,
+    /// Largest deviation of a part's factor a from nominal, as a share (0 to 0.9).
+    pub a_spread: f32,
+    /// Largest deviation of a part's exponent b from nominal, as a share (0 to 0.5).
+    pub b_spread: f32,
+    /// Mean deviation of the parts from an exponential law: root mean square of the force error after the best fit,
+    /// averaged over the parts, as a share of full scale (0 to 0.08).
+    pub deviation: f32,
+    /// Standard deviation of the noise, in volts; counts have noise of at least half a count, as with real
+    /// converters.
+    pub noise_v: f32,
+    /// Width of the hysteresis loop: relative difference between the readings of a falling and a rising force.
+    pub hysteresis: f32,
+    /// Growth of the reading under a steady force per decade of time from 0.1 to 1000 s, as a share.
+    pub creep: f32,
+    /// Upper limit of a part's reading, in newtons: a force `f` reads as `f / (1 + (f / limit)^6)^(1/6)`, which is 11
+    /// % too little at the limit and 3 % at eight tenths of it. Infinite if only the converter limits the range.
+    pub saturation_n: f32,
+}
+
+impl Default for PartConfig {
+    /// The paper's parts: 25 % and 5 % from part to part, about 5 % error after calibration, 2 mV of noise, no
+    /// hysteresis, no creep.
+    fn default() -> Self {
+        Self {
+            nominal: Exponential::NOMINAL,
+            a_spread: 0.25,
+            b_spread: 0.05,
+            deviation: 0.05,
+            noise_v: 0.002,
+            hysteresis: 0.0,
+            creep: 0.0,
+            saturation_n: f32::INFINITY,
+        }
+    }
+}
+
+impl PartConfig {
+    /// Parts that all follow the nominal law without noise; only the converter limits their range.
+    #[must_use]
+    pub const fn exact() -> Self {
+        Self {
+            nominal: Exponential::NOMINAL,
+            a_spread: 0.0,
+            b_spread: 0.0,
+            deviation: 0.0,
+            noise_v: 0.0,
+            hysteresis: 0.0,
+            creep: 0.0,
+            saturation_n: f32::INFINITY,
+        }
+    }
+
+    /// The same parts with the hysteresis and creep of a force-sensing resistor
+    /// (10 % and 5 % per decade, the maker's figures).
+    #[must_use]
+    pub const fn with_memory(self) -> Self {
+        Self { hysteresis: 0.1, creep: 0.05, ..self }
+    }
+
+    /// True if a reading depends on earlier loads.
+    pub(super) const fn has_memory(&self) -> bool {
+        self.hysteresis > 0.0 || self.creep > 0.0
+    }
+}
+
+/// Fault of one sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SensorFault {
+    /// The reading stays at its value from the onset of the fault.
+    Stuck,
+    /// The line is open: no current, 0 counts.
+    Open,
+    /// The line is short-circuited: full scale.
+    Short,
+    /// A constant additional force on the sensor, in newtons; may be negative.
+    Offset(Newtons),
+}
+
+/// One part with its tolerances.
+#[derive(Clone, Debug)]
+pub(super) struct Part {
+    pub(super) law: Exponential,
+    deviation: Deviation,
+    /// As [`PartConfig::saturation_n`].
+    saturation_n: f32,
+}
+
+impl Part {
+    /// Draws the next part.
+    pub(super) fn draw(config: &PartConfig, rng: &mut Pcg64Mcg) -> Self {
+        let mut spread = |share: f32| 1.0 + rng.random_range(-1.0f32..=1.0) * share;
+        let law = Exponential {
+            a_n: config.nominal.a_n * spread(config.a_spread.clamp(0.0, 0.9)),
+            b_per_volt: config.nominal.b_per_volt * spread(config.b_spread.clamp(0.0, 0.5)),
+        };
+        let saturation_n =
+            if config.saturation_n.is_nan() { f32::INFINITY } else { config.saturation_n.max(LEAST_FORCE) };
+        Self { law, deviation: Deviation::draw(law, config.deviation.clamp(0.0, 0.08), rng), saturation_n }
+    }
+
+    /// Returns the output under a steady force, before noise and converter: 0 volts below the part's threshold, more
+    /// than full scale if the converter saturates.
+    pub(super) fn volts(&self, force: f32) -> f32 {
+        let force = self.bounded(force);
+        let apparent = force * self.deviation.at(force);
+        if apparent > self.law.a_n { (apparent / self.law.a_n).ln() / self.law.b_per_volt } else { 0.0 }
+    }
+
+    /// Effective force with soft saturation: `f / (1 + (f / limit)^6)^(1/6)`.
+    fn bounded(&self, force: f32) -> f32 {
+        if self.saturation_n.is_infinite() || force <= 0.0 {
+            return force;
+        }
+        force / (1.0 + (force / self.saturation_n).powi(6)).powf(1.0 / 6.0)
+    }
+
+    /// Force at which the converter reaches full scale, or at which the part itself saturates.
+    pub(super) fn capacity(&self) -> f32 {
+        // The apparent force grows with the force, so bisection finds the crossing.
+        let (mut low, mut high) = (0.0, 4.0 * self.law.newtons(Calibration::volts(u16::MAX)));
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if self.volts(middle) < Calibration::FULL_SCALE_VOLTS { low = middle } else { high = middle }
+        }
+        high.min(self.saturation_n)
+    }
+}
+
+/// The converter's reading of `volts`, clamped to 0 and full scale.
+pub(super) fn counts(volts: f32) -> u16 {
+    // The cast saturates.
+    (volts * (f32::from(u16::MAX) / Calibration::FULL_SCALE_VOLTS)).round() as u16
+}
+
+/// Smooth deviation of one part from its exponential law: a factor `exp(A cos(w s^(3/4) + phase))` at the share `s`
+/// of the full range.
+///
+/// About two waves over the range, a little denser at the light end. With this shape the error after the best fit is
+/// about the same for light and for heavy loads.
+#[derive(Clone, Copy, Debug)]
+struct Deviation {
+    /// Inverse of the force at full scale.
+    per_full: f32,
+    /// Amplitude `A` of the logarithm of the force.
+    amplitude: f32,
+    /// `w`: radians over the whole range. The fit's two parameters would follow a lower value.
+    wave: f32,
+    phase: f32,
+}
+
+impl Deviation {
+    /// Draws a curve that leaves an error of about `residual` after the best fit, varying by a fifth from part to
+    /// part.
+    fn draw(law: Exponential, residual: f32, rng: &mut Pcg64Mcg) -> Self {
+        let full = law.newtons(Calibration::volts(u16::MAX));
+        let mut deviation = Self { per_full: 1.0 / full, amplitude: 0.0, wave: 0.0, phase: 0.0 };
+        if residual <= 0.0 {
+            return deviation;
+        }
+        let target = residual * rng.random_range(0.8..=1.2);
+        // For some phases, so large an error would need a reading that falls while the force grows. Draw again.
+        for _ in 0..32 {
+            deviation.wave = rng.random_range(10.0..13.0);
+            deviation.phase = rng.random_range(0.0..TAU);
+            deviation.amplitude = 0.85 / deviation.steepest();
+            let left = deviation.left_after_fit(law, full);
+            if left >= target {
+                deviation.amplitude *= target / left;
+                break;
+            }
+        }
+        deviation
+    }
+
+    /// Apparent force divided by force.
+    fn at(&self, force: f32) -> f32 {
+        (self.amplitude * self.angle(force * self.per_full).cos()).exp()
+    }
+
+    /// Angle of the wave at a share of the full range.
+    fn angle(&self, share: f32) -> f32 {
+        let root = share.max(0.0).sqrt();
+        self.wave * root * root.sqrt() + self.phase
+    }
+
+    /// Maximum downward slope of the wave over the logarithm of the force, per unit of amplitude; at least 1.
+    fn steepest(&self) -> f32 {
+        (1..=64)
+            .map(|step| step as f32 / 64.0)
+            .map(|share| self.angle(share).sin() * 0.75 * self.wave * share.powf(0.75))
+            .fold(1.0, f32::max)
+    }
+
+    /// Root mean square of the deviation after the best change of the law's a and b (to first order), as a share of
+    /// full scale, evenly over force.
+    fn left_after_fit(&self, law: Exponential, full: f32) -> f32 {
+        const STEPS: usize = 64;
+        // For each force: effect of a change of ln a, effect of a change of b, and the deviation.
+        let rows: [[f64; 3]; STEPS] = std::array::from_fn(|step| {
+            let share = (step as f64 + 0.5) / STEPS as f64;
+            let force = full * share as f32;
+            let volts = (force / law.a_n).ln().max(0.0) / law.b_per_volt;
+            [share, share * f64::from(volts), share * f64::from(self.at(force) - 1.0)]
+        });
+        let dot = |i: usize, j: usize| rows.iter().map(|row| row[i] * row[j]).sum::<f64>();
+        let (aa, ab, bb, ad, bd, dd) = (dot(0, 0), dot(0, 1), dot(1, 1), dot(0, 2), dot(1, 2), dot(2, 2));
+        let followed = (ad * ad * bb - 2.0 * ad * bd * ab + bd * bd * aa) / (aa * bb - ab * ab);
+        ((dd - followed).max(0.0) / STEPS as f64).sqrt() as f32
+    }
+}
+
+/// Memory of one sensor.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Memory {
+    /// Logarithm of the force at the lagging part of the hysteresis loop.
+    lag: Option<f32>,
+    /// Force, low-pass filtered over 0.1, 1, 10, 100 and 1000 seconds.
+    crept: [f64; 5],
+}
+
+/// Time constants of creep, in milliseconds.
+const CREEP_MS: [f64; 5] = [1e2, 1e3, 1e4, 1e5, 1e6];
+
+impl Memory {
+    /// Memory of a sensor after an infinite time under `force`.
+    pub(super) fn settled(force: f32) -> Self {
+        Self { lag: Some(force.max(LEAST_FORCE).ln()), crept: [f64::from(force.max(0.0)); 5] }
+    }
+
+    /// Returns the effective force after `elapsed_ms` (fewer than 100 ms) under `force`.
+    ///
+    /// # Source
+    /// Hysteresis: half of the logarithm of the force follows with a play, the elementary operator of the
+    /// Prandtl-Ishlinskii model. Creep: five first-order low-pass filters a decade apart sum to a straight line over
+    /// log time.
+    pub(super) fn felt(&mut self, force: f32, elapsed_ms: u32, config: &PartConfig) -> f32 {
+        let pressed = force.max(0.0);
+        let mut crept = 0.0;
+        for (follower, time_ms) in self.crept.iter_mut().zip(CREEP_MS) {
+            *follower += (f64::from(pressed) - *follower) * f64::from(elapsed_ms) / time_ms;
+            crept += *follower;
+        }
+        let grown = pressed + config.creep * crept as f32;
+        let log = grown.max(LEAST_FORCE).ln();
+        // Half of the reading lags by `play` in either direction, so the loop is `play` wide.
+        let play = config.hysteresis;
+        let lag = self.lag.map_or(log, |lag| lag.clamp(log - play, log + play));
+        self.lag = Some(lag);
+        (0.5 * (log + lag)).exp()
+    }
+}
+
+/// Minimum force in logarithms (N); no part has a reading below it.
+const LEAST_FORCE: f32 = 1e-3;
+
+/// Draws approximately from the standard normal distribution: the sum of four uniform values, never beyond 3.5.
+pub(super) fn normal(rng: &mut Pcg64Mcg) -> f32 {
+    let bits = rng.next_u64();
+    let sum = (bits & 0xffff) + (bits >> 16 & 0xffff) + (bits >> 32 & 0xffff) + (bits >> 48);
+    // Mean 2 x 65535; each term's variance is 65536^2 / 12.
+    (sum as f32 - 131_070.0) * (1.0 / 37_837.2)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+
+    use super::*;
+    use underfoot::sense::{Fit, LoadPoint};
+
+    fn parts(config: &PartConfig) -> Vec<Part> {
+        let mut rng = Pcg64Mcg::seed_from_u64(11);
+        (0..400).map(|_| Part::draw(config, &mut rng)).collect()
+    }
+
+    #[test]
+    fn parts_spread_by_a_quarter_in_a_and_a_twentieth_in_b() {
+        let config = PartConfig::default();
+        let (mut a, mut b): (Vec<f32>, Vec<f32>) =
+            parts(&config).iter().map(|part| (part.law.a_n / 0.5, part.law.b_per_volt / 1.34)).unzip();
+        for (values, spread) in [(&mut a, 0.25), (&mut b, 0.05)] {
+            values.sort_by(f32::total_cmp);
+            let mean = values.iter().sum::<f32>() / 400.0;
+            assert!((mean - 1.0).abs() < 0.1 * spread, "{mean}");
+            assert!(values[0] >= 1.0 - spread && values[0] < 1.0 - 0.95 * spread);
+            assert!(values[399] <= 1.0 + spread && values[399] > 1.0 + 0.95 * spread);
+        }
+    }
+
+    #[test]
+    fn about_five_percent_of_full_scale_is_left_after_the_best_fit() {
+        let residuals: Vec<f32> = parts(&PartConfig::default())
+            .iter()
+            .map(|part| {
+                let top = 0.98 * part.capacity();
+                let points: Vec<_> = (1..=60)
+                    .map(|step| top * step as f32 / 60.0)
+                    .map(|force| LoadPoint::new(part.volts(force), Newtons(force)))
+                    .collect();
+                Fit::of(&points).unwrap().residual
+            })
+            .collect();
+        let mean = residuals.iter().sum::<f32>() / 400.0;
+        let worst = residuals.iter().copied().fold(0.0, f32::max);
+        assert!((0.042..0.058).contains(&mean), "{mean}");
+        assert!(worst < 0.09, "{worst}");
+    }
+
+    #[test]
+    fn a_heavier_load_always_reads_more() {
+        for part in parts(&PartConfig { deviation: 0.08, ..PartConfig::default() }) {
+            let top = part.capacity();
+            let volts: Vec<f32> = (0..=500).map(|k| part.volts(top * k as f32 / 500.0)).collect();
+            let rising = volts.windows(2).all(|pair| pair[1] > pair[0] || pair[1] == 0.0);
+            assert!(rising && volts[500] > 4.999, "{part:?}");
+        }
+    }
+
+    #[test]
+    fn an_exact_part_reads_back_what_pressed_it_until_it_saturates() {
+        let part = &parts(&PartConfig::exact())[0];
+        for force in [1.0, 20.0, 175.0, 400.0] {
+            let read = part.law.newtons(Calibration::volts(counts(part.volts(force))));
+            assert!((read - force).abs() < 1e-4 * force + 1e-3, "{read} for {force}");
+        }
+        assert_eq!(counts(part.volts(407.0)), u16::MAX);
+        assert_eq!(counts(part.volts(5000.0)), u16::MAX);
+        for nothing in [0.4, 0.0, -30.0, f32::NAN] {
+            assert_eq!(counts(part.volts(nothing)), 0, "{nothing}");
+        }
+    }
+
+    #[test]
+    fn a_soft_part_reads_ever_less_of_a_force_near_its_limit() {
+        let part = &parts(&PartConfig { saturation_n: 300.0, ..PartConfig::exact() })[0];
+        let read = |force: f32| Calibration::Exponential(part.law).force(counts(part.volts(force))).0;
+        for (force, expected) in [(100.0, 99.98), (240.0, 230.5), (300.0, 267.3), (600.0, 299.2)] {
+            assert!((read(force) - expected).abs() < 0.5, "{} for {force}", read(force));
+        }
+        assert_eq!(part.capacity(), 300.0);
+    }
+
+    #[test]
+    fn noise_is_centred_and_has_unit_spread() {
+        let mut rng = Pcg64Mcg::seed_from_u64(5);
+        let draws: Vec<f32> = (0..100_000).map(|_| normal(&mut rng)).collect();
+        let mean = draws.iter().sum::<f32>() / 1e5;
+        let variance = draws.iter().map(|draw| draw * draw).sum::<f32>() / 1e5;
+        assert!(mean.abs() < 0.02 && (variance - 1.0).abs() < 0.02, "{mean}, {variance}");
+    }
+
+    #[test]
+    fn a_falling_force_reads_more_than_a_rising_one_by_the_loop_s_width() {
+        let config = PartConfig { hysteresis: 0.1, ..PartConfig::exact() };
+        let mut memory = Memory::settled(1.0);
+        let mut run = |from: f32, to: f32| {
+            let mut felt = 0.0;
+            for step in 0..=1000 {
+                felt = memory.felt(from + (to - from) * step as f32 / 1000.0, 1, &config);
+            }
+            felt
+        };
+        let rising = run(1.0, 100.0);
+        run(100.0, 200.0);
+        let falling = run(200.0, 100.0);
+        assert!((falling / rising - 1.1).abs() < 0.01, "{rising} up, {falling} down");
+    }
+
+    #[test]
+    fn a_standing_load_creeps_by_five_percent_per_decade_and_leaves_again() {
+        let config = PartConfig { creep: 0.05, ..PartConfig::exact() };
+        let mut memory = Memory::settled(0.0);
+        let mut after = |from_ms: usize, to_ms: usize, force: f32| {
+            (from_ms..to_ms).map(|_| memory.felt(force, 1, &config)).last().unwrap()
+        };
+        let (second, ten, hundred) =
+            (after(0, 1000, 100.0), after(1000, 10_000, 100.0), after(10_000, 100_000, 100.0));
+        for (early, late) in [(second, ten), (ten, hundred)] {
+            let growth = (late - early) / 100.0;
+            assert!((0.045..0.055).contains(&growth), "{growth}");
+        }
+        assert!(after(0, 1, 0.0) > 5.0, "what crept in stays at first");
+        assert!(after(0, 200_000, 0.0) < 6.0);
+    }
+}

@@ -1,0 +1,75 @@
+//! Sessions on simulated floors.
+
+use thiserror::Error;
+
+use super::foot::FootDriver;
+use super::loadcell::{CalibrationError, calibrated};
+use super::simulated::{Pace, SimulatedSource};
+use super::{Scenario, SimConfig, SimFloor};
+use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::runtime::{Session, SessionBuilder};
+use underfoot::source::{BadFault, FaultInjector, Faults, SensorSource};
+use underfoot::units::HostClock;
+use underfoot_format::diagnostic::Diagnostics;
+
+/// Seed of the parts of the floor, of their calibration and of the faults.
+const SEED: u64 = 1;
+
+/// Why a session can't be simulated.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The scenario does not fit the layout.
+    #[error(transparent)]
+    Scenario(#[from] Diagnostics),
+    /// A fault of the scenario is invalid.
+    #[error(transparent)]
+    Fault(#[from] BadFault),
+    /// The simulated floor can't be calibrated.
+    #[error("the simulated floor can't be calibrated: {0}")]
+    Calibration(#[from] CalibrationError),
+}
+
+/// A session on a simulated floor of the default size, with the people and the faults of `scenario`:
+/// `session(layout, &scenario)?.start()?`. It ends with the scenario.
+///
+/// # Errors
+/// [`SimulationError`] has the problems of the scenario on this layout.
+pub fn session(layout: Layout, scenario: &Scenario) -> Result<SessionBuilder, SimulationError> {
+    let floor = Floor::default();
+    let mut faults = Faults::default();
+    for fault in scenario.faults() {
+        faults = faults.and(fault.parse()?);
+    }
+    let script = scenario.resolve(&layout, &floor.geometry)?;
+    let (source, clock, floor) = simulated(&floor, Box::new(script))?;
+    let source: Box<dyn SensorSource> = if faults == Faults::default() {
+        Box::new(source)
+    } else {
+        Box::new(FaultInjector::new(source, faults, SEED))
+    };
+    Ok(Session::source(source, clock).floor(floor).layout(layout))
+}
+
+/// A session on a simulated `floor`, calibrated as in the lab, with the feet that `driver` moves. Set the layout, but
+/// no other floor.
+///
+/// # Errors
+/// [`SimulationError::Calibration`] if the sensors of the floor can't be calibrated.
+pub fn session_with(floor: &Floor, driver: Box<dyn FootDriver>) -> Result<SessionBuilder, SimulationError> {
+    let (source, clock, floor) = simulated(floor, driver)?;
+    Ok(Session::source(Box::new(source), clock).floor(floor))
+}
+
+/// Returns the packets of a simulated `floor` in real time, their clock, and the floor with its calibration.
+fn simulated(
+    floor: &Floor,
+    driver: Box<dyn FootDriver>,
+) -> Result<(SimulatedSource, HostClock, Floor), CalibrationError> {
+    let sim = SimFloor::new(floor, SimConfig::default(), SEED);
+    let calibrated = calibrated(floor, &sim, SEED)?;
+    let source = SimulatedSource::new(sim, driver, Pace::RealTime);
+    let clock = source.clock();
+    Ok((source, clock, calibrated))
+}

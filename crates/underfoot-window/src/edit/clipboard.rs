@@ -1,0 +1,186 @@
+//! Records as RON text: copied, pasted, duplicated.
+
+use glam::Vec2;
+
+use super::address::{Address, List, list_of};
+use super::change::Edit;
+use super::document::Document;
+use super::refusal::Refusal;
+use super::splice::{Lines, Piece, spliced};
+use underfoot_format::outline::Outline;
+use underfoot_format::source::MAX_BYTES;
+
+impl Document {
+    /// The text of these records with their comments, one below the other, for a clipboard; ignores records that do
+    /// not exist.
+    #[must_use]
+    pub fn copy(&self, records: &[Address]) -> String {
+        self.listed(records, true)
+    }
+
+    fn listed(&self, records: &[Address], with_comments: bool) -> String {
+        let texts = records.iter().filter_map(|address| {
+            let (parent, list, index) = address.split()?;
+            let list = list_of(parent.find(self.root())?, list)?;
+            let piece = Lines(self.text()).piece(list, index)?;
+            let piece = if with_comments { piece } else { Piece::new(piece.text) };
+            Some(piece.listed(""))
+        });
+        texts.collect()
+    }
+
+    /// The edits that paste the records in `text` onto the page with index `page`, moved by `by` metres, and their
+    /// future addresses: controls and grounds go onto the page, regions and places to stand into the layout.
+    ///
+    /// # Errors
+    /// As [`Document::pasting`].
+    pub fn pasting_on(
+        &self,
+        text: &str,
+        page: usize,
+        by: Vec2,
+    ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+        let pages = self.layout().pages.len();
+        let on_page = if page < pages { Address::of(List::Pages, page) } else { Address::LAYOUT };
+        self.pasted(text, by, |record| match list_for(record) {
+            list @ (List::Widgets | List::Grounds) => (on_page.clone(), list),
+            list => (Address::LAYOUT, list),
+        })
+    }
+
+    /// The edits that paste the records in `text` into `list` of `parent`, moved by `by` metres, and their future
+    /// addresses.
+    ///
+    /// `text` comes from [`Document::copy`] or from a file: records with commas between them. Ids that are already in
+    /// use get numbers.
+    ///
+    /// # Errors
+    /// [`Refusal::NotARecord`], [`Refusal::TooLong`].
+    pub fn pasting(
+        &self,
+        text: &str,
+        parent: &Address,
+        list: List,
+        by: Vec2,
+    ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+        self.pasted(text, by, |_| (parent.clone(), list))
+    }
+
+    /// As [`Document::pasting`], but `home` selects the list for each record.
+    fn pasted(
+        &self,
+        text: &str,
+        by: Vec2,
+        home: impl Fn(&Outline) -> (Address, List),
+    ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+        if text.len() > MAX_BYTES {
+            return Err(Refusal::TooLong);
+        }
+        // A comment at the end of the text must not hide the bracket.
+        let text = format!("[\n{}\n]", text.trim());
+        let entries = Outline::parse(&text).ok_or(Refusal::NotARecord)?;
+        let (mut edits, mut places, mut taken) = (Vec::new(), Vec::<Address>::new(), Vec::new());
+        for (number, element) in entries.elements.iter().enumerate() {
+            if !super::change::is_record(&element.value) {
+                return Err(Refusal::NotARecord);
+            }
+            let mut piece = Lines(&text).piece(&entries, number).ok_or(Refusal::NotARecord)?;
+            self.renew(&mut piece.text, by, &mut taken).ok_or(Refusal::NotARecord)?;
+            let (parent, list) = home(&element.value);
+            let is_here = |place: &&Address| place.split().is_some_and(|it| (&it.0, it.1) == (&parent, list));
+            let before = places.iter().filter(is_here).count();
+            let at = parent.entry(list, self.count(&parent, list) + before);
+            edits.push(Edit::Insert { at: at.clone(), text: piece.listed("") });
+            places.push(at);
+        }
+        if edits.is_empty() { Err(Refusal::NotARecord) } else { Ok((edits, places)) }
+    }
+
+    /// Gives the record `text` and the records of its group free ids, and moves it.
+    fn renew(&self, text: &mut String, by: Vec2, taken: &mut Vec<String>) -> Option<()> {
+        let count = Address::all(&Outline::parse(text)?).len();
+        for number in 0..count {
+            let root = Outline::parse(text)?;
+            let (_, record) = Address::all(&root).into_iter().nth(number)?;
+            let Some(old) = record.field("id").and_then(|field| field.value.says.clone()) else { continue };
+            let new =
+                if old.contains('{') { old.replacen('{', "copy_{", 1) } else { self.free_id(&old, taken) };
+            taken.push(new.clone());
+            let splices = Lines(text).set(record, &["id"], &format!("\"{new}\""));
+            *text = spliced(text, splices);
+        }
+        let root = Outline::parse(text)?;
+        let numbers: Option<Vec<f64>> = root.field("at").map(|at| {
+            let values = at.value.elements.iter();
+            values.filter_map(|value| text.get(value.value.span.clone())?.trim().parse().ok()).collect()
+        });
+        if let Some([east, north]) = numbers.as_deref() {
+            let by = by.as_dvec2() / self.unit_m();
+            let moved = [east + by.x, north + by.y].map(|value| (value * 1e4).round() / 1e4);
+            let value = format!("({}, {})", moved[0], moved[1]);
+            *text = spliced(text, Lines(text).set(&root, &["at"], &value));
+        }
+        Some(())
+    }
+
+    /// The edits that add a copy of each of `records`, without comments, at the end of its list, moved by `by`
+    /// metres, and the future addresses of the copies.
+    ///
+    /// # Errors
+    /// As [`Document::pasting`].
+    pub fn duplicating(&self, records: &[Address], by: Vec2) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+        let mut lists: Vec<(Address, List)> = Vec::new();
+        for record in records {
+            let home = record.split().map(|(parent, list, _)| (parent, list));
+            lists.extend(home.filter(|home| !lists.contains(home)));
+        }
+        let (mut edits, mut places) = (Vec::new(), Vec::new());
+        for (parent, list) in lists {
+            let is_here =
+                |record: &&Address| record.split().is_some_and(|it| (&it.0, it.1) == (&parent, list));
+            let own: Vec<Address> = records.iter().filter(is_here).cloned().collect();
+            let (more, at) = self.pasting(&self.listed(&own, false), &parent, list, by)?;
+            edits.extend(more);
+            places.extend(at);
+        }
+        Ok((edits, places))
+    }
+
+    /// The edits that delete `records` and their contents; the last of a list comes first, so that addresses stay
+    /// valid.
+    #[must_use]
+    pub fn deleting(&self, records: &[Address]) -> Vec<Edit> {
+        let records = last_first(records).into_iter();
+        records.map(|record| Edit::Delete { record: record.clone() }).collect()
+    }
+
+    /// The edits that delete `records` with their comments, which [`Document::copy`] includes: for cutting.
+    #[must_use]
+    pub fn taking(&self, records: &[Address]) -> Vec<Edit> {
+        let records = last_first(records).into_iter();
+        records.map(|record| Edit::Take { record: record.clone() }).collect()
+    }
+}
+
+/// The records outside all others of the list, the last one first.
+fn last_first(records: &[Address]) -> Vec<&Address> {
+    let is_inner = |one: &Address| records.iter().any(|other| other != one && one.is_within(other));
+    let mut outer: Vec<&Address> = records.iter().filter(|one| !is_inner(one)).collect();
+    outer.sort_unstable_by(|a, b| b.cmp(a));
+    outer.dedup();
+    outer
+}
+
+/// The list for a record, judging by its fields.
+fn list_for(record: &Outline) -> List {
+    let has = |field: &str| record.field(field).is_some();
+    match record.name.as_deref() {
+        Some("Group") => List::Widgets,
+        Some(_) => List::Grounds,
+        None if has("kind") => List::Widgets,
+        None if has("widgets") || has("grounds") => List::Pages,
+        // A place to stand has no id, a region no label.
+        None if has("id") => List::Regions,
+        None => List::Stances,
+    }
+}

@@ -1,0 +1,180 @@
+//! Converts places on the floor to fields of a record: moving, sizing, turning.
+
+use glam::Vec2;
+
+use super::address::{Address, List};
+use super::change::{Edit, NEIGHBOURS};
+use super::document::Document;
+use super::item::{Item, around};
+use super::refusal::Refusal;
+use underfoot::floor::Rect;
+use underfoot::widget::{Axis, Behaviour, Track};
+use underfoot_format::number::plain;
+
+/// Fields that define a place relative to a neighbour.
+pub(super) const RELATIVE: [&str; 6] =
+    [NEIGHBOURS[0], NEIGHBOURS[1], NEIGHBOURS[2], NEIGHBOURS[3], "gap", "align"];
+
+impl Document {
+    /// The edits that give `items` these areas, in floor metres. A group or a grid only moves: it keeps its size.
+    ///
+    /// # Errors
+    /// [`Refusal::PlacedByGroup`] for a record relative to a neighbour within a group whose own place is relative
+    /// too.
+    pub fn placing(&self, moved: &[(&Item, Rect)]) -> Result<Vec<Edit>, Refusal> {
+        let mut edits = Vec::new();
+        for (item, area) in moved {
+            self.place(item, *area, &mut edits)?;
+        }
+        Ok(edits)
+    }
+
+    fn place(&self, item: &Item, area: Rect, edits: &mut Vec<Edit>) -> Result<(), Refusal> {
+        let record = &item.record;
+        let unit = self.unit_m();
+        let written = self.pair(record, "at");
+        let is_relative = NEIGHBOURS.iter().any(|side| self.written(record, side).is_some());
+        let corner = |metres: Vec2| metres.as_dvec2() / unit;
+        let at = match written {
+            // Add the displacement to the written place: the other digits in the file stay unchanged.
+            Some(written) => written + corner(area.min - item.area.min),
+            None if item.is_group => return Err(Refusal::PlacedByGroup(record.clone())),
+            None => corner(area.min) - self.origin(record)?,
+        };
+        let old = corner(item.area.size());
+        let size = corner(area.size());
+        let is_resized = (size - old).abs().max_element() > 1e-4;
+        let is_whole = written.is_none() && !is_relative;
+        let is_moved = written.is_none_or(|written| (written - at).abs().max_element() > 1e-6);
+        if is_moved && (!is_relative || area.min.distance(item.area.min) > 1e-5) {
+            if is_relative {
+                let fields = RELATIVE.iter().filter(|field| self.written(record, field).is_some());
+                edits.extend(fields.map(|field| Edit::unset(record, field)));
+            }
+            edits.push(Edit::set(record, "at", pair(at.x, at.y)));
+        }
+        let has_own_size = !item.is_group && item.widgets.len() <= 1;
+        // A size that came from the neighbour must be written once the neighbour no longer defines it.
+        let needs_size = is_whole || (is_relative && is_moved && self.written(record, "size").is_none());
+        if has_own_size && (is_resized || needs_size) {
+            edits.push(Edit::set(record, "size", pair(size.x, size.y)));
+        }
+        Ok(())
+    }
+
+    /// The two written numbers of a field.
+    pub(super) fn pair(&self, record: &Address, field: &str) -> Option<glam::DVec2> {
+        let (east, north) = self.written(record, field)?.trim_matches(['(', ')']).split_once(',')?;
+        let number = |text: &str| text.trim().trim_end_matches(',').trim_end().parse::<f64>().ok();
+        Some(glam::DVec2::new(number(east)?, number(north)?))
+    }
+
+    /// The origin of the places in the list of `record`, in the layout's units.
+    pub(super) fn origin(&self, record: &Address) -> Result<glam::DVec2, Refusal> {
+        let Some((parent, List::Widgets, _)) = record.split() else { return Ok(glam::DVec2::ZERO) };
+        if parent.list() != Some(List::Widgets) {
+            return Ok(glam::DVec2::ZERO);
+        }
+        // Any member of the group with a written place reveals the place of the group.
+        let items = self.items();
+        let unit = self.unit_m();
+        let siblings = items.iter().filter(|item| item.record.split().is_some_and(|(of, ..)| of == parent));
+        let told = siblings
+            .filter(|item| !item.is_group)
+            .find_map(|item| Some(item.area.min.as_dvec2() / unit - self.pair(&item.record, "at")?));
+        told.ok_or_else(|| Refusal::PlacedByGroup(record.clone()))
+    }
+
+    /// The edits that turn `items` by a quarter: width and depth are exchanged, and an axis changes to the other one.
+    ///
+    /// # Errors
+    /// As [`Document::placing`].
+    pub fn turning(&self, items: &[&Item]) -> Result<Vec<Edit>, Refusal> {
+        let mut edits = Vec::new();
+        for item in items.iter().filter(|item| !item.is_group && item.widgets.len() <= 1) {
+            let (middle, size) = (item.area.centre(), item.area.size());
+            self.place(item, Rect::from_centre_size(middle, Vec2::new(size.y, size.x)), &mut edits)?;
+            let widget = item.widgets.clone().next().and_then(|at| self.layout().widgets.get(at));
+            let axis = match widget.map(|widget| &widget.behaviour) {
+                Some(Behaviour::Slider(slider)) => match slider.track {
+                    Track::Line { degrees: 0.0 } => Some("North"),
+                    Track::Line { degrees: 90.0 } => Some("East"),
+                    _ => None,
+                },
+                Some(Behaviour::Selector(selector)) => Some(other(selector.axis)),
+                Some(Behaviour::Stepper(stepper)) => Some(other(stepper.axis)),
+                _ => None,
+            };
+            if let Some(axis) = axis {
+                for field in ["angle_deg", "arc_deg"] {
+                    edits.extend(self.written(&item.record, field).map(|_| Edit::unset(&item.record, field)));
+                }
+                edits.push(Edit::set(&item.record, "axis", axis));
+            }
+        }
+        Ok(edits)
+    }
+
+    /// The text of a control of this kind on this area, in floor metres, with a unique id.
+    #[must_use]
+    pub fn new_control(&self, kind: &str, area: Rect) -> String {
+        let id = self.free_id(kind, &[]);
+        let mut label = id.replace('_', " ");
+        if let Some(first) = label.get_mut(0..1) {
+            first.make_ascii_uppercase();
+        }
+        format!("(id: \"{id}\", kind: \"{kind}\", {}, label: \"{label}\")", self.placed(area))
+    }
+
+    /// `at` and `size` of this area, in floor metres, as fields.
+    #[must_use]
+    pub fn placed(&self, area: Rect) -> String {
+        let unit = self.unit_m();
+        let (at, size) = (area.min.as_dvec2() / unit, area.size().as_dvec2() / unit);
+        format!("at: {}, size: {}", pair(at.x, at.y), pair(size.x, size.y))
+    }
+
+    /// `wish`, or `wish` with a number, such that no record and none of `taken` has this id.
+    #[must_use]
+    pub fn free_id(&self, wish: &str, taken: &[String]) -> String {
+        let written: Vec<&str> = Address::all(self.root())
+            .into_iter()
+            .filter_map(|(_, record)| record.field("id")?.value.says.as_deref())
+            .collect();
+        let layout = self.layout();
+        let is_free = |id: &str| {
+            !written.contains(&id)
+                && layout.widget_index(id).is_none()
+                && taken.iter().all(|other| other != id)
+        };
+        if is_free(wish) {
+            return wish.to_owned();
+        }
+        let stem = wish.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
+        // There are fewer records than numbers.
+        let numbered = (2_u32..).map(|number| format!("{stem}_{number}")).find(|id| is_free(id));
+        numbered.unwrap_or_default()
+    }
+
+    /// The area around all of `records`.
+    #[must_use]
+    pub fn bounds_of(&self, items: &[Item], records: &[Address]) -> Option<Rect> {
+        around(items.iter().filter(|item| records.contains(&item.record)).map(|item| item.area))
+    }
+}
+
+fn other(axis: Axis) -> &'static str {
+    match axis {
+        Axis::East => "North",
+        Axis::North => "East",
+    }
+}
+
+/// Two numbers in the file's notation: to a ten-thousandth of a unit, which is below 0.1 mm.
+pub(super) fn pair(east: f64, north: f64) -> String {
+    let written = |value: f64| {
+        let value = (value * 1e4).round() / 1e4;
+        plain(if value == 0.0 { 0.0 } else { value })
+    };
+    format!("({}, {})", written(east), written(north))
+}

@@ -1,0 +1,248 @@
+//! Appearance of the window and the projection: colours and text size from the user's choice, and the file that
+//! stores it.
+
+use std::path::PathBuf;
+
+use eframe::egui;
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
+use eframe::egui::{Key, Modifiers, PopupCloseBehavior, Ui};
+
+use super::app::App;
+use super::style;
+use super::style::quiet;
+use underfoot::layout::Colour;
+use underfoot::schema::save_text;
+use underfoot_format::file::read_bounded;
+use underfoot_scene::scene::Theme;
+
+/// The file's first line.
+const HEAD: &str = "underfoot window 1";
+
+/// Maximum length of the file, in bytes.
+const LONGEST: u64 = 4096;
+
+/// Minimum and maximum size of the text, in tenths of the usual size.
+const TENTHS: (u8, u8) = (7, 20);
+
+/// The usual size of the text, in tenths.
+const USUAL: u8 = 10;
+
+const BLACK: Colour = Colour::rgb(0, 0, 0);
+
+/// The user's choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Choice {
+    window: Theme,
+    /// The theme from which that of the projection is derived.
+    projected: Theme,
+    /// Size of the text, in tenths of the usual size.
+    text: u8,
+}
+
+/// The appearance of the window and the projection.
+pub(super) struct Appearance {
+    choice: Choice,
+    /// The file that stores the choice; `None` to store nothing.
+    file: Option<PathBuf>,
+    /// Enlargement due to the size of the window.
+    enlarged: f32,
+    /// The zoom factor that egui received last.
+    applied: Option<f32>,
+}
+
+impl Appearance {
+    /// Uses the colours of `theme` for the window unless `file` holds others; also returns a message for the user if
+    /// the file cannot be used.
+    pub(super) fn new(theme: Theme, file: Option<PathBuf>) -> (Self, Option<String>) {
+        let usual = Choice { window: theme, projected: Theme::DARK, text: USUAL };
+        let read = file.as_deref().map_or(Ok(None), |file| match read_bounded(file, LONGEST) {
+            Ok(text) => usual.read(&text).map(Some).map_err(str::to_owned),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error.to_string()),
+        });
+        let wrong = read.as_ref().err().map(|wrong| {
+            let name = file.as_deref().map(|file| file.display().to_string()).unwrap_or_default();
+            format!("{name} is not used: {wrong}")
+        });
+        let choice = read.ok().flatten().unwrap_or(usual);
+        (Self { choice, file, enlarged: 1.0, applied: None }, wrong)
+    }
+
+    pub(super) fn theme(&self) -> Theme {
+        self.choice.window
+    }
+
+    /// The theme of the projection. It throws no light beyond the floor, and a dark theme none on the plates, which
+    /// are real ones.
+    pub(super) fn projected(&self) -> Theme {
+        let theme = self.choice.projected;
+        if theme.is_dark() {
+            Theme { canvas: BLACK, seam: BLACK, plate: BLACK, quiet: Colour::rgb(0xd8, 0xd4, 0xcc), ..theme }
+        } else {
+            Theme { canvas: BLACK, ..theme }
+        }
+    }
+
+    /// Enlarges letters and panels in large windows, because people see those from farther away. The user's text size
+    /// multiplies the result.
+    pub(super) fn enlarge(&mut self, ctx: &egui::Context) {
+        let points = ctx.content_rect().size() * ctx.zoom_factor();
+        let wanted = (0.85 * (points.x / 1280.0).min(points.y / 800.0)).clamp(1.0, 2.0);
+        // Round to tenths: otherwise each pixel of a resize would lay out the text again.
+        self.enlarged = (10.0 * wanted).round() / 10.0;
+        let all = self.enlarged * f32::from(self.choice.text) / f32::from(USUAL);
+        if self.applied != Some(all) {
+            self.applied = Some(all);
+            ctx.set_zoom_factor(all);
+        }
+    }
+}
+
+impl Choice {
+    fn text(&self) -> String {
+        let name = |theme: &Theme| theme.name().unwrap_or(Theme::NAMED[0].0).to_lowercase();
+        let (window, projected) = (name(&self.window), name(&self.projected));
+        format!("{HEAD}\nwindow {window}\nprojected {projected}\ntext {}\n", self.text)
+    }
+
+    /// This choice with the settings in `text`.
+    fn read(mut self, text: &str) -> Result<Self, &'static str> {
+        let mut lines = text.lines();
+        if lines.next() != Some(HEAD) {
+            return Err("it is not a file of how the window looks");
+        }
+        let named = |name: &str| {
+            let is_it = |(known, _): &&(&str, Theme)| known.eq_ignore_ascii_case(name);
+            Theme::NAMED
+                .iter()
+                .find(is_it)
+                .map(|(_, theme)| *theme)
+                .ok_or("it names colours that do not exist")
+        };
+        for line in lines {
+            match line.split_once(' ') {
+                Some(("window", name)) => self.window = named(name)?,
+                Some(("projected", name)) => self.projected = named(name)?,
+                Some(("text", tenths)) => {
+                    let tenths: u8 = tenths.parse().map_err(|_| "the size of the text is no number")?;
+                    self.text = tenths.clamp(TENTHS.0, TENTHS.1);
+                }
+                // Settings of a later version.
+                _ => {}
+            }
+        }
+        Ok(self)
+    }
+}
+
+impl App {
+    /// A menu of colours and sizes; it stays open after a click.
+    pub(super) fn appearance_menu(&mut self, ui: &mut Ui) {
+        let before = self.appearance.choice;
+        let mut choice = before;
+        let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        MenuButton::new("Look").config(config).ui(ui, |ui| {
+            ui.set_width(190.0);
+            for (part, theme) in [("Window", &mut choice.window), ("Projected", &mut choice.projected)] {
+                ui.label(quiet(&self.theme, part));
+                for (name, one) in Theme::NAMED {
+                    let radio = ui.radio_value(theme, one, name);
+                    radio.widget_info(|| {
+                        let spoken = format!("{part}: {name}");
+                        egui::WidgetInfo::selected(
+                            egui::accesskit::Role::RadioButton,
+                            true,
+                            *theme == one,
+                            spoken,
+                        )
+                    });
+                }
+                ui.separator();
+            }
+            ui.label(quiet(
+                &self.theme,
+                format!("Text {} %: Ctrl +, Ctrl -, Ctrl 0", 10 * u32::from(choice.text)),
+            ));
+            ui.horizontal(|ui| {
+                for (name, text) in
+                    [("Smaller", choice.text - 1), ("Usual", USUAL), ("Larger", choice.text + 1)]
+                {
+                    let can = (TENTHS.0..=TENTHS.1).contains(&text) && text != choice.text;
+                    if ui.add_enabled(can, egui::Button::new(name)).clicked() {
+                        choice.text = text;
+                    }
+                }
+            });
+        });
+        self.choose(ui.ctx(), choice);
+    }
+
+    /// Ctrl with plus, minus and zero sizes the text, during typing too.
+    pub(super) fn handle_text_keys(&mut self, ui: &Ui) {
+        let mut choice = self.appearance.choice;
+        let count = |key: Key| {
+            let plain = ui.input_mut(|i| i.count_and_consume_key(Modifiers::COMMAND, key));
+            u8::try_from(plain).unwrap_or(u8::MAX)
+        };
+        let larger = count(Key::Plus).saturating_add(count(Key::Equals));
+        let smaller = count(Key::Minus);
+        choice.text = choice.text.saturating_add(larger).saturating_sub(smaller).clamp(TENTHS.0, TENTHS.1);
+        if count(Key::Num0) > 0 {
+            choice.text = USUAL;
+        }
+        self.choose(ui.ctx(), choice);
+    }
+
+    fn choose(&mut self, ctx: &egui::Context, choice: Choice) {
+        if choice == self.appearance.choice {
+            return;
+        }
+        self.appearance.choice = choice;
+        self.theme = choice.window;
+        style::apply(ctx, &self.theme);
+        ctx.request_repaint();
+        let kept = self.appearance.file.as_deref().map(|file| {
+            file.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(|error| error.to_string())?;
+            save_text(&choice.text(), file).map(drop).map_err(|error| error.to_string())
+        });
+        if let Some(Err(wrong)) = kept {
+            self.messages.note(format!("How the window looks is not remembered: {wrong}"));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_chosen_is_read_again_and_nonsense_is_told() {
+        let usual = Choice { window: Theme::LIGHT, projected: Theme::DARK, text: USUAL };
+        let chosen = Choice { window: Theme::CONTRAST, projected: Theme::LIGHT, text: 14 };
+        assert_eq!(usual.read(&chosen.text()), Ok(chosen));
+        assert_eq!(
+            usual.read(&format!("{HEAD}\ntext 250\nsound 3\n")),
+            Ok(Choice { text: TENTHS.1, ..usual })
+        );
+        assert!(usual.read("").is_err() && usual.read(&format!("{HEAD}\nwindow green\n")).is_err());
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("window");
+        let (appearance, wrong) = Appearance::new(Theme::LIGHT, Some(file.clone()));
+        assert_eq!((appearance.choice, wrong), (usual, None), "there is no file yet");
+        std::fs::write(&file, "something else").unwrap();
+        let (appearance, wrong) = Appearance::new(Theme::DARK, Some(file));
+        assert_eq!(appearance.theme(), Theme::DARK);
+        assert!(wrong.is_some_and(|wrong| wrong.contains("is not used")));
+    }
+
+    #[test]
+    fn dark_themes_throw_no_light_on_bare_plates() {
+        let (mut appearance, _) = Appearance::new(Theme::LIGHT, None);
+        for (name, theme) in Theme::NAMED {
+            appearance.choice.projected = theme;
+            let projected = appearance.projected();
+            assert_eq!(projected.canvas, BLACK, "{name}");
+            assert_eq!(projected.plate == BLACK, theme.is_dark(), "{name}");
+        }
+    }
+}

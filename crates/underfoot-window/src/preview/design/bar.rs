@@ -1,0 +1,299 @@
+//! The bar of Design mode: files, undo, arrangement; and the questions that need the user's decision.
+
+use std::path::PathBuf;
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Key, Margin, Panel, Ui, WidgetInfo};
+
+use super::{Ask, Asking, Designer, shelf};
+use crate::edit::{Address, Align, Template, align, distribute};
+use crate::preview::style::{is_entered, panel_colour, panel_frame, pill, quiet, toggle};
+use underfoot::floor::Rect;
+use underfoot::schema;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
+
+/// The action of a menu entry.
+type Action = fn(&mut Designer);
+
+impl Designer {
+    /// Shows files, undo, arrangement and the number of problems.
+    pub(super) fn bar(&mut self, ui: &mut Ui, theme: &Theme, choices: &[String]) {
+        let frame = panel_frame(theme, Margin::symmetric(14, 5));
+        Panel::top("design bar").frame(frame).resizable(false).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                self.files(ui, choices);
+                ui.separator();
+                let (can_undo, can_redo) = (self.document.can_undo(), self.document.can_redo());
+                let button = |ui: &mut Ui, on, name: &str, hint: &str| {
+                    ui.add_enabled(on, egui::Button::new(name)).on_hover_text(hint).clicked()
+                };
+                if button(ui, can_undo, "Undo", "Ctrl+Z") {
+                    self.undo();
+                }
+                if button(ui, can_redo, "Redo", "Ctrl+Shift+Z") {
+                    self.redo();
+                }
+                ui.separator();
+                let any = !self.selected.is_empty();
+                if button(ui, any, "Duplicate", "Ctrl+D") {
+                    self.duplicate();
+                }
+                if button(ui, any, "Delete", "Delete") {
+                    self.delete();
+                }
+                if button(ui, any, "Turn", "R: a quarter turn") {
+                    self.turn();
+                }
+                self.arrange(ui);
+                ui.menu_button("Show", |ui| {
+                    ui.checkbox(&mut self.seen_to_scale.shoes, "Shoes in true size");
+                    ui.checkbox(&mut self.seen_to_scale.reach, "How far feet reach");
+                });
+                ui.separator();
+                if button(ui, true, "Fit", "See the whole floor; the wheel zooms, Space and drag moves") {
+                    self.fit();
+                }
+                toggle(ui, &mut self.text.is_open, "Text", "The layout as text, beside the floor");
+                self.count(ui, theme);
+                if let Some(message) = self.message() {
+                    let colour = if message.is_bad { theme.fault } else { theme.good };
+                    pill(ui, colour, theme, &message.text);
+                }
+            });
+        });
+    }
+
+    fn files(&mut self, ui: &mut Ui, choices: &[String]) {
+        ui.menu_button("File", |ui| {
+            ui.menu_button("New", |ui| {
+                let geometry = self.document.floor().geometry;
+                ui.label(format!("for a floor of {} x {} tiles", geometry.columns(), geometry.rows()))
+                    .on_hover_text(
+                        "The window's floor; underfoot preview --grid 8x4 opens it with another one",
+                    );
+                for template in Template::ALL {
+                    if ui.button(template.name()).clicked() {
+                        let text = template.text(&self.document.floor().geometry);
+                        self.begin_untitled("untitled.ron", &text);
+                        ui.close();
+                    }
+                }
+            });
+            ui.menu_button("Open shipped", |ui| {
+                for name in choices.iter().filter(|name| schema::builtin_layout(name).is_some()) {
+                    if ui.button(name).clicked() {
+                        let text = schema::builtin_layout(name).unwrap_or_default();
+                        self.begin_untitled(name, text);
+                        ui.close();
+                    }
+                }
+            });
+            let recent = shelf::recent(&self.state);
+            ui.add_enabled_ui(!recent.is_empty(), |ui| {
+                ui.menu_button("Open recent", |ui| {
+                    for path in &recent {
+                        let name = path.file_name().unwrap_or_default().to_string_lossy();
+                        if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                            self.open(path);
+                            ui.close();
+                        }
+                    }
+                });
+            });
+            for (to, name, keys) in
+                [(Ask::Open, "Open file", "Ctrl+O"), (Ask::SaveAs, "Save as", "Ctrl+Shift+S")]
+            {
+                if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
+                    self.ask_for(to);
+                    ui.close();
+                }
+            }
+        });
+        let can_save = !self.is_saved() || self.file.path().is_none() || self.file.is_new();
+        if ui.add_enabled(can_save, egui::Button::new("Save")).on_hover_text("Ctrl+S").clicked() {
+            self.save();
+        }
+    }
+
+    fn arrange(&mut self, ui: &mut Ui) {
+        let items = self.selected_items();
+        let areas: Vec<Rect> = items.iter().map(|item| item.area).collect();
+        let (mut wanted, mut does) = (None, None);
+        let is_group = matches!(items[..], [item] if item.is_group);
+        let count = areas.len();
+        ui.add_enabled_ui(count > 0, |ui| {
+            ui.menu_button("Arrange", |ui| {
+                let entries: [(bool, &str, &str, Action); 6] = [
+                    (count > 0, "Group", "Ctrl+G", Self::group),
+                    (is_group, "Ungroup", "Ctrl+Shift+G", Self::ungroup),
+                    (count == 1, "To the front", "Ctrl+]", |designer| designer.reorder(false)),
+                    (count == 1, "To the back", "Ctrl+[", |designer| designer.reorder(true)),
+                    (true, "Lock or unlock", "Ctrl+L", |designer| {
+                        designer.turn_lock(&designer.selected.clone());
+                    }),
+                    (true, "Hide or show", "Ctrl+H", |designer| {
+                        designer.turn_hidden(&designer.selected.clone());
+                    }),
+                ];
+                for (is_on, name, keys, action) in entries {
+                    let button = egui::Button::new(name).shortcut_text(keys);
+                    if ui.add_enabled(is_on, button).clicked() {
+                        does = Some(action);
+                        ui.close();
+                    }
+                }
+                ui.separator();
+                ui.add_enabled_ui(count > 1, |ui| {
+                    let names =
+                        ["West edges", "Centres", "East edges", "South edges", "Middles", "North edges"];
+                    for (how, name) in Align::ALL.into_iter().zip(names) {
+                        if ui.button(format!("Align {}", name.to_lowercase())).clicked() {
+                            wanted = Some(align(&areas, how));
+                            ui.close();
+                        }
+                    }
+                    for (axis, name) in ["west to east", "south to north"].into_iter().enumerate() {
+                        let button = egui::Button::new(format!("Distribute {name}"));
+                        if ui.add_enabled(areas.len() > 2, button).clicked() {
+                            wanted = Some(distribute(&areas, axis));
+                            ui.close();
+                        }
+                    }
+                });
+            });
+        });
+        if let Some(does) = does {
+            does(self);
+        }
+        if let Some(areas) = wanted {
+            self.move_to(&areas);
+        }
+    }
+
+    /// Shows the number of problems; a click selects the next one.
+    fn count(&mut self, ui: &mut Ui, theme: &Theme) {
+        let all: Vec<Address> = self
+            .findings
+            .iter()
+            .filter_map(|finding| self.document.found_in(finding))
+            .chain(self.told().filter_map(|problem| self.document.told_of(problem)))
+            .collect();
+        let count = self.findings.len() + self.told().count();
+        if count == 0 {
+            ui.label(quiet(theme, "no warnings"));
+            return;
+        }
+        let noun = if count == 1 { "warning" } else { "warnings" };
+        let text = egui::RichText::new(format!("{count} {noun}")).color(color(theme.warning));
+        if ui.button(text).on_hover_text("Select the next control that has one").clicked() {
+            let at = self.selected.first().and_then(|record| all.iter().rposition(|other| other == record));
+            let next = at.map_or(0, |at| at + 1);
+            if let Some(record) = all.get(next).or(all.first()).cloned() {
+                self.select_only(record);
+            }
+        }
+    }
+
+    /// Asks about a draft of an earlier window and about conflicting changes.
+    pub(super) fn questions(&mut self, ui: &mut Ui, theme: &Theme) {
+        let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
+        let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
+        if let Some(draft) = self.left_over.clone() {
+            Panel::top("left over").frame(frame).resizable(false).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    let name = self.file.name();
+                    ui.label(format!("{name} was being edited when a window ended without saving."));
+                    if ui.button("Recover the draft").clicked() {
+                        match self.document.write(&draft, None) {
+                            Ok(()) => self.left_over = None,
+                            Err(problems) => self.complain(problems.to_string()),
+                        }
+                    }
+                    if ui.button("Drop it").clicked() {
+                        self.file.drop_draft();
+                        self.left_over = None;
+                    }
+                });
+            });
+        }
+        if let Some((theirs, records)) = self.conflict.clone() {
+            Panel::top("conflict").frame(frame).resizable(false).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    let what = if records.is_empty() { "the same lines".into() } else { records.join(", ") };
+                    ui.label(format!("Another program has changed {what} as well, and saved it."));
+                    if ui
+                        .button("Keep mine")
+                        .on_hover_text("Saving then replaces theirs, which stays as a backup")
+                        .clicked()
+                    {
+                        self.file.know(theirs.clone());
+                        self.conflict = None;
+                    }
+                    if ui.button("Take theirs").on_hover_text("Undo brings mine back").clicked() {
+                        self.conflict = None;
+                        self.file.know(theirs.clone());
+                        if let Err(problems) = self.document.write(&theirs, None) {
+                            self.complain(problems.to_string());
+                        }
+                    }
+                });
+            });
+        }
+    }
+
+    /// Shows the path dialogue, if it is open.
+    pub(in crate::preview) fn ask(&mut self, ui: &mut Ui, theme: &Theme) {
+        let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
+        let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
+        let Some(mut asking) = self.asking.take() else { return };
+        let mut goes_on = true;
+        Panel::top("path").frame(frame).resizable(false).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let name = if asking.to == Ask::Open { "Open" } else { "Save as" };
+                ui.label(name);
+                let field = ui.add(egui::TextEdit::singleline(&mut asking.path).desired_width(420.0));
+                field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Path"));
+                // Check this before the field regains the focus: after that, the loss of focus would be invisible.
+                let entered = is_entered(ui, &field);
+                if ui.memory(|memory| memory.focused().is_none()) {
+                    field.request_focus();
+                }
+                if ui.button(format!("{name} it")).clicked() || entered {
+                    goes_on = !self.answer(&asking);
+                }
+                if ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(Key::Escape)) {
+                    goes_on = false;
+                }
+            });
+        });
+        if goes_on {
+            self.asking = Some(asking);
+        }
+    }
+
+    /// Opens or saves; returns whether that succeeded.
+    fn answer(&mut self, asking: &Asking) -> bool {
+        let path = PathBuf::from(asking.path.trim());
+        match asking.to {
+            Ask::Open => self.open(&path),
+            Ask::SaveAs => {
+                let text = self.document.file_text();
+                match self.file.save_as(&text, &path) {
+                    Ok(()) => {
+                        self.document.rename(&path.display().to_string());
+                        self.slot = None;
+                        shelf::note_recent(&self.state, &path);
+                        self.say(format!("Saved in {}", path.display()));
+                        true
+                    }
+                    Err(error) => {
+                        self.complain(error.to_string());
+                        false
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The canvas: the floor with the layout, for editing.
+
+use std::borrow::Cow;
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Sense, Ui, WidgetInfo};
+
+use super::Designer;
+use crate::edit::{Address, Item, List};
+use underfoot::engine::Snapshot;
+use underfoot::floor::Rect;
+use underfoot::layout::Layout;
+use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor};
+use underfoot_scene::scene::{self, Show, Theme, View};
+
+impl Designer {
+    /// Shows the floor in the remaining part of the window.
+    pub(super) fn canvas(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette) {
+        let rect = ui.available_rect_before_wrap();
+        let canvas = ui.allocate_rect(rect, Sense::click_and_drag());
+        canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Drawing board"));
+        let geometry = self.document.floor().geometry;
+        let show = Show { sensors: false, contacts: false, ..Show::WINDOW };
+        let bounds = scene::extent(&geometry, show);
+        let screen = rect.shrink(14.0);
+        self.zoom(ui, &canvas, bounds, screen);
+        let map = self.view.map(bounds, screen);
+        let trial = self.gestures(ui, &canvas, map, screen);
+        let shown = trial.layout.as_ref().unwrap_or_else(|| self.document.layout());
+        let shown = self.without_hidden(shown);
+        let snapshot = Snapshot { page: self.page, ..Snapshot::default() };
+        let pointer = canvas.hover_pos().map(|at| map.floor(at));
+        let shoes = self.shoes(pointer);
+        let view = View { show, shoes: &shoes, ..View::new(&geometry, &shown, &snapshot, theme) };
+        let mut scene = std::mem::take(&mut self.scene);
+        scene::draw(&mut scene, &view);
+        let painter = ui.painter_at(rect);
+        egui_painter::paint(&painter, palette, &scene, map);
+        self.scene = scene;
+        self.reach(&painter, map, theme);
+        self.marks(ui, rect, map, theme, &trial);
+        self.names(ui, map);
+    }
+
+    fn zoom(&mut self, ui: &Ui, canvas: &egui::Response, bounds: Rect, screen: egui::Rect) {
+        let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|_| canvas.contains_pointer()) else {
+            return;
+        };
+        let (wheel, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+        let by = pinch * (wheel * 0.004).exp();
+        if (by - 1.0).abs() > 1e-4 {
+            self.view.about(pointer, by, bounds, screen);
+        }
+    }
+
+    /// Shows the whole floor again.
+    pub(super) fn fit(&mut self) {
+        self.view = crate::preview::zoom::Zoom::default();
+    }
+
+    /// `layout` without the hidden records.
+    fn without_hidden<'l>(&self, layout: &'l Layout) -> Cow<'l, Layout> {
+        if self.hidden.is_empty() {
+            return Cow::Borrowed(layout);
+        }
+        let hidden: Vec<&Item> = self.items.iter().filter(|item| self.is_hidden(&item.record)).collect();
+        let is_left = |list: List, index: usize| {
+            !hidden.iter().any(|item| match list {
+                List::Widgets => item.widgets.contains(&index),
+                _ => item.record == Address::of(list, index),
+            })
+        };
+        let mut layout = layout.clone();
+        keep(&mut layout.widgets, |index| is_left(List::Widgets, index));
+        keep(&mut layout.stances, |index| is_left(List::Stances, index));
+        let grounds: Vec<bool> = self
+            .items
+            .iter()
+            .filter(|item| item.record.list() == Some(List::Grounds))
+            .map(|item| !self.is_hidden(&item.record))
+            .collect();
+        keep(&mut layout.grounds, |index| grounds.get(index).copied().unwrap_or(true));
+        Cow::Owned(layout)
+    }
+
+    /// Gives screen readers and tests the name and place of each record.
+    fn names(&self, ui: &Ui, map: ScreenFromFloor) {
+        let is_seen = |item: &&Item| item.is_on(self.page) && !item.is_group && !self.is_hidden(&item.record);
+        for item in self.items.iter().filter(is_seen) {
+            let id = ui.scope_id().with(("record", item.record.to_string()));
+            let node = ui.interact(map.rect(item.area), id, Sense::hover());
+            let is_selected = self.selected.contains(&item.record);
+            node.widget_info(|| {
+                WidgetInfo::selected(
+                    Role::ListItem,
+                    true,
+                    is_selected,
+                    format!("On the floor: {}", item.name),
+                )
+            });
+        }
+    }
+}
+
+/// Removes the entries for which `is_left` returns false.
+fn keep<T>(all: &mut Vec<T>, is_left: impl Fn(usize) -> bool) {
+    let mut index = 0;
+    all.retain(|_| {
+        index += 1;
+        is_left(index - 1)
+    });
+}

@@ -1,0 +1,321 @@
+//! Gestures of the pointer on the canvas: selects, moves, sizes and puts down.
+
+use eframe::egui;
+use eframe::egui::{CursorIcon, Key, PointerButton, Pos2, Ui, pos2};
+use glam::Vec2;
+
+use super::Designer;
+use crate::edit::{Address, Edges, Grid, Guide, Item, List};
+use crate::preview::pointer::way_while_down;
+use underfoot::floor::Rect;
+use underfoot::layout::Layout;
+use underfoot_scene::egui_painter::ScreenFromFloor;
+
+/// Half the side of a handle, and the distance within which the pointer grabs it, in points.
+pub(super) const HANDLE: f32 = 5.0;
+const NEAR: f32 = 9.0;
+
+/// Distance within which a guide line attracts, in points.
+const PULL: f32 = 7.0;
+
+/// Travel of the pointer that turns a press into a drag, in points.
+const SLACK: f32 = 4.0;
+
+/// Minimum width and depth from dragging, in metres; the format allows 0.05 tiles.
+const LEAST_M: f32 = 0.03;
+
+/// The current gesture of the pointer.
+#[derive(Clone, Debug, Default)]
+pub(super) enum Gesture {
+    #[default]
+    None,
+    /// Pressed on a record, which moves once the pointer goes further.
+    Pressed { at: Pos2, record: Address },
+    /// The selection follows the pointer.
+    Moving { from: Vec2, edges: Edges },
+    /// The pointer draws a rectangle around the records to select.
+    Lasso { from: Vec2 },
+    /// The view follows the pointer.
+    Panning,
+}
+
+impl Designer {
+    /// Follows the pointer; returns the result that a release would have now.
+    pub(super) fn gestures(
+        &mut self,
+        ui: &Ui,
+        canvas: &egui::Response,
+        map: ScreenFromFloor,
+        screen: egui::Rect,
+    ) -> Trial {
+        let (pointer, pressed, released, space, shift, alt) = ui.input(|i| {
+            (
+                i.pointer.interact_pos().or(i.pointer.hover_pos()),
+                i.pointer.primary_pressed(),
+                i.pointer.primary_released(),
+                i.key_down(Key::Space),
+                i.modifiers.shift,
+                i.modifiers.alt,
+            )
+        });
+        let Some(pointer) = pointer else { return Trial::default() };
+        let inside = canvas.contains_pointer() || canvas.rect.contains(pointer) && self.placing.is_some();
+        let at = map.floor(pointer);
+        let button = match self.gesture {
+            Gesture::Panning => Some(PointerButton::Primary),
+            _ => Some(PointerButton::Middle).filter(|_| inside),
+        };
+        let panned = button.map_or(egui::Vec2::ZERO, |button| ui.input(|i| way_while_down(i, button)));
+        if panned != egui::Vec2::ZERO {
+            self.view.pan(panned, screen);
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        }
+        if let Some(thing) = self.placing.clone() {
+            // For a drag onto the canvas, the press began elsewhere.
+            let dropped = released && !canvas.clicked() && !canvas.drag_stopped();
+            return self.put_down(&thing, at, inside, pressed, dropped, map, alt);
+        }
+        if pressed && inside {
+            canvas.request_focus();
+            ui.ctx().memory_mut(|memory| memory.surrender_focus(canvas.id));
+            self.stroke += 1;
+            self.begin_gesture(pointer, at, map, space, shift);
+        }
+        if let Gesture::Pressed { at: from, record } = self.gesture.clone()
+            && from.distance(pointer) > SLACK
+        {
+            if !self.selected.contains(&record) {
+                self.select_only(record);
+            }
+            self.gesture = Gesture::Moving { from: map.floor(from), edges: Edges::ALL };
+        }
+        let trial = match &self.gesture {
+            Gesture::Moving { from, edges } => self.moving(at - *from, *edges, map, alt),
+            Gesture::Lasso { from } => Trial { lasso: Some(around(*from, at)), ..Trial::default() },
+            _ => Trial::default(),
+        };
+        if inside && matches!(self.gesture, Gesture::None) {
+            self.hover(ui, pointer, map);
+        }
+        if released {
+            self.end_gesture(&trial, shift, map);
+        }
+        trial
+    }
+
+    fn begin_gesture(&mut self, pointer: Pos2, at: Vec2, map: ScreenFromFloor, space: bool, shift: bool) {
+        if space {
+            self.gesture = Gesture::Panning;
+            return;
+        }
+        if let Some(edges) = self.handle_under(pointer, map) {
+            self.gesture = Gesture::Moving { from: at, edges };
+            return;
+        }
+        match self.touched(at) {
+            // A region is behind everything: a drag across it selects with a rectangle, a click selects the region.
+            Some(record) if record.list() == Some(List::Regions) && !self.selected.contains(&record) => {
+                self.gesture = Gesture::Lasso { from: at };
+            }
+            Some(record) if shift => self.toggle(record),
+            Some(record) => self.gesture = Gesture::Pressed { at: pointer, record },
+            // Locked records are selected in the list.
+            None => self.gesture = Gesture::Lasso { from: at },
+        }
+    }
+
+    fn end_gesture(&mut self, trial: &Trial, shift: bool, map: ScreenFromFloor) {
+        match std::mem::take(&mut self.gesture) {
+            // A second click on a group selects the member under the pointer.
+            Gesture::Pressed { record, at } if self.selected == [record.clone()] => {
+                let inner = self.document.item_at(&self.items, self.page, map.floor(at));
+                self.select_only(inner.filter(|inner| inner.is_within(&record)).unwrap_or(record));
+            }
+            Gesture::Pressed { record, .. } => self.select_only(record),
+            Gesture::Moving { .. } if !trial.areas.is_empty() => {
+                let areas = trial.areas.clone();
+                self.move_to(&areas);
+            }
+            Gesture::Lasso { from } => {
+                let Some(area) = trial.lasso else { return };
+                if !shift {
+                    self.selected.clear();
+                }
+                if area.size().max_element() < 0.01 {
+                    let record = self.touched(from);
+                    self.selected.extend(record);
+                    return;
+                }
+                let page = self.page;
+                let inside = self.items.iter().filter(|item| {
+                    item.record.list() == Some(List::Widgets)
+                        && !item.is_group
+                        && item.is_on(page)
+                        && item.area.overlaps(area)
+                        && !self.is_locked(&item.record)
+                        && !self.is_hidden(&item.record)
+                });
+                let found: Vec<Address> = inside.map(|item| group_of(&item.record)).collect();
+                for record in found {
+                    if !self.selected.contains(&record) {
+                        self.selected.push(record);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The record to grab at `point`: the whole outermost group, unless a member of it is selected. Ignores locked
+    /// and hidden records.
+    fn touched(&self, point: Vec2) -> Option<Address> {
+        let free = |item: &&Item| !self.is_locked(&item.record) && !self.is_hidden(&item.record);
+        let free: Vec<Item> = self.items.iter().filter(free).cloned().collect();
+        let record = self.document.item_at(&free, self.page, point)?;
+        let group = group_of(&record);
+        let is_entered = self.selected.iter().any(|one| *one != group && one.is_within(&group));
+        Some(if is_entered { record } else { group })
+    }
+
+    pub(super) fn toggle(&mut self, record: Address) {
+        match self.selected.iter().position(|other| *other == record) {
+            Some(at) => drop(self.selected.remove(at)),
+            None => self.selected.push(record),
+        }
+    }
+
+    /// The edges that the handle under the pointer drags, for a single selected record.
+    fn handle_under(&self, pointer: Pos2, map: ScreenFromFloor) -> Option<Edges> {
+        let [item] = self.selected_items()[..] else { return None };
+        if !can_be_sized(item) || self.is_locked(&item.record) {
+            return None;
+        }
+        let near = handles(map.rect(item.area)).into_iter().find(|(at, _)| at.distance(pointer) <= NEAR);
+        near.map(|(_, edges)| edges)
+    }
+
+    fn hover(&self, ui: &Ui, pointer: Pos2, map: ScreenFromFloor) {
+        let icon = match self.handle_under(pointer, map) {
+            Some(Edges { north: false, south: false, .. }) => CursorIcon::ResizeHorizontal,
+            Some(Edges { east: false, west: false, .. }) => CursorIcon::ResizeVertical,
+            Some(edges) if edges.north == edges.east => CursorIcon::ResizeNeSw,
+            Some(_) => CursorIcon::ResizeNwSe,
+            None if ui.input(|i| i.key_down(Key::Space)) => CursorIcon::Grab,
+            None => CursorIcon::Default,
+        };
+        ui.ctx().set_cursor_icon(icon);
+    }
+
+    /// The result of moving the given edges of the selection by `by`.
+    fn moving(&self, by: Vec2, edges: Edges, map: ScreenFromFloor, alt: bool) -> Trial {
+        let items = self.selected_items();
+        let Some(all) = crate::edit::around(items.iter().map(|item| item.area)) else {
+            return Trial::default();
+        };
+        let moved = edges.moved(all, by, LEAST_M);
+        let (snapped, guides) = self.snapped(moved, edges, map, alt);
+        let shift = snapped.min - all.min;
+        let areas: Vec<Rect> = match items[..] {
+            [_] => vec![snapped],
+            _ => items.iter().map(|item| Rect::new(item.area.min + shift, item.area.max + shift)).collect(),
+        };
+        let pairs: Vec<(&Item, Rect)> = items.iter().copied().zip(areas.iter().copied()).collect();
+        let tried = self.document.placing(&pairs).and_then(|edits| self.document.trial(&edits));
+        let (layout, refused) = match tried {
+            Ok(layout) => (Some(layout), None),
+            Err(refusal) => (None, Some(refusal.short())),
+        };
+        Trial { layout, refused, areas, guides, lasso: None }
+    }
+
+    fn snapped(&self, area: Rect, edges: Edges, map: ScreenFromFloor, alt: bool) -> (Rect, Vec<Guide>) {
+        if alt {
+            return (area, Vec::new());
+        }
+        let others = self.items.iter().filter(|item| {
+            matches!(item.record.list(), Some(List::Widgets | List::Regions | List::Stances))
+                && item.is_on(self.page)
+                && !item.is_group
+                && !self.selected.iter().any(|selected| item.record.is_within(selected))
+        });
+        let neighbours: Vec<Rect> = others.map(|item| item.area).collect();
+        let geometry = &self.document.floor().geometry;
+        let grid = Grid { geometry, neighbours: &neighbours, reach_m: PULL / map.scale() };
+        grid.snap(area, edges)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "what the pointer does in one frame")]
+    fn put_down(
+        &mut self,
+        thing: &super::palette::Thing,
+        at: Vec2,
+        inside: bool,
+        pressed: bool,
+        dropped: bool,
+        map: ScreenFromFloor,
+        alt: bool,
+    ) -> Trial {
+        if !inside {
+            return Trial::default();
+        }
+        let size = thing.size(&self.document.floor().geometry);
+        let area = Rect::from_centre_size(at, size);
+        let (area, guides) = self.snapped(area, Edges::ALL, map, alt);
+        // After a drag onto the canvas, the thing is put down on release; after a click, on the press.
+        if pressed || dropped {
+            if self.put(thing, area) || dropped {
+                self.placing = None;
+            }
+            return Trial::default();
+        }
+        Trial { areas: vec![area], guides, ..Trial::default() }
+    }
+}
+
+/// The result that a gesture would have if it ended now.
+#[derive(Default)]
+pub(super) struct Trial {
+    /// The layout; `None` where it is refused or unchanged.
+    pub(super) layout: Option<Layout>,
+    /// The reason for a refusal.
+    pub(super) refused: Option<String>,
+    /// The areas of the selection, or of the thing that is put down.
+    pub(super) areas: Vec<Rect>,
+    pub(super) guides: Vec<Guide>,
+    pub(super) lasso: Option<Rect>,
+}
+
+/// The outermost group of a record; the record itself outside any group.
+fn group_of(record: &Address) -> Address {
+    let mut outermost = record.clone();
+    while let Some((parent, ..)) =
+        outermost.split().filter(|(parent, ..)| parent.list() == Some(List::Widgets))
+    {
+        outermost = parent;
+    }
+    outermost
+}
+
+pub(super) fn can_be_sized(item: &Item) -> bool {
+    !item.is_group && item.widgets.len() <= 1
+}
+
+fn around(a: Vec2, b: Vec2) -> Rect {
+    Rect::new(a.min(b), a.max(b))
+}
+
+/// The handles around `shown`, each with the edges that it drags.
+pub(super) fn handles(shown: egui::Rect) -> [(Pos2, Edges); 8] {
+    let (x, y) = (shown.center().x, shown.center().y);
+    let edges = |west, east, south, north| Edges { west, east, south, north };
+    [
+        (shown.left_top(), edges(true, false, false, true)),
+        (shown.right_top(), edges(false, true, false, true)),
+        (shown.left_bottom(), edges(true, false, true, false)),
+        (shown.right_bottom(), edges(false, true, true, false)),
+        (pos2(shown.left(), y), edges(true, false, false, false)),
+        (pos2(shown.right(), y), edges(false, true, false, false)),
+        (pos2(x, shown.bottom()), edges(false, false, true, false)),
+        (pos2(x, shown.top()), edges(false, false, false, true)),
+    ]
+}

@@ -1,0 +1,98 @@
+//! Marks on the floor during a check: a plate for each tile, over the controls.
+
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+
+use super::super::app::App;
+use super::{TileMark, Walk};
+use underfoot::floor::Corner;
+use underfoot::serve::SensorVerdict;
+use underfoot_scene::egui_painter::{ScreenFromFloor, color};
+
+impl App {
+    /// Covers the floor with the state of its tiles.
+    pub(in crate::preview) fn show_check(&self, ui: &Ui, rect: Rect, map: ScreenFromFloor) {
+        let Some(check) = self.floor_check.as_ref().filter(|check| check.walk.is_some()) else { return };
+        let (painter, theme) = (ui.painter_at(rect), &self.theme);
+        let geometry = &self.floor.geometry;
+        // The controls are off, and remain faintly visible.
+        let veil = color(theme.canvas).gamma_multiply(0.72);
+        painter.rect_filled(map.rect(geometry.bounds()), 0.0, veil);
+        for index in 0..geometry.tile_count() {
+            let tile = geometry.tile_at_index(index);
+            let area = map.rect(geometry.plate(tile)).shrink(2.0);
+            let mark = check.mark(&self.floor, index);
+            let (ink, weight, edge) = match mark {
+                TileMark::Open => (theme.quiet, 0.10, 1.0),
+                TileMark::Begun => (theme.good, 0.12, 1.0),
+                TileMark::Good => (theme.good, 0.42, 1.5),
+                TileMark::Bad => (theme.fault, 0.42, 2.0),
+                TileMark::Wanted => (theme.accent, 0.30, 4.0),
+                TileMark::Felt => (theme.warning, 0.30, 2.0),
+            };
+            painter.rect_filled(area, 4.0, color(ink).gamma_multiply(weight));
+            painter.rect_stroke(area, 4.0, Stroke::new(edge, color(ink)), StrokeKind::Inside);
+            // Symbols tell the states apart without colour.
+            let (half, stroke) = (0.13 * area.width(), Stroke::new(3.0, color(theme.ink)));
+            let middle = area.center();
+            match mark {
+                TileMark::Good => {
+                    let tick = [vec2(-half, 0.0), vec2(-0.3 * half, 0.7 * half), vec2(half, -0.7 * half)];
+                    painter.line(tick.map(|way| middle + way).to_vec(), stroke);
+                }
+                TileMark::Bad => {
+                    for side in [1.0, -1.0] {
+                        let way = 0.8 * vec2(half, side * half);
+                        painter.line_segment([middle - way, middle + way], stroke);
+                    }
+                }
+                TileMark::Wanted => {
+                    let font = FontId::proportional((0.2 * area.width()).clamp(9.0, 19.0));
+                    painter.text(middle, Align2::CENTER_CENTER, "Step\nhere", font, color(theme.ink));
+                }
+                TileMark::Open | TileMark::Begun | TileMark::Felt => {
+                    let font = FontId::proportional((0.12 * area.width()).clamp(8.0, 13.0));
+                    let place = format!("{}, {}", tile.column, tile.row);
+                    painter.text(middle, Align2::CENTER_CENTER, place, font, color(theme.quiet));
+                }
+            }
+            if let Some(Walk::Test(walk)) = &check.walk
+                && let Some(sensors) = walk.tile(index)
+            {
+                self.show_sensors(&painter, area, sensors);
+            }
+            let node = ui.interact(area, ui.scope_id().with(("checked tile", index)), Sense::hover());
+            node.widget_info(|| {
+                WidgetInfo::labeled(Role::Label, true, format!("Tile {tile}: {}", mark.words()))
+            });
+        }
+    }
+
+    /// Draws a dot in each corner: grey, green, or a red square.
+    fn show_sensors(&self, painter: &eframe::egui::Painter, area: Rect, sensors: [SensorVerdict; 4]) {
+        let theme = &self.theme;
+        let inset = 0.14 * area.width();
+        let inner = area.shrink(inset);
+        for (corner, verdict) in Corner::ALL.into_iter().zip(sensors) {
+            let at = match corner {
+                Corner::SouthWest => inner.left_bottom(),
+                Corner::SouthEast => inner.right_bottom(),
+                Corner::NorthWest => inner.left_top(),
+                Corner::NorthEast => inner.right_top(),
+            };
+            let radius = (0.05 * area.width()).clamp(2.0, 6.0);
+            match verdict {
+                SensorVerdict::Untried => {
+                    painter.circle_stroke(at, radius, Stroke::new(1.5, color(theme.quiet)));
+                }
+                SensorVerdict::Answers => {
+                    painter.circle_filled(at, radius, color(theme.good));
+                }
+                SensorVerdict::NoReading | SensorVerdict::Still | SensorVerdict::Weak => {
+                    let square = Rect::from_center_size(at, vec2(2.4, 2.4) * radius);
+                    painter.rect_filled(square, 1.0, color(theme.fault));
+                }
+            }
+        }
+    }
+}

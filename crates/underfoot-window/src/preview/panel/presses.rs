@@ -1,0 +1,239 @@
+//! The side panel's control: the forces of its presses, and a threshold derived from them.
+
+use eframe::egui::accesskit::Role;
+use eframe::egui::{
+    Align2, Button, CollapsingHeader, CornerRadius, FontId, Key, Label, Modifiers, Rect, RichText, Sense,
+    Stroke, Ui, WidgetInfo, pos2, vec2,
+};
+
+use super::super::app::App;
+use super::super::design::Threshold;
+use super::super::presses::Press;
+use super::super::style::{panel_colour, plot_button, quiet, row, section};
+use underfoot::units::Newtons;
+use underfoot::widget::{Thresholds, WidgetId};
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::ergonomics::{PressSpread, propose_press};
+use underfoot_scene::scene::{Theme, in_drawn_order};
+
+/// Height of the strip of presses, in points.
+const STRIP: f32 = 40.0;
+
+/// Maximum number of presses in the list.
+const LISTED: usize = 12;
+
+/// Height of the message below, in points: constant for all messages.
+const WORDS: f32 = 34.0;
+
+/// Explains how people are counted.
+const PEOPLE: &str =
+    "Presses that count. People as the floor tells them apart: who leaves the floor counts anew.";
+
+/// Explains the strip.
+const SHOWN: &str = "Each press a dot: green was answered, orange too light or too short, hollow does not count. \
+                     Grey box: from quartile to quartile, with the median. Lines: where it lets go, and what it takes.";
+
+/// A request of the user in this part.
+#[derive(Clone, Copy)]
+enum Wish {
+    Use(Newtons),
+    Forget,
+    Count(usize, bool),
+    Undo,
+}
+
+impl App {
+    /// The presses of the selected control.
+    pub(super) fn presses_part(&mut self, ui: &mut Ui) {
+        let theme = self.theme;
+        let layout = &self.messages.layout;
+        let Some(widget) = self.selection.control_of(layout) else { return };
+        let (id, thresholds) = (widget.id.clone(), widget.behaviour.thresholds());
+        let title =
+            if widget.label.is_empty() { id.to_string() } else { in_drawn_order(&widget.label).into() };
+        let mut is_plotted = false;
+        section(ui, &theme, &format!("Control {title}"), |ui| {
+            is_plotted = plot_button(ui, id.as_str());
+        });
+        if is_plotted {
+            self.plot_control(&id);
+        }
+        let (forces, people) = self.presses.counted(&id);
+        let spread = PressSpread::of(&forces);
+        let all: Vec<&Press> = self.presses.of(&id).collect();
+        strip(ui, &theme, &all, spread.as_ref(), thresholds);
+        for line in lines(spread.as_ref(), people) {
+            ui.add(Label::new(quiet(&theme, line).size(12.5)).truncate()).on_hover_text(PEOPLE);
+        }
+        let can_set = self.designer.is_some();
+        let proposal = propose_press(&forces);
+        let mut wish = None;
+        ui.horizontal(|ui| {
+            let force = proposal.map(|proposal| proposal.press);
+            let text =
+                force.map_or("Use this press".into(), |force| format!("Use this press: {:.0} N", force.0));
+            let button = ui.add_enabled(can_set && force.is_some(), Button::new(text));
+            button.widget_info(|| WidgetInfo::labeled(Role::Button, force.is_some(), "Use this press"));
+            let hint = "Half of the lightest press that counts, no less than the 35 N of a foot at rest";
+            if button.on_hover_text(hint).clicked() {
+                wish = force.map(Wish::Use);
+            }
+            let forget = ui.add_enabled(!all.is_empty(), Button::new("Forget"));
+            forget.widget_info(|| WidgetInfo::labeled(Role::Button, !all.is_empty(), "Forget presses"));
+            if forget.on_hover_text("Forget the presses of this control").clicked() {
+                wish = Some(Wish::Forget);
+            }
+            if self.presses.told.as_ref().is_some_and(|(told, _)| *told == id)
+                && ui.button("Undo").on_hover_text("Take the threshold back; Ctrl+Z does the same").clicked()
+            {
+                wish = Some(Wish::Undo);
+            }
+        });
+        let told = self.presses.told.as_ref().filter(|(told, _)| *told == id);
+        let words = match (told, proposal) {
+            (Some((_, told)), _) => told.clone(),
+            (None, None) => {
+                "shown is the control pressed last, or pinned by Shift-click; press it as people will".into()
+            }
+            (None, Some(proposal)) if proposal.missed > 0 => {
+                format!("{} of these no heavier than a foot at rest", proposal.missed)
+            }
+            (None, Some(proposal)) if proposal.is_resting_force => "what a foot at rest bears, 35 N".into(),
+            (None, Some(_)) => "half of the lightest".into(),
+        };
+        ui.allocate_ui(vec2(ui.available_width(), WORDS), |ui| {
+            ui.set_min_height(WORDS);
+            let ink = if told.is_some() { theme.ink } else { theme.quiet };
+            ui.add(Label::new(RichText::new(words).size(12.5).color(color(ink))).wrap());
+        });
+        CollapsingHeader::new("Press by press").id_salt("presses").show_unindented(ui, |ui| {
+            if all.is_empty() {
+                ui.label(quiet(&theme, "none yet"));
+            }
+            for (number, press) in all.iter().take(LISTED).enumerate() {
+                if let Some(counts) = listed(ui, &theme, press) {
+                    wish = Some(Wish::Count(number, counts));
+                }
+            }
+        });
+        if let Some(wish) = wish {
+            self.grant(&id, wish);
+        }
+    }
+
+    fn grant(&mut self, id: &WidgetId, wish: Wish) {
+        match wish {
+            Wish::Use(force) => {
+                let told = self.set_threshold(id, Threshold::Press, force);
+                self.presses.told = Some((id.clone(), told));
+            }
+            Wish::Forget => self.presses.forget(id),
+            Wish::Count(number, counts) => self.presses.let_count(id, number, counts),
+            Wish::Undo => self.undo_here(),
+        }
+    }
+
+    fn undo_here(&mut self) {
+        if self.undo_design() {
+            self.presses.told = None;
+        }
+    }
+
+    /// Ctrl+Z undoes the last threshold that was set here, in Try mode and outside text fields.
+    pub(in crate::preview) fn handle_undo_key(&mut self, ui: &Ui) {
+        let is_free = !self.is_designing() && !ui.ctx().text_edit_focused();
+        if is_free && ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::Z)) {
+            self.undo_here();
+        }
+    }
+}
+
+/// Describes the forces of the presses in two lines.
+fn lines(spread: Option<&PressSpread>, people: usize) -> [String; 2] {
+    let Some(spread) = spread else { return ["no presses yet".into(), String::new()] };
+    let presses = if spread.count == 1 { "1 press".into() } else { format!("{} presses", spread.count) };
+    let of = match people {
+        0 => String::new(),
+        1 => " by 1 person".into(),
+        people => format!(" by {people} people"),
+    };
+    let [lowest, lower, median, upper, highest] =
+        [spread.lowest, spread.lower_quartile, spread.median, spread.upper_quartile, spread.highest]
+            .map(|force| format!("{:.0}", force.0));
+    [
+        format!("{presses}{of}: median {median} N"),
+        format!("{lowest} to {highest} N, quartiles {lower} and {upper} N"),
+    ]
+}
+
+/// Draws presses along an axis in newtons, with the thresholds.
+fn strip(ui: &mut Ui, theme: &Theme, all: &[&Press], spread: Option<&PressSpread>, thresholds: Thresholds) {
+    let Thresholds { press, release, .. } = thresholds;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STRIP), Sense::hover());
+    let spoken = format!("takes {:.0} newtons, lets go below {:.0}", press.0, release.0);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    response.on_hover_text(SHOWN);
+    let painter = ui.painter_at(rect);
+    let ground = Rect::from_min_max(rect.min, pos2(rect.right(), rect.bottom() - 14.0));
+    painter.rect_filled(ground, CornerRadius::same(4), color(theme.plate));
+    let heaviest =
+        all.iter().map(|press| press.force.0).filter(|force| force.is_finite()).fold(0.0, f32::max);
+    // In steps, so that the axis stays the same from press to press.
+    let most = [100.0, 200.0, 400.0, 800.0].into_iter().find(|most| *most >= heaviest.max(1.25 * press.0));
+    let most = most.unwrap_or(1600.0);
+    let inner = ground.x_range().shrink(8.0);
+    let x = |force: Newtons| inner.min + inner.span() * (force.0 / most).clamp(0.0, 1.0);
+    let middle = ground.center().y;
+    painter.hline(inner, middle, Stroke::new(1.0, color(theme.line)));
+    if let Some(spread) = spread.filter(|spread| spread.count > 1) {
+        let quartiles = Rect::from_min_max(
+            pos2(x(spread.lower_quartile), middle - 6.0),
+            pos2(x(spread.upper_quartile), middle + 6.0),
+        );
+        painter.rect_filled(quartiles, 3, color(panel_colour(theme).mix(theme.ink, 0.12)));
+        let median = Stroke::new(2.0, color(theme.quiet));
+        painter.vline(x(spread.median), (middle - 7.0)..=(middle + 7.0), median);
+    }
+    for (force, colour) in [(release, theme.quiet), (press, theme.accent)] {
+        painter.vline(x(force), ground.y_range(), Stroke::new(1.5, color(colour)));
+    }
+    for one in all.iter().rev() {
+        let at = pos2(x(one.force), middle);
+        let ink = color(if one.why.is_some() { theme.warning } else { theme.good });
+        if one.counts {
+            painter.circle(at, 3.5, ink, Stroke::new(1.0, color(theme.plate)));
+        } else {
+            painter.circle_stroke(at, 3.0, Stroke::new(1.2, ink));
+        }
+    }
+    let font = FontId::proportional(11.5);
+    let write = |at: f32, anchor: Align2, text: String, colour| {
+        painter.text(pos2(at, rect.bottom()), anchor, text, font.clone(), color(colour));
+    };
+    // The labels avoid the ends of the axis and each other.
+    let at = x(press).clamp(rect.left() + 66.0, rect.right() - 76.0);
+    write(at - 4.0, Align2::RIGHT_BOTTOM, format!("lets go {:.0}", release.0), theme.quiet);
+    write(at + 4.0, Align2::LEFT_BOTTOM, format!("takes {:.0} N", press.0), theme.accent);
+    write(rect.right(), Align2::RIGHT_BOTTOM, format!("{most:.0}"), theme.quiet);
+}
+
+/// Shows one press with a check box; returns whether it counts, after a change.
+fn listed(ui: &mut Ui, theme: &Theme, press: &Press) -> Option<bool> {
+    let why = press.why.map_or("pressed".to_owned(), |why| why.to_string());
+    let person = press.person.map_or(String::new(), |person| format!("person {person}"));
+    let mut counts = press.counts;
+    let spoken = format!("{:.0} newtons, {why}, {person} counts", press.force.0);
+    let tick = ui
+        .horizontal(|ui| {
+            let tick = ui.checkbox(&mut counts, "");
+            tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, counts, &spoken));
+            let line = row(ui, 18.0, 12.5, "");
+            line.right(0.13, &format!("{:.0} N", press.force.0), color(theme.ink));
+            let ink = if press.why.is_some() { theme.warning } else { theme.good };
+            line.left(0.18, 0.74, &why, color(ink));
+            line.right(1.0, &person, color(theme.quiet));
+            tick
+        })
+        .inner;
+    tick.on_hover_text(why).changed().then_some(counts)
+}

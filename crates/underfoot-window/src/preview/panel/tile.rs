@@ -1,0 +1,137 @@
+//! The side panel's tile: its four sensors, its mute.
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use super::super::app::App;
+use super::super::feed::PreviewCommand;
+use super::super::plots::Series;
+use super::super::style::{panel_colour, plot_button, quiet, section};
+use underfoot::engine::TileState;
+use underfoot::floor::{Corner, TileId};
+use underfoot::layout::Colour;
+use underfoot::sense::Quality;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
+
+/// Force of a full bar: the end of the nominal sensor's range, in newtons.
+const FULL: f32 = 400.0;
+
+impl App {
+    /// Shows the four sensors of the selected tile in their corners.
+    pub(super) fn tile_part(&mut self, ui: &mut Ui) {
+        let theme = self.theme;
+        let tile = self.selection.tile();
+        let pinned = self.selection.pinned().is_some();
+        let muted = self.snapshots.output_buffer().muted.tiles.contains(&tile);
+        let is_moved = self.scopes.is_fed() && self.is_moved(tile);
+        let (mut unpin, mut mute, mut plot) = (false, false, false);
+        section(ui, &theme, &format!("Tile {}, {}", tile.column, tile.row), |ui| {
+            if pinned {
+                unpin = ui.small_button("Follow the foot").clicked();
+            } else {
+                let label = ui.label(quiet(&theme, "underfoot").size(12.0));
+                label.on_hover_text("The tile under the foot that presses most; Shift-click pins another");
+            }
+            if is_moved {
+                let button = egui::Button::selectable(muted, "Mute tile").small().frame_when_inactive(true);
+                let hint = "Let this tile's actuator not be felt";
+                mute = ui.add(button).on_hover_text(hint).clicked();
+            }
+            plot = plot_button(ui, &format!("tile {}, {}", tile.column, tile.row));
+        });
+        if plot {
+            self.plots.add([Series::Tile(tile)]);
+        }
+        if mute {
+            self.command(PreviewCommand::MuteTile { tile, on: !muted });
+        }
+        if unpin {
+            self.selection.unpin();
+        }
+        let state = self
+            .floor
+            .geometry
+            .index(tile)
+            .and_then(|index| self.snapshots.output_buffer().tiles.get(index).copied())
+            .unwrap_or_default();
+        let cell = vec2(0.5 * (ui.available_width() - 14.0), 38.0);
+        for row in [[Corner::NorthWest, Corner::NorthEast], [Corner::SouthWest, Corner::SouthEast]] {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 14.0;
+                for corner in row {
+                    sensor(ui, &theme, cell, corner, &state);
+                }
+            });
+        }
+        let place = state.centroid.map_or_else(
+            || "too light to say where".to_owned(),
+            |at| format!("acts at {:.3}, {:.3} m", at.x, at.y),
+        );
+        ui.label(quiet(&theme, format!("{:.1} N in all, {place}", clean(state.force.0))));
+    }
+
+    /// Whether an actuator moves this tile.
+    fn is_moved(&self, tile: TileId) -> bool {
+        let index = self.floor.geometry.index(tile);
+        index.and_then(|index| self.floor.actuators.get(index)).is_some_and(Option::is_some)
+    }
+}
+
+/// Shows one sensor: its corner, newtons, a bar, and a word if it is unreliable.
+fn sensor(ui: &mut Ui, theme: &Theme, size: egui::Vec2, corner: Corner, state: &TileState) {
+    let (force, quality) = (state.forces[corner.index()], state.quality[corner.index()]);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let word = word(quality, theme);
+    let name = corner.name();
+    let spoken =
+        format!("{name} {:.1} newtons{}", force, word.map_or(String::new(), |(word, _)| format!(", {word}")));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    let painter = ui.painter();
+    let line = rect.top() + 11.0;
+    let small = FontId::proportional(12.0);
+    painter.text(
+        pos2(rect.left(), line),
+        Align2::LEFT_CENTER,
+        name.to_uppercase(),
+        small.clone(),
+        color(theme.quiet),
+    );
+    if let Some((word, colour)) = word {
+        painter.text(pos2(rect.left() + 26.0, line), Align2::LEFT_CENTER, word, small, color(colour));
+    }
+    let newtons = format!("{:.1} N", clean(force));
+    let ink = if quality >= Quality::Stale { theme.quiet } else { theme.ink };
+    painter.text(
+        pos2(rect.right(), line),
+        Align2::RIGHT_CENTER,
+        newtons,
+        FontId::proportional(13.5),
+        color(ink),
+    );
+    let bar = Rect::from_min_size(pos2(rect.left(), rect.top() + 23.0), vec2(rect.width(), 6.0));
+    painter.rect_filled(bar, CornerRadius::same(3), color(panel_colour(theme).mix(theme.ink, 0.09)));
+    // The square root, as for the dots on the floor, shows light touches too.
+    let share = (force / FULL).clamp(0.0, 1.0).sqrt();
+    if share > 0.0 {
+        let filled = Rect::from_min_size(bar.min, vec2((share * bar.width()).max(6.0), bar.height()));
+        let colour = word.map_or(theme.contact, |(_, colour)| colour);
+        painter.rect_filled(filled, CornerRadius::same(3), color(colour));
+    }
+}
+
+/// Removes the minus sign of a figure that rounds to zero.
+fn clean(force: f32) -> f32 {
+    if force.abs() < 0.05 { 0.0 } else { force }
+}
+
+/// The word for an unreliable sensor.
+fn word(quality: Quality, theme: &Theme) -> Option<(&'static str, Colour)> {
+    match quality {
+        Quality::Live => None,
+        Quality::Degraded => Some(("degraded", theme.warning)),
+        Quality::Stale => Some(("silent", theme.stale.mix(theme.ink, 0.3))),
+        Quality::Faulty => Some(("faulty", theme.fault)),
+    }
+}

@@ -1,0 +1,176 @@
+//! The style of egui, derived from the scene's theme, and the few widgets that all panels share.
+
+use eframe::egui;
+use eframe::egui::epaint::FontColorTransferFunction;
+use eframe::egui::{
+    Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2,
+};
+
+use underfoot::layout::Colour;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
+
+/// Gives every widget of `ctx` the colours of `theme`.
+pub(super) fn apply(ctx: &egui::Context, theme: &Theme) {
+    let base = if theme.is_dark() { egui::Theme::Dark } else { egui::Theme::Light };
+    ctx.set_theme(base);
+    ctx.style_mut_of(base, |style| {
+        let sizes = [
+            (TextStyle::Small, 11.5),
+            (TextStyle::Body, 13.5),
+            (TextStyle::Button, 13.5),
+            (TextStyle::Heading, 18.0),
+        ];
+        for (text, size) in sizes {
+            style.text_styles.insert(text, FontId::new(size, FontFamily::Proportional));
+        }
+        style.text_styles.insert(TextStyle::Monospace, FontId::new(12.5, FontFamily::Monospace));
+        style.spacing.item_spacing = vec2(8.0, 5.0);
+        style.spacing.button_padding = vec2(9.0, 4.0);
+        style.spacing.scroll = egui::style::ScrollStyle::thin();
+        style.interaction.selectable_labels = false;
+        visuals(&mut style.visuals, theme);
+    });
+}
+
+fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
+    let (ink, line) = (color(theme.ink), color(theme.line));
+    let panel = panel_colour(theme);
+    if !theme.is_dark() {
+        // The font is light: on a light background it needs a little more ink.
+        visuals.text_options.color_transfer_function = FontColorTransferFunction::Gamma(0.72);
+    }
+    visuals.panel_fill = color(panel);
+    visuals.window_fill = color(panel);
+    visuals.window_stroke = Stroke::new(1.0, line);
+    visuals.extreme_bg_color = color(theme.plate);
+    visuals.faint_bg_color = color(panel.mix(theme.ink, 0.03));
+    visuals.code_bg_color = color(theme.plate);
+    visuals.hyperlink_color = color(theme.accent);
+    visuals.warn_fg_color = color(theme.warning);
+    visuals.error_fg_color = color(theme.fault);
+    visuals.weak_text_color = Some(color(theme.quiet));
+    visuals.selection.bg_fill = color(theme.accent.mix(panel, 0.7));
+    visuals.selection.stroke = Stroke::new(1.0, color(theme.accent));
+    visuals.striped = false;
+    visuals.collapsing_header_frame = false;
+    // The largest radius for which a corner takes four steps instead of eight: without a graphics card, buttons cost
+    // as much as the floor's controls.
+    let radius = CornerRadius::same(5);
+    let states = &mut visuals.widgets;
+    let faces = [
+        (&mut states.noninteractive, 0.0, 0.0),
+        (&mut states.inactive, 0.035, 1.0),
+        (&mut states.hovered, 0.07, 1.0),
+        (&mut states.active, 0.13, 1.0),
+        (&mut states.open, 0.07, 1.0),
+    ];
+    for (face, shade, edge) in faces {
+        let fill = color(panel.mix(theme.ink, shade));
+        (face.bg_fill, face.weak_bg_fill) = (fill, fill);
+        face.bg_stroke =
+            Stroke::new(1.0, if edge > 0.0 { color(theme.line.mix(theme.ink, shade)) } else { line });
+        face.fg_stroke = Stroke::new(1.0, ink);
+        face.corner_radius = radius;
+        face.expansion = 0.0;
+    }
+    // A widget with the keyboard focus looks like one under the mouse; a hairline would be invisible on a panel.
+    visuals.widgets.hovered.bg_stroke = Stroke::new(2.0, color(theme.accent));
+    // Check boxes must be visible on the panel.
+    visuals.widgets.inactive.bg_fill = color(panel.mix(theme.ink, 0.10));
+}
+
+/// The background of panels: between canvas and plate.
+pub(super) fn panel_colour(theme: &Theme) -> Colour {
+    theme.plate.mix(theme.canvas, 0.35)
+}
+
+/// The frame of a panel at the window's edge.
+pub(super) fn panel_frame(theme: &Theme, margin: Margin) -> egui::Frame {
+    egui::Frame::new().fill(color(panel_colour(theme))).inner_margin(margin)
+}
+
+/// A heading over a part of the side panel, with a short item at its right end; returns the area of its line.
+pub(super) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnce(&mut Ui)) -> egui::Rect {
+    ui.add_space(10.0);
+    let heading = ui.horizontal(|ui| {
+        ui.label(RichText::new(title).size(14.5).color(color(theme.ink)).strong());
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
+    });
+    let width = ui.available_width();
+    let (line, _) = ui.allocate_exact_size(vec2(width, 1.0), egui::Sense::hover());
+    ui.painter().hline(line.x_range(), line.center().y, Stroke::new(1.0, color(theme.line)));
+    ui.add_space(2.0);
+    heading.response.rect
+}
+
+/// A button that plots the value beside it, called `name`; returns whether it was clicked.
+pub(super) fn plot_button(ui: &mut Ui, name: &str) -> bool {
+    let button = ui.small_button("Plot");
+    button.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::accesskit::Role::Button, true, format!("Plot {name}"))
+    });
+    button.on_hover_text("Plot it over time").clicked()
+}
+
+/// A button that stays down while `is_on`; returns whether it was clicked.
+pub(super) fn selectable<'a>(ui: &mut Ui, is_on: bool, text: impl egui::IntoAtoms<'a>, hint: &str) -> bool {
+    let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
+    ui.add(button).on_hover_text(hint).clicked()
+}
+
+/// A button that switches something on and off.
+pub(super) fn toggle<'a>(ui: &mut Ui, is_on: &mut bool, text: impl egui::IntoAtoms<'a>, hint: &str) {
+    *is_on ^= selectable(ui, *is_on, text, hint);
+}
+
+/// Text of low priority.
+pub(super) fn quiet(theme: &Theme, text: impl Into<String>) -> RichText {
+    RichText::new(text).color(color(theme.quiet))
+}
+
+/// `text` on a small rounded background of `colour`.
+pub(super) fn pill(ui: &mut Ui, colour: Colour, theme: &Theme, text: &str) -> egui::Response {
+    let ground = color(panel_colour(theme).mix(colour, 0.16));
+    let frame = egui::Frame::new().fill(ground).corner_radius(9).inner_margin(Margin::symmetric(8, 2));
+    frame.show(ui, |ui| ui.label(RichText::new(text).color(color(colour)))).inner
+}
+
+/// Whether Enter has just ended the typing in `field`, so that the dialog acts. Call it before the field regains the
+/// focus.
+pub(super) fn is_entered(ui: &Ui, field: &egui::Response) -> bool {
+    field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter))
+}
+
+/// One line of a table: texts at the given places (shares of the width), numbers right-aligned there.
+pub(super) struct Row<'a> {
+    pub(super) ui: &'a Ui,
+    pub(super) rect: egui::Rect,
+    pub(super) size: f32,
+}
+
+impl Row<'_> {
+    /// Draws from `share` of the width to the right, at most up to `end` of it.
+    pub(super) fn left(&self, share: f32, end: f32, text: &str, color: Color32) {
+        let x = self.rect.left() + share * self.rect.width();
+        let clip =
+            egui::Rect::from_x_y_ranges(x..=self.rect.left() + end * self.rect.width(), self.rect.y_range());
+        let painter = self.ui.painter().with_clip_rect(clip.intersect(self.ui.clip_rect()));
+        let font = FontId::proportional(self.size);
+        painter.text(egui::pos2(x, self.rect.center().y), egui::Align2::LEFT_CENTER, text, font, color);
+    }
+
+    /// Draws so that the text ends at `share` of the width.
+    pub(super) fn right(&self, share: f32, text: &str, color: Color32) {
+        let at = egui::pos2(self.rect.left() + share * self.rect.width(), self.rect.center().y);
+        let font = FontId::proportional(self.size);
+        self.ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font, color);
+    }
+}
+
+/// Allocates one line of a table over the full width, with `spoken` for screen readers.
+pub(super) fn row<'a>(ui: &'a mut Ui, height: f32, size: f32, spoken: &str) -> Row<'a> {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, spoken));
+    Row { ui, rect, size }
+}
