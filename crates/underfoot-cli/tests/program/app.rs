@@ -17,6 +17,8 @@ const VISIT: &str = include_str!("visit.ron");
 fn a_floor_in_another_process_drives_an_app_of_25_lines() {
     let address = format!("127.0.0.1:{}", free_port());
     let (tell, told) = mpsc::channel();
+    // The example is run from the root and opens its layout there.
+    std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).unwrap();
     let app = thread::spawn({
         let address = address.clone();
         move || runtime::follow(&address, |line| tell.send(line).unwrap()).map_err(|error| error.to_string())
