@@ -27,12 +27,16 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 12] = [
     (
         "maps",
         &[
-            "What pressed points taught of each tile: a factor per sensor that follows its load,",
+            "Result of pressed points for each tile: a factor per sensor that follows its load,",
             "and a shift of the position. Measure them anew rather than edit them.",
         ],
         None,
     ),
-    ("drive", &["What drives the actuators: volts at full scale, and what a coil takes for ever."], None),
+    (
+        "drive",
+        &["Drive of the actuators: volts at full scale, and the power that a coil bears without end."],
+        None,
+    ),
     ("response_db", &["How strongly the plates move: hertz, and decibels relative to full_scale_n."], None),
     (
         "actuators",

@@ -51,7 +51,7 @@ impl Chapter {
 pub fn reference() -> Vec<Chapter> {
     let mut effects = Chapter::new(
         "effects",
-        "What is felt: under a name in a file of `effects/` or in `effects` of a layout, or where it is played.",
+        "A tactile effect: under a name in a file of `effects/` or in `effects` of a layout, or where it is played.",
         EffectKind::describe(),
     );
     effects.common.extend(Manner::describe().fields);
@@ -68,23 +68,15 @@ pub fn reference() -> Vec<Chapter> {
         ),
         Chapter::new(
             "controls",
-            "What a control does: `behaviour` of a kind, its settings beside it; a widget overrides what it writes.",
+            "Behaviour of a control: `behaviour` of a kind, its settings beside it; a widget overrides the fields that it writes.",
             Behaviour::describe(),
         ),
-        Chapter::new(
-            "feel",
-            "What a control feels like: `feel` of a kind or widget.",
-            vec![Feel::describe()],
-        ),
-        Chapter::new(
-            "look",
-            "What a control looks like: `look` of a kind or widget.",
-            vec![Look::describe()],
-        ),
+        Chapter::new("feel", "Haptics of a control: `feel` of a kind or widget.", vec![Feel::describe()]),
+        Chapter::new("look", "Appearance of a control: `look` of a kind or widget.", vec![Look::describe()]),
         effects,
         Chapter::new(
             "grounds",
-            "What the floor seems to be made of: in `grounds`, each with `at`, `size`, `seed`, `surface` and `deep`.",
+            "Material that the floor seems to be made of: in `grounds`, each with `at`, `size`, `seed`, `surface` and `deep`.",
             ground::describe(),
         ),
         Chapter::new(

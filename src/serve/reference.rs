@@ -91,7 +91,7 @@ impl Maker<'_> {
                     ),
                 ),
             ];
-            let says = format!("What board {number} reads, once a millisecond.");
+            let says = format!("Readings of board {number}, once a millisecond.");
             let address = board.address.clone();
             self.entries.push(Entry { direction: Direction::In, address, arguments, says });
         }
@@ -150,7 +150,7 @@ impl Maker<'_> {
             argument("reopened", "i", ""),
             argument("priority", "s", "real-time, denied or host"),
         ];
-        self.add(Direction::Out, "device", device, "What moves the actuators, when that changes.");
+        self.add(Direction::Out, "device", device, "The device that moves the actuators, when that changes.");
         if layout.grounds.iter().any(|ground| matches!(ground.spec.material, Material::Ice(_))) {
             let mut crack =
                 vec![argument("seed", "i", "where cracks come from"), argument("energy", "f", "J")];
@@ -168,7 +168,7 @@ impl Maker<'_> {
             vec![argument("all", "i", "0 or 1"), tiles]
         };
         self.add(Direction::Out, "mute", mute(), "Something was muted, or no longer.");
-        self.add(Direction::Answer, "mute", mute(), "What is muted.");
+        self.add(Direction::Answer, "mute", mute(), "The actuators that are muted.");
         let error = vec![argument("address", "s", "as it was asked"), argument("why", "s", "")];
         self.add(Direction::Answer, "error", error, "A request was refused.");
     }
@@ -233,14 +233,14 @@ impl Maker<'_> {
             _ => Vec::new(),
         };
         let told = [
-            ("value", held, "What it holds; told to all listeners when an app asks or changes it."),
+            ("value", held, "Its value; sent to all listeners when an app asks for it or changes it."),
             ("state", state, "How it is; told to all likewise."),
             (
                 "off",
                 off,
                 "Why no foot can press it; told to all likewise, and when a `HoldToRun` control goes off or on.",
             ),
-            ("range", range, "What it can hold."),
+            ("range", range, "The range of its value."),
             ("page", vec![text("page", "empty if it is on all")], "Where it is."),
         ];
         for (name, arguments, says) in told.into_iter().filter(|(_, arguments, _)| !arguments.is_empty()) {

@@ -132,7 +132,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         outln!("  {name:<52} {tiles:>7.0}");
     }
     outln!("  {:<52} {together:>7.0}", "all but sound, on the one core that they share");
-    outln!("What limits this machine first is {}: a floor of {side} x {side} tiles.", first.name);
+    outln!("First limit of this machine: {}: a floor of {side} x {side} tiles.", first.name);
     Ok(())
 }
 

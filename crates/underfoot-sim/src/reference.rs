@@ -8,9 +8,9 @@ use underfoot::schema::Chapter;
 pub fn reference() -> Vec<Chapter> {
     let (scenario, steps) = Scenario::describe();
     let about =
-        "What people do on a simulated floor: a file, such as one for `underfoot session --scenario`.";
+        "Actions of people on a simulated floor: a file, such as one for `underfoot session --scenario`.";
     vec![
         Chapter::new("scenarios", about, vec![scenario]),
-        Chapter::new("steps", "What a person does in a scenario, one step after the other.", steps),
+        Chapter::new("steps", "Actions of one person in a scenario, one after the other.", steps),
     ]
 }

@@ -36,7 +36,7 @@ fn lines(plan: &Plan) -> Vec<String> {
     lines.push(row("sensor packets received per second", count(fullest.packets_per_s)));
     lines.push(row("sensor packets forwarded per second", count(fullest.forwards_per_s)));
     lines.extend(limits.iter().map(used));
-    lines.push("What more computers do not change:".to_owned());
+    lines.push("More computers do not change:".to_owned());
     lines.extend(whole.iter().map(used));
     lines.push(verdict(plan));
     lines.push("A computer's constants, microseconds of one core for a millisecond of floor:".to_owned());
@@ -95,10 +95,10 @@ fn verdict(plan: &Plan) -> String {
         _ => format!("the {}", first.name()).replace("the all cores", "all cores"),
     };
     if plan.fits {
-        return format!("What runs out first: {name}.");
+        return format!("Runs out first: {name}.");
     }
     let listed = too_much.by_ref().collect::<Vec<_>>().join("; ");
-    format!("It does not fit: {listed}. What runs out first: {name}.")
+    format!("It does not fit: {listed}. Runs out first: {name}.")
 }
 
 /// A number with no more digits than a reader needs.

@@ -356,7 +356,7 @@ const LAYOUT: &str = "layout";
 const CONTROLS_OFF: &str = "controls_off";
 
 /// Message to a user who designs a layout for a server that accepts none.
-const KEEPS: &str = "What is designed stays in this window: the server keeps its layout, and would take another if it were \
+const KEEPS: &str = "A design made here stays in this window: the server keeps its layout, and would take another if it were \
                      started with --web-layouts.";
 
 /// Whether the window that shows `shown` can show `now`: measured values may differ.

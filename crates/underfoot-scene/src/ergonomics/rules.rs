@@ -75,7 +75,7 @@ pub const RULES: &[Rule] = &[
         code: "U201",
         title: "too heavy for a light person",
         limits: "warning: the press takes more than half of the weight of 45 kg (221 N); error: more than all of it (441 N)",
-        source: "Who stands on one foot and presses with the other shifts weight: half of it without stepping on \
+        source: "A person who stands on one foot and presses with the other shifts weight: half of it without stepping on \
                  the control, all of it only by standing on it. 45 kg is this project's lightest person.",
         remedy: "lower `press_n`, or give it as a part of the weight",
     },

@@ -95,20 +95,22 @@ impl Document {
         let size = ("size", "Its width and depth.", place());
         let cursor = FieldType::Names(vec!["Largest", "Working", "Each"]);
         let own: Vec<(&str, &str, FieldType)> = match record.list() {
-            None => vec![("title", "What people call it.", text("at most 200 characters"))],
+            None => vec![("title", "Its title, as people read it.", text("at most 200 characters"))],
             Some(List::Regions) => {
                 vec![id, at, size, ("cursor", "Which contacts in it operate its controls.", cursor)]
             }
             Some(List::Stances) => {
-                vec![("label", "What is written on it.", text("at most 64 characters")), at, size]
+                vec![("label", "Text written on it.", text("at most 64 characters")), at, size]
             }
-            Some(List::Pages) => vec![id, ("title", "What people call it.", text("at most 200 characters"))],
+            Some(List::Pages) => {
+                vec![id, ("title", "Its title, as people read it.", text("at most 200 characters"))]
+            }
             Some(List::Grounds) => vec![at, size],
             Some(List::Widgets) if item.is_some_and(|item| item.is_group) => vec![id, at],
             Some(List::Widgets) => vec![
                 id,
-                ("kind", "What it is made of.", FieldType::Names(Vec::new())),
-                ("label", "What is written on it.", text("at most 64 characters")),
+                ("kind", "Its kind: a built-in one or one of `kinds`.", FieldType::Names(Vec::new())),
+                ("label", "Text written on it.", text("at most 64 characters")),
                 at,
                 size,
                 ("goto", "The page that a click on it shows.", text("the id of a page")),
@@ -118,7 +120,7 @@ impl Document {
             let field = FieldDescription { name, about: about.into(), shape, default: None };
             self.property(record, name.to_owned(), &field, None, &[])
         });
-        let mut sections = vec![Section { title: "What and where".into(), properties: own.collect() }];
+        let mut sections = vec![Section { title: "Identity and place".into(), properties: own.collect() }];
         let widget =
             item.filter(|item| !item.is_group).and_then(|item| self.layout().widgets.get(item.widgets.start));
         if record.list() == Some(List::Widgets)

@@ -81,7 +81,7 @@ impl App {
         if count > 0 && !self.is_designing() {
             let text = if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") };
             let text = RichText::new(text).color(color(self.theme.warning));
-            toggle(ui, &mut self.lists_warnings, text, "What feet and eyes will have trouble with");
+            toggle(ui, &mut self.lists_warnings, text, "Trouble for feet and eyes");
         }
         match &self.messages.file {
             Some(file) if file.diagnostics.is_some() => {
@@ -298,7 +298,7 @@ impl App {
             .inner_margin(Margin { left: 14, right: 8, top: 8, bottom: 8 });
         let panel = Panel::bottom("warnings").frame(frame).resizable(true);
         panel.default_size(180.0).size_range(70.0..=(0.5 * ui.available_height()).max(71.0)).show(ui, |ui| {
-            ui.label(RichText::new("What feet and eyes will have trouble with").size(14.5).strong());
+            ui.label(RichText::new("Trouble for feet and eyes").size(14.5).strong());
             ScrollArea::both().auto_shrink(false).show(ui, |ui| {
                 let text = RichText::new(&warnings.text).monospace().size(12.5).color(color(theme.ink));
                 ui.add(egui::Label::new(text).extend().selectable(true));

@@ -62,7 +62,7 @@ impl Watch {
         if still_s >= STOPPED_S && link != LinkState::Waiting {
             return Some(Banner {
                 headline: format!("Nothing new from the sensing for {still_s:.1} s"),
-                detail: "What is shown is the last that was known.".into(),
+                detail: "The last known state is shown.".into(),
                 weight: Weight::Fault,
             });
         }
@@ -75,7 +75,7 @@ impl Watch {
         {
             return Some(Banner {
                 headline: format!("No word from {address} for {silent_s:.1} s: trying again"),
-                detail: format!("What happens on the floor is not known here: {why}."),
+                detail: format!("The state of the floor is not known here: {why}."),
                 weight: Weight::Fault,
             });
         }
@@ -105,7 +105,7 @@ fn told(server: &ServerState) -> Option<Banner> {
     let ServerLink::Ended(why) = &server.link else { return silent_areas(&server.areas) };
     Some(Banner {
         headline: format!("Nothing more comes from {}", server.address),
-        detail: format!("What happens on the floor is not known here: {why}."),
+        detail: format!("The state of the floor is not known here: {why}."),
         weight: Weight::Fault,
     })
 }

@@ -36,7 +36,8 @@ impl App {
             if ui.add_enabled(some, Button::new("Copy")).on_hover_text(hint).clicked() {
                 ui.ctx().copy_text(walks.scenario(&format!("Walks on {title}")));
             }
-            if ui.add_enabled(some, Button::new("Forget")).on_hover_text("What was drawn").clicked() {
+            if ui.add_enabled(some, Button::new("Forget")).on_hover_text("Clears the drawn trails").clicked()
+            {
                 walks.forget();
             }
         });
