@@ -1,6 +1,6 @@
 //! The cost of packets on their way from datagram to frame, and the cost of hostile ones.
 //!
-//! `cargo bench -p underfoot --bench decode --no-default-features --features internals`
+//! `cargo bench -p underfoot --bench decode --no-default-features`
 
 #![allow(missing_docs, clippy::unwrap_used)]
 

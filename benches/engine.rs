@@ -1,4 +1,4 @@
-//! The cost of one frame: `cargo bench -p underfoot --bench engine --no-default-features --features internals`.
+//! The cost of one frame: `cargo bench -p underfoot --bench engine --no-default-features`.
 //!
 //! Also the cost of 500 controls against that of 20, on a floor of 24 x 24 tiles with ten people. Elsewhere two
 //! people walk on the paper's floor with the map layout; the frames are recorded first, so that the bench measures

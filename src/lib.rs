@@ -51,9 +51,10 @@
 //! | [`feel`], [`ground`] | haptics: cues, effects, materials, and the renderer of actuator samples |
 //! | [`units`] | newtons, instants |
 //!
-//! The feature `internals`, which the program needs, makes names public that may change in any version. Other crates
-//! simulate a floor with people on it (`underfoot-sim`), draw a floor and review its layout (`underfoot-scene`), show
-//! and edit it in a window (`underfoot-window`), and measure it (`underfoot-lab`).
+//! Before 1.0 every 0.x version may change names; those that only the crates of this toolkit use (calibration, tables,
+//! parts of sensing and rendering) change most. Other crates simulate a floor with people on it (`underfoot-sim`), draw
+//! a floor and review its layout (`underfoot-scene`), show and edit it in a window (`underfoot-window`), and measure it
+//! (`underfoot-lab`).
 //!
 //! # Path of a packet
 //!
@@ -68,22 +69,6 @@
 //! corner, x east, y north, in metres ([`glam::Vec2`]). The sensor corners of a
 //! tile are always in the order south-west, south-east, north-west, north-east.
 
-// Without `internals`, items for the program only are neither public nor used.
-#![cfg_attr(not(feature = "internals"), allow(dead_code, unreachable_pub))]
-
-/// Re-exports that are public with the feature `internals`, and the crate's own without it.
-///
-/// These re-exports may change in any version.
-macro_rules! internal {
-    ($(use $module:ident :: { $($name:ident),* $(,)? };)*) => {$(
-        #[cfg(feature = "internals")]
-        pub use $module::{$($name),*};
-        #[cfg(not(feature = "internals"))]
-        #[allow(unused_imports, reason = "some are used by their own module only")]
-        pub(crate) use $module::{$($name),*};
-    )*};
-}
-
 pub mod engine;
 pub mod feel;
 pub mod floor;
@@ -91,10 +76,7 @@ pub mod ground;
 pub mod layout;
 #[cfg(feature = "record")]
 pub mod mirror;
-#[cfg(feature = "internals")]
 pub mod outgoing;
-#[cfg(not(feature = "internals"))]
-mod outgoing;
 #[cfg(feature = "threads")]
 pub mod parallel;
 #[cfg(not(feature = "threads"))]
@@ -112,7 +94,6 @@ pub mod units;
 pub mod widget;
 pub mod wire;
 
-#[cfg(feature = "internals")]
 pub use underfoot_format::label;
 
 // Public signatures contain types of these crates.

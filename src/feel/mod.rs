@@ -45,14 +45,12 @@ pub use effect::{
 pub use muted::Muted;
 pub use renderer::{Renderer, RendererConfig, renderer};
 
-internal! {
-    use analysis::{Analysis, analyse};
-    use audition::{Audition, audition};
-    use cue::{MAX_SPOTS, MAX_SUSTAINED};
-    use effect::{Knob, MAX_MARKS, MAX_MODES, MAX_PARTS, MAX_POINTS, MODE_HZ, Use};
-    use modal::{ModalBank};
-    use player::{Player, key};
-    use renderer::{Onset};
-    use scope::{MinMax, ScopeReader};
-}
+pub use analysis::{Analysis, analyse};
+pub use audition::{Audition, audition};
+pub use cue::{MAX_SPOTS, MAX_SUSTAINED};
+pub use effect::{Knob, MAX_MARKS, MAX_MODES, MAX_PARTS, MAX_POINTS, MODE_HZ, Use};
+pub use modal::ModalBank;
+pub use player::{Player, key};
+pub use renderer::Onset;
+pub use scope::{MinMax, ScopeReader};
 pub use sender::{CueSender, FeelCounters};

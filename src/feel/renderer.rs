@@ -15,7 +15,6 @@ use super::mix::{Mix, Output, Wiring};
 use super::rack::{Faults, Rack};
 use super::schedule::{Due, SampleClock, Schedule, WAITING};
 use super::scope::ScopeWriter;
-#[cfg(any(feature = "internals", test))]
 use super::scope::{ScopeReader, scope};
 use super::sender::{CueSender, Shared, count};
 use super::voice::{Started, Voices};
@@ -205,7 +204,6 @@ impl Renderer {
     /// view.
     ///
     /// Takes memory, so it belongs before the start.
-    #[cfg(any(feature = "internals", test))]
     pub fn scope(&mut self) -> Option<ScopeReader> {
         if self.channels == 0 {
             return None;

@@ -37,6 +37,4 @@ pub use record::{CalibrationRecord, Day, MapRecord, NotADay};
 pub use rect::Rect;
 pub(crate) use {address::ADDRESS, exp::exp, network::NETWORK, record::DAY};
 
-internal! {
-    use address::{NotAnAddress, canonical, read_address};
-}
+pub use address::{NotAnAddress, canonical, read_address};

@@ -37,9 +37,7 @@ pub use resonance::{Resonance, Ring};
 pub use spec::{Grain, GrainSpec, GroundSpec, IceSpec, Material, Sheet, WoodSpec};
 pub use state::{GroundCounters, GroundEvent, GroundState};
 
-internal! {
-    use elastic::{Elastic, Motion};
-    use fracture::{Fracture, Growth};
-    use grounds::{Grounds};
-    use onsets::{MOST_PER_S, Onsets};
-}
+pub use elastic::{Elastic, Motion};
+pub use fracture::{Fracture, Growth};
+pub use grounds::Grounds;
+pub use onsets::{MOST_PER_S, Onsets};

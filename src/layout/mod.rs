@@ -17,9 +17,7 @@ pub use look::{Colour, Look, Shape};
 pub use page::Page;
 pub use region::{CursorRule, Region, Stance};
 
-internal! {
-    use hit::{HitIndex};
-}
+pub use hit::HitIndex;
 
 use glam::Vec2;
 

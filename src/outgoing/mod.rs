@@ -11,14 +11,12 @@ pub use area::{AreaNews, AreaState};
 pub use held::HeldReport;
 pub use tuio1::TuioProfiles;
 
-internal! {
-    use area::{write_area};
-    use held::{write_alive, write_held};
-    use osc::{
-        write_contacts, write_control, write_crack, write_device, write_error, write_event, write_health,
-        write_mute, write_page,
-    };
-    use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM, tuio_first_frame};
-    use tuio1::{Tuio1};
-    use tuio2::{TUIO_FULL_FORCE_N, Tuio2};
-}
+pub use area::write_area;
+pub use held::{write_alive, write_held};
+pub use osc::{
+    write_contacts, write_control, write_crack, write_device, write_error, write_event, write_health,
+    write_mute, write_page,
+};
+pub use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM, tuio_first_frame};
+pub use tuio1::Tuio1;
+pub use tuio2::{TUIO_FULL_FORCE_N, Tuio2};

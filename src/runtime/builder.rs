@@ -201,7 +201,6 @@ impl SessionBuilder {
 
     /// Sends cues for tiles of other computers and plays the cues received from them; without actuators it does
     /// neither.
-    #[cfg(feature = "internals")]
     #[must_use]
     pub fn neighbours(mut self, neighbours: impl Neighbours + 'static) -> Self {
         self.neighbours = Some(Box::new(neighbours));
@@ -209,7 +208,6 @@ impl SessionBuilder {
     }
 
     /// Measures in `stages` the latency from a packet to its cues.
-    #[cfg(feature = "internals")]
     #[must_use]
     pub fn latency(mut self, stages: LatencyStages) -> Self {
         self.latency = Some(stages);

@@ -33,7 +33,6 @@
 mod app_sink;
 mod builder;
 mod control;
-#[cfg(any(feature = "internals", test))]
 mod controls_off;
 mod event;
 mod events;
@@ -46,7 +45,6 @@ mod thread;
 pub use crate::serve::Refusal;
 pub use builder::{SessionBuilder, StartError};
 pub use control::Control;
-#[cfg(any(feature = "internals", test))]
 pub use controls_off::ControlsOff;
 pub use event::{EndReason, Event, Kind};
 pub use events::Events;

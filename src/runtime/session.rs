@@ -163,7 +163,6 @@ impl Session {
 
     /// Takes the end of the buffer that [`Session::snapshot`] reads, for one reader that polls continuously; from
     /// then on that method returns the last snapshot before this call.
-    #[cfg(feature = "internals")]
     #[must_use]
     pub fn take_snapshots(&self) -> triple_buffer::Output<crate::engine::Snapshot> {
         self.0.shown.take()

@@ -76,7 +76,6 @@ impl Shown {
         given
     }
 
-    #[cfg(feature = "internals")]
     pub(super) fn take(&self) -> Output<engine::Snapshot> {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (_, last) = triple_buffer::triple_buffer(&state.latest.read().clone());

@@ -8,7 +8,6 @@
 //!   -page, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
 //! ```
 
-#[cfg(any(feature = "internals", test))]
 mod ahap;
 mod area;
 mod arrange;
@@ -32,7 +31,6 @@ mod page;
 mod pages;
 mod place;
 mod places;
-#[cfg(any(feature = "internals", test))]
 mod reference;
 mod repeat;
 #[cfg(feature = "save")]
@@ -49,7 +47,6 @@ mod write;
 use underfoot_format::{diagnostic, fields, file, node, number, pairs, problem, reader, source, suggest};
 
 pub use crate::feel::{Effects, NamedEffect};
-#[cfg(any(feature = "internals", test))]
 pub use ahap::{AhapError, read_ahap, write_ahap};
 pub use builtin::{builtin_layout, builtin_layouts};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
@@ -61,19 +58,15 @@ pub use kind::{Kind, Kinds};
 pub use locate::{ControlPart, Remark};
 pub use page::{Loaded, folder_beside, kinds_beside, load_layout, parse_layout};
 pub use places::Places;
-#[cfg(any(feature = "internals", test))]
 pub use reference::{Chapter, reference, write_reference};
 #[cfg(feature = "save")]
 pub use save::{SaveError, Saved, save_floor, save_text, write_over};
 #[cfg(feature = "save")]
 pub use state::usual_state;
-#[cfg(feature = "internals")]
 pub use underfoot_format::describe::{Description, FieldDescription, FieldType};
 pub use version::FORMAT_VERSION;
 pub use write::write_layout;
 
-internal! {
-    use file::{BoundedFile, open_bounded, read_bounded};
-    use effect::{is_effect_name, write_effect, write_named_effect};
-    use lists::{MAX_WIDGETS};
-}
+pub use effect::{is_effect_name, write_effect, write_named_effect};
+pub use file::{BoundedFile, open_bounded, read_bounded};
+pub use lists::MAX_WIDGETS;

@@ -57,12 +57,10 @@ pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
 pub use within::Within;
 pub(crate) use worker::Worker;
 
-internal! {
-    use json::{control_json};
-    use crack_rate::{CrackNews};
-    use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
-    use priority::{Rank, claim_priority, step_back};
-}
+pub use crack_rate::CrackNews;
+pub use json::control_json;
+pub use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
+pub use priority::{Rank, claim_priority, step_back};
 
 /// A sink for the renderer's samples.
 pub trait ActuatorSink {

@@ -1,10 +1,8 @@
 //! Sources of sensor packets: a socket; simulated floors and recordings implement the same trait.
 
-#[cfg(any(feature = "internals", test))]
 mod fault;
 mod udp;
 
-#[cfg(any(feature = "internals", test))]
 pub use fault::{BadFault, Bursts, FaultInjector, Faults, Outage, Stall};
 pub use udp::{ForwardCounters, Seal, Sealed, UdpSource};
 

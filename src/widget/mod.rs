@@ -57,11 +57,9 @@ pub use switch::SwitchSpec;
 pub use thresholds::{Thresholds, WeightShare};
 pub use track::Track;
 
-internal! {
-    use control::{Control};
-    use event::{Emitted};
-    use input::{Input};
-}
+pub use control::Control;
+pub use event::Emitted;
+pub use input::Input;
 
 use underfoot_format::Named;
 

@@ -6,7 +6,6 @@
 mod argument;
 mod cause;
 mod command;
-#[cfg(any(feature = "internals", test))]
 pub mod corrupt;
 mod counters;
 mod decode;
@@ -31,13 +30,11 @@ pub use packet::{Readings, SensorPacket};
 pub use prefix::{BadPrefix, Prefix};
 pub(crate) use split::each_message;
 
-internal! {
-    use argument::{ArgumentKind, MAX_LABEL};
-    use command::{COMMANDS, Command};
-    use decode::{Batch, Decoder, WireError};
-    use encode::{EncodeError, SensorEncoder, SensorFormat};
-    use guard::{Limits, Malformed, check};
-    use json_request::{read_json, write_json};
-    use packet::{MAX_CHANNELS};
-    use pattern::{is_pattern, matches};
-}
+pub use argument::{ArgumentKind, MAX_LABEL};
+pub use command::{COMMANDS, Command};
+pub use decode::{Batch, Decoder, WireError};
+pub use encode::{EncodeError, SensorEncoder, SensorFormat};
+pub use guard::{Limits, Malformed, check};
+pub use json_request::{read_json, write_json};
+pub use packet::MAX_CHANNELS;
+pub use pattern::{is_pattern, matches};

@@ -1,10 +1,8 @@
 //! Every number of an effect by its name, for adjustment by hand.
 
-#[cfg(any(feature = "internals", test))]
 use super::Knob;
 use super::{Effect, EffectKind};
 use crate::feel::Lasting;
-#[cfg(any(feature = "internals", test))]
 use underfoot_format::{Record, Variants, hand::Hand};
 
 impl Effect {
@@ -12,7 +10,6 @@ impl Effect {
     /// their level again.
     ///
     /// The order is the same each time.
-    #[cfg(any(feature = "internals", test))]
     pub fn turn(&mut self, visit: &mut dyn FnMut(&Knob, &mut f32)) {
         let mut hand = Hand::new(visit);
         hand.within = Some(self.manner.band.as_bounds());
