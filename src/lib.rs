@@ -36,7 +36,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`runtime`] | a running floor on a thread of its own, with a handle: events, held controls, controls by id |
+//! | `runtime` | a running floor on a thread of its own, with a handle: events, held controls, controls by id (feature `net`) |
 //! | [`engine`] | a frame of forces in, events, cues and a snapshot out; no clocks, threads or devices |
 //! | [`serve`] | a running floor in one thread: packets in, events and samples out |
 //! | [`schema`] | layouts, kinds of controls, effects and floors as RON, with all problems at their places |
@@ -84,6 +84,7 @@ mod parallel;
 mod rate_limit;
 #[cfg(feature = "record")]
 pub mod recording;
+#[cfg(feature = "net")]
 pub mod runtime;
 pub mod schema;
 pub mod sense;

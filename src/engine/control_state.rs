@@ -82,7 +82,7 @@ impl ValueRange {
 
 impl ControlState {
     /// The state of control number `index` of `layout` in `snapshot`; `None` if there is no such control.
-    pub(crate) fn of(layout: &Layout, index: usize, snapshot: &Snapshot) -> Option<Self> {
+    pub fn of(layout: &Layout, index: usize, snapshot: &Snapshot) -> Option<Self> {
         let (widget, state) = (layout.widgets.get(index)?, snapshot.widgets.get(index)?);
         let range = snapshot.ranges.iter().find(|(of, _)| *of == index);
         let label = snapshot.labels.iter().find(|(of, _)| *of == index);

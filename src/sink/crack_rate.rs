@@ -13,7 +13,7 @@ const BURST: u32 = 10;
 
 /// Limits crack events to a rate that other programs can follow; a stamp makes hundreds.
 #[derive(Debug, Default)]
-pub(crate) struct CrackRateLimiter {
+pub struct CrackRateLimiter {
     /// End of the time that messages have used up; each message uses `PERIOD`.
     paid: Instant,
     /// Events dropped since the last message.
@@ -39,7 +39,7 @@ pub struct CrackNews {
 
 impl CrackRateLimiter {
     /// Returns the report of `event`; `None` if it opened no crack, or if the rate limit drops and counts it.
-    pub(crate) fn news(&mut self, event: &GroundEvent) -> Option<CrackNews> {
+    pub fn news(&mut self, event: &GroundEvent) -> Option<CrackNews> {
         let seed = event.seed?;
         let earliest = event.at.before(PERIOD * BURST);
         self.paid = self.paid.max(earliest);

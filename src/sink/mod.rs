@@ -1,5 +1,6 @@
 //! Outputs for samples and events: sound cards, files, other programs.
 
+#[cfg(feature = "net")]
 mod backlog;
 mod channel_map;
 mod crack_rate;
@@ -8,24 +9,31 @@ mod device;
 #[cfg(any(feature = "wav", feature = "record"))]
 mod disk;
 mod fanout;
+#[cfg(feature = "net")]
 mod json;
 mod latency;
 mod lockstep;
 mod manual;
 #[cfg(feature = "wav")]
 mod mono;
+#[cfg(feature = "net")]
 mod osc;
+#[cfg(feature = "net")]
 mod periodic;
+#[cfg(feature = "net")]
 mod priority;
 mod report;
 mod silent;
+#[cfg(feature = "net")]
 mod tuio;
+#[cfg(feature = "net")]
 mod udp;
-#[cfg(unix)]
+#[cfg(all(unix, feature = "net"))]
 mod watchdog;
 #[cfg(feature = "wav")]
 mod wav;
 mod within;
+#[cfg(feature = "net")]
 mod worker;
 
 use thiserror::Error;
@@ -35,31 +43,37 @@ use crate::units::Instant;
 
 pub use crate::outgoing::{AreaNews, AreaState, HeldReport, TuioProfiles};
 pub use channel_map::ChannelMap;
-pub(crate) use crack_rate::CrackRateLimiter;
 #[cfg(feature = "audio")]
 pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
 #[cfg(any(feature = "wav", feature = "record"))]
 pub(crate) use disk::Disk;
 pub use fanout::Fanout;
+#[cfg(feature = "net")]
 pub use json::{JsonSink, event_line};
 pub use manual::ManualSink;
 #[cfg(feature = "wav")]
 pub use mono::write_mono;
+#[cfg(feature = "net")]
 pub use osc::OscSink;
+#[cfg(feature = "net")]
 pub(crate) use report::OwnedReport;
 pub use report::Report;
 pub use silent::SilentSink;
+#[cfg(feature = "net")]
 pub use tuio::{TuioSink, TuioVersion};
-#[cfg(unix)]
+#[cfg(all(unix, feature = "net"))]
 pub use watchdog::Watchdog;
 #[cfg(feature = "wav")]
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
 pub use within::Within;
+#[cfg(feature = "net")]
 pub(crate) use worker::Worker;
 
-pub use crack_rate::CrackNews;
+pub use crack_rate::{CrackNews, CrackRateLimiter};
+#[cfg(feature = "net")]
 pub use json::control_json;
 pub use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
+#[cfg(feature = "net")]
 pub use priority::{Rank, claim_priority, step_back};
 
 /// A sink for the renderer's samples.

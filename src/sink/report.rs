@@ -1,5 +1,6 @@
 //! Reports to other programs.
 
+#[cfg(feature = "net")]
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::{AreaNews, HeldReport};
 use crate::engine::{ControlState, PageShown};
@@ -44,6 +45,7 @@ pub enum Report<'a> {
 }
 
 /// A report on its way to another thread.
+#[cfg(feature = "net")]
 #[derive(Debug)]
 pub(crate) enum OwnedReport {
     Event(WidgetEvent),
@@ -61,6 +63,7 @@ pub(crate) enum OwnedReport {
     Area(AreaNews),
 }
 
+#[cfg(feature = "net")]
 impl OwnedReport {
     /// Copies `report`; `None` for ground events that `cracks` drops.
     pub(crate) fn of(report: Report<'_>, cracks: &mut CrackRateLimiter) -> Option<Self> {

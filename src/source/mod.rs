@@ -1,9 +1,11 @@
 //! Sources of sensor packets: a socket; simulated floors and recordings implement the same trait.
 
 mod fault;
+#[cfg(feature = "net")]
 mod udp;
 
 pub use fault::{BadFault, Bursts, FaultInjector, Faults, Outage, Stall};
+#[cfg(feature = "net")]
 pub use udp::{ForwardCounters, Seal, Sealed, UdpSource};
 
 use std::net::SocketAddr;

@@ -398,7 +398,7 @@ fn counts_narrow(f: &mut fmt::Formatter<'_>, board: u16, least: u16, greatest: u
 }
 
 /// Returns the likely format of a datagram that is not OSC, as a message for people; `None` if there is no guess.
-pub(crate) fn guess_format(datagram: &[u8]) -> Option<&'static str> {
+pub fn guess_format(datagram: &[u8]) -> Option<&'static str> {
     let length = datagram.split_first_chunk().map(|(length, _)| u32::from_be_bytes(*length));
     let is_text = |byte: &u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
     match datagram {

@@ -272,7 +272,7 @@ impl Decoder {
     /// Returns the fault of a board that `error` indicates; [`LinkCause::Unknown`] with the error for a request.
     ///
     /// `None` for a malformed datagram: its bytes contain more information than the error.
-    pub(crate) fn cause_of(&self, error: &WireError) -> Option<LinkCause> {
+    pub fn cause_of(&self, error: &WireError) -> Option<LinkCause> {
         Some(match error {
             WireError::Malformed(_) => return None,
             WireError::WrongReadings { board, channels, found, .. } => {

@@ -20,7 +20,7 @@ mod prefix;
 mod sensor_message;
 mod split;
 
-pub(crate) use cause::guess_format;
+pub use cause::guess_format;
 pub use cause::{BOARD_RATES_HZ, LinkCause};
 pub use counters::LinkCounters;
 pub(crate) use encode::write;
@@ -28,7 +28,7 @@ pub use link::LinkState;
 pub use message::{ControlMessage, Request};
 pub use packet::{Readings, SensorPacket};
 pub use prefix::{BadPrefix, Prefix};
-pub(crate) use split::each_message;
+pub use split::each_message;
 
 pub use argument::{ArgumentKind, MAX_LABEL};
 pub use command::{COMMANDS, Command};

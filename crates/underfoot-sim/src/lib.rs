@@ -59,6 +59,7 @@ mod scene;
 mod script;
 mod seam;
 mod sensor;
+#[cfg(feature = "net")]
 mod session;
 mod simulated;
 mod slide;
@@ -92,6 +93,7 @@ pub use scene::{Body, Scene, SceneKind};
 pub use script::Script;
 pub use seam::SeamConfig;
 pub use sensor::{PartConfig, SensorFault};
+#[cfg(feature = "net")]
 pub use session::{SimulationError, session, session_with};
 pub use simulated::{Pace, SimulatedSource};
 pub use slide::Slide;
