@@ -37,8 +37,7 @@ pub(crate) use recorder::read_layout;
 pub use recorder::{Recorded, Recorder, WhenBehind};
 pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
-pub use tap::TappedSource;
-pub(crate) use tap::{Entries, EntrySink};
+pub(crate) use tap::{Entries, EntrySink, tapped};
 pub use timeline::{Mark, MarkKind, Timeline};
 pub use transport::Transport;
 
