@@ -6,15 +6,25 @@ use super::{Journal, Port, Replay, SensorSource};
 
 /// Everything that a floor takes in: packets, and beside them requests and layouts.
 ///
-/// Any [`SensorSource`] is an input of packets alone. A source with more than packets, such as
-/// [`UdpSource`](super::UdpSource), is no [`SensorSource`] and becomes an input as a whole. A wrapper gets the packets
-/// and nothing else, so that it can't withhold requests:
+/// Any [`SensorSource`] is an input of packets alone. A wrapper of a source gets the packets and nothing else, so that
+/// it can't withhold requests:
 ///
 /// ```
 /// use underfoot::source::{FloorInput, SensorSource};
 ///
 /// fn wrapped(input: FloorInput, wrap: impl Fn(Box<dyn SensorSource>) -> Box<dyn SensorSource>) -> FloorInput {
 ///     FloorInput { source: wrap(input.source), ..input }
+/// }
+/// ```
+///
+/// A source with more than packets, such as [`UdpSource`](super::UdpSource), is not a [`SensorSource`]: it becomes an
+/// input as a whole, and its packets alone do not compile.
+///
+/// ```compile_fail,E0277
+/// use underfoot::source::{SensorSource, UdpSource};
+///
+/// fn packets_alone(source: UdpSource) -> impl SensorSource {
+///     source
 /// }
 /// ```
 ///

@@ -24,6 +24,33 @@ use crate::units::Instant;
 use crate::wire::{LinkCounters, SensorPacket};
 
 /// A floor's stream of sensor packets, with the clock that stamps them.
+///
+/// ```
+/// use std::time::Duration;
+/// use underfoot::source::{SensorSource, SourceError};
+/// use underfoot::units::Instant;
+/// use underfoot::wire::{LinkCounters, SensorPacket};
+///
+/// /// Boards on a bus of their own.
+/// struct Bus {
+///     begun: std::time::Instant,
+/// }
+///
+/// impl SensorSource for Bus {
+///     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+///         std::thread::sleep(patience);
+///         Ok(None)
+///     }
+///
+///     fn now(&self) -> Instant {
+///         Instant::START + self.begun.elapsed()
+///     }
+///
+///     fn counters(&self) -> LinkCounters {
+///         LinkCounters::default()
+///     }
+/// }
+/// ```
 pub trait SensorSource: Send {
     /// The next packet; waits for it at most `patience` and returns `None` if none arrived.
     ///
