@@ -11,7 +11,7 @@ use std::time::Duration;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::Assembler;
-use underfoot::source::{SensorSource, UdpSource};
+use underfoot::source::UdpSource;
 use underfoot::units::Instant;
 use underfoot::wire::corrupt::{bundle_bomb, hostile_address, tag_bomb};
 use underfoot::wire::{Batch, Decoder, Limits, Readings, SensorEncoder, SensorFormat, SensorPacket, check};

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use super::frame;
 use crate::floor::Geometry;
-use crate::recording::{Entries, EntrySink, TappedSource};
+use crate::recording::{Entries, EntrySink, tapped};
 use crate::sink::{SinkError, Worker};
-use crate::source::SensorSource;
+use crate::source::FloorInput;
 
 /// Span of the floor's time in one frame, which is the maximum delay that framing adds.
 const BATCH: Duration = Duration::from_millis(4);
@@ -46,10 +46,10 @@ impl MirrorFeed {
         Ok(Self { worker, joined, lost: Arc::default() })
     }
 
-    /// Wraps `inner`, for a floor of this geometry, so that its results are sent to all joined windows.
+    /// Wraps `input`, for a floor of this geometry, so that its results are sent to all joined windows.
     #[must_use]
-    pub fn source(&self, inner: Box<dyn SensorSource>, geometry: Geometry) -> TappedSource {
-        TappedSource::new(inner, Box::new(self.clone()), geometry)
+    pub fn wrap(&self, input: impl Into<FloorInput>, geometry: Geometry) -> FloorInput {
+        tapped(input.into(), self.clone(), geometry)
     }
 
     /// Number of entries dropped because the thread did not keep up; the stream has a gap entry in their place.

@@ -1,7 +1,7 @@
-//! Mirrors of a running floor in remote windows: the inputs of its server as a stream, and the stream as a source
+//! Mirrors of a running floor in remote windows: the input of its server as a stream, and the stream as an input
 //! again.
 //!
-//! [`MirrorFeed`] taps the source of a server as a recording does, and gives frames of bytes to all joined windows.
+//! [`MirrorFeed`] taps the input of a server as a recording does, and gives frames of bytes to all joined windows.
 //! [`MirrorSource`] receives such frames, and returns the same packets, requests and layouts in the same order:
 //! sensing on them sees the same floor. A window first needs a [`Greeting`]; [`Follower`] keeps the values of
 //! controls equal to the server's. `docs/web-app.md` describes the stream.

@@ -10,9 +10,8 @@ use std::time::{Duration, Instant as HostInstant};
 use super::Greeting;
 use super::frame::{self, BadFrame};
 use crate::floor::Geometry;
-use crate::layout::Layout;
 use crate::recording::{Entries, Entry, decoder, read_layout};
-use crate::source::{SensorSource, SourceError};
+use crate::source::{FloorInput, Incoming, Replay, SensorSource, Shared, SourceError};
 use crate::units::{HostClock, Instant};
 use crate::wire::{Decoder, LinkCounters, Request, SensorPacket};
 
@@ -163,6 +162,38 @@ impl MirrorSource {
         move || counters.left_out.load(Ordering::Relaxed)
     }
 
+    /// The next packet; waits for it at most `patience` and returns `None` if none arrived. It never ends by itself,
+    /// since a server may come back.
+    pub(super) fn next(&mut self, patience: Duration) -> Option<SensorPacket> {
+        if self.ahead.is_empty() {
+            self.wait(patience);
+        }
+        loop {
+            match self.advance() {
+                Some(Entry::Packet(packet)) => return Some(packet),
+                Some(Entry::Silence | Entry::End) | None => return None,
+                Some(Entry::Gap(entries)) => {
+                    self.counters.left_out.fetch_add(entries, Ordering::Relaxed);
+                }
+                Some(entry @ (Entry::Request(_) | Entry::Layout(_))) => {
+                    // The server takes these before the next packet.
+                    self.ahead.push_front((self.now, entry));
+                    return None;
+                }
+            }
+        }
+    }
+
+    /// The present on the server's clock, as known here.
+    pub(super) const fn now(&self) -> Instant {
+        self.now
+    }
+
+    /// Number of invalid frames, as malformed.
+    pub(super) fn counters(&self) -> LinkCounters {
+        LinkCounters { malformed: self.counters.bad.load(Ordering::Relaxed), ..LinkCounters::default() }
+    }
+
     fn set_now(&mut self, to: Instant) {
         self.now = self.now.max(to);
         self.counters.now_us.store(self.now.micros(), Ordering::Relaxed);
@@ -205,56 +236,41 @@ impl Drop for MirrorSource {
     }
 }
 
-impl SensorSource for MirrorSource {
-    /// The next packet, or `None` if none arrived; never ends by itself, since a server may come back.
+impl From<MirrorSource> for FloorInput {
+    fn from(source: MirrorSource) -> Self {
+        let source = Shared::new(source);
+        Self { replay: Some(Box::new(source.clone())), ..Self::from(source) }
+    }
+}
+
+impl SensorSource for Shared<MirrorSource> {
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
-        if self.ahead.is_empty() {
-            self.wait(patience);
-        }
-        loop {
-            match self.advance() {
-                Some(Entry::Packet(packet)) => return Ok(Some(packet)),
-                Some(Entry::Silence | Entry::End) | None => return Ok(None),
-                Some(Entry::Gap(entries)) => {
-                    self.counters.left_out.fetch_add(entries, Ordering::Relaxed);
-                }
-                Some(entry @ (Entry::Request(_) | Entry::Layout(_))) => {
-                    // The server takes these before the next packet.
-                    self.ahead.push_front((self.now, entry));
-                    return Ok(None);
-                }
-            }
-        }
+        Ok(self.lock().next(patience))
     }
 
     fn now(&self) -> Instant {
-        self.now
+        self.lock().now()
     }
 
-    fn take_request(&mut self) -> Option<Request> {
-        self.ahead.front().filter(|(_, entry)| matches!(entry, Entry::Request(_)))?;
+    fn counters(&self) -> LinkCounters {
+        self.lock().counters()
+    }
+}
+
+impl Replay for MirrorSource {
+    fn take(&mut self) -> Option<Incoming> {
+        self.ahead.front().filter(|(_, entry)| matches!(entry, Entry::Request(_) | Entry::Layout(_)))?;
         match self.advance()? {
             // The server has answered the sender of the request.
-            Entry::Request(request) => Some(Request { sender: None, ..request }),
-            _ => None,
-        }
-    }
-
-    fn take_layout(&mut self) -> Option<Layout> {
-        self.ahead.front().filter(|(_, entry)| matches!(entry, Entry::Layout(_)))?;
-        match self.advance()? {
+            Entry::Request(request) => Some(Incoming::Request(Request { sender: None, ..request })),
             Entry::Layout(text) if text != self.layout => {
                 let layout = read_layout(&text, &self.geometry)
                     .inspect_err(|problems| tracing::warn!("the server's layout can't be read: {problems}"))
                     .ok()?;
                 self.layout = text;
-                Some(layout)
+                Some(Incoming::Layout(Box::new(layout)))
             }
             _ => None,
         }
-    }
-
-    fn counters(&self) -> LinkCounters {
-        LinkCounters { malformed: self.counters.bad.load(Ordering::Relaxed), ..LinkCounters::default() }
     }
 }

@@ -14,7 +14,7 @@ use crate::layout::Layout;
 use crate::recording::{Entries, Entry, decoder};
 use crate::schema::{Kinds, builtin_layout, parse_layout};
 use crate::sense::Method;
-use crate::source::SensorSource;
+use crate::source::{Incoming, Replay};
 use crate::units::{Instant, Newtons};
 use crate::wire::{ControlMessage, Readings, Request, SensorPacket, read_json};
 
@@ -113,15 +113,15 @@ fn the_source_gives_what_the_server_took_in_its_order() {
     let left_out = source.left_out();
     input.put(&framed(&everything())).unwrap();
     let patience = Duration::from_millis(1);
-    assert_eq!(source.next(patience).unwrap(), Some(packet(2, u32::MAX, 9_000_040)));
+    assert_eq!(source.next(patience), Some(packet(2, u32::MAX, 9_000_040)));
     assert_eq!(source.now(), Instant::from_micros(9_000_100));
-    assert!(source.take_layout().is_none(), "first comes a request");
-    assert!(matches!(source.take_request().unwrap().message, ControlMessage::Set { .. }));
-    assert_eq!(source.next(patience).unwrap(), None, "silence");
-    assert!(source.take_layout().is_none(), "it can't be read");
-    assert_eq!(source.next(patience).unwrap(), Some(packet(0, 0, 9_003_600)));
+    let Some(Incoming::Request(request)) = source.take() else { panic!("first comes a request") };
+    assert!(matches!(request.message, ControlMessage::Set { .. }));
+    assert_eq!(source.next(patience), None, "silence");
+    assert!(source.take().is_none(), "the layout can't be read");
+    assert_eq!(source.next(patience), Some(packet(0, 0, 9_003_600)));
     assert_eq!((left_out(), source.now()), (7, Instant::from_micros(9_003_500)));
-    assert_eq!(source.next(patience).unwrap(), None, "the end there is silence here: a server may come back");
+    assert_eq!(source.next(patience), None, "the end there is silence here: a server may come back");
 }
 
 #[test]
@@ -129,18 +129,18 @@ fn a_frame_that_is_a_little_late_does_not_let_time_pass_and_silence_does() {
     let layout = layout("map");
     let (input, mut source) = MirrorSource::new(&greeting_of(&engine(&layout), &layout));
     input.put(&framed(&vec![(Instant::from_millis(5000), Entry::Silence)])).unwrap();
-    assert_eq!(source.next(Duration::ZERO).unwrap(), None);
-    assert_eq!(source.next(Duration::ZERO).unwrap(), None);
+    assert_eq!(source.next(Duration::ZERO), None);
+    assert_eq!(source.next(Duration::ZERO), None);
     // Time starts to advance only after the frame is late, on a machine of any speed.
     let begun = std::time::Instant::now();
     while source.now() == Instant::from_millis(5000) {
-        assert_eq!(source.next(Duration::from_millis(1)).unwrap(), None);
+        assert_eq!(source.next(Duration::from_millis(1)), None);
         assert!(begun.elapsed() < Duration::from_secs(60));
     }
     assert!(source.now() > Instant::from_millis(5040), "{:?}", source.now());
     let before = source.now();
     input.put(&framed(&vec![(Instant::from_millis(5004), Entry::Silence)])).unwrap();
-    assert_eq!(source.next(Duration::from_millis(1)).unwrap(), None);
+    assert_eq!(source.next(Duration::from_millis(1)), None);
     assert!(source.now() >= before, "it never goes back");
 }
 
@@ -152,7 +152,10 @@ fn a_layout_is_taken_once_however_often_the_server_says_it() {
     let taken = |text: &str, source: &mut MirrorSource| {
         input.put_layout(text.into());
         let _ = source.next(Duration::from_millis(1));
-        source.take_layout().map(|layout| layout.title)
+        match source.take()? {
+            Incoming::Layout(layout) => Some(layout.title),
+            Incoming::Request(request) => panic!("{request:?}"),
+        }
     };
     assert_eq!(taken(&greeting.layout_text, &mut source), None);
     let text = crate::schema::write_layout(&other);
@@ -234,7 +237,7 @@ fn frames_beyond_what_may_wait_are_held_up() {
     }
     std::thread::sleep(Duration::from_millis(100));
     assert!(waiting() <= 8, "64 MiB may wait, not {} times 8", waiting());
-    source.next(Duration::from_millis(1)).unwrap();
+    source.next(Duration::from_millis(1));
     while waiting() < 8 {
         assert!(std::time::Instant::now() < end, "{} were taken", waiting());
         std::thread::sleep(Duration::from_millis(5));

@@ -1,8 +1,8 @@
 //! The recording of a floor in an MCAP file: all inputs that determine the floor's behaviour, and their replay.
 //!
-//! [`Recorder`] stores the results of a source with their times; [`Recording`] returns them as another source. A
-//! server asks its source only for packets, requests and the time: with the same answers it reports the same events,
-//! bit for bit. `docs/recordings.md` describes the file.
+//! [`Recorder`] stores the packets, requests and layouts of a floor with their times; [`Recording`] returns them as
+//! the input of another. A server asks its input only for these and the time: with the same answers it reports the
+//! same events, bit for bit. `docs/recordings.md` describes the file.
 
 mod bytes;
 mod chunk;
@@ -37,8 +37,7 @@ pub(crate) use recorder::read_layout;
 pub use recorder::{Recorded, Recorder, WhenBehind};
 pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
-pub use tap::TappedSource;
-pub(crate) use tap::{Entries, EntrySink};
+pub(crate) use tap::{Entries, EntrySink, tapped};
 pub use timeline::{Mark, MarkKind, Timeline};
 pub use transport::Transport;
 

@@ -6,9 +6,9 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
 use super::entry::Entry;
-use super::tap::{Entries, EntrySink, TappedSource};
+use super::tap::{Entries, EntrySink, tapped};
 use crate::floor::Geometry;
-use crate::source::SensorSource;
+use crate::source::FloorInput;
 use crate::wire::SensorPacket;
 
 /// Span of the floor's time in one batch, and maximum number of waiting batches: two seconds.
@@ -63,10 +63,10 @@ impl TappedPackets {
 }
 
 impl PacketTap {
-    /// Wraps `inner`, on a floor of this geometry, so that its packets are copied.
+    /// Wraps `input`, on a floor of this geometry, so that its packets are copied.
     #[must_use]
-    pub fn source(&self, inner: Box<dyn SensorSource>, geometry: Geometry) -> TappedSource {
-        TappedSource::new(inner, Box::new(self.clone()), geometry)
+    pub fn wrap(&self, input: impl Into<FloorInput>, geometry: Geometry) -> FloorInput {
+        tapped(input.into(), self.clone(), geometry)
     }
 }
 

@@ -8,14 +8,14 @@ use std::time::Duration;
 
 use super::RecordingError;
 use super::events::EventLines;
-use super::tap::{Entries, EntrySink, TappedSource};
+use super::tap::{Entries, EntrySink, tapped};
 use super::writer::{Job, RecordingFile};
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
 use crate::schema::{self, Diagnostics, Kinds};
 use crate::sense::Method;
 use crate::sink::{JsonSink, SinkError, Worker};
-use crate::source::SensorSource;
+use crate::source::FloorInput;
 
 /// Behaviour when the disk is slower than the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,12 +35,12 @@ pub struct Recorder {
     behind: WhenBehind,
 }
 
-/// A floor whose source is recorded, or which is unchanged.
+/// A floor whose input is recorded, or which is unchanged.
 pub struct Recorded {
     /// The recorder, if the floor is recorded.
     pub recorder: Option<Recorder>,
-    /// The source to use from now on.
-    pub source: Box<dyn SensorSource>,
+    /// The input to use from now on.
+    pub input: FloorInput,
     /// The floor as stored in the recording.
     pub floor: Floor,
     /// The layout as stored in the recording.
@@ -48,24 +48,25 @@ pub struct Recorded {
 }
 
 impl Recorder {
-    /// Records all results of `source` into a file at `path` and replaces an existing one. Without a `path`, records
+    /// Records all results of `input` into a file at `path` and replaces an existing one. Without a `path`, records
     /// and changes nothing.
     ///
     /// Floor and layout are stored as text, and the floor must work with the values read back from it: the numbers
-    /// may differ from the given ones by a rounding. The source's time stands still between packets, so that a replay
+    /// may differ from the given ones by a rounding. The input's time stands still between packets, so that a replay
     /// returns the same time at every query.
     ///
     /// # Errors
     /// [`RecordingError`] if the file can't be written, or if the floor or the layout can't be stored.
     pub fn around(
         path: Option<&Path>,
-        source: Box<dyn SensorSource>,
+        input: impl Into<FloorInput>,
         floor: Floor,
         layout: Layout,
         method: Method,
         behind: WhenBehind,
     ) -> Result<Recorded, RecordingError> {
-        let Some(path) = path else { return Ok(Recorded { recorder: None, source, floor, layout }) };
+        let input = input.into();
+        let Some(path) = path else { return Ok(Recorded { recorder: None, input, floor, layout }) };
         let failed = |source| RecordingError::File { path: path.into(), source };
         let floor_text = schema::write_floor(&floor);
         let floor = Floor { file: floor.file.clone(), ..schema::parse_floor(&floor_text, super::FLOOR)? };
@@ -78,8 +79,8 @@ impl Recorder {
         let worker =
             Worker::spawn("recording", move |jobs| file.write_all(jobs, &counter)).map_err(failed)?;
         let recorder = Self { worker: Arc::new(worker), lost, behind };
-        let source = Box::new(TappedSource::new(source, Box::new(recorder.clone()), floor.geometry));
-        Ok(Recorded { recorder: Some(recorder), source, floor, layout })
+        let input = tapped(input, recorder.clone(), floor.geometry);
+        Ok(Recorded { recorder: Some(recorder), input, floor, layout })
     }
 
     /// Records events: as the lines of [`JsonSink`].

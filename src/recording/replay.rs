@@ -11,10 +11,9 @@ use super::order::Ordered;
 use super::recorder::read_layout;
 use super::transport::Transport;
 use crate::floor::Geometry;
-use crate::layout::Layout;
-use crate::source::{SensorSource, SourceError};
+use crate::source::{FloorInput, Incoming, Replay, SensorSource, Shared, SourceError};
 use crate::units::{HostClock, Instant};
-use crate::wire::{Request, SensorPacket};
+use crate::wire::{LinkCounters, Request, SensorPacket};
 
 /// Maximum wait for the next entry: a replay skips long gaps.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
@@ -80,7 +79,7 @@ impl Progress {
     }
 }
 
-/// Returns the recorded results of a [`super::TappedSource`], with the same times.
+/// Returns the packets, requests and layouts of a recording, with the same times.
 #[derive(Debug)]
 pub struct ReplaySource {
     parts: Ordered,
@@ -120,6 +119,35 @@ impl ReplaySource {
     pub fn clock(&self) -> HostClock {
         let progress = self.progress();
         Arc::new(move || progress.now())
+    }
+
+    /// The next packet, or `None` if none was recorded or the next entry is not due yet; waits according to the
+    /// speed. Skips requests and layouts that the floor has not taken.
+    ///
+    /// # Errors
+    /// [`SourceError::Ended`] at the end of the recording or at a break, and in every call after.
+    fn next_packet(&mut self) -> Result<Option<SensorPacket>, SourceError> {
+        loop {
+            if !self.wait() {
+                return Ok(None);
+            }
+            match self.advance() {
+                Some((_, Entry::Packet(packet))) => {
+                    self.progress.packets.fetch_add(1, Ordering::Relaxed);
+                    return Ok(Some(packet));
+                }
+                Some((_, Entry::Silence)) => return Ok(None),
+                Some((_, Entry::End)) | None => return Err(SourceError::Ended),
+                // Entries that the server did not take.
+                Some((_, Entry::Request(_) | Entry::Layout(_) | Entry::Gap(_))) => {}
+            }
+        }
+    }
+
+    /// The present of the recording: the time of the last entry, or of the first one before the start.
+    #[must_use]
+    pub const fn now(&self) -> Instant {
+        self.now
     }
 
     /// Returns the next entry and reads the one after it.
@@ -193,47 +221,35 @@ impl ReplaySource {
     }
 }
 
-impl SensorSource for ReplaySource {
-    /// The next packet, or `None` if none was recorded or the next entry is not due yet; waits according to the speed
-    /// and ignores `patience`.
-    ///
-    /// # Errors
-    /// [`SourceError::Ended`] at the end of the recording or at a break, and in every call after.
+impl From<ReplaySource> for FloorInput {
+    fn from(source: ReplaySource) -> Self {
+        let source = Shared::new(source);
+        Self { replay: Some(Box::new(source.clone())), ..Self::from(source) }
+    }
+}
+
+impl SensorSource for Shared<ReplaySource> {
     fn next(&mut self, _patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
-        loop {
-            if !self.wait() {
-                return Ok(None);
-            }
-            match self.advance() {
-                Some((_, Entry::Packet(packet))) => {
-                    self.progress.packets.fetch_add(1, Ordering::Relaxed);
-                    return Ok(Some(packet));
-                }
-                Some((_, Entry::Silence)) => return Ok(None),
-                Some((_, Entry::End)) | None => return Err(SourceError::Ended),
-                // Entries that the server did not take.
-                Some((_, Entry::Request(_) | Entry::Layout(_) | Entry::Gap(_))) => {}
-            }
-        }
+        self.lock().next_packet()
     }
 
     fn now(&self) -> Instant {
-        self.now
+        self.lock().now()
     }
 
-    fn take_request(&mut self) -> Option<Request> {
-        self.ahead.as_ref().filter(|(_, entry)| matches!(entry, Entry::Request(_)))?;
-        match self.advance()? {
-            (_, Entry::Request(request)) => Some(Request { sender: None, ..request }),
-            _ => None,
-        }
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
     }
+}
 
-    fn take_layout(&mut self) -> Option<Layout> {
-        self.ahead.as_ref().filter(|(_, entry)| matches!(entry, Entry::Layout(_)))?;
+impl Replay for ReplaySource {
+    fn take(&mut self) -> Option<Incoming> {
+        self.ahead.as_ref().filter(|(_, entry)| matches!(entry, Entry::Request(_) | Entry::Layout(_)))?;
         match self.advance()? {
+            (_, Entry::Request(request)) => Some(Incoming::Request(Request { sender: None, ..request })),
             (_, Entry::Layout(text)) => read_layout(&text, &self.geometry)
                 .inspect_err(|problems| tracing::warn!("a recorded layout can't be read: {problems}"))
+                .map(|layout| Incoming::Layout(Box::new(layout)))
                 .ok(),
             _ => None,
         }

@@ -1,16 +1,14 @@
 //! A tap: passes the results of a source on to a second receiver.
 
-use std::fmt;
-use std::net::SocketAddr;
 use std::time::Duration;
 
 use super::entry::Entry;
 use super::recorder::as_kept;
 use crate::floor::Geometry;
 use crate::layout::Layout;
-use crate::source::{SensorSource, SourceError};
+use crate::source::{FloorInput, Journal, SensorSource, Shared, SourceError};
 use crate::units::Instant;
-use crate::wire::{LinkCause, LinkCounters, Request, SensorPacket};
+use crate::wire::{LinkCounters, Request, SensorPacket};
 
 /// Entries, each with the time at which the server took it.
 pub(crate) type Entries = Vec<(Instant, Entry)>;
@@ -34,9 +32,14 @@ pub(crate) trait EntrySink: Send {
     fn count_lost(&self, entries: u64);
 }
 
-/// A source whose results are also passed on.
-pub struct TappedSource {
+/// A source whose packets are also passed on.
+struct TappedSource {
     inner: Box<dyn SensorSource>,
+    tap: Shared<Tap>,
+}
+
+/// Passes on the packets of a source, and between them the requests and layouts of its floor.
+struct Tap {
     entries_to: Box<dyn EntrySink>,
     geometry: Geometry,
     now: Instant,
@@ -45,16 +48,20 @@ pub struct TappedSource {
     left_out: u64,
 }
 
-impl TappedSource {
-    pub(crate) fn new(
-        inner: Box<dyn SensorSource>,
-        entries_to: Box<dyn EntrySink>,
-        geometry: Geometry,
-    ) -> Self {
-        let now = inner.now();
-        Self { inner, entries_to, geometry, now, batch: Vec::new(), left_out: 0 }
-    }
+/// Wraps `input`, on a floor of this geometry, so that its results are also passed to `entries_to`.
+pub(crate) fn tapped(
+    input: FloorInput,
+    entries_to: impl EntrySink + 'static,
+    geometry: Geometry,
+) -> FloorInput {
+    let FloorInput { source: inner, port, replay, mut journals } = input;
+    let (now, entries_to) = (inner.now(), Box::new(entries_to));
+    let tap = Shared::new(Tap { entries_to, geometry, now, batch: Vec::new(), left_out: 0 });
+    journals.push(Box::new(tap.clone()));
+    FloorInput { source: Box::new(TappedSource { inner, tap }), port, replay, journals }
+}
 
+impl Tap {
     fn put(&mut self, entry: impl FnOnce() -> Entry) {
         if !self.entries_to.is_wanted() {
             self.batch.clear();
@@ -88,40 +95,33 @@ impl TappedSource {
 impl SensorSource for TappedSource {
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         let given = self.inner.next(patience);
-        self.now = self.now.max(self.inner.now());
+        let mut tap = self.tap.lock();
+        tap.now = tap.now.max(self.inner.now());
         match &given {
-            Ok(Some(packet)) => self.put(|| Entry::Packet(packet.clone())),
-            Ok(None) => self.put(|| Entry::Silence),
-            Err(SourceError::Ended) => self.put(|| Entry::End),
+            Ok(Some(packet)) => tap.put(|| Entry::Packet(packet.clone())),
+            Ok(None) => tap.put(|| Entry::Silence),
+            Err(SourceError::Ended) => tap.put(|| Entry::End),
             Err(_) => {}
         }
         given
     }
 
     fn now(&self) -> Instant {
-        if self.entries_to.is_exact() { self.now } else { self.inner.now() }
+        let tap = self.tap.lock();
+        if tap.entries_to.is_exact() { tap.now } else { self.inner.now() }
     }
 
-    fn take_request(&mut self) -> Option<Request> {
-        let request = self.inner.take_request()?;
-        self.put(|| Entry::Request(request.clone()));
-        Some(request)
+    fn counters(&self) -> LinkCounters {
+        self.inner.counters()
     }
+}
 
-    fn take_layout(&mut self) -> Option<Layout> {
-        let layout = self.inner.take_layout()?;
-        // The layout was read from text of a recording or another server, so it can be written again.
-        self.put(|| Entry::Layout(crate::schema::write_layout(&layout)));
-        Some(layout)
-    }
-
+impl Journal for Tap {
     fn note_request(&mut self, request: &Request) {
-        self.inner.note_request(request);
         self.put(|| Entry::Request(request.clone()));
     }
 
     fn note_layout(&mut self, layout: &mut Layout) {
-        self.inner.note_layout(layout);
         if !self.entries_to.is_wanted() {
             return;
         }
@@ -138,32 +138,10 @@ impl SensorSource for TappedSource {
             }
         }
     }
-
-    fn local_addr(&self) -> Option<SocketAddr> {
-        self.inner.local_addr()
-    }
-
-    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
-        self.inner.answer(to, datagram);
-    }
-
-    fn counters(&self) -> LinkCounters {
-        self.inner.counters()
-    }
-
-    fn last_refused(&self) -> Option<LinkCause> {
-        self.inner.last_refused()
-    }
 }
 
-impl Drop for TappedSource {
+impl Drop for Tap {
     fn drop(&mut self) {
         self.hand_on();
-    }
-}
-
-impl fmt::Debug for TappedSource {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("TappedSource").field("now", &self.now).finish_non_exhaustive()
     }
 }

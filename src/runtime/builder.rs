@@ -29,7 +29,7 @@ use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
 use crate::serve::Neighbours;
 use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SinkError};
-use crate::source::{SensorSource, SourceError, UdpSource};
+use crate::source::{FloorInput, SourceError, UdpSource};
 use crate::units::{HostClock, Instant};
 use crate::wire::Prefix;
 
@@ -61,7 +61,7 @@ pub struct SessionBuilder {
 /// Origin of the packets.
 enum Feed {
     Listen(String),
-    Given(Box<dyn SensorSource>, HostClock),
+    Given(FloorInput, HostClock),
 }
 
 /// Why a session can't start.
@@ -126,8 +126,8 @@ impl SessionBuilder {
         Self::new(Feed::Listen(address))
     }
 
-    pub(super) fn fed_by(source: Box<dyn SensorSource>, clock: HostClock) -> Self {
-        Self::new(Feed::Given(source, clock))
+    pub(super) fn fed_by(input: FloorInput, clock: HostClock) -> Self {
+        Self::new(Feed::Given(input, clock))
     }
 
     /// Sets the floor's hardware; the default is the paper's 6 x 6 tiles. Call it before the layout is set.
@@ -289,12 +289,13 @@ impl SessionBuilder {
         let given = self.layout.take().filter(|(_, geometry)| *geometry == self.floor.geometry);
         let (layout, _) = given.ok_or(StartError::NoLayout)?;
         self.floor.noiseless |= self.noiseless;
-        let (source, clock, floor) = self.feed.open(self.floor, &self.prefix)?;
-        let (local_addr, geometry) = (source.local_addr(), floor.geometry);
+        let (input, clock, floor) = self.feed.open(self.floor, &self.prefix)?;
+        let local_addr = input.port.as_ref().and_then(|port| port.local_addr());
+        let geometry = floor.geometry;
         #[cfg(feature = "record")]
-        let Recorded { recorder, source, floor, layout } = {
+        let Recorded { recorder, input, floor, layout } = {
             let path = self.record.as_deref();
-            Recorder::around(path, source, floor, layout, self.method, WhenBehind::LeaveOut)?
+            Recorder::around(path, input, floor, layout, self.method, WhenBehind::LeaveOut)?
         };
         #[cfg(feature = "record")]
         if let Some(recorder) = recorder {
@@ -320,7 +321,7 @@ impl SessionBuilder {
             floor,
             layout,
             method: self.method,
-            source,
+            input,
             clock,
             prefix: self.prefix,
             sinks,
@@ -362,13 +363,9 @@ impl SessionBuilder {
 }
 
 impl Feed {
-    /// Opens the source. Returns it with the clock that stamps its packets, and the floor, calibrated if it is
+    /// Opens the input. Returns it with the clock that stamps its packets, and the floor, calibrated if it is
     /// simulated.
-    fn open(
-        self,
-        floor: Floor,
-        prefix: &Prefix,
-    ) -> Result<(Box<dyn SensorSource>, HostClock, Floor), StartError> {
+    fn open(self, floor: Floor, prefix: &Prefix) -> Result<(FloorInput, HostClock, Floor), StartError> {
         match self {
             Self::Listen(address) => {
                 let unknown = |source| StartError::Address { address: address.clone(), source };
@@ -377,9 +374,9 @@ impl Feed {
                 let source = UdpSource::bind(found.ok_or_else(|| unknown(none()))?, &floor)?;
                 let source = source.with_prefix(prefix.clone());
                 let clock = source.clock();
-                Ok((Box::new(source), clock, floor))
+                Ok((source.into(), clock, floor))
             }
-            Self::Given(source, clock) => Ok((source, clock, floor)),
+            Self::Given(input, clock) => Ok((input, clock, floor)),
         }
     }
 }

@@ -18,7 +18,7 @@ use super::snapshot::{Shown, Snapshot};
 use crate::floor::Geometry;
 use crate::layout::Layout;
 use crate::serve::{Command, Refusal};
-use crate::source::SensorSource;
+use crate::source::FloorInput;
 use crate::units::HostClock;
 use crate::widget::WidgetId;
 use crate::wire::ControlMessage;
@@ -70,10 +70,11 @@ impl Session {
         SessionBuilder::listening(address.into())
     }
 
-    /// A session fed by any source. `clock` stamps its packets and is the time base of the actuators.
+    /// A session fed by any [`SensorSource`](crate::source::SensorSource), or by an input with more than packets.
+    /// `clock` stamps its packets and is the time base of the actuators.
     #[must_use]
-    pub fn source(source: Box<dyn SensorSource>, clock: HostClock) -> SessionBuilder {
-        SessionBuilder::fed_by(source, clock)
+    pub fn source(input: impl Into<FloorInput>, clock: HostClock) -> SessionBuilder {
+        SessionBuilder::fed_by(input.into(), clock)
     }
 
     /// A session that replays a recording with its floor, its layout and its method of making contacts:
@@ -93,7 +94,7 @@ impl Session {
             (recording.floor().clone(), recording.layout().clone(), recording.method());
         let source = recording.source(speed);
         let clock = source.clock();
-        Ok(Self::source(Box::new(source), clock).floor(floor).layout(layout).method(method))
+        Ok(Self::source(source, clock).floor(floor).layout(layout).method(method))
     }
 
     pub(super) fn new(inner: Inner) -> Self {

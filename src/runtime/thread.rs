@@ -20,7 +20,7 @@ use crate::parallel::ThreadPool;
 use crate::sense::Method;
 use crate::serve::{Command, Neighbours, Server};
 use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, SinkError, claim_priority};
-use crate::source::SensorSource;
+use crate::source::FloorInput;
 use crate::units::{HostClock, Instant};
 use crate::wire::Prefix;
 
@@ -42,7 +42,7 @@ pub(super) struct Plan {
     pub(super) floor: Floor,
     pub(super) layout: Layout,
     pub(super) method: Method,
-    pub(super) source: Box<dyn SensorSource>,
+    pub(super) input: FloorInput,
     pub(super) clock: HostClock,
     pub(super) prefix: Prefix,
     pub(super) sinks: Fanout,
@@ -121,10 +121,10 @@ fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) ->
 }
 
 fn server(plan: Plan) -> Result<Server, SinkError> {
-    let Plan { floor, layout, method, source, clock, prefix, sinks, actuators, neighbours, latency, .. } =
+    let Plan { floor, layout, method, input, clock, prefix, sinks, actuators, neighbours, latency, .. } =
         plan;
-    let actuators = actuators.map(|open| open(&floor, source.now(), &clock)).transpose()?;
-    let mut server = Server::new(&floor, layout, method, source)
+    let actuators = actuators.map(|open| open(&floor, input.source.now(), &clock)).transpose()?;
+    let mut server = Server::new(&floor, layout, method, input)
         .with_events(Box::new(sinks))
         .with_prefix(prefix)
         .with_snapshots(plan.snapshots)

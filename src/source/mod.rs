@@ -1,23 +1,58 @@
-//! Sources of sensor packets: a socket; simulated floors and recordings implement the same trait.
+//! Inputs of floors: packets from a socket, a simulated floor or a recording, and the requests beside them.
 
 mod fault;
+mod input;
+mod journal;
+mod port;
+#[cfg(feature = "net")]
+mod shared;
 #[cfg(feature = "net")]
 mod udp;
 
 pub use fault::{BadFault, Bursts, FaultInjector, Faults, Outage, Stall};
+pub use input::FloorInput;
+pub use journal::{Incoming, Journal, Replay};
+pub use port::Port;
+#[cfg(feature = "net")]
+pub(crate) use shared::Shared;
 #[cfg(feature = "net")]
 pub use udp::{ForwardCounters, Seal, Sealed, UdpSource};
 
-use std::net::SocketAddr;
 use std::time::Duration;
 
 use thiserror::Error;
 
-use crate::layout::Layout;
 use crate::units::Instant;
-use crate::wire::{LinkCause, LinkCounters, Request, SensorPacket};
+use crate::wire::{LinkCounters, SensorPacket};
 
 /// A floor's stream of sensor packets, with the clock that stamps them.
+///
+/// ```
+/// use std::time::Duration;
+/// use underfoot::source::{SensorSource, SourceError};
+/// use underfoot::units::Instant;
+/// use underfoot::wire::{LinkCounters, SensorPacket};
+///
+/// /// Boards on a bus of their own.
+/// struct Bus {
+///     begun: std::time::Instant,
+/// }
+///
+/// impl SensorSource for Bus {
+///     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+///         std::thread::sleep(patience);
+///         Ok(None)
+///     }
+///
+///     fn now(&self) -> Instant {
+///         Instant::START + self.begun.elapsed()
+///     }
+///
+///     fn counters(&self) -> LinkCounters {
+///         LinkCounters::default()
+///     }
+/// }
+/// ```
 pub trait SensorSource: Send {
     /// The next packet; waits for it at most `patience` and returns `None` if none arrived.
     ///
@@ -31,39 +66,21 @@ pub trait SensorSource: Send {
     /// The present on the clock that stamps [`SensorPacket::received`].
     fn now(&self) -> Instant;
 
-    /// The next request of an app over the same wire, oldest first; `None` once all are taken.
-    fn take_request(&mut self) -> Option<Request> {
-        None
-    }
-
-    /// A layout that the floor gets at this moment, for a recording that contains one; in the order of the requests.
-    fn take_layout(&mut self) -> Option<Layout> {
-        None
-    }
-
-    /// Notes a request of the program's own app, so that a recording contains it.
-    fn note_request(&mut self, _request: &Request) {}
-
-    /// Notes a layout that the floor is about to get; a recording replaces it by the form that it stores.
-    fn note_layout(&mut self, _layout: &mut Layout) {}
-
-    /// The address that receives packets; `None` for a source without a network.
-    fn local_addr(&self) -> Option<SocketAddr> {
-        None
-    }
-
-    /// Sends `datagram` to the sender of a request; does nothing for a source without a wire.
-    fn answer(&mut self, _to: SocketAddr, _datagram: &[u8]) {}
-
     /// Numbers of datagrams that the source itself received and refused; zero for a source that refuses nothing.
-    fn counters(&self) -> LinkCounters {
-        LinkCounters::default()
+    fn counters(&self) -> LinkCounters;
+}
+
+impl<S: SensorSource + ?Sized> SensorSource for Box<S> {
+    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        (**self).next(patience)
     }
 
-    /// The cause of the last refusal of something from boards, or [`LinkCause::Unknown`] with the reason if it was
-    /// something else; `None` before the first refusal.
-    fn last_refused(&self) -> Option<LinkCause> {
-        None
+    fn now(&self) -> Instant {
+        (**self).now()
+    }
+
+    fn counters(&self) -> LinkCounters {
+        (**self).counters()
     }
 }
 

@@ -7,7 +7,7 @@ use underfoot::floor::{Calibration, Corner, Day, Floor, Geometry, LawKind, Senso
 use underfoot::glam::Vec2;
 use underfoot::sense::{Assembler, Fit, LoadPoint, LoadTable, PressTable, SensorLoads, Verdict};
 use underfoot::serve::{ForceWatch, TareFailure, take_tare};
-use underfoot::source::{SensorSource, UdpSource};
+use underfoot::source::{FloorInput, UdpSource};
 use underfoot::units::Newtons;
 use underfoot_sim::{self as sim, Load, PartConfig, Print, SensorFault, SimConfig, SimFloor};
 
@@ -101,11 +101,12 @@ fn an_empty_floor_is_tared_over_real_packets() {
     let sim = simulated(&floor);
     let expected = sim::calibrated(&floor, &sim, 1).unwrap();
     let calibrated = Floor { tare: vec![[Newtons::ZERO; 4]; 6], ..expected.clone() };
-    let mut source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
+    let source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
     let _sender = Sender::start(&floor, sim, source.local_addr().unwrap(), |sim, _| {
         sim.step(&[]);
     });
-    let tare = take_tare(&mut source, &calibrated, Duration::from_secs(10), false).unwrap();
+    let tare =
+        take_tare(&mut FloorInput::from(source).source, &calibrated, Duration::from_secs(10), false).unwrap();
     for (found, expected) in tare.iter().flatten().zip(expected.tare.iter().flatten()) {
         assert!((*found - *expected).abs() < Newtons(0.1), "{found:?} for {expected:?}");
     }
@@ -116,12 +117,13 @@ fn somebody_on_the_floor_is_named_by_the_sensor_and_nothing_is_taken() {
     let floor = small_floor();
     let sim = simulated(&floor);
     let calibrated = sim::calibrated(&floor, &sim, 1).unwrap();
-    let mut source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
+    let source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
     let place = floor.geometry.centre(TileId::new(2, 1));
     let _sender = Sender::start(&floor, sim, source.local_addr().unwrap(), move |sim, _| {
         sim.step(&[standing(place)]);
     });
-    let refused = take_tare(&mut source, &calibrated, Duration::from_secs(1), true).unwrap_err();
+    let refused = take_tare(&mut FloorInput::from(source).source, &calibrated, Duration::from_secs(1), true)
+        .unwrap_err();
     let TareFailure::NotQuiet { sensor, mean, .. } = &refused else { panic!("{refused}") };
     assert_eq!(sensor.tile, TileId::new(2, 1));
     assert!(mean.0 > 60.0, "{mean:?}");
@@ -138,12 +140,12 @@ fn something_light_that_was_not_there_at_the_last_tare_is_noticed() {
     let at = floor.geometry.centre(TileId::new(1, 0));
     let bag = Load { print: Print::Point, position: at, heading: 0.0, force: Newtons(40.0) };
     let tare = |accept_change| {
-        let mut source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
+        let source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
         let to = source.local_addr().unwrap();
         let _sender = Sender::start(&floor, sim.clone(), to, move |sim, _| {
             sim.step_under([bag]);
         });
-        take_tare(&mut source, &calibrated, Duration::from_secs(10), accept_change)
+        take_tare(&mut FloorInput::from(source).source, &calibrated, Duration::from_secs(10), accept_change)
     };
     let refused = tare(false).unwrap_err();
     let TareFailure::Changed { tile, change } = refused else { panic!("{refused}") };
@@ -157,26 +159,29 @@ fn boards_that_send_nothing_and_broken_sensors_are_named() {
     let floor = small_floor();
     let sim = simulated(&floor);
     let calibrated = sim::calibrated(&floor, &sim, 1).unwrap();
-    let mut source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
+    let source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
     // Only the southern row's board is connected.
     let southern = Floor { boards: floor.boards[..1].to_vec(), ..floor.clone() };
     let half = SimFloor::new(&southern, SimConfig::default(), 7);
     let sender = Sender::start(&southern, half, source.local_addr().unwrap(), |sim, _| {
         sim.step(&[]);
     });
-    let refused = take_tare(&mut source, &calibrated, Duration::from_millis(700), false).unwrap_err();
+    let refused =
+        take_tare(&mut FloorInput::from(source).source, &calibrated, Duration::from_millis(700), false)
+            .unwrap_err();
     drop(sender);
     let TareFailure::Silent { boards } = refused else { panic!("{refused}") };
     assert_eq!(boards, ["/underfoot/board/1"]);
 
-    let mut source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
+    let source = UdpSource::bind(ANY_PORT, &calibrated).unwrap();
     let mut broken = sim;
     let sensor = SensorId { tile: TileId::new(0, 1), corner: Corner::SouthEast };
     broken.set_fault(sensor, Some(SensorFault::Short));
     let _sender = Sender::start(&floor, broken, source.local_addr().unwrap(), |sim, _| {
         sim.step(&[]);
     });
-    let refused = take_tare(&mut source, &calibrated, Duration::from_secs(1), false).unwrap_err();
+    let refused = take_tare(&mut FloorInput::from(source).source, &calibrated, Duration::from_secs(1), false)
+        .unwrap_err();
     assert!(matches!(refused, TareFailure::NotQuiet { sensor: named, .. } if named == sensor), "{refused}");
 }
 

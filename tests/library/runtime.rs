@@ -10,7 +10,7 @@ use underfoot::runtime::{EndReason, Event, Kind, Refusal, Session, SessionBuilde
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::{EventKind, OffReason, SetError, Value, WidgetId};
-use underfoot::wire::SensorPacket;
+use underfoot::wire::{LinkCounters, SensorPacket};
 use underfoot_sim::{self as sim, Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated};
 
 use crate::support::layout;
@@ -27,6 +27,10 @@ impl SensorSource for Silence {
     fn now(&self) -> Instant {
         Instant::START
     }
+
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
+    }
 }
 
 impl Drop for Silence {
@@ -40,7 +44,7 @@ fn no_clock() -> HostClock {
 }
 
 fn silent(name: &str) -> SessionBuilder {
-    Session::source(Box::new(Silence(Arc::default())), no_clock()).layout(layout(name))
+    Session::source(Silence(Arc::default()), no_clock()).layout(layout(name))
 }
 
 /// The built-in session, as fast as possible.
@@ -51,7 +55,7 @@ fn visit() -> SessionBuilder {
     let script = Scenario::parse("session", Scenario::SESSION).unwrap();
     let script = script.resolve(&layout("map"), &floor.geometry).unwrap();
     let source = SimulatedSource::new(sim, Box::new(script), Pace::FreeRunning);
-    Session::source(Box::new(source), no_clock()).floor(floor).layout(layout("map"))
+    Session::source(source, no_clock()).floor(floor).layout(layout("map"))
 }
 
 fn all(session: &Session) -> Vec<Event> {
@@ -158,7 +162,7 @@ fn another_layout_keeps_what_apps_have_set_and_is_shown_with_its_own_names() {
 #[test]
 fn the_last_handle_ends_the_floor_before_it_is_gone() {
     let gone = Arc::new(AtomicBool::new(false));
-    let source = Box::new(Silence(Arc::clone(&gone)));
+    let source = Silence(Arc::clone(&gone));
     let session = Session::source(source, no_clock()).layout(layout("map")).start().unwrap();
     let other = session.clone();
     drop(session);
@@ -197,8 +201,7 @@ fn an_unknown_page_is_refused_with_the_names_of_the_pages() {
             regions: [(id: "all", at: (0, 0), size: (6, 6))],
             widgets: [(id: "home", kind: "button", at: (1, 1), size: (0.8, 0.8))])"#,
     );
-    let session =
-        Session::source(Box::new(Silence(Arc::default())), no_clock()).layout(pages).start().unwrap();
+    let session = Session::source(Silence(Arc::default()), no_clock()).layout(pages).start().unwrap();
     let expected = r#"there is no page "third": the layout has "first" and "second""#;
     assert_eq!(session.set_page("third").unwrap_err().to_string(), expected);
     session.set_page("second").unwrap();
@@ -262,7 +265,7 @@ fn off_after_a_second(floor: Floor, sim: SimFloor) -> Option<underfoot::engine::
     let page = layout("all_controls");
     let script = Scenario::parse("nobody", stand).unwrap().resolve(&page, &floor.geometry).unwrap();
     let source = SimulatedSource::new(sim, Box::new(script), Pace::FreeRunning);
-    let session = Session::source(Box::new(source), no_clock()).floor(floor).layout(page).start().unwrap();
+    let session = Session::source(source, no_clock()).floor(floor).layout(page).start().unwrap();
     let told = session.events().filter(|event| (event.id(), event.kind) == ("drive", Kind::State)).count();
     let off = session.control("drive").unwrap().state().unwrap().off;
     assert_eq!(told > 0, off.is_some(), "an app hears of it without asking");

@@ -11,7 +11,7 @@ use underfoot::recording::{Recording, Speed};
 use underfoot::sense::{Assembler, Tare};
 use underfoot::serve::{Ended, Server};
 use underfoot::sink::{EventSink, Report};
-use underfoot::source::{SensorSource, SourceError};
+use underfoot::source::{FloorInput, SourceError};
 
 use super::failure::Failure;
 use super::replay::whole;
@@ -45,7 +45,7 @@ fn forces(file: &Path, to: &Path) -> Result<(), Failure> {
     let failed = |error| Failure::File(to.into(), error);
     let recording = Recording::open(file)?;
     let floor = recording.floor().clone();
-    let mut source = recording.source(Speed::Max);
+    let mut source = FloorInput::from(recording.source(Speed::Max)).source;
     let mut assembler = Assembler::with_tare(&floor, Tare::suited_to(&floor));
     let mut out = create(to)?;
     writeln!(out, "t_s,col,row,f_sw,f_se,f_nw,f_ne").map_err(failed)?;
@@ -106,8 +106,8 @@ fn contacts(file: &Path, to: &Path) -> Result<(), Failure> {
     let mut out = create(to)?;
     writeln!(out, "t_s,id,x_m,y_m,force_n,vx_m_s,vy_m_s,ambiguous").map_err(failed)?;
     let rows = Arc::<Mutex<Vec<u8>>>::default();
-    let mut server = Server::new(&floor, layout, method, Box::new(source))
-        .with_events(Box::new(ContactRows(Arc::clone(&rows))));
+    let mut server =
+        Server::new(&floor, layout, method, source).with_events(Box::new(ContactRows(Arc::clone(&rows))));
     loop {
         let ended = server.turn()?;
         let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,6 +1,6 @@
 //! Options for the rehearsal of faults.
 
-use underfoot::source::{FaultInjector, Faults, SensorSource};
+use underfoot::source::{FaultInjector, Faults, FloorInput};
 
 /// Faults between the boards and this program, for rehearsals.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -16,18 +16,16 @@ pub(crate) struct FaultArgs {
 }
 
 impl FaultArgs {
-    /// `source` with these faults and those of a scenario; reports them, so that they are not mistaken for real ones.
-    pub(crate) fn wrap<S: SensorSource + 'static>(
-        &self,
-        source: S,
-        scenario: Faults,
-    ) -> Box<dyn SensorSource> {
+    /// `input` with these faults and those of a scenario; reports them, so that they are not mistaken for real ones.
+    pub(crate) fn wrap(&self, input: impl Into<FloorInput>, scenario: Faults) -> FloorInput {
+        let mut input = input.into();
         let faults = self.faults.iter().cloned().fold(scenario, Faults::and);
         if faults == Faults::default() {
-            return Box::new(source);
+            return input;
         }
         say_what_is_rehearsed(&faults);
-        Box::new(FaultInjector::new(source, faults, self.fault_seed))
+        input.source = Box::new(FaultInjector::new(input.source, faults, self.fault_seed));
+        input
     }
 }
 

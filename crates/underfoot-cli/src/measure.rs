@@ -10,7 +10,7 @@ use underfoot::floor::{Corner, read_address};
 use underfoot::layout::{Layout, Widget};
 use underfoot::sense::{Assembler, Quality, Tare, TareOutcome};
 use underfoot::serve::{ForceRange, ForceWatch, TileRange};
-use underfoot::source::{SensorSource, UdpSource};
+use underfoot::source::UdpSource;
 use underfoot::units::Instant;
 
 use super::failure::Failure;

@@ -35,7 +35,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let outputs = args.outputs.open_patiently(&floor.geometry)?;
     // The renderer only repeats the reports of the mute state; its samples are not used.
     let (feel, _renderer) = renderer(RendererConfig::of(&floor, RATE));
-    let mut server = Server::new(&floor, layout, method, Box::new(source))
+    let mut server = Server::new(&floor, layout, method, source)
         .with_prefix(args.outputs.prefix.osc_prefix.clone())
         .with_feel(feel, Box::new(Unplayed))
         .with_events(Box::new(outputs));

@@ -103,15 +103,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = source.with_prefix(prefix.clone());
     let source = args.commands.open(source)?;
     let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
-    let source = args.faults.wrap(source, Faults::default());
+    let input = args.faults.wrap(source, Faults::default());
     let method = if args.eq4 { Method::Eq4 } else { Method::default() };
     let path = args.record.as_deref();
-    let Recorded { recorder, source, floor, layout } =
-        Recorder::around(path, source, floor, layout, method, WhenBehind::LeaveOut)?;
+    let Recorded { recorder, input, floor, layout } =
+        Recorder::around(path, input, floor, layout, method, WhenBehind::LeaveOut)?;
     let web = args.web.open()?;
-    let source = match &web {
-        Some(web) => web.source(source, floor.geometry),
-        None => source,
+    let input = match &web {
+        Some(web) => web.wrap(input, floor.geometry),
+        None => input,
     };
     let latency = LatencyStages::default();
     let lost = Arc::<AtomicU64>::default();
@@ -131,7 +131,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(watchdog) = Watchdog::of_environment() {
         outputs.push(watchdog);
     }
-    let session = Session::source(source, clock)
+    let session = Session::source(input, clock)
         .floor(floor.clone())
         .layout(layout)
         .method(method)

@@ -112,10 +112,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (picture, sound, log) = (file("floor.png"), file("actuators.wav"), file("events.jsonl"));
 
     let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);
-    let source = args.faults.wrap(source, rehearsed);
+    let input = args.faults.wrap(source, rehearsed);
     let path = args.record.as_deref();
-    let Recorded { recorder, source, floor, layout } =
-        Recorder::around(path, source, floor, layout, Method::default(), WhenBehind::Wait)?;
+    let Recorded { recorder, input, floor, layout } =
+        Recorder::around(path, input, floor, layout, Method::default(), WhenBehind::Wait)?;
     let (feel, renderer) = renderer(RendererConfig::of(&floor, args.rate));
     let lost = Arc::<AtomicU64>::default();
     let options = WavOptions::default().with_when_full(WhenFull::Wait).with_lost(Arc::clone(&lost));
@@ -129,7 +129,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(recorder) = &recorder {
         told.push(recorder.events()?.waiting());
     }
-    let mut server = Server::new(&floor, layout, Method::default(), source)
+    let mut server = Server::new(&floor, layout, Method::default(), input)
         .with_feel(feel, Box::new(wav))
         .with_events(Box::new(told));
     let mut camera = Camera::default();

@@ -181,7 +181,7 @@ impl Args {
         loop {
             let (script, rehearsed) = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
             let source = SimulatedSource::new(sim.clone(), Box::new(script), Pace::RealTime);
-            let mut source = self.faults.wrap(source, rehearsed);
+            let mut source = self.faults.wrap(source, rehearsed).source;
             loop {
                 if stop.load(Ordering::Relaxed) || until.is_some_and(|until| Instant::now() >= until) {
                     return Ok(sent);

@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use underfoot::floor::{Floor, read_address};
 use underfoot::serve::{WiringStep, WiringTask, WiringWalk};
-use underfoot::source::SensorSource;
 
 use super::failure::Failure;
 use super::floor_args::{FloorArgs, FloorOut};

@@ -8,7 +8,7 @@ use super::simulated::SimulatedSource;
 use underfoot::floor::SensorId;
 use underfoot::source::{FaultInjector, Faults, SensorSource, SourceError};
 use underfoot::units::Instant;
-use underfoot::wire::{LinkCause, LinkCounters, SensorPacket};
+use underfoot::wire::{LinkCounters, SensorPacket};
 
 /// Maximum number of waiting changes; the simulated floor takes them each millisecond.
 const CHANGES_WAITING: usize = 256;
@@ -78,10 +78,6 @@ impl SensorSource for RehearsalSource {
 
     fn counters(&self) -> LinkCounters {
         self.injector.counters()
-    }
-
-    fn last_refused(&self) -> Option<LinkCause> {
-        self.injector.last_refused()
     }
 }
 

@@ -9,7 +9,7 @@ use super::{Scenario, SimConfig, SimFloor};
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::{Session, SessionBuilder};
-use underfoot::source::{BadFault, FaultInjector, Faults, SensorSource};
+use underfoot::source::{BadFault, FaultInjector, Faults, FloorInput};
 use underfoot::units::HostClock;
 use underfoot_format::diagnostic::Diagnostics;
 
@@ -44,12 +44,12 @@ pub fn session(layout: Layout, scenario: &Scenario) -> Result<SessionBuilder, Si
     }
     let script = scenario.resolve(&layout, &floor.geometry)?;
     let (source, clock, floor) = simulated(&floor, Box::new(script))?;
-    let source: Box<dyn SensorSource> = if faults == Faults::default() {
-        Box::new(source)
+    let input: FloorInput = if faults == Faults::default() {
+        source.into()
     } else {
-        Box::new(FaultInjector::new(source, faults, SEED))
+        FaultInjector::new(source, faults, SEED).into()
     };
-    Ok(Session::source(source, clock).floor(floor).layout(layout))
+    Ok(Session::source(input, clock).floor(floor).layout(layout))
 }
 
 /// A session on a simulated `floor`, calibrated as in the lab, with the feet that `driver` moves. Set the layout, but
@@ -59,7 +59,7 @@ pub fn session(layout: Layout, scenario: &Scenario) -> Result<SessionBuilder, Si
 /// [`SimulationError::Calibration`] if the sensors of the floor can't be calibrated.
 pub fn session_with(floor: &Floor, driver: Box<dyn FootDriver>) -> Result<SessionBuilder, SimulationError> {
     let (source, clock, floor) = simulated(floor, driver)?;
-    Ok(Session::source(Box::new(source), clock).floor(floor))
+    Ok(Session::source(source, clock).floor(floor))
 }
 
 /// Returns the packets of a simulated `floor` in real time, their clock, and the floor with its calibration.

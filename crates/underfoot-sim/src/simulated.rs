@@ -8,7 +8,7 @@ use super::floor_clock::{FloorClock, Host, Machine};
 use super::{Foot, FootDriver, SimFloor};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
-use underfoot::wire::SensorPacket;
+use underfoot::wire::{LinkCounters, SensorPacket};
 
 /// Speed of a simulated floor's time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +158,10 @@ impl SensorSource for SimulatedSource {
             Clock::Virtual => self.received,
             Clock::Host(clock) => clock.now(),
         }
+    }
+
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
     }
 }
 

@@ -201,7 +201,7 @@ fn played(path: &Path, wired: &Floor, layout: &Layout) -> Result<SessionBuilder,
     let source = FaultInjector::new(source, faults, SEED);
     let begun = Instant::now();
     let clock = Arc::new(move || underfoot::units::Instant::START + begun.elapsed());
-    Ok(Session::source(Box::new(source), clock).floor(floor))
+    Ok(Session::source(source, clock).floor(floor))
 }
 
 /// Without a window: the same feet, as touches on an invisible picture.

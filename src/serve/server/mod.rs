@@ -3,6 +3,7 @@
 mod end;
 mod haptics;
 mod heartbeat;
+mod inbox;
 mod limited;
 mod link;
 mod off;
@@ -19,6 +20,7 @@ use tracing::debug;
 use triple_buffer::Input;
 
 use self::haptics::Haptics;
+use self::inbox::Inbox;
 use self::link::LinkWatch;
 use self::off::OffWatch;
 use self::outputs::Outputs;
@@ -33,7 +35,7 @@ use crate::layout::Layout;
 use crate::sense::{Assembler, Method, Tare, TareOutcome};
 use crate::serve::{Neighbours, Refusal};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
-use crate::source::{SensorSource, SourceError};
+use crate::source::{FloorInput, Incoming, SensorSource, SourceError};
 use crate::units::{Instant, Newtons};
 use crate::wire::{ControlMessage, LinkCounters, Prefix};
 
@@ -91,6 +93,7 @@ pub enum Ended {
 /// A running floor.
 pub struct Server {
     source: Box<dyn SensorSource>,
+    inbox: Inbox,
     assembler: Assembler,
     engine: Engine,
     commands: Option<Receiver<Command>>,
@@ -115,13 +118,15 @@ pub struct Server {
 }
 
 impl Server {
-    /// A server for the controls of `layout` on `floor`, fed by `source`, without any outputs yet.
+    /// A server for the controls of `layout` on `floor`, fed by `input`, without any outputs yet.
     ///
     /// The tare is the floor's own, or measured at the start if it has none.
     #[must_use]
-    pub fn new(floor: &Floor, layout: Layout, method: Method, source: Box<dyn SensorSource>) -> Self {
+    pub fn new(floor: &Floor, layout: Layout, method: Method, input: impl Into<FloorInput>) -> Self {
+        let FloorInput { source, port, replay, journals } = input.into();
         Self {
             source,
+            inbox: Inbox { port, replay, journals },
             assembler: Assembler::with_tare(floor, Tare::suited_to(floor)),
             engine: Engine::new(floor.geometry, layout, method)
                 .with_maps(&floor.position_maps)
@@ -143,7 +148,7 @@ impl Server {
         }
     }
 
-    /// Sets `prefix` for the addresses of its answers; its source and sinks have prefixes of their own.
+    /// Sets `prefix` for the addresses of its answers; its input and sinks have prefixes of their own.
     #[must_use]
     pub fn with_prefix(mut self, prefix: Prefix) -> Self {
         self.answers.prefix = prefix;
@@ -365,7 +370,7 @@ impl Server {
 
     /// Reports the cause of unusable frames where it has changed.
     fn note_cause(&mut self, counters: &LinkCounters, now: Instant) {
-        let (link, refused) = (self.link.state(), self.source.last_refused());
+        let (link, refused) = (self.link.state(), self.inbox.last_refused());
         let facts = Facts { assembler: &self.assembler, link, counters, refused };
         if self.causes.update(&facts, now) {
             let cause = self.causes.cause();
@@ -407,12 +412,10 @@ impl Server {
     /// Processes commands up to the limit of a turn; the end of the turn shows their effects.
     fn process_commands(&mut self) {
         for _ in 0..MOST_AT_ONCE {
-            if let Some(request) = self.source.take_request() {
-                self.process_request(request);
-            } else if let Some(layout) = self.source.take_layout() {
-                self.set_layout(layout);
-            } else {
-                break;
+            match self.inbox.take() {
+                Some(Incoming::Request(request)) => self.process_request(request),
+                Some(Incoming::Layout(layout)) => self.set_layout(*layout),
+                None => break,
             }
         }
         let now = self.source.now();
@@ -426,16 +429,16 @@ impl Server {
             };
             match command {
                 Command::SetLayout(mut layout) => {
-                    self.source.note_layout(&mut layout);
+                    self.inbox.note_layout(&mut layout);
                     self.set_layout(*layout);
                 }
                 Command::Control(message) => {
                     let request = message.into();
-                    self.source.note_request(&request);
+                    self.inbox.note_request(&request);
                     self.process_request(request);
                 }
                 Command::Ask(message, answer) => {
-                    self.source.note_request(&message.clone().into());
+                    self.inbox.note_request(&message.clone().into());
                     self.answer(message, &answer);
                 }
                 Command::GiveTare(to) => {

@@ -215,7 +215,7 @@ impl Server {
 
     fn send_answer(&mut self, request: &Request) {
         if let Some(sender) = request.sender {
-            self.source.answer(sender, &self.answers.bytes);
+            self.inbox.answer(sender, &self.answers.bytes);
         }
     }
 }

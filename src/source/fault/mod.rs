@@ -7,7 +7,6 @@ mod tests;
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use std::net::SocketAddr;
 use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};
@@ -15,7 +14,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::wire::{LinkCause, LinkCounters, Readings, Request, SensorPacket};
+use crate::wire::{LinkCounters, Readings, SensorPacket};
 
 pub use self::spec::BadFault;
 
@@ -247,24 +246,8 @@ impl<S: SensorSource> SensorSource for FaultInjector<S> {
         self.now.max(self.inner.now())
     }
 
-    fn take_request(&mut self) -> Option<Request> {
-        self.inner.take_request()
-    }
-
-    fn local_addr(&self) -> Option<SocketAddr> {
-        self.inner.local_addr()
-    }
-
-    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
-        self.inner.answer(to, datagram);
-    }
-
     fn counters(&self) -> LinkCounters {
         self.inner.counters()
-    }
-
-    fn last_refused(&self) -> Option<LinkCause> {
-        self.inner.last_refused()
     }
 }
 

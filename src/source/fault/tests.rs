@@ -25,6 +25,10 @@ impl SensorSource for Boards {
     fn now(&self) -> Instant {
         self.1
     }
+
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
+    }
 }
 
 /// All packets that get through, and the number of calls that found none within 10 ms.

@@ -5,6 +5,7 @@ mod drops;
 mod forward;
 mod log;
 mod open;
+mod parts;
 mod proc_net;
 mod seal;
 mod senders;
@@ -29,7 +30,7 @@ use self::open::{BUFFER_BYTES, open};
 pub use self::seal::{Seal, Sealed};
 use self::stamped::{Received, Stamped};
 use self::timed::{Timed, delay};
-use super::{SensorSource, SourceError};
+use super::{Port, SourceError};
 use crate::floor::{Floor, Forwarding, Network, canonical};
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
@@ -54,6 +55,9 @@ const KEPT_REFUSAL: Duration = Duration::from_secs(1);
 ///
 /// It accepts packets from the floor's networks ([`Floor::allow`]), by default from this machine only, and requests
 /// from this machine only, on the same port, unless [`UdpSource::with_commands`] opens one for them.
+///
+/// As the input of a floor it consists of two parts, the packets and the [`Port`]: [`FloorInput`](super::FloorInput)
+/// gets it whole. [`UdpSource::next`] receives both.
 ///
 /// Its clock starts at zero when the socket is bound. On Linux the stamp of a packet is the time at which the kernel
 /// received it; elsewhere it is the time at which the program reads it, which includes the wake-up time of the
@@ -235,6 +239,48 @@ impl UdpSource {
     pub fn clock(&self) -> HostClock {
         let started = self.started;
         Arc::new(move || Instant::START + started.elapsed())
+    }
+
+    /// The next packet; waits for it at most `patience` and returns `None` if none arrived.
+    ///
+    /// Returns the packets of one datagram one by one. Returns after twice `patience` at most, even while datagrams
+    /// without sensor packets arrive.
+    ///
+    /// # Errors
+    /// [`SourceError::Socket`] if the socket fails.
+    pub fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        let begun = self.now();
+        self.counters.overflowed += self.kernel_drops.look(&self.socket, begun);
+        if self.commands.as_ref().is_some_and(|(_, looked)| begun.since(*looked) >= REQUESTS_EVERY) {
+            self.receive_commands()?;
+        }
+        for looked_at in 1.. {
+            if let Some(packet) = self.packets.pop_front() {
+                return Ok(Some(packet));
+            }
+            let came = self.receive(patience)?;
+            let enough = if patience.is_zero() {
+                looked_at >= MAX_UNWAITED
+            } else {
+                self.now().since(begun) >= patience
+            };
+            if self.packets.is_empty() && (!came || enough) {
+                break;
+            }
+        }
+        Ok(None)
+    }
+
+    /// The present on the clock that stamps packets.
+    #[must_use]
+    pub fn now(&self) -> Instant {
+        Instant::START + self.started.elapsed()
+    }
+
+    /// Numbers of datagrams received and refused.
+    #[must_use]
+    pub const fn counters(&self) -> LinkCounters {
+        self.counters
     }
 
     /// Receives one datagram and sorts its content; false if none arrived.
@@ -424,63 +470,6 @@ impl UdpSource {
         }
         self.patience = Some(patience);
         Ok(())
-    }
-}
-
-impl SensorSource for UdpSource {
-    /// Returns the packets of one datagram one by one. Returns after twice `patience` at most, even while datagrams
-    /// without sensor packets arrive.
-    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
-        let begun = self.now();
-        self.counters.overflowed += self.kernel_drops.look(&self.socket, begun);
-        if self.commands.as_ref().is_some_and(|(_, looked)| begun.since(*looked) >= REQUESTS_EVERY) {
-            self.receive_commands()?;
-        }
-        for looked_at in 1.. {
-            if let Some(packet) = self.packets.pop_front() {
-                return Ok(Some(packet));
-            }
-            let came = self.receive(patience)?;
-            let enough = if patience.is_zero() {
-                looked_at >= MAX_UNWAITED
-            } else {
-                self.now().since(begun) >= patience
-            };
-            if self.packets.is_empty() && (!came || enough) {
-                break;
-            }
-        }
-        Ok(None)
-    }
-
-    fn now(&self) -> Instant {
-        Instant::START + self.started.elapsed()
-    }
-
-    fn take_request(&mut self) -> Option<Request> {
-        self.requests.pop_front().or_else(|| self.timed.take(self.now()))
-    }
-
-    fn local_addr(&self) -> Option<SocketAddr> {
-        self.socket.local_addr().ok()
-    }
-
-    /// Logs an answer that does not reach its receiver; that is not an error of this end.
-    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
-        // From the port that received the request.
-        let socket = self.commands.as_ref().map_or(&self.socket, |(socket, _)| socket);
-        if let Err(error) = socket.send_to(datagram, to) {
-            let now = Instant::START + self.started.elapsed();
-            self.log.unanswered(now, to, &error);
-        }
-    }
-
-    fn last_refused(&self) -> Option<LinkCause> {
-        self.last_refused.as_ref().map(|(cause, _)| cause.clone())
-    }
-
-    fn counters(&self) -> LinkCounters {
-        self.counters
     }
 }
 

@@ -15,7 +15,7 @@ use underfoot::serve::Server;
 use underfoot::sink::{OscSink, SilentSink};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
-use underfoot::wire::SensorPacket;
+use underfoot::wire::{LinkCounters, SensorPacket};
 use underfoot_sim::{self as sim, SimConfig, SimFloor};
 
 use super::bench::foot;
@@ -84,6 +84,10 @@ impl SensorSource for Drag {
     fn now(&self) -> Instant {
         Instant::from_millis(self.millis.into())
     }
+
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
+    }
 }
 
 /// All messages until none has come for some time.
@@ -115,7 +119,7 @@ fn told(end: End) -> Vec<(String, Vec<OscType>)> {
     let source = Drag { sim, millis: 0, waiting: Vec::new(), end, stop: Arc::clone(&stop) };
     let (feel, renderer) = renderer(RendererConfig::of(&floor, 8000));
     let played = SilentSink::new(renderer, Instant::START, None);
-    let mut server = Server::new(&floor, page(PAGE), Method::default(), Box::new(source))
+    let mut server = Server::new(&floor, page(PAGE), Method::default(), source)
         .with_feel(feel, Box::new(played))
         .with_events(Box::new(OscSink::new(target).unwrap()));
     let served = catch_unwind(AssertUnwindSafe(move || server.run(&stop).is_ok()));

@@ -61,8 +61,8 @@ fn serve(
     let notes = Notes::default();
     let source = SimulatedSource::new(sim.clone(), feet, Pace::FreeRunning);
     let source = FaultInjector::new(source, faults, 5);
-    let mut server = Server::new(floor, page.clone(), Method::default(), Box::new(source))
-        .with_events(Box::new(notes.clone()));
+    let mut server =
+        Server::new(floor, page.clone(), Method::default(), source).with_events(Box::new(notes.clone()));
     while server.turn().unwrap() == Ended::No {}
     drop(server);
     std::mem::take(&mut *notes.0.lock().unwrap())

@@ -9,3 +9,4 @@ mod server;
 mod tuio;
 mod tuio_client;
 mod udp;
+mod wrappers;

@@ -69,7 +69,7 @@ impl Room {
         let options = WavOptions::default().with_start(start).with_when_full(WhenFull::Wait);
         let wav = WavSink::create(wav, renderer, options).unwrap();
         let told = OscSink::under(listener.local_addr().unwrap(), Prefix::default()).unwrap();
-        let server = Server::new(floor, two_buttons(&floor.geometry), Method::default(), Box::new(source))
+        let server = Server::new(floor, two_buttons(&floor.geometry), Method::default(), source)
             .with_feel(feel, Box::new(wav))
             .with_events(Box::new(told));
         Self { server, clock, app, listener, start }

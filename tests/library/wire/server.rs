@@ -1,6 +1,7 @@
 //! A server without sockets: its handling of packets, silence and requests.
 
 use std::collections::VecDeque;
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::mpsc;
 use std::time::Duration;
@@ -13,10 +14,10 @@ use underfoot::schema::Effects;
 use underfoot::sense::{Method, Quality};
 use underfoot::serve::{Command, Ended, Server};
 use underfoot::sink::{ActuatorSink, EventSink, ManualSink, Report, SinkError};
-use underfoot::source::{SensorSource, SourceError};
+use underfoot::source::{FloorInput, Port, SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value, WidgetId};
-use underfoot::wire::{ControlMessage, LinkState, Request, SensorPacket};
+use underfoot::wire::{ControlMessage, LinkCause, LinkCounters, LinkState, Request, SensorPacket};
 use underfoot_sim::{self as sim, Foot, SensorFault, SimConfig, SimFloor};
 
 /// Packets of a foot on `home`, with silences in between, in which only the clock advances.
@@ -27,9 +28,27 @@ struct Visit {
     millis: u32,
     waiting: VecDeque<SensorPacket>,
     foot: Foot,
-    requests: VecDeque<ControlMessage>,
     /// Sensors that break, with their times.
     breaks: VecDeque<(u32, SensorId, Option<SensorFault>)>,
+}
+
+/// Requests that arrive beside the visit, without a network.
+struct Requests(VecDeque<ControlMessage>);
+
+impl Port for Requests {
+    fn take_request(&mut self) -> Option<Request> {
+        self.0.pop_front().map(Request::from)
+    }
+
+    fn answer(&mut self, _: SocketAddr, _: &[u8]) {}
+
+    fn local_addr(&self) -> Option<SocketAddr> {
+        None
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        None
+    }
 }
 
 impl SensorSource for Visit {
@@ -61,8 +80,8 @@ impl SensorSource for Visit {
         Instant::from_millis(self.millis.into())
     }
 
-    fn take_request(&mut self) -> Option<Request> {
-        self.requests.pop_front().map(Request::from)
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
     }
 }
 
@@ -109,12 +128,12 @@ fn server_on(
         millis: 0,
         waiting: VecDeque::new(),
         foot,
-        requests: requests.iter().cloned().collect(),
         breaks: breaks.iter().copied().collect(),
     };
+    let requests = Requests(requests.iter().cloned().collect());
+    let input = FloorInput { port: Some(Box::new(requests)), ..visit.into() };
     let (tell, told) = mpsc::channel();
-    let server =
-        Server::new(floor, page, Method::default(), Box::new(visit)).with_events(Box::new(Notes(tell)));
+    let server = Server::new(floor, page, Method::default(), input).with_events(Box::new(Notes(tell)));
     (server, told)
 }
 

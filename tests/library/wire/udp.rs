@@ -6,7 +6,7 @@ use std::time::Duration;
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::Assembler;
-use underfoot::source::{SensorSource, SourceError, UdpSource};
+use underfoot::source::{Port, SourceError, UdpSource};
 use underfoot::units::Instant;
 use underfoot::wire::{ControlMessage, LinkCause, Readings, SensorEncoder, SensorFormat, SensorPacket};
 

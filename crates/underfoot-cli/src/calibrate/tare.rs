@@ -8,6 +8,7 @@ use serde_json::json;
 use underfoot::floor::read_address;
 use underfoot::schema;
 use underfoot::serve::{TareFailure, take_tare};
+use underfoot::source::FloorInput;
 
 use super::today;
 use crate::failure::Failure;
@@ -44,15 +45,13 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = FloorOut::new(&args.floor);
     let mut floor = schema::load_floor(&args.floor)?;
-    let mut source = args.boards.bind(args.listen, &floor)?;
+    let source = args.boards.bind(args.listen, &floor)?;
     errln!("Listening on {}; keep off the floor.", args.listen);
-    floor.tare =
-        take_tare(&mut source, &floor, args.seconds, args.accept_change).map_err(
-            |failure| match failure {
-                TareFailure::Changed { .. } => Failure::Other(format!("{failure} with --accept-change")),
-                failure => Failure::Other(failure.to_string()),
-            },
-        )?;
+    floor.tare = take_tare(&mut FloorInput::from(source).source, &floor, args.seconds, args.accept_change)
+        .map_err(|failure| match failure {
+            TareFailure::Changed { .. } => Failure::Other(format!("{failure} with --accept-change")),
+            failure => Failure::Other(failure.to_string()),
+        })?;
     floor.tared = Some(today());
     let saved = out.save(&floor)?;
     let weights = floor.tare.iter().map(|tare| tare.iter().map(|tare| tare.0).sum::<f32>());

@@ -1,19 +1,15 @@
-//! A source that reports layouts among the packets to the window.
+//! A replay that reports its layouts to the window.
 
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, TrySendError};
-use std::time::Duration;
 
 use underfoot::layout::Layout;
-use underfoot::source::{SensorSource, SourceError};
-use underfoot::units::Instant;
-use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
+use underfoot::source::{FloorInput, Incoming, Replay};
 use underfoot_window::preview::{LayoutCause, LayoutNews, Warnings};
 
-/// A recording or a server's floor that reports later layouts to the window.
-pub(super) struct AnnouncingSource<S> {
-    source: S,
+/// The requests and layouts of a recording or of a server; reports the layouts to the window.
+struct AnnouncingReplay {
+    replay: Box<dyn Replay>,
     layouts: SyncSender<LayoutNews>,
     cause: LayoutCause,
     given: u64,
@@ -21,12 +17,21 @@ pub(super) struct AnnouncingSource<S> {
     late: Option<LayoutNews>,
 }
 
-impl<S> AnnouncingSource<S> {
-    pub(super) const fn new(source: S, layouts: SyncSender<LayoutNews>, cause: LayoutCause) -> Self {
-        Self { source, layouts, cause, given: 0, late: None }
-    }
+/// The input of a recording or of a server's floor, with later layouts reported to the window.
+pub(super) fn announced(
+    input: impl Into<FloorInput>,
+    layouts: SyncSender<LayoutNews>,
+    cause: LayoutCause,
+) -> FloorInput {
+    let mut input = input.into();
+    input.replay = input.replay.map(|replay| -> Box<dyn Replay> {
+        Box::new(AnnouncingReplay { replay, layouts, cause, given: 0, late: None })
+    });
+    input
+}
 
-    /// Reports to the window, now or with the next packet: the sensing thread never waits for it.
+impl AnnouncingReplay {
+    /// Reports to the window, now or before the next packet: the sensing thread never waits for it.
     fn tell(&mut self, news: LayoutNews) {
         // A closed window needs no report.
         if let Err(TrySendError::Full(news)) = self.layouts.try_send(news) {
@@ -43,48 +48,62 @@ impl<S> AnnouncingSource<S> {
     }
 }
 
-impl<S: SensorSource> SensorSource for AnnouncingSource<S> {
-    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+impl Replay for AnnouncingReplay {
+    fn take(&mut self) -> Option<Incoming> {
         if let Some(news) = self.late.take() {
             self.tell(news);
         }
-        self.source.next(patience)
+        let taken = self.replay.take()?;
+        if let Incoming::Layout(layout) = &taken {
+            self.given += 1;
+            self.tell(LayoutNews::Loaded {
+                layout: Arc::new(Layout::clone(layout)),
+                revision: self.given,
+                name: self.name(layout),
+                cause: self.cause,
+                warnings: Warnings::default(),
+            });
+        }
+        Some(taken)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::sync_channel;
+
+    use underfoot::floor::Floor;
+    use underfoot::source::UdpSource;
+    use underfoot::wire::{ControlMessage, Request};
+
+    use super::*;
+
+    /// A request, then a layout.
+    struct Two(Vec<Incoming>);
+
+    impl Replay for Two {
+        fn take(&mut self) -> Option<Incoming> {
+            self.0.pop()
+        }
     }
 
-    fn now(&self) -> Instant {
-        self.source.now()
-    }
-
-    fn take_request(&mut self) -> Option<Request> {
-        self.source.take_request()
-    }
-
-    fn take_layout(&mut self) -> Option<Layout> {
-        let layout = self.source.take_layout()?;
-        self.given += 1;
-        self.tell(LayoutNews::Loaded {
-            layout: Arc::new(layout.clone()),
-            revision: self.given,
-            name: self.name(&layout),
-            cause: self.cause,
-            warnings: Warnings::default(),
-        });
-        Some(layout)
-    }
-
-    fn local_addr(&self) -> Option<SocketAddr> {
-        self.source.local_addr()
-    }
-
-    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
-        self.source.answer(to, datagram);
-    }
-
-    fn counters(&self) -> LinkCounters {
-        self.source.counters()
-    }
-
-    fn last_refused(&self) -> Option<LinkCause> {
-        self.source.last_refused()
+    #[test]
+    fn requests_and_layouts_get_through_and_the_window_gets_the_layouts() {
+        let source = UdpSource::bind(([127, 0, 0, 1], 0).into(), &Floor::default()).unwrap();
+        let two = Two(vec![
+            Incoming::Layout(Box::new(Layout { title: "second".into(), ..Layout::default() })),
+            Incoming::Request(Request::from(ControlMessage::GetMute)),
+        ]);
+        let input = FloorInput { replay: Some(Box::new(two)), ..source.into() };
+        let (layouts, told) = sync_channel(4);
+        let input = announced(input, layouts, LayoutCause::Served);
+        assert!(input.port.is_some());
+        let mut replay = input.replay.unwrap();
+        assert!(matches!(replay.take(), Some(Incoming::Request(_))));
+        assert!(told.try_recv().is_err(), "a request is no layout");
+        let Some(Incoming::Layout(layout)) = replay.take() else { panic!("a layout") };
+        assert!(replay.take().is_none());
+        let Ok(LayoutNews::Loaded { name, revision, .. }) = told.try_recv() else { panic!("a report") };
+        assert_eq!((layout.title, name, revision), ("second".into(), "second".into(), 1));
     }
 }

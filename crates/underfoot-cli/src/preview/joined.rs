@@ -24,7 +24,7 @@ use super::super::failure::Failure;
 use super::super::layout_args::LayoutArgs;
 use super::super::watch::Watch;
 use super::LOOK;
-use super::announced::AnnouncingSource;
+use super::announced::announced;
 use super::commands::keep_floor;
 use super::feeds::{ToWindow, stop_and_wait};
 
@@ -147,9 +147,9 @@ impl Run {
         tap: &PacketTap,
     ) -> Result<Self, Failure> {
         let (clock, left_out) = (source.clock(), Box::new(source.left_out()));
-        let source = AnnouncingSource::new(source, window.layouts.clone(), LayoutCause::Served);
-        let source = tap.source(Box::new(source), greeting.floor.geometry);
-        let session = Session::source(Box::new(source), clock)
+        let input = announced(source, window.layouts.clone(), LayoutCause::Served);
+        let input = tap.wrap(input, greeting.floor.geometry);
+        let session = Session::source(input, clock)
             .floor(greeting.floor.clone())
             .layout(greeting.layout.clone())
             .method(greeting.method)

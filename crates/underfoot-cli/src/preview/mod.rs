@@ -24,7 +24,7 @@ use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
-use underfoot::source::{Faults, SensorSource};
+use underfoot::source::{Faults, FloorInput};
 use underfoot::units::HostClock;
 use underfoot_sim::{
     ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
@@ -179,8 +179,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let notice = move |text| drop(told.try_send(text));
     let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
     let (tap, packets) = TappedPackets::new();
-    let source = tap.source(stage.source, floor.geometry);
-    let mut session = Session::source(Box::new(source), stage.clock)
+    let input = tap.wrap(stage.input, floor.geometry);
+    let mut session = Session::source(input, stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())
         .method(if args.eq4 { Method::Eq4 } else { Method::default() })
@@ -320,10 +320,10 @@ fn followed(args: &Args, path: &Path) -> Result<(), Failure> {
     preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
 }
 
-/// The source of packets, with its description.
+/// The input of the floor, with its description.
 struct Stage {
     floor: Floor,
-    source: Box<dyn SensorSource>,
+    input: FloorInput,
     clock: HostClock,
     name: String,
     feet: Option<Box<dyn FootSink>>,
@@ -357,7 +357,7 @@ impl Args {
             return Ok(Stage {
                 floor: floor.clone(),
                 clock: source.clock(),
-                source: Box::new(source),
+                input: source.into(),
                 name: format!("floor on port {}", address.port()),
                 feet: None,
                 shoes: None,
@@ -390,7 +390,7 @@ impl Args {
         Ok(Stage {
             floor,
             clock,
-            source: Box::new(source),
+            input: source.into(),
             faults: Some(switch),
             people: Some(people),
             name: name.into(),

@@ -12,7 +12,6 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::recording::{Mark, MarkKind, Progress, Recording, Speed, Timeline, Transport};
 use underfoot::runtime::Session;
-use underfoot::source::SensorSource;
 use underfoot::units::Instant;
 use underfoot_window::preview::{
     EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels,
@@ -20,7 +19,7 @@ use underfoot_window::preview::{
 
 use super::super::failure::Failure;
 use super::LOOK;
-use super::announced::AnnouncingSource;
+use super::announced::announced;
 use super::feeds::{ToWindow, stop_and_wait};
 
 /// A recording that is shown; ends when this is dropped.
@@ -144,8 +143,8 @@ impl Run {
         source.transport().stay_at_the_end();
         let (transport, progress, first) = (source.transport(), source.progress(), source.now());
         let clock = source.clock();
-        let source = AnnouncingSource::new(source, window.layouts.clone(), LayoutCause::Recorded);
-        let session = Session::source(Box::new(source), clock)
+        let input = announced(source, window.layouts.clone(), LayoutCause::Recorded);
+        let session = Session::source(input, clock)
             .floor(floor.clone())
             .layout(layout.clone())
             .method(method)

@@ -24,7 +24,7 @@ use underfoot::mirror::MirrorFeed;
 use underfoot::runtime::Session;
 use underfoot::sense::Method;
 use underfoot::sink::{EventSink, JsonSink};
-use underfoot::source::SensorSource;
+use underfoot::source::FloorInput;
 
 use super::failure::Failure;
 use broadcast::{Broadcast, Clients};
@@ -115,9 +115,9 @@ impl WebListener {
         Ok(JsonSink::new(Broadcast::new(Arc::clone(&self.clients)))?.with_contacts())
     }
 
-    /// Wraps `source`, so that joined windows get its results.
-    pub(crate) fn source(&self, source: Box<dyn SensorSource>, geometry: Geometry) -> Box<dyn SensorSource> {
-        Box::new(self.feed.source(source, geometry))
+    /// Wraps `input`, so that joined windows get its results.
+    pub(crate) fn wrap(&self, input: FloorInput, geometry: Geometry) -> FloorInput {
+        self.feed.wrap(input, geometry)
     }
 
     /// Starts to accept clients.

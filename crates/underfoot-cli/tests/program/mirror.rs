@@ -18,7 +18,7 @@ use underfoot::runtime::Session;
 use underfoot::schema::{Kinds, parse_layout};
 use underfoot::sense::Method;
 use underfoot::sink::JsonSink;
-use underfoot::source::SensorSource;
+use underfoot::source::FloorInput;
 use underfoot::units;
 use underfoot::wire::{LinkState, Readings, SensorEncoder, SensorFormat, SensorPacket};
 
@@ -74,7 +74,7 @@ struct Joined {
 impl Joined {
     fn of(greeting: Box<Greeting>, source: MirrorSource) -> Self {
         let (lines, clock, left_out) = (Lines::default(), source.clock(), source.left_out());
-        let session = Session::source(Box::new(source), clock)
+        let session = Session::source(source, clock)
             .floor(greeting.floor.clone())
             .layout(greeting.layout.clone())
             .method(greeting.method)
@@ -436,7 +436,7 @@ fn what_a_mirror_of_the_papers_floor_takes() {
         .unwrap();
     let mut counted = raw(web);
     let (_link, news) = MirrorLink::start(web).unwrap();
-    let (greeting, mut source) = loop {
+    let (greeting, source) = loop {
         if let MirrorNews::Joined(greeting, source) = news.recv_timeout(AT_LAST).unwrap() {
             break (greeting, source);
         }
@@ -467,6 +467,7 @@ fn what_a_mirror_of_the_papers_floor_takes() {
             thread::sleep(due.saturating_sub(begun.elapsed()));
         }
     });
+    let mut source = FloorInput::from(source).source;
     let (mut late, begun) = (Vec::new(), Instant::now());
     while begun.elapsed() < Duration::from_secs(10) {
         if let Some(packet) = source.next(Duration::from_millis(5)).unwrap() {

@@ -302,7 +302,7 @@ fn a_replay_that_is_led_to_and_fro_gives_the_same_events() {
         let (floor, layout) = (recording.floor().clone(), recording.layout().clone());
         let source = recording.source(if led { Speed::Times(8.0) } else { Speed::Max });
         let (transport, progress, clock) = (source.transport(), source.progress(), source.clock());
-        let session = Session::source(Box::new(source), clock).floor(floor).layout(layout);
+        let session = Session::source(source, clock).floor(floor).layout(layout);
         let session = session.every_change().start().unwrap();
         let leader = std::thread::spawn(move || {
             let mut rng = Pcg64Mcg::seed_from_u64(2);

@@ -73,7 +73,7 @@ fn hours_of_floor_time(hours: u64) -> Vec<Holdings> {
     let repeated = Repeated { script, until, begun: Instant::START };
     let sim = SimFloor::new(&floor, SimConfig::default(), 1);
     let source = SimulatedSource::new(sim, Box::new(repeated), Pace::FreeRunning);
-    let mut server = Server::new(&floor, layout, Method::default(), Box::new(source));
+    let mut server = Server::new(&floor, layout, Method::default(), source);
     let mut parts = Vec::new();
     while server.turn().unwrap() == Ended::No {
         let done = server.engine().now().since(Instant::START).as_secs() / HOUR_S;

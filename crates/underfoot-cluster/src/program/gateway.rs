@@ -16,7 +16,7 @@ use underfoot::sink::Watchdog;
 use underfoot::sink::{
     AreaNews, AreaState, EventSink, Fanout, JsonSink, OscSink, Rank, TuioSink, TuioVersion, claim_priority,
 };
-use underfoot::source::{SensorSource, UdpSource};
+use underfoot::source::{Port, UdpSource};
 use underfoot::units::Instant;
 use underfoot::wire::{Prefix, Request};
 use underfoot_cluster::auth::{Kind, Opened, Role};

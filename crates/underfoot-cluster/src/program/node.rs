@@ -14,7 +14,7 @@ use underfoot::schema;
 #[cfg(unix)]
 use underfoot::sink::Watchdog;
 use underfoot::sink::{Fanout, Rank, claim_priority};
-use underfoot::source::{SensorSource, UdpSource};
+use underfoot::source::{FloorInput, UdpSource};
 use underfoot_cluster::auth::{Opened, Role};
 use underfoot_cluster::message::{LayoutName, NodeMessage, ToNodes, VERSION, decode, fingerprint};
 use underfoot_cluster::node::{Guard, NodeSink};
@@ -80,6 +80,18 @@ const SPARE_GATEWAYS: usize = 8;
 /// Greatest number of messages that wait for the sending thread: a fifth of a second.
 const WAITING: usize = 100;
 
+/// The packets and requests of `source` on a clock with these steps that runs `times` slower.
+fn on_clock(source: UdpSource, steps: Option<Steps>, times: u32) -> FloorInput {
+    let mut input = FloorInput::from(source);
+    if let Some(steps) = steps {
+        input.source = Box::new(SteppedSource::new(input.source, steps));
+    }
+    if times > 1 {
+        input.source = Box::new(SlowedSource::new(input.source, times));
+    }
+    input
+}
+
 /// Serves an area until a stop.
 pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let floor = schema::load_floor(&args.floor)?;
@@ -103,11 +115,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let crossed = border.counters();
     let source = source.sealed_by(Box::new(seal), computers);
     let (source, forwarded) = source.forwarding(&floor.forwardings(area))?;
-    let source: Box<dyn SensorSource> = match steps {
-        Some(steps) => Box::new(SteppedSource::new(source, steps)),
-        None => Box::new(source),
-    };
-    let source = if args.slow > 1 { Box::new(SlowedSource::new(source, args.slow)) } else { source };
+    let input = on_clock(source, steps, args.slow);
     let (drafts, drafted) = sync_channel(WAITING);
     let sink = NodeSink::new(drafts);
     let held_up = sink.held_up();
@@ -118,7 +126,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         sinks.push(watchdog);
     }
     let sound = args.sound;
-    let session = Session::source(source, Arc::clone(&clock))
+    let session = Session::source(input, Arc::clone(&clock))
         .floor(part)
         .layout(layout)
         .sink(sinks)
@@ -234,4 +242,29 @@ fn ended(session: &Session) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::UdpSocket;
+
+    use super::*;
+
+    #[test]
+    fn requests_get_through_a_clock_of_another_kind() {
+        let here = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        let source = UdpSource::bind(here, &Floor::default()).unwrap();
+        let app = UdpSocket::bind(here).unwrap();
+        app.connect(source.local_addr().unwrap()).unwrap();
+        let message = rosc::OscMessage { addr: "/underfoot/page/get".into(), args: vec![] };
+        app.send(&rosc::encoder::encode(&rosc::OscPacket::Message(message)).unwrap()).unwrap();
+        let mut input = on_clock(source, Some(Steps::default()), 4);
+        while input.source.counters().datagrams == 0 {
+            input.source.next(Duration::from_millis(5)).unwrap();
+        }
+        let mut port = input.port.unwrap();
+        let sender = port.take_request().unwrap().sender.unwrap();
+        port.answer(sender, b"here");
+        assert_eq!(app.recv(&mut [0; 16]).unwrap(), 4);
+    }
 }

@@ -1,13 +1,12 @@
 //! A node's source in slow motion, so that more nodes than a machine can run can be measured on it: each millisecond
 //! of the floor takes several of the machine.
 
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
-use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
+use underfoot::wire::{LinkCounters, SensorPacket};
 
 /// A source on a clock that runs `times` slower than the machine's.
 pub(super) struct SlowedSource {
@@ -41,23 +40,7 @@ impl SensorSource for SlowedSource {
         slow(self.inner.now(), self.times)
     }
 
-    fn take_request(&mut self) -> Option<Request> {
-        self.inner.take_request()
-    }
-
-    fn local_addr(&self) -> Option<SocketAddr> {
-        self.inner.local_addr()
-    }
-
-    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
-        self.inner.answer(to, datagram);
-    }
-
     fn counters(&self) -> LinkCounters {
         self.inner.counters()
-    }
-
-    fn last_refused(&self) -> Option<LinkCause> {
-        self.inner.last_refused()
     }
 }

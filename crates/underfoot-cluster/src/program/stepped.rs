@@ -1,14 +1,13 @@
 //! A node's source with a clock that can be set while it runs, as an operator or a time server sets a computer's.
 
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use underfoot::source::{SensorSource, SourceError, UdpSource};
+use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
-use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
+use underfoot::wire::{LinkCounters, SensorPacket};
 
 use super::Failure;
 
@@ -19,7 +18,7 @@ const STEP: Duration = Duration::from_secs(1);
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 
 /// The steps of a clock so far, in microseconds.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct Steps(Arc<AtomicU64>);
 
 impl Steps {
@@ -64,12 +63,12 @@ fn register(_: &Arc<AtomicBool>) -> Result<(), Failure> {
 
 /// A source on a clock with steps.
 pub(super) struct SteppedSource {
-    inner: UdpSource,
+    inner: Box<dyn SensorSource>,
     steps: Steps,
 }
 
 impl SteppedSource {
-    pub(super) fn new(inner: UdpSource, steps: Steps) -> Self {
+    pub(super) fn new(inner: Box<dyn SensorSource>, steps: Steps) -> Self {
         Self { inner, steps }
     }
 }
@@ -85,23 +84,7 @@ impl SensorSource for SteppedSource {
         self.inner.now() + self.steps.so_far()
     }
 
-    fn take_request(&mut self) -> Option<Request> {
-        self.inner.take_request()
-    }
-
-    fn local_addr(&self) -> Option<SocketAddr> {
-        self.inner.local_addr().ok()
-    }
-
-    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
-        self.inner.answer(to, datagram);
-    }
-
     fn counters(&self) -> LinkCounters {
         self.inner.counters()
-    }
-
-    fn last_refused(&self) -> Option<LinkCause> {
-        self.inner.last_refused()
     }
 }

@@ -64,7 +64,7 @@ impl Computer {
         let counters = border.counters();
         let seen = Seen(Arc::default());
         let sink = seen.clone();
-        let session = Session::source(Box::new(source), clock)
+        let session = Session::source(source, clock)
             .floor(part.clone())
             .layout(layout.clone().part(area, &floor.geometry))
             .neighbours(border)

@@ -349,7 +349,7 @@ impl Hall {
         let source = UdpSource::bind(([127, 0, 0, 1], 0).into(), &self.floor).unwrap();
         let (port, clock, lines) = (source.local_addr().unwrap().port(), source.clock(), Lines::default());
         let frames = Frames::default();
-        let session = Session::source(Box::new(source), clock)
+        let session = Session::source(source, clock)
             .floor(self.floor.clone())
             .layout(self.layout.clone())
             .sink(JsonSink::new(lines.clone()).unwrap())

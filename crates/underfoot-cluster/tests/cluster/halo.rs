@@ -21,7 +21,7 @@ fn serve(floor: &Floor, id: &str) -> (Session, Arc<ForwardCounters>) {
     let source = source.also_allowing(floor.forwarding_addresses(area));
     let (source, forwarded) = source.forwarding(&floor.forwardings(area)).unwrap();
     let clock = source.clock();
-    let session = Session::source(Box::new(source), clock).floor(part).layout(Layout::default());
+    let session = Session::source(source, clock).floor(part).layout(Layout::default());
     (session.realtime().start().unwrap(), forwarded)
 }
 

@@ -12,7 +12,7 @@ use underfoot::serve::Server;
 use underfoot::sink::EventSink;
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
-use underfoot::wire::SensorPacket;
+use underfoot::wire::{LinkCounters, SensorPacket};
 use underfoot_cluster::auth::Echo;
 use underfoot_cluster::gateway::{Gateway, Told};
 use underfoot_cluster::message::{NodeMessage, VERSION, fingerprint};
@@ -35,7 +35,7 @@ fn serve(
         part.boards.iter().position(is_it).and_then(|number| u16::try_from(number).ok())
     });
     let source = source(whole, people, Pace::FreeRunning);
-    let source = Box::new(Part { source, numbers: numbers.collect() });
+    let source = Part { source, numbers: numbers.collect() };
     Server::new(part, own, Method::default(), source)
         .with_events(Box::new(sink))
         .run(&AtomicBool::new(false))
@@ -61,6 +61,10 @@ impl SensorSource for Part {
 
     fn now(&self) -> Instant {
         self.source.now()
+    }
+
+    fn counters(&self) -> LinkCounters {
+        self.source.counters()
     }
 }
 

@@ -12,9 +12,9 @@ use underfoot::floor::{Calibration, Corner, Floor, SensorId};
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::Method;
 use underfoot::serve::Server;
-use underfoot::source::{SensorSource, SourceError, UdpSource};
+use underfoot::source::{FloorInput, SensorSource, SourceError, UdpSource};
 use underfoot::units::{Instant, Newtons};
-use underfoot::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
+use underfoot::wire::{LinkCounters, Readings, SensorEncoder, SensorFormat, SensorPacket};
 
 /// A square floor with people walking on it, and with the built-in layout `first_steps` in its south-west.
 pub struct ServeLoad {
@@ -106,6 +106,10 @@ impl SensorSource for Memory {
     fn now(&self) -> Instant {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).now
     }
+
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
+    }
 }
 
 impl ServeLoad {
@@ -117,14 +121,14 @@ impl ServeLoad {
     pub fn new(side: u16, walkers: u16) -> Self {
         let (floor, boards) = Boards::of(side, walkers);
         let queue = Arc::<Mutex<Queue>>::default();
-        let source = Box::new(Memory(Arc::clone(&queue)));
+        let source = Memory(Arc::clone(&queue));
         Self { server: server(&floor, source), queue, boards }
     }
 
-    /// Returns a server of such a floor with packets from `source`.
+    /// Returns a server of such a floor, fed by `input`.
     #[must_use]
-    pub fn server(floor: &Floor, source: Box<dyn SensorSource>) -> Server {
-        server(floor, source)
+    pub fn server(floor: &Floor, input: impl Into<FloorInput>) -> Server {
+        server(floor, input)
     }
 
     /// Serves one second of floor time, 1000 frames; returns the number of contacts in the last frame.
@@ -152,13 +156,13 @@ impl ServeLoad {
 }
 
 /// A server of a floor with a layout.
-fn server(floor: &Floor, source: Box<dyn SensorSource>) -> Server {
+fn server(floor: &Floor, input: impl Into<FloorInput>) -> Server {
     let text = schema::builtin_layout("first_steps").unwrap_or_default();
     let layout = schema::parse_layout(text, "first_steps", &Kinds::builtin(), &floor.geometry);
     // The built-in layout fits on 6 x 6 tiles.
     let layout = layout.map(|read| read.layout).unwrap_or_default();
     let (snapshots, _) = triple_buffer::triple_buffer(&Snapshot::default());
-    Server::new(floor, layout, Method::Tracker, source).with_snapshots(snapshots)
+    Server::new(floor, layout, Method::Tracker, input).with_snapshots(snapshots)
 }
 
 impl Boards {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::receiving::square;
 use underfoot::floor::Floor;
-use underfoot::source::{SensorSource, SourceError, UdpSource};
+use underfoot::source::{SourceError, UdpSource};
 use underfoot::units::Instant;
 use underfoot::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
 

@@ -12,7 +12,7 @@ use super::work_time::busy;
 use crate::capacity::{BoardsLoad, ServeLoad, square};
 use underfoot::floor::{Board, Floor, Forwarding};
 use underfoot::sink::{Rank, claim_priority};
-use underfoot::source::{SensorSource, SourceError, UdpSource};
+use underfoot::source::{SourceError, UdpSource};
 
 /// Side of the floor whose tiles and people are measured: as large as the sensed part of an area.
 const SIDE: u16 = 24;
@@ -163,7 +163,7 @@ fn forward(floor: &Floor, source: UdpSource) -> Result<Turn, SourceError> {
 
 /// Does the work of a node's sensing thread.
 fn serve(floor: &Floor, source: UdpSource) -> Result<Turn, SourceError> {
-    let mut server = ServeLoad::server(floor, Box::new(source)).with_events(Box::new(Listener::start()));
+    let mut server = ServeLoad::server(floor, source).with_events(Box::new(Listener::start()));
     Ok(Box::new(move || server.turn().map(|_| ())))
 }
 

@@ -101,7 +101,7 @@ impl Table {
         let source = FaultInjector::new(source, faults, 1);
         let told = Told::default();
         let mut table = Self {
-            server: Server::new(&floor, layout.clone(), Method::default(), Box::new(source))
+            server: Server::new(&floor, layout.clone(), Method::default(), source)
                 .with_events(Box::new(told.clone())),
             host,
             feet: MouseFeet::new(),

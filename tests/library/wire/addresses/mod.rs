@@ -20,7 +20,7 @@ use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::{Argument, Direction, Entry, Reference, Server};
 use underfoot::sink::SilentSink;
-use underfoot::source::{SensorSource, UdpSource};
+use underfoot::source::UdpSource;
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{Control, Indicator, Input, Value, WidgetEvent, WidgetId};
 use underfoot::wire::Prefix;
@@ -81,7 +81,7 @@ impl Desk {
         app.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
         let (feel, renderer) = renderer(RendererConfig::of(&floor, 8000));
         let played = SilentSink::new(renderer, source.now(), None);
-        let server = Server::new(&floor, layout, Method::default(), Box::new(source))
+        let server = Server::new(&floor, layout, Method::default(), source)
             .with_feel(feel, Box::new(played))
             .with_prefix(prefix.clone());
         Self { server, app }

@@ -12,7 +12,7 @@ use underfoot::schema::{Kinds, parse_layout};
 use underfoot::sense::Method;
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
-use underfoot::wire::SensorPacket;
+use underfoot::wire::{LinkCounters, SensorPacket};
 use underfoot_sim::{self as sim, Foot, Sensing, SensorFault, SimConfig, SimFloor};
 
 use crate::end_to_end::{said, underfoot};
@@ -139,13 +139,13 @@ impl Tape {
     pub fn play(self) -> Played {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("tape.mcap");
-        let source = Box::new(Packets { rest: self.packets.into_iter(), now: Instant::START });
+        let source = Packets { rest: self.packets.into_iter(), now: Instant::START };
         let (method, behind) = (Method::default(), WhenBehind::Wait);
         let recorded =
             Recorder::around(Some(&path), source, self.floor, self.layout, method, behind).unwrap();
-        let Recorded { recorder, mut source, .. } = recorded;
-        while source.next(Duration::ZERO).is_ok() {}
-        drop((source, recorder));
+        let Recorded { recorder, mut input, .. } = recorded;
+        while input.source.next(Duration::ZERO).is_ok() {}
+        drop((input, recorder));
         let arguments = ["--speed", "max", "--no-osc", "--json", "--json-contacts"];
         let output = underfoot().arg("replay").arg(&path).args(arguments).output().unwrap();
         assert!(output.status.success(), "{}", said(&output));
@@ -183,6 +183,10 @@ impl SensorSource for Packets {
 
     fn now(&self) -> Instant {
         self.now
+    }
+
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
     }
 }
 

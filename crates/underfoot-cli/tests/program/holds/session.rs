@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant as HostInstant};
 
 use underfoot::runtime::{EndReason, Event, Held, Kind, Session, SessionBuilder};
-use underfoot::source::{SensorSource, SourceError, UdpSource};
+use underfoot::source::{FloorInput, SensorSource, SourceError, UdpSource};
 use underfoot::units::Instant;
-use underfoot::wire::{LinkCounters, LinkState, Request, SensorPacket};
+use underfoot::wire::{LinkCounters, LinkState, SensorPacket};
 
 use super::site::{BoardFault, Boards, Site};
 use super::{SOON, TRIES};
@@ -18,7 +18,7 @@ use crate::sender::ANY_PORT;
 
 /// A source that can panic or hang in place of its next packet.
 struct Faulty {
-    source: UdpSource,
+    source: Box<dyn SensorSource>,
     panic: Arc<AtomicBool>,
     stand_still: Arc<AtomicBool>,
 }
@@ -34,10 +34,6 @@ impl SensorSource for Faulty {
 
     fn now(&self) -> Instant {
         self.source.now()
-    }
-
-    fn take_request(&mut self) -> Option<Request> {
-        self.source.take_request()
     }
 
     fn counters(&self) -> LinkCounters {
@@ -133,8 +129,10 @@ fn believed_for(site: &Site, fault: Fault) -> Duration {
     } else {
         let source = UdpSource::bind(ANY_PORT, &site.floor).unwrap();
         let (address, clock) = (source.local_addr().unwrap(), source.clock());
-        let source = Faulty { source, panic: Arc::clone(&panic), stand_still: Arc::clone(&stand_still) };
-        let mut builder = set_up(Session::source(Box::new(source), clock));
+        let mut input = FloorInput::from(source);
+        let (panic, stand_still) = (Arc::clone(&panic), Arc::clone(&stand_still));
+        input.source = Box::new(Faulty { source: input.source, panic, stand_still });
+        let mut builder = set_up(Session::source(input, clock));
         if fault == Fault::WakePanics {
             let panics = Arc::clone(&wake_panics);
             builder = builder.wake(move || assert!(!panics.load(Ordering::Relaxed), "as planned"));

@@ -6,9 +6,9 @@ use egui_kittest::kittest::Queryable;
 
 use super::*;
 use crate::preview::floor_check::FloorCheck;
-use underfoot::recording::{TappedPackets, TappedSource};
-use underfoot::source::{SensorSource, SourceError};
-use underfoot::wire::SensorPacket;
+use underfoot::recording::TappedPackets;
+use underfoot::source::{FloorInput, SensorSource, SourceError};
+use underfoot::wire::{LinkCounters, SensorPacket};
 use underfoot_sim::{SensorFault, SimConfig, SimFloor};
 
 /// A floor with boards that the test reads; two of them may be interchanged.
@@ -41,12 +41,16 @@ impl SensorSource for Boards {
     fn now(&self) -> Instant {
         Instant::from_millis(self.ms.into())
     }
+
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
+    }
 }
 
-/// A window on that floor, and the source of its packets.
+/// A window on that floor, and its input.
 struct Site {
     room: Room,
-    source: TappedSource,
+    input: FloorInput,
     feet: Arc<Mutex<Vec<underfoot_sim::Foot>>>,
 }
 
@@ -61,18 +65,18 @@ impl Site {
         let feet = Arc::<Mutex<Vec<underfoot_sim::Foot>>>::default();
         let (waiting, ms) = (std::collections::VecDeque::new(), 0);
         let boards = Boards { sim, feet: Arc::clone(&feet), swapped, waiting, ms };
-        let source = tap.source(Box::new(boards), floor.geometry);
+        let input = tap.wrap(boards, floor.geometry);
         let mut room = Room::of(false, 1280.0, 800.0);
         room.window.state_mut().floor_check = Some(FloorCheck::new(packets));
         room.run(2);
-        Self { room, source, feet }
+        Self { room, input, feet }
     }
 
     /// Advances the time with a person at `at`.
     fn stand(&mut self, at: Option<Vec2>, ms: u32) {
         *self.feet.lock().unwrap() = at.iter().map(|at| foot(*at)).collect();
         for _ in 0..ms {
-            (0..6).for_each(|_| drop(self.source.next(Duration::ZERO).unwrap()));
+            (0..6).for_each(|_| drop(self.input.source.next(Duration::ZERO).unwrap()));
         }
         self.room.run(1);
     }
