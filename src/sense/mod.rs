@@ -13,68 +13,48 @@
 //!
 //! Calibration comes before all that: `LoadTable` and `Comparison` give each sensor
 //! its law, `PressTable` and `MapFit` each tile its position map.
+//!
+//! | folder | content |
+//! |---|---|
+//! | `assembler` | packets of boards to frames of the whole floor |
+//! | `health` | faulty sensors, drift and creep |
+//! | `frame` | the forces and qualities of all sensors in one millisecond |
+//! | `centroid` | force and centroid of a tile (Eq. 2 and 3), their uncertainty, contacts by Eq. 4 |
+//! | `loaded` | which tiles carry a load |
+//! | `track` | feet, followed through time |
+//! | `contact` | contacts, and the cursor among them |
+//! | `calibration` | laws of sensors and position maps of tiles, from measurements |
+//! | `table` | tables of measurements and of forces as files |
 
 mod assembler;
 #[cfg(any(feature = "internals", test))]
 mod calibration;
-mod calibration_fault;
-mod cluster;
+mod centroid;
 mod contact;
-mod corners;
-mod cursor;
-mod eq4;
-#[cfg(any(feature = "internals", test))]
-mod force_table;
 mod frame;
 mod health;
-mod hold_doubt;
-#[cfg(any(feature = "internals", test))]
-mod law_choice;
-#[cfg(any(feature = "internals", test))]
-mod load_table;
 mod loaded;
-mod pool;
-#[cfg(any(feature = "internals", test))]
-mod position_map;
-#[cfg(any(feature = "internals", test))]
-mod press_table;
-mod quality;
 mod sensing;
 #[cfg(any(feature = "internals", test))]
 mod table;
-mod tile;
 mod track;
-mod uncertainty;
 
 #[cfg(any(feature = "internals", test))]
-pub use calibration::{Fit, FitError, LoadPoint};
-pub use calibration_fault::CalibrationFault;
-pub use contact::{Contact, ContactId, Covariance, TileLoad};
-pub use cursor::Cursor;
-#[cfg(any(feature = "internals", test))]
-pub use force_table::ForceTable;
-pub use frame::ForceFrame;
+pub use calibration::{
+    Candidate, Comparison, Errors, Fit, FitError, Judgement, LoadPoint, LoadTable, MapError, MapFit, Press,
+    PressTable, SensorLoads, Sighting, TilePoints, Verdict,
+};
+pub use contact::{Contact, ContactId, Covariance, Cursor, TileLoad};
+pub use frame::{CalibrationFault, ForceFrame, HoldDoubt, Quality};
 pub use health::{SensorHealth, Trouble};
-pub use hold_doubt::HoldDoubt;
-#[cfg(any(feature = "internals", test))]
-pub use law_choice::{Candidate, Comparison};
-#[cfg(any(feature = "internals", test))]
-pub use load_table::{Judgement, LoadTable, SensorLoads, Verdict};
-#[cfg(any(feature = "internals", test))]
-pub use position_map::{Errors, MapError, MapFit, Press, Sighting};
-#[cfg(any(feature = "internals", test))]
-pub use press_table::{PressTable, TilePoints};
-pub use quality::Quality;
 pub use sensing::Method;
 #[cfg(any(feature = "internals", test))]
-pub use table::{TableError, TableNotes, TableProblem, TableProblems};
+pub use table::{ForceTable, TableError, TableNotes, TableProblem, TableProblems};
 
 internal! {
     use assembler::{Assembler, BoardStatus, Tare, TareOutcome, TareRules};
-    use corners::{known_corners};
-    use cursor::{CursorPicker, Stickiness};
+    use centroid::{LoadedTile, SensorUncertainty, TileReading, Wrench, known_corners};
+    use contact::{CursorPicker, Stickiness};
     use loaded::{LoadThreshold};
     use sensing::{Sensing, SensingConfig};
-    use tile::{LoadedTile, TileReading, Wrench};
-    use uncertainty::{SensorUncertainty};
 }

@@ -25,7 +25,8 @@ mod trouble;
 mod walks;
 
 use crate::floor::{Corner, Floor, Geometry, SensorId, TileBlock, TileId};
-use crate::sense::{ForceFrame, Quality, corners};
+use crate::sense::centroid::corners;
+use crate::sense::{ForceFrame, Quality};
 use crate::units::{Instant, Newtons};
 
 pub(super) use intake::Lanes;
