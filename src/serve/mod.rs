@@ -13,6 +13,8 @@ mod neighbours;
 mod reference;
 mod refusal;
 mod request;
+#[cfg(any(feature = "internals", test))]
+mod rest;
 mod server;
 #[cfg(any(feature = "internals", test))]
 mod tare;
