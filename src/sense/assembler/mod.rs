@@ -77,8 +77,8 @@ use crate::wire::{LinkCounters, SensorPacket};
 /// [`Quality::Faulty`].
 ///
 /// **Health.** Each sensor is compared with the other three of its plate, and its zero is tracked while its tile is
-/// empty and quiet; [`Trouble`](super::Trouble) lists the detectable faults. These checks use the boards' own time, counted in slots
-/// and independent of the steering of the sample clock.
+/// empty and quiet; [`crate::sense::Trouble`] lists the detectable faults. These checks use the boards' own time,
+/// counted in slots and independent of the steering of the sample clock.
 ///
 /// The assembler has no clock of its own: `received` and `now` are on the source's clock; a time earlier than the last
 /// counts as the last.

@@ -48,7 +48,7 @@ pub(super) struct Slots {
 }
 
 impl Slots {
-    /// No slots; `is_part` tells that other computers forward the packets of some boards.
+    /// No slots. `is_part`: other computers forward the packets of some boards.
     pub(super) fn new(is_part: bool) -> Self {
         Self {
             waiting: ArrayVec::new(),

@@ -80,7 +80,7 @@ impl Assembler {
         outcomes.max_by_key(urgency).unwrap_or(unheard)
     }
 
-    /// The tare in use, per tile and corner as in [`Floor::tare`]; zero for sensors without a board.
+    /// The tare in use, per tile and corner as in [`crate::floor::Floor::tare`]; zero for sensors without a board.
     #[must_use]
     pub fn tare(&self) -> Vec<[Newtons; 4]> {
         let mut tare = vec![[Newtons::ZERO; 4]; self.floor_tiles];
@@ -91,8 +91,8 @@ impl Assembler {
     }
 
     /// Number of sensors whose counts are converted by the nominal part's law, because the floor has no calibration
-    /// for them; [`Floor::uncalibrated`] names them. Their forces may be off by a quarter and more, and are
-    /// [`Quality::Degraded`].
+    /// for them; [`crate::floor::Floor::uncalibrated`] names them. Their forces may be off by a quarter and more, and
+    /// are [`Quality::Degraded`].
     #[must_use]
     pub fn uncalibrated(&self) -> usize {
         self.boards.iter().map(BoardTrack::uncalibrated).sum()
@@ -136,8 +136,8 @@ impl Assembler {
         self.health.changes()
     }
 
-    /// Drift of each sensor's zero from its tare, as tracked, per tile and corner as in [`Floor::tare`]; at most 20 %
-    /// of the sensor's range.
+    /// Drift of each sensor's zero from its tare, as tracked, per tile and corner as in [`crate::floor::Floor::tare`];
+    /// at most 20 % of the sensor's range.
     #[must_use]
     pub fn drift(&self) -> impl ExactSizeIterator<Item = [Newtons; 4]> + '_ {
         self.health.drift()
