@@ -32,6 +32,7 @@ mod renderer;
 mod schedule;
 mod scope;
 mod sender;
+mod silence;
 mod voice;
 
 pub use audition::{Gesture, Moment};

@@ -9,7 +9,6 @@ use triple_buffer::{Output as Latest, TripleBuffer};
 use super::active_modes::ActiveModes;
 use super::click;
 use super::evicting_queue::evicting_queue;
-use super::limiter::Ramp;
 use super::loudspeakers::Loudspeakers;
 use super::mix::{Mix, Output, Wiring};
 use super::rack::{Faults, Rack};
@@ -17,6 +16,7 @@ use super::schedule::{Due, SampleClock, Schedule, WAITING};
 use super::scope::ScopeWriter;
 use super::scope::{ScopeReader, scope};
 use super::sender::{CueSender, Shared, count};
+use super::silence::Silence;
 use super::voice::{Started, Voices};
 use super::{FeelCounters, SustainedCues};
 use crate::floor::{Actuator, Drive, Floor, Loudspeaker, Response};
@@ -102,8 +102,7 @@ pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
         wiring,
         loudspeakers: Loudspeakers::new(&config.loudspeakers, config.centres, config.channels),
         shared,
-        turns: 0,
-        mute_changes: 0,
+        silence: Silence::new(sample_rate),
         schedule: Schedule::new(ring),
         clock: SampleClock::new(sample_rate),
         sustained,
@@ -112,7 +111,6 @@ pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
         voiced: 0,
         mix: Mix::new(config.channels, max_block),
         rack,
-        ramp: Ramp::new(sample_rate as f32),
         gains: vec![0.0; max_block],
         onsets: Vec::with_capacity(WAITING),
         scope: None,
@@ -150,10 +148,7 @@ pub struct Renderer {
     wiring: Wiring,
     loudspeakers: Loudspeakers,
     shared: Arc<Shared>,
-    /// Number of changes of silence that have been processed.
-    turns: u64,
-    /// The same for the mutes of single tiles.
-    mute_changes: u64,
+    silence: Silence,
     schedule: Schedule,
     clock: SampleClock,
     sustained: Latest<SustainedCues>,
@@ -163,7 +158,6 @@ pub struct Renderer {
     voiced: usize,
     mix: Mix,
     rack: Rack,
-    ramp: Ramp,
     gains: Vec<f32>,
     onsets: Vec<Onset>,
     scope: Option<ScopeWriter>,
@@ -230,10 +224,7 @@ impl Renderer {
         self.voices.clear();
         self.clock.forget();
         self.onsets.clear();
-        self.ramp = Ramp::new(self.sample_rate as f32);
-        if !self.shared.turns().is_multiple_of(2) {
-            self.ramp.fade_out();
-        }
+        self.silence.restart(self.sample_rate, &self.shared);
     }
 
     /// Fills `out` with the frames from `block_start` on, each cue at its own sample.
@@ -288,42 +279,27 @@ impl Renderer {
 
     /// Sets the ramp and the mutes as the sender requests.
     fn update_silence(&mut self) {
-        let turns = self.shared.turns();
-        if turns != self.turns {
-            self.turns = turns;
-            count(&self.shared.muted, self.schedule.forget(turns));
-            self.ramp.fade_out();
-        }
-        if self.ramp.is_down() && turns.is_multiple_of(2) {
-            self.ramp.fade_in();
-        }
-        let mute_changes = self.shared.mute_changes();
-        if mute_changes != self.mute_changes {
-            self.mute_changes = mute_changes;
-            for (channel, muted) in self.shared.mutes().enumerate() {
-                self.rack.mute(channel, muted);
-            }
-        }
+        self.silence.update(&self.shared, &mut self.schedule, &mut self.rack);
     }
 
     /// Renders up to `max_block` frames; the first is number `first` of the block.
     fn render_part(&mut self, out: &mut [f32], first: usize) {
         let frames = out.len() / self.channels;
-        if self.ramp.is_down() {
+        if self.silence.ramp().is_down() {
             out.fill(0.0);
         } else {
             self.mix.begin(frames);
-            if !self.ramp.is_falling() {
+            if !self.silence.ramp().is_falling() {
                 self.strike_cues(first, frames);
             }
             let stolen = self.modes.finish_rows(frames, &mut self.mix);
             count(&self.shared.stolen, stolen);
             self.voices.render(&mut self.mix, self.voiced, frames);
             self.voiced = 0;
-            self.ramp.fill(&mut self.gains[..frames]);
+            self.silence.fill(&mut self.gains[..frames]);
             let faults = self.rack.process(&mut self.modes, &self.mix, &self.gains[..frames], out);
             self.count(faults);
-            if self.ramp.is_down() {
+            if self.silence.ramp().is_down() {
                 self.modes.clear();
                 self.rack.clear();
                 self.voices.clear();

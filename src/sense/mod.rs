@@ -13,52 +13,39 @@
 //!
 //! Calibration comes before all that: `LoadTable` and `Comparison` give each sensor
 //! its law, `PressTable` and `MapFit` each tile its position map.
+//!
+//! | folder | content |
+//! |---|---|
+//! | `assembler` | packets of boards to frames of the whole floor |
+//! | `health` | faulty sensors, drift and creep |
+//! | `frame` | the forces and qualities of all sensors in one millisecond |
+//! | `centroid` | force and centroid of a tile (Eq. 2 and 3), their uncertainty, contacts by Eq. 4 |
+//! | `loaded` | which tiles carry a load |
+//! | `track` | feet, followed through time |
+//! | `contact` | contacts, and the cursor among them |
+//! | `calibration` | laws of sensors and position maps of tiles, from measurements |
+//! | `table` | tables of measurements and of forces as files |
 
 mod assembler;
 mod calibration;
-mod calibration_fault;
-mod cluster;
+mod centroid;
 mod contact;
-mod corners;
-mod cursor;
-mod eq4;
-mod force_table;
 mod frame;
 mod health;
-mod hold_doubt;
-mod law_choice;
-mod load_table;
 mod loaded;
-mod pool;
-mod position_map;
-mod press_table;
-mod quality;
 mod sensing;
 mod table;
-mod tile;
 mod track;
-mod uncertainty;
-
-pub use calibration::{Fit, FitError, LoadPoint};
-pub use calibration_fault::CalibrationFault;
-pub use contact::{Contact, ContactId, Covariance, TileLoad};
-pub use cursor::Cursor;
-pub use force_table::ForceTable;
-pub use frame::ForceFrame;
-pub use health::{SensorHealth, Trouble};
-pub use hold_doubt::HoldDoubt;
-pub use law_choice::{Candidate, Comparison};
-pub use load_table::{Judgement, LoadTable, SensorLoads, Verdict};
-pub use position_map::{Errors, MapError, MapFit, Press, Sighting};
-pub use press_table::{PressTable, TilePoints};
-pub use quality::Quality;
-pub use sensing::Method;
-pub use table::{TableError, TableNotes, TableProblem, TableProblems};
 
 pub use assembler::{Assembler, BoardStatus, Tare, TareOutcome, TareRules};
-pub use corners::known_corners;
-pub use cursor::{CursorPicker, Stickiness};
+pub use calibration::{
+    Candidate, Comparison, Errors, Fit, FitError, Judgement, LoadPoint, LoadTable, MapError, MapFit, Press,
+    PressTable, SensorLoads, Sighting, TilePoints, Verdict,
+};
+pub use centroid::{LoadedTile, SensorUncertainty, TileReading, Wrench, known_corners};
+pub use contact::{Contact, ContactId, Covariance, Cursor, CursorPicker, Stickiness, TileLoad};
+pub use frame::{CalibrationFault, ForceFrame, HoldDoubt, Quality};
+pub use health::{SensorHealth, Trouble};
 pub use loaded::LoadThreshold;
-pub use sensing::{Sensing, SensingConfig};
-pub use tile::{LoadedTile, TileReading, Wrench};
-pub use uncertainty::SensorUncertainty;
+pub use sensing::{Method, Sensing, SensingConfig};
+pub use table::{ForceTable, TableError, TableNotes, TableProblem, TableProblems};

@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use super::cluster::Clusters;
-use super::eq4::Eq4;
+use super::centroid::cluster::Clusters;
+use super::centroid::eq4::Eq4;
+use super::centroid::tile::TileReading;
+use super::centroid::uncertainty::SensorUncertainty;
+use super::contact::pool::ContactPool;
 use super::loaded::{LoadThreshold, LoadedTiles};
-use super::pool::ContactPool;
-use super::tile::TileReading;
 use super::track::Tracker;
-use super::uncertainty::SensorUncertainty;
 use super::{Contact, ForceFrame};
 use crate::floor::{Geometry, PositionMap};
 use crate::parallel;

@@ -11,6 +11,7 @@ mod neighbours;
 mod reference;
 mod refusal;
 mod request;
+mod rest;
 mod server;
 mod tare;
 mod trial;

@@ -1,10 +1,8 @@
 //! A walk over all tiles, in any order, that finds sensors without a response.
 
+use super::rest::{REST, Rest, reading};
 use crate::floor::{Corner, Floor, SensorId, TileId};
-use crate::wire::{Readings, SensorPacket};
-
-/// Number of packets of a board in the mean of the empty floor.
-const REST: u32 = 300;
+use crate::wire::SensorPacket;
 
 /// Minimum reading of a working sensor, and minimum expected force for a failure to count, in newtons: a footstep
 /// puts several times that on each nearby corner (our choice).
@@ -103,10 +101,8 @@ struct Channel {
     tile: usize,
     corner: usize,
     calibration: crate::floor::Calibration,
-    /// Sum of the readings at rest.
-    rest: f32,
-    /// Number of readings in the sum.
-    read: u32,
+    /// Readings on the empty floor.
+    rest: Rest,
 }
 
 impl WalkTest {
@@ -122,7 +118,7 @@ impl WalkTest {
             let tile = floor.geometry.index(sensor.tile)?;
             let corner = sensor.corner.index();
             let calibration = *floor.calibration.get(tile)?.get(corner)?;
-            Some(Channel { tile, corner, calibration, rest: 0.0, read: 0 })
+            Some(Channel { tile, corner, calibration, rest: Rest::default() })
         };
         let board = |board: &crate::floor::Board| {
             let channels: Vec<Option<Channel>> =
@@ -148,19 +144,13 @@ impl WalkTest {
         board.rested = board.rested.saturating_add(1);
         for (number, channel) in board.channels.iter_mut().enumerate() {
             let Some(channel) = channel else { continue };
-            let force = match &packet.readings {
-                Readings::Counts(counts) => {
-                    counts.get(number).copied().flatten().map(|count| channel.calibration.force(count).0)
-                }
-                Readings::Newtons(forces) => forces.get(number).copied().filter(|force| force.is_finite()),
-            };
+            let force = reading(&packet.readings, number, &channel.calibration);
             if !is_rested {
-                channel.rest += force.unwrap_or(0.0);
-                channel.read += u32::from(force.is_some());
+                channel.rest.add(force);
                 continue;
             }
             let Some(tile) = self.tiles.get_mut(channel.tile) else { continue };
-            let rest = channel.rest / channel.read.max(1) as f32;
+            let rest = channel.rest.mean();
             if let Some(place) = tile.forces.get_mut(channel.corner) {
                 *place = force.map(|force| force - rest);
             }

@@ -1,5 +1,6 @@
 //! A walk from board to board that finds which board reads which tiles.
 
+use super::rest::{REST, Rest, reading};
 use crate::floor::{Calibration, Floor, TileId};
 use crate::wire::{Readings, SensorPacket};
 
@@ -10,9 +11,8 @@ pub const STEP_N: f32 = 150.0;
 /// Load below which a tile is empty again: more than the ringing of a plate.
 const EMPTY_N: f32 = 40.0;
 
-/// Number of packets for which a tile must be loaded, and number of packets in the mean of the empty floor.
+/// Number of packets for which a tile must be loaded.
 const FIRM: u32 = 200;
-const REST: u32 = 300;
 
 /// A walk from board to board: a person steps on a tile of each board, and off again.
 ///
@@ -209,8 +209,8 @@ struct Reader {
     /// Its tiles, and for each channel the index of its tile.
     tiles: Vec<TileId>,
     channels: Vec<Option<usize>>,
-    /// Sum of the readings of each channel at rest, and number of packets.
-    rest: Vec<f32>,
+    /// Readings of each channel at rest, and number of packets.
+    rest: Vec<Rest>,
     rested: u32,
     loads: Vec<f32>,
     /// The loaded tile, and the number of packets for which it has been loaded.
@@ -229,7 +229,7 @@ impl Reader {
                 })
             }));
         }
-        let (rest, loads) = (vec![0.0; channels.len()], vec![0.0; tiles.len()]);
+        let (rest, loads) = (vec![Rest::default(); channels.len()], vec![0.0; tiles.len()]);
         Self { tiles, channels, rest, rested: 0, loads, firm: (0, 0) }
     }
 
@@ -241,16 +241,11 @@ impl Reader {
         if readings.len() != self.channels.len() {
             return;
         }
-        let force = |channel: usize| match readings {
-            Readings::Counts(counts) => {
-                counts.get(channel).copied().flatten().map(|count| Calibration::NOMINAL.force(count).0)
-            }
-            Readings::Newtons(forces) => forces.get(channel).copied().filter(|force| force.is_finite()),
-        };
+        let force = |channel: usize| reading(readings, channel, &Calibration::NOMINAL);
         if self.rested < REST {
             self.rested += 1;
             for (channel, rest) in self.rest.iter_mut().enumerate() {
-                *rest += force(channel).unwrap_or(0.0);
+                rest.add(force(channel));
             }
             return;
         }
@@ -258,7 +253,7 @@ impl Reader {
         for (channel, (tile, rest)) in self.channels.iter().zip(&self.rest).enumerate() {
             let load = tile.and_then(|tile| self.loads.get_mut(tile));
             if let (Some(load), Some(force)) = (load, force(channel)) {
-                *load += force - rest / REST as f32;
+                *load += force - rest.mean();
             }
         }
         let (tile, most) = self.most();
@@ -269,5 +264,26 @@ impl Reader {
     fn most(&self) -> (usize, f32) {
         let loads = self.loads.iter().copied().enumerate();
         loads.max_by(|(_, a), (_, b)| a.total_cmp(b)).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::Geometry;
+    use crate::units::Instant;
+
+    #[test]
+    fn readings_that_are_missing_on_the_empty_floor_do_not_count_as_zero() {
+        let floor = Floor::of(Geometry::of_paper_tiles(1, 1).unwrap());
+        let mut walk = WiringWalk::new(&floor);
+        for sequence in 0..=REST {
+            // Every second packet has no reading of any sensor.
+            let count = sequence.is_multiple_of(2).then_some(40_000);
+            let readings = Readings::Counts(std::iter::repeat_n(count, 4).collect());
+            walk.take(&SensorPacket { board: 0, sequence, received: Instant::START, readings });
+        }
+        assert_eq!(walk.task(), WiringTask::Step(TileId::new(0, 0)));
+        assert_eq!(walk.felt(), None);
     }
 }

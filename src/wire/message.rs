@@ -95,50 +95,40 @@ pub enum ControlMessage {
     GetMute,
 }
 
+/// The control that a message concerns, borrowed as the message is.
+macro_rules! id_of {
+    ($message:expr) => {
+        match $message {
+            Self::Set { id, .. }
+            | Self::Enable { id }
+            | Self::Disable { id }
+            | Self::Lock { id }
+            | Self::Unlock { id }
+            | Self::Label { id, .. }
+            | Self::Indicate { id, .. }
+            | Self::SetRange { id, .. }
+            | Self::Get { id } => Some(id),
+            Self::ShowPage { .. }
+            | Self::GetPage
+            | Self::GetAll
+            | Self::CancelAll
+            | Self::Mute { .. }
+            | Self::MuteTile { .. }
+            | Self::GetMute => None,
+        }
+    };
+}
+
 impl ControlMessage {
     /// Returns the control that it concerns, if any.
     #[must_use]
     pub fn id(&self) -> Option<&WidgetId> {
-        match self {
-            Self::Set { id, .. }
-            | Self::Enable { id }
-            | Self::Disable { id }
-            | Self::Lock { id }
-            | Self::Unlock { id }
-            | Self::Label { id, .. }
-            | Self::Indicate { id, .. }
-            | Self::SetRange { id, .. }
-            | Self::Get { id } => Some(id),
-            Self::ShowPage { .. }
-            | Self::GetPage
-            | Self::GetAll
-            | Self::CancelAll
-            | Self::Mute { .. }
-            | Self::MuteTile { .. }
-            | Self::GetMute => None,
-        }
+        id_of!(self)
     }
 
     /// Returns the control that it concerns, for changing.
     pub fn id_mut(&mut self) -> Option<&mut WidgetId> {
-        match self {
-            Self::Set { id, .. }
-            | Self::Enable { id }
-            | Self::Disable { id }
-            | Self::Lock { id }
-            | Self::Unlock { id }
-            | Self::Label { id, .. }
-            | Self::Indicate { id, .. }
-            | Self::SetRange { id, .. }
-            | Self::Get { id } => Some(id),
-            Self::ShowPage { .. }
-            | Self::GetPage
-            | Self::GetAll
-            | Self::CancelAll
-            | Self::Mute { .. }
-            | Self::MuteTile { .. }
-            | Self::GetMute => None,
-        }
+        id_of!(self)
     }
 
     /// Returns the address of the message behind the prefix, such as `widget/zoom/set`.

@@ -71,6 +71,7 @@ pub fn visit(layout: &Layout, geometry: &Geometry) -> Visit {
         performance: Performance::new(Person::default(), 0),
         page: 0,
         used: vec![false; layout.widgets.len()],
+        out_of_reach: vec![false; layout.widgets.len()],
     };
     visitor.performance.wait(EMPTY);
     loop {
@@ -92,6 +93,8 @@ struct Visitor<'a> {
     performance: Performance,
     page: usize,
     used: Vec<bool>,
+    /// Whether the last attempt to use each control failed.
+    out_of_reach: Vec<bool>,
 }
 
 impl Visitor<'_> {
@@ -100,33 +103,40 @@ impl Visitor<'_> {
         for (index, widget) in self.layout.widgets.iter().enumerate() {
             let stays = widget.goto.is_none_or(|page| page == self.page);
             if widget.is_on(self.page) && stays && !self.used[index] {
-                self.used[index] = self.work(widget);
+                self.use_control(index);
             }
         }
     }
 
-    /// Goes one page nearer to a page with an unused control; false if there is none, or if the control that leads
-    /// there is out of reach.
-    fn turn_page(&mut self) -> bool {
-        let Some(first) = self.way_on() else { return false };
-        let Some(widget) = self.layout.widgets.get(first) else { return false };
-        let is_done = self.work(widget);
-        // A control out of reach stays unused; the visit then ends.
-        self.used[first] = is_done;
-        if let (true, Some(page)) = (is_done, widget.goto) {
-            self.page = page;
-        }
+    /// Uses the control with this index; false if it is out of reach.
+    fn use_control(&mut self, index: usize) -> bool {
+        let is_done = self.layout.widgets.get(index).is_some_and(|widget| self.work(widget));
+        self.used[index] |= is_done;
+        self.out_of_reach[index] = !is_done;
         is_done
     }
 
+    /// Goes one page nearer to a page with an unused control that may be in reach; false if no control in reach leads
+    /// to one.
+    fn turn_page(&mut self) -> bool {
+        while let Some(first) = self.way_on() {
+            if self.use_control(first) {
+                let shown = self.layout.widgets.get(first).and_then(|widget| widget.goto);
+                self.page = shown.unwrap_or(self.page);
+                return true;
+            }
+        }
+        false
+    }
+
     /// Breadth-first search: the control that is the first step to a page with an unused control, or is itself an
-    /// unused page control.
+    /// unused page control. Controls that were out of reach count as if they did not exist.
     fn way_on(&self) -> Option<usize> {
         let mut seen = vec![self.page];
         let mut ahead: VecDeque<(usize, Option<usize>)> = VecDeque::from([(self.page, None)]);
         while let Some((page, first)) = ahead.pop_front() {
             for (index, widget) in self.layout.widgets.iter().enumerate() {
-                if !widget.is_on(page) {
+                if !widget.is_on(page) || self.out_of_reach[index] {
                     continue;
                 }
                 let first = first.or(Some(index));
@@ -336,5 +346,27 @@ mod tests {
         let geometry = Geometry::default();
         let layout = parse_layout(text, "pages.ron", &Kinds::builtin(), &geometry).unwrap().layout;
         assert_eq!(visit(&layout, &geometry).missed, [WidgetId::new("nowhere")]);
+    }
+
+    #[test]
+    fn controls_out_of_reach_neither_end_a_visit_nor_prolong_it() {
+        // No foot reaches along pads of six metres.
+        let text = r#"Layout(version: 1, title: "Hall", regions: [(id: "all", at: (0, 0), size: (24, 24))], pages: [
+            (id: "one", widgets: [
+                (id: "wide", kind: "pad", at: (0, 3), size: (24, 20)),
+                (id: "on", kind: "button", at: (1, 1), size: (0.6, 0.6), goto: "two"),
+            ]),
+            (id: "two", widgets: [
+                (id: "wider", kind: "pad", at: (0, 3), size: (24, 21)),
+                (id: "back", kind: "button", at: (3, 1), size: (0.6, 0.6), goto: "one"),
+            ]),
+        ])"#;
+        let geometry = Geometry::of_paper_tiles(24, 24).unwrap();
+        let mut layout = parse_layout(text, "hall.ron", &Kinds::builtin(), &geometry).unwrap().layout;
+        for goto in [None, Some(1)] {
+            layout.widgets[0].goto = goto;
+            let missed = visit(&layout, &geometry).missed;
+            assert_eq!(missed, ["wide", "wider"].map(WidgetId::new), "a pad that leads to {goto:?}");
+        }
     }
 }

@@ -8,13 +8,10 @@ use super::super::people::{Person, SAME_FOOT_M, STANCE_M};
 use super::super::snapshot::FootRole;
 use super::super::step::{CARRIES, Landing, Loading, RESTS, RESTS_N, Since, StepWatch, Support};
 use super::super::still::Stillness;
+use super::past::{PLACE_EVERY, Past, PastLoad};
 use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
 use crate::widget::Guard;
-
-/// Interval at which the history records a foot's place, and number of places: the last 0.4 s.
-const PLACE_EVERY: Duration = Duration::from_millis(20);
-const PLACES: usize = 20;
 
 /// Number of recorded places from which the rolling velocity of a supporting foot follows, and number of the latest
 /// ones to skip: in the last tenth of a second the tracker may have merged the landing foot into this one.
@@ -65,14 +62,6 @@ const TOLD_APART_SHARE: f32 = 0.1;
 const ANOTHER_BODY: f32 = 0.8;
 const ANOTHER_FOR: Duration = Duration::from_millis(300);
 
-/// Place and force of a foot, and the load on the person's other feet, at one moment of the past.
-#[derive(Clone, Copy, Debug, Default)]
-struct PastLoad {
-    place: Vec2,
-    force: f32,
-    others: f32,
-}
-
 /// The way of pressing to which a control responds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::engine) enum PressMode {
@@ -116,10 +105,7 @@ pub(in crate::engine) struct FootHistory {
     /// The person's load when it landed, and since when it and the others have each carried about as much.
     before: f32,
     another: Since,
-    past: [PastLoad; PLACES],
-    next: usize,
-    kept: usize,
-    kept_at: Instant,
+    past: Past,
 }
 
 impl FootHistory {
@@ -145,11 +131,7 @@ impl FootHistory {
             others: 0.0,
             before: person.sum,
             another: Since::default(),
-            // The latest is at `next` - 1.
-            past: [PastLoad { place, force, others: 0.0 }; PLACES],
-            next: 0,
-            kept: 0,
-            kept_at: now,
+            past: Past::new(PastLoad { place, force, others: 0.0 }, now),
         }
     }
 
@@ -185,34 +167,24 @@ impl FootHistory {
             self.ambiguous = Some(now);
         }
         self.still.update(self.force, self.place, now);
-        if now.since(self.kept_at) >= PLACE_EVERY {
-            self.kept_at = now;
-            self.past[self.next] = PastLoad { place: self.place, force: self.force, others: self.others };
-            self.next = (self.next + 1) % PLACES;
-            self.kept = (self.kept + 1).min(PLACES);
-        }
+        self.past.note(PastLoad { place: self.place, force: self.force, others: self.others }, now);
     }
 
     /// Mean velocity of its centre of pressure over the last quarter of a second, without the latest tenth.
     fn rolling(&self) -> Vec2 {
-        let known = self.kept.saturating_sub(SKIPPED_PLACES + 1).min(ROLL_PLACES);
+        let known = self.past.len().saturating_sub(SKIPPED_PLACES + 1).min(ROLL_PLACES);
         if known < ROLL_PLACES / 2 {
             return Vec2::ZERO;
         }
-        let place = |ago: usize| self.past(ago).place;
+        let place = |ago: usize| self.past.ago(ago).place;
         let span = PLACE_EVERY.as_secs_f32() * known as f32;
         (place(SKIPPED_PLACES) - place(SKIPPED_PLACES + known)) / span
-    }
-
-    /// Its state so many recorded places ago.
-    fn past(&self, ago: usize) -> PastLoad {
-        self.past[(self.next + 2 * PLACES - 1 - ago) % PLACES]
     }
 
     /// Whether the person jumps or falls: the other foot has left the floor within the last 0.3 s, and this one has
     /// not taken over its load.
     pub(in crate::engine) fn falls(&self) -> bool {
-        let lately = || (0..FALL_PLACES.min(self.kept)).map(|ago| self.past(ago));
+        let lately = || self.past.latest(FALL_PLACES);
         let others = lately().map(|past| past.others).fold(0.0, f32::max);
         let sum = lately().map(|past| past.others + past.force).fold(0.0, f32::max);
         others >= STOOD_N && self.others < FALLEN * others && self.others + self.force < FALLEN * sum
@@ -222,7 +194,7 @@ impl FootHistory {
     /// place.
     pub(super) fn was_at(&self, place: Vec2) -> bool {
         let near = |at: Vec2| at.distance(place) <= SAME_FOOT_M;
-        near(self.place) || (0..self.kept).any(|ago| near(self.past(ago).place))
+        near(self.place) || self.past.latest(usize::MAX).any(|past| near(past.place))
     }
 
     /// Whether another contact of the same person, with a total of `sum` on the floor, is a foot that was down before
@@ -248,13 +220,13 @@ impl FootHistory {
 
     /// Whether its force and place are those of a tenth of a second ago, within the limits of a steady foot.
     fn is_steady(&self) -> bool {
-        self.has_steady_force() && self.place.distance(self.past(STEADY_PLACES).place) <= STEADY_M
+        self.has_steady_force() && self.place.distance(self.past.ago(STEADY_PLACES).place) <= STEADY_M
     }
 
     /// Whether it was down a tenth of a second ago already, with the same force within `STEADY_SHARE`.
     fn has_steady_force(&self) -> bool {
-        self.kept > STEADY_PLACES
-            && (self.force - self.past(STEADY_PLACES).force).abs() <= STEADY_SHARE * self.force
+        self.past.len() > STEADY_PLACES
+            && (self.force - self.past.ago(STEADY_PLACES).force).abs() <= STEADY_SHARE * self.force
     }
 
     /// Whether its history allows it to start a press of a control with this `guard`.
@@ -350,6 +322,7 @@ impl FootHistory {
         }
     }
 }
+
 /// Whether `contact` may be two feet. A contact that split from another may not be a foot at all.
 fn may_be_two(contact: &Contact) -> bool {
     contact.ambiguous && !contact.split

@@ -1,6 +1,7 @@
 //! The history of all contacts, and the assignment of feet to people.
 
 mod history;
+mod past;
 
 use glam::Vec2;
 

@@ -18,6 +18,32 @@ pub(in crate::sense) struct Lanes<'a, const LANES: usize> {
     pub news: &'a mut [bool; LANES],
 }
 
+/// The readings of all sensors as their boards sent them, four to a tile.
+#[derive(Clone, Debug)]
+pub(super) struct Intake {
+    /// Position of each reading in the converter's range.
+    pub(super) ends: Vec<[End; 4]>,
+    /// Reading of each as sent by its board, 0 for zero; for newtons a digest of their bits.
+    pub(super) raws: Vec<[u16; 4]>,
+    /// Sensors with the nominal law: the plate checks do not apply to forces that may be off by a third.
+    guessed: Vec<[bool; 4]>,
+}
+
+impl Intake {
+    pub(super) fn new(tiles: usize) -> Self {
+        Self {
+            ends: vec![[End::Within; 4]; tiles],
+            raws: vec![[0; 4]; tiles],
+            guessed: vec![[false; 4]; tiles],
+        }
+    }
+
+    /// Whether every sensor of a tile has a law of its own.
+    pub(super) fn has_laws(&self, tile: usize) -> bool {
+        self.guessed[tile] == [false; 4]
+    }
+}
+
 impl Health {
     /// The sensors from number `first` on, in tile-index order; `None` if the floor has fewer.
     #[inline]
@@ -27,29 +53,23 @@ impl Health {
         frame: &'a mut ForceFrame,
     ) -> Option<Lanes<'a, LANES>> {
         Some(Lanes {
-            offsets: self.offsets.as_flattened().get(first..)?.first_chunk()?,
+            offsets: self.zeros.offsets().as_flattened().get(first..)?.first_chunk()?,
             forces: frame.forces.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
             quality: frame.quality.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
-            ends: self.ends.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
-            raws: self.raws.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
-            guessed: self.guessed.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
+            ends: self.intake.ends.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
+            raws: self.intake.raws.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
+            guessed: self.intake.guessed.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
             news: self.jumps.news().get_mut(first..)?.first_chunk_mut()?,
         })
     }
 
     /// Notes that a sensor, by its number, requires an examination of its tile.
     pub(in crate::sense) fn note_loud(&mut self, sensor: usize) {
-        let tile = (sensor / 4) as u32;
-        // A tile may come four times if its sensors are on different boards, never more often.
-        if self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
-            self.loud.push(tile);
-        }
+        self.queue.note_loud(sensor);
     }
 
     /// Notes that boards convert to newtons themselves.
     pub(in crate::sense) fn note_newtons(&mut self) {
-        if !std::mem::replace(&mut self.by_boards, true) {
-            self.judge_floor();
-        }
+        self.first.note_newtons();
     }
 }

@@ -5,10 +5,10 @@
 //! the floor's plates is learnt from the feet on them, starting with rigid plates: on a limp one a single corner may
 //! carry all of the load, so that no reading of a single sensor could indicate a fault.
 //!
-//! Corners are numbered as in [`crate::sense::corners`].
+//! Corners are numbered as in [`crate::sense::centroid::corners`].
 
 use super::End;
-use crate::sense::corners::{self, Told, expected, told};
+use crate::sense::centroid::corners::{self, Told, expected, told};
 
 /// Minimum reading of a single sensor (N) for the others to respond (our choice).
 const ALONE_N: f32 = 8.0;

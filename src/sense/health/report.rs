@@ -50,7 +50,9 @@ impl SensorHealth {
     }
 }
 
-/// One line: "all N live", or the number of sensors of each quality, worst first.
+/// One line: `all 144 live` if every sensor is live and none has a fault. Otherwise the number of sensors of each
+/// quality, worst first, without the qualities that no sensor has: `1 faulty, 2 silent, 1 degraded, 140 live`. Stale
+/// sensors are silent.
 impl std::fmt::Display for SensorHealth {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [live, degraded, stale, faulty] = self.counts;

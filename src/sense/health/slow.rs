@@ -4,7 +4,7 @@ use super::averages::Readings;
 use super::drift::Drift;
 use super::trouble::{Sensor, Trouble};
 use super::{End, plate};
-use crate::sense::corners::{Told, has_lifted};
+use crate::sense::centroid::corners::{Told, has_lifted};
 use crate::units::Instant;
 
 /// Maximum time between blocks for a comparison (s); after a longer gap everything restarts.

@@ -9,7 +9,7 @@ mod tile_set;
 use self::survey::Survey;
 use self::threshold::Thresholds;
 pub(super) use self::tile_set::TileSet;
-use super::tile::{LoadedTile, Place, TileReading};
+use super::centroid::tile::{LoadedTile, Place, TileReading};
 use super::{ForceFrame, Quality};
 use crate::floor::{Geometry, PositionMap, TileId};
 use crate::units::{Instant, Newtons};

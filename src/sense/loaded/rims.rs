@@ -4,8 +4,8 @@ use glam::Vec2;
 
 use super::tile_set::bits;
 use super::{BLOCK, LoadedTiles};
-use crate::sense::corners::known_corners;
-use crate::sense::tile::{LoadedTile, NO_WEIGHT, Wrench, counted};
+use crate::sense::centroid::corners::known_corners;
+use crate::sense::centroid::tile::{LoadedTile, NO_WEIGHT, Wrench, counted};
 use crate::sense::{ForceFrame, Quality};
 
 /// Distance from a foot's centre of pressure up to which it presses a tile that carries little, and the distance over

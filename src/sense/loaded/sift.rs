@@ -3,8 +3,8 @@
 use super::survey::Survey;
 use super::tile_set::bits;
 use super::{BLOCK, LoadedTiles, NONE};
-use crate::sense::corners::is_possible;
-use crate::sense::tile::LoadedTile;
+use crate::sense::centroid::corners::is_possible;
+use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 

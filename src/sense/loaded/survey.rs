@@ -4,7 +4,7 @@ use multiversion::multiversion;
 
 use super::{BLOCK, TileSet};
 use crate::floor::Geometry;
-use crate::sense::tile::NO_WEIGHT;
+use crate::sense::centroid::tile::NO_WEIGHT;
 use crate::sense::{ForceFrame, Quality};
 
 /// Bit of [`Quality::Stale`] and [`Quality::Faulty`]; a sensor with it is replaced by an estimate.

@@ -10,7 +10,7 @@
 //! A quiet tile without recent load keeps the thresholds of [`LoadThreshold`].
 
 use super::{BLOCK, LoadThreshold, NONE};
-use crate::sense::tile::FULL_WEIGHT;
+use crate::sense::centroid::tile::FULL_WEIGHT;
 use crate::units::Newtons;
 
 /// Interval between updates of a tile's noise and residual load (s).

@@ -7,6 +7,7 @@
 //! A line that cannot be read is skipped and reported; all others are read. Where semicolons separate the fields, a
 //! comma is the decimal mark, as spreadsheets write tables in most of Europe.
 
+mod force_table;
 mod header;
 mod lines;
 mod problems;
@@ -18,6 +19,7 @@ use std::ops::{Range, RangeInclusive};
 
 use thiserror::Error;
 
+pub use force_table::ForceTable;
 use header::{Header, unquoted};
 use lines::{Line, Lines};
 pub use problems::{TableNotes, TableProblem, TableProblems};

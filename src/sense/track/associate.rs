@@ -9,8 +9,8 @@ use super::elapsed::Elapsed;
 use super::state::{EAST, FORCE, NORTH, Track};
 use super::touchdown::Touchdown;
 use super::{Tracker, UNASSIGNED, first_of_least};
+use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::loaded::LoadedTiles;
-use crate::sense::tile::LoadedTile;
 
 /// A load beyond all feet near it that may be a new foot.
 #[derive(Clone, Copy, Debug)]

@@ -8,8 +8,8 @@ use super::params::state::{LANDS_S, SHOE_M};
 use super::state::{FORCE, Track};
 use super::{Tracker, cell_of, first_of_least};
 use crate::parallel;
+use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::loaded::LoadedTiles;
-use crate::sense::tile::LoadedTile;
 
 impl Tracker {
     /// Deletes feet that are no longer there.

@@ -25,7 +25,7 @@ use glam::DVec2;
 use super::elapsed::Elapsed;
 use super::state::Track;
 use super::strips::{Whole, centroid_sigma};
-use crate::sense::tile::LoadedTile;
+use crate::sense::centroid::tile::LoadedTile;
 
 /// The covariance of the places of some tile loads about their centroid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -13,9 +13,9 @@ use super::state::{EAST, NORTH, STATES, Track};
 use super::strips::{Strips, centroid_sigma};
 use super::{Cells, Tracker, touchdown};
 use crate::parallel;
+use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
-use crate::sense::tile::LoadedTile;
 
 /// Maximum number of batches of groups estimated in parallel: several for each of a few threads.
 pub(super) const BATCHES: usize = 16;

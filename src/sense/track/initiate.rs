@@ -15,8 +15,8 @@ use super::strips::Whole;
 use super::touchdown::Touchdown;
 use super::{Cells, Tracker, first_of_least};
 use crate::parallel;
+use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::loaded::LoadedTiles;
-use crate::sense::tile::LoadedTile;
 
 /// A foot that has just landed among another's tiles.
 #[derive(Clone, Debug, Default)]

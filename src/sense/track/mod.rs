@@ -56,11 +56,11 @@ use self::sharing::Groups;
 use self::state::Track;
 use self::strips::Axis;
 use self::tracks::Tracks;
+use super::centroid::tile::LoadedTile;
+use super::centroid::uncertainty::SensorUncertainty;
 use super::contact::ContactId;
+use super::contact::pool::ContactPool;
 use super::loaded::LoadedTiles;
-use super::pool::ContactPool;
-use super::tile::LoadedTile;
-use super::uncertainty::SensorUncertainty;
 use crate::floor::{Geometry, TileBlock, TileId};
 use crate::parallel;
 

@@ -13,7 +13,7 @@ use super::joint::{Derivative, Joint, MOST_FEET};
 use super::state::{EAST, FORCE, HALF_EAST, HALF_NORTH, NORTH, STATES, Track};
 use super::strips::{Axis, Strips};
 use super::{Cells, number_of};
-use crate::sense::tile::LoadedTile;
+use crate::sense::centroid::tile::LoadedTile;
 
 /// Predicts the feet of a group over the elapsed time.
 pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], elapsed: &Elapsed) {

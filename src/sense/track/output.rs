@@ -10,11 +10,11 @@ use super::dormant::Dormant;
 use super::state::{EAST, NORTH, Track};
 use super::{Cells, Tracker};
 use crate::parallel;
+use crate::sense::centroid::tile::LoadedTile;
+use crate::sense::centroid::uncertainty::SensorUncertainty;
+use crate::sense::contact::pool::ContactPool;
 use crate::sense::contact::{Contact, Covariance, TileLoad};
 use crate::sense::loaded::LoadedTiles;
-use crate::sense::pool::ContactPool;
-use crate::sense::tile::LoadedTile;
-use crate::sense::uncertainty::SensorUncertainty;
 use crate::units::Newtons;
 
 impl Tracker {

@@ -12,8 +12,8 @@ use super::elapsed::Elapsed;
 use super::state::{EAST, NORTH, Track};
 use super::strips::Axis;
 use super::{Cells, cell_of};
+use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::loaded::LoadedTiles;
-use crate::sense::tile::LoadedTile;
 
 impl Track {
     /// Distance of `point` from the area that can belong to this foot (m); negative within.

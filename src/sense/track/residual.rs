@@ -7,7 +7,7 @@ use super::params::residual::{KNOWN_S, LEARN_EVERY_S, RESIDUAL_S, TOUCHES_S};
 use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
 use super::state::{HALF_EAST, HALF_NORTH, Track};
 use super::strips::{Axis, Residual, Strips, Whole};
-use crate::sense::tile::LoadedTile;
+use crate::sense::centroid::tile::LoadedTile;
 
 impl Track {
     /// Learns the patch's half widths from the division at seams of a foot with a known centre of pressure.

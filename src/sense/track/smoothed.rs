@@ -8,7 +8,7 @@ use super::Cells;
 use super::elapsed::Elapsed;
 use super::patch::PatchOnTile;
 use super::state::{EAST, FORCE, NORTH, Track};
-use crate::sense::tile::LoadedTile;
+use crate::sense::centroid::tile::LoadedTile;
 
 /// Force, place and rates of a foot, predicted from its last few hundredths of a second.
 #[derive(Clone, Debug, Default)]

@@ -17,8 +17,8 @@ use super::smoothed::Smoothed;
 use super::strips::Residual;
 use super::touchdown::Touchdown;
 use crate::sense::Quality;
+use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::contact::ContactId;
-use crate::sense::tile::LoadedTile;
 
 /// Numbers per foot: force and its rate, east and its rate, north and its rate, two half widths.
 pub(super) const STATES: usize = 8;

@@ -13,7 +13,7 @@ use glam::DVec2;
 
 use super::patch::Slice;
 use super::state::{EAST, HALF_EAST, HALF_NORTH, NORTH};
-use crate::sense::tile::LoadedTile;
+use crate::sense::centroid::tile::LoadedTile;
 
 /// Maximum number of columns and rows of one group that the filter observes.
 pub(super) const MOST_STRIPS: usize = 24;

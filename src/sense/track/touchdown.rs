@@ -20,8 +20,8 @@ use glam::DVec2;
 use super::state::{EAST, FORCE, NORTH, Track};
 use super::strips::{Axis, MOST_STRIPS, Strip, Strips};
 use super::{Cells, number_of};
+use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::contact::ContactId;
-use crate::sense::tile::LoadedTile;
 
 /// The standing foot beside which a foot has landed, and the place of the standing foot before.
 #[derive(Clone, Copy, Debug)]

@@ -7,6 +7,7 @@ mod log;
 mod open;
 mod parts;
 mod proc_net;
+mod reception;
 mod seal;
 mod senders;
 mod stamped;
@@ -27,15 +28,16 @@ pub use self::forward::ForwardCounters;
 use self::forward::Forwarder;
 use self::log::RefusalLog;
 use self::open::{BUFFER_BYTES, open};
+use self::reception::Reception;
 pub use self::seal::{Seal, Sealed};
-use self::stamped::{Received, Stamped};
+use self::stamped::Received;
 use self::timed::{Timed, delay};
 use super::{Port, SourceError};
 use crate::floor::{Floor, Forwarding, Network, canonical};
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
 use crate::wire::{
-    Batch, Decoder, Limits, LinkCause, LinkCounters, Prefix, Request, SensorPacket, WireError, guess_format,
+    Batch, Decoder, LinkCause, LinkCounters, Prefix, Request, SensorPacket, WireError, guess_format,
 };
 
 /// Maximum number of queued control messages; further ones are dropped and counted as overflowed.
@@ -67,13 +69,8 @@ pub struct UdpSource {
     socket: UdpSocket,
     /// The requests' own port, if any, and the time of its last read.
     commands: Option<(UdpSocket, Instant)>,
-    stamped: Stamped,
-    /// Arrival time of the last datagram.
-    received: Instant,
-    granted: usize,
+    reception: Reception,
     started: HostInstant,
-    patience: Option<Duration>,
-    buffer: Vec<u8>,
     decoder: Decoder,
     batch: Batch,
     packets: VecDeque<SensorPacket>,
@@ -110,15 +107,10 @@ impl UdpSource {
         }
         let decoder = Decoder::new(floor);
         Ok(Self {
-            stamped: Stamped::on(&socket),
-            received: Instant::START,
+            reception: Reception::on(&socket, granted),
             socket,
             commands: None,
-            granted,
             started: HostInstant::now(),
-            patience: None,
-            // One byte more than the maximum distinguishes a truncated datagram from one that just fits.
-            buffer: vec![0; Limits::SENSORS.bytes + 1],
             decoder,
             batch: Batch::default(),
             packets: VecDeque::new(),
@@ -231,7 +223,7 @@ impl UdpSource {
     /// includes its bookkeeping); 0 if the system does not report it.
     #[must_use]
     pub const fn granted_buffer(&self) -> usize {
-        self.granted
+        self.reception.granted()
     }
 
     /// The clock that stamps packets, for latency measurements of later stages.
@@ -285,15 +277,14 @@ impl UdpSource {
 
     /// Receives one datagram and sorts its content; false if none arrived.
     fn receive(&mut self, patience: Duration) -> Result<bool, SourceError> {
-        self.set_patience(patience).map_err(failed)?;
-        let Received { length, sender, waited } = match self.stamped.receive(&self.socket, &mut self.buffer) {
+        self.reception.set_patience(&self.socket, patience).map_err(failed)?;
+        let Received { length, sender, waited } = match self.reception.receive(&self.socket) {
             Ok(received) => received,
             Err(error) if is_passing(error.kind()) => return Ok(false),
             Err(error) => return Err(failed(error)),
         };
         let now = self.now();
-        // The kernel stamps by the wall clock, which may be slewed; this keeps time monotonic.
-        self.received = self.received.max(now.before(waited));
+        self.reception.note_arrival(now, waited);
         self.sort(sender, length, false, now);
         Ok(true)
     }
@@ -303,7 +294,7 @@ impl UdpSource {
         for _ in 0..MAX_REQUESTS {
             let now = self.now();
             let Some((socket, looked)) = &mut self.commands else { return Ok(()) };
-            match socket.recv_from(&mut self.buffer) {
+            match socket.recv_from(&mut self.reception.buffer) {
                 Ok((length, sender)) => self.sort(sender, length, true, now),
                 Err(error) if is_passing(error.kind()) => {
                     *looked = now;
@@ -324,7 +315,7 @@ impl UdpSource {
         if let Err(refusal) = self.admission.datagram(sender, on_own_port, now) {
             return self.turn_away(sender, refusal, now);
         }
-        let datagram = self.buffer.get(..length).unwrap_or_default();
+        let datagram = self.reception.buffer.get(..length).unwrap_or_default();
         // An OSC datagram begins with a slash or a hash.
         let is_osc = datagram.first().is_none_or(|first| b"/#".contains(first));
         match self.seal.as_mut().filter(|_| !is_osc) {
@@ -344,8 +335,8 @@ impl UdpSource {
     /// Sorts the OSC datagram in these bytes of the buffer.
     fn sort_osc(&mut self, from: (SocketAddr, Way), bytes: Range<usize>, now: Instant) {
         let (sender, way) = from;
-        let datagram = self.buffer.get(bytes.clone()).unwrap_or_default();
-        if let Err(error) = self.decoder.decode(datagram, self.received, &mut self.batch) {
+        let datagram = self.reception.buffer.get(bytes.clone()).unwrap_or_default();
+        if let Err(error) = self.decoder.decode(datagram, self.reception.received(), &mut self.batch) {
             if let WireError::Malformed(_) = error {
                 let why = guess_format(datagram).map_or_else(|| error.to_string(), str::to_owned);
                 self.note_refused(LinkCause::NotOsc { why }, now);
@@ -364,8 +355,8 @@ impl UdpSource {
         let is_forwarded = refusals.is_empty() && !self.batch.packets.is_empty() && way != Way::Sealed;
         refusals.into_iter().for_each(|refusal| self.turn_away(sender, refusal, now));
         if let Some(forwarder) = self.forwarder.as_ref().filter(|_| is_forwarded) {
-            let datagram = self.buffer.get(bytes).unwrap_or_default();
-            forwarder.forward(datagram, now.since(self.received), self.seal.as_deref_mut());
+            let datagram = self.reception.buffer.get(bytes).unwrap_or_default();
+            forwarder.forward(datagram, now.since(self.reception.received()), self.seal.as_deref_mut());
         }
         self.packets.extend(self.batch.packets.drain(..));
         let room = MAX_CONTROLS.saturating_sub(self.requests.len() + self.timed.len());
@@ -457,19 +448,6 @@ impl UdpSource {
         write_error(self.decoder.prefix(), address, &error.to_string(), &mut answer);
         self.answer(sender, &answer);
         self.answer = answer;
-    }
-
-    /// Sets the time-out of the socket; zero means non-blocking. Makes a system call only if it changes.
-    fn set_patience(&mut self, patience: Duration) -> std::io::Result<()> {
-        if self.patience == Some(patience) {
-            return Ok(());
-        }
-        self.socket.set_nonblocking(patience.is_zero())?;
-        if !patience.is_zero() {
-            self.socket.set_read_timeout(Some(patience))?;
-        }
-        self.patience = Some(patience);
-        Ok(())
     }
 }
 

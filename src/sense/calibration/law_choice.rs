@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::calibration::{Curve, Fit, FitError, LoadPoint, Loads};
+use super::law_fit::{Curve, Fit, FitError, LoadPoint, Loads};
 use crate::floor::LawKind;
 
 /// The fit of each law to a sensor's measurements, and the law selected.

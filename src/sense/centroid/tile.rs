@@ -2,9 +2,9 @@
 
 use glam::Vec2;
 
-use super::Quality;
 use super::corners::{self, known_corners};
 use crate::floor::{Geometry, PositionMap, TileId};
+use crate::sense::Quality;
 use crate::units::Newtons;
 
 /// The reading of one tile as a whole.
@@ -110,14 +110,14 @@ const LOADED_NOISE: f64 = 0.01;
 
 /// Force below which a tile has no weight in a centroid, and above which it has full weight (N) (our choice: two and
 /// eight deviations of the sum of four sensors on an empty floor with tracked zeros).
-pub(super) const NO_WEIGHT: f32 = 0.5;
-pub(super) const FULL_WEIGHT: f32 = 2.0;
+pub(in crate::sense) const NO_WEIGHT: f32 = 0.5;
+pub(in crate::sense) const FULL_WEIGHT: f32 = 2.0;
 
 /// Weight of `force` on one tile in a centroid over several.
 ///
 /// It rises continuously from zero to the full force, so that a foot sliding over a seam gains its next tile
 /// gradually.
-pub(super) fn counted(force: f32) -> f32 {
+pub(in crate::sense) fn counted(force: f32) -> f32 {
     // Most loads have full weight and need no division.
     if force >= FULL_WEIGHT {
         return force;
@@ -131,7 +131,7 @@ const P95_PER_DEVIATION: f32 = 2.4477;
 /// Blends a tile from a sensor's reading to the estimate from the others, or back, without a jump of its centroid
 /// that could look like another foot.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Lag {
+pub(in crate::sense) struct Lag {
     /// Sensors estimated now, one bit each.
     lost: u8,
     /// The tile's corners before, the last lag, and the sensors estimated then.
@@ -148,7 +148,7 @@ const NO_LAG_N: f32 = 0.05;
 
 impl Lag {
     /// The lag of a tile with sensors of `quality`, `dt` seconds after the state `before`.
-    pub(super) fn new(quality: [Quality; 4], before: Option<&LoadedTile>, dt: f32) -> Self {
+    pub(in crate::sense) fn new(quality: [Quality; 4], before: Option<&LoadedTile>, dt: f32) -> Self {
         let bit = |(corner, quality): (usize, Quality)| u8::from(quality >= Quality::Stale) << corner;
         let lost = quality.into_iter().enumerate().map(bit).sum();
         let before = before.filter(|tile| tile.lost != lost || !tile.is_settled());
@@ -173,28 +173,28 @@ impl Lag {
 
 impl LoadedTile {
     /// Weight of the tile's force in a centroid over several tiles.
-    pub(super) fn weight(&self) -> f32 {
+    pub(in crate::sense) fn weight(&self) -> f32 {
         self.weight
     }
 
     /// Standard deviation along each axis after correction by its map (m); `None` without one.
-    pub(super) fn mapped_m(&self) -> Option<f32> {
+    pub(in crate::sense) fn mapped_m(&self) -> Option<f32> {
         self.mapped_m
     }
 
     /// Standard deviation of the noise of each of its sensors under this load (N).
-    pub(super) fn loaded_noise_n(&self) -> f64 {
+    pub(in crate::sense) fn loaded_noise_n(&self) -> f64 {
         let under_load = LOADED_NOISE * 0.25 * f64::from(self.wrench.force);
         // As on most floors: saves a square root.
         if self.noise_n == 0.0 { under_load.abs() } else { f64::from(self.noise_n).hypot(under_load) }
     }
 
-    pub(super) fn strayed_m2(&self) -> f32 {
+    pub(in crate::sense) fn strayed_m2(&self) -> f32 {
         self.strayed_m2
     }
 
     /// The reading of the tile itself.
-    pub(super) fn reading(&self, geometry: &Geometry) -> TileReading {
+    pub(in crate::sense) fn reading(&self, geometry: &Geometry) -> TileReading {
         let half = Vec2::splat(0.5 * geometry.pitch_m());
         TileReading {
             force: Newtons(self.wrench.force - self.strayed),
@@ -204,7 +204,7 @@ impl LoadedTile {
     }
 
     /// Adds `force` at `point` of a surrounding tile that is too light to be listed itself.
-    pub(super) fn add_strayed(&mut self, force: f32, point: Vec2) {
+    pub(in crate::sense) fn add_strayed(&mut self, force: f32, point: Vec2) {
         self.weight += force;
         self.strayed += force;
         self.strayed_m2 += 4.0 * point.distance_squared(self.centroid);
@@ -214,15 +214,15 @@ impl LoadedTile {
     }
 
     /// Widens the standard deviations of its corners by the quality of its sensors; `may_start` as in
-    /// [`super::ForceFrame::may_start`].
-    pub(super) fn judge(&mut self, sensors: [Quality; 4], may_start: bool) {
+    /// [`crate::sense::ForceFrame::may_start`].
+    pub(in crate::sense) fn judge(&mut self, sensors: [Quality; 4], may_start: bool) {
         let extra = corners::extra_sigma(self.corners, sensors, may_start);
         self.extra_sigma = std::array::from_fn(|corner| extra[corner].max(self.extra_sigma[corner]));
     }
 
     /// Whether it needs no state from its past: every sensor was live, and none has just been lost or returned.
     #[inline]
-    pub(super) fn is_settled(&self) -> bool {
+    pub(in crate::sense) fn is_settled(&self) -> bool {
         self.lost == 0 && self.lag == [0.0; 4]
     }
 
@@ -231,7 +231,7 @@ impl LoadedTile {
     ///
     /// The corners are passed by reference: by value, the copy took a sixth of plain Eq. 4's time.
     #[inline]
-    pub(super) fn new(
+    pub(in crate::sense) fn new(
         place: Place,
         geometry: &Geometry,
         corners: &[f32; 4],
@@ -248,7 +248,7 @@ impl LoadedTile {
     /// tile's load if some of its sensors' readings do not count.
     #[cold]
     #[inline(never)]
-    pub(super) fn of_any_quality(
+    pub(in crate::sense) fn of_any_quality(
         place: Place,
         geometry: &Geometry,
         (forces, quality, may_start): ([f32; 4], [Quality; 4], bool),
@@ -315,14 +315,14 @@ impl LoadedTile {
 
 /// A tile and its position.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(in crate::sense) struct Place {
     tile: TileId,
     index: u32,
     centre: Vec2,
 }
 
 impl Place {
-    pub(super) fn of(geometry: &Geometry, index: usize) -> Self {
+    pub(in crate::sense) fn of(geometry: &Geometry, index: usize) -> Self {
         let tile = geometry.tile_at_index(index);
         Self { tile, index: index as u32, centre: geometry.centre(tile) }
     }

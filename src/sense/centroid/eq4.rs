@@ -2,12 +2,11 @@
 
 use glam::Vec2;
 
-use super::Quality;
 use super::cluster::Clusters;
-use super::contact::{Contact, ContactId, Covariance, TileLoad};
-use super::loaded::LoadedTiles;
-use super::pool::ContactPool;
 use super::uncertainty::SensorUncertainty;
+use crate::sense::contact::pool::ContactPool;
+use crate::sense::loaded::LoadedTiles;
+use crate::sense::{Contact, ContactId, Covariance, Quality, TileLoad};
 use crate::units::Newtons;
 
 /// Marks a contact that has ended.
@@ -25,7 +24,7 @@ const JUMP_M: f32 = 0.1;
 /// x_c = Σ w_k x_ck, w_k = F_k / F over the group's tiles (paper, Eq. 4), but
 /// with [`LoadedTile::weight`] for F_k.
 #[derive(Clone, Debug)]
-pub(super) struct Eq4 {
+pub(in crate::sense) struct Eq4 {
     uncertainty: SensorUncertainty,
     next: u32,
     /// The contacts of the last frame and of this one, in the order of their clusters.
@@ -69,7 +68,7 @@ enum Before {
 }
 
 impl Eq4 {
-    pub(super) fn new(tiles: usize, uncertainty: SensorUncertainty) -> Self {
+    pub(in crate::sense) fn new(tiles: usize, uncertainty: SensorUncertainty) -> Self {
         let room = tiles.min(1024);
         Self {
             uncertainty,
@@ -85,7 +84,7 @@ impl Eq4 {
     }
 
     /// Fills `pool` with this frame's contacts; `dt` seconds have passed since the last frame.
-    pub(super) fn update(
+    pub(in crate::sense) fn update(
         &mut self,
         tiles: &LoadedTiles,
         clusters: &Clusters,
@@ -264,6 +263,6 @@ impl Before {
 }
 
 /// Gain of a new velocity, 1 − exp(−dt/τ): a first-order low-pass with τ = 25 ms.
-pub(super) fn smoothing(dt: f32) -> f32 {
+pub(in crate::sense) fn smoothing(dt: f32) -> f32 {
     1.0 - (-dt / 0.025).exp()
 }

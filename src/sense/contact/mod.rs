@@ -1,13 +1,20 @@
 //! Contacts: feet and objects that press the floor in one place.
 
+mod cursor;
+pub(super) mod pool;
+
 use glam::Vec2;
 use serde::Serialize;
 use smallvec::SmallVec;
+
+pub use cursor::Cursor;
 
 use super::Quality;
 pub use crate::floor::ContactId;
 use crate::floor::TileId;
 use crate::units::Newtons;
+
+pub use cursor::{CursorPicker, Stickiness};
 
 /// The part of a contact that one tile carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,9 +3,9 @@
 use std::collections::VecDeque;
 use std::io::{self, BufRead};
 
-use super::ForceFrame;
-use super::table::{Row, Table, TableError, TableProblems};
+use super::{Row, Table, TableError, TableProblems};
 use crate::floor::{Geometry, TileId};
+use crate::sense::ForceFrame;
 use crate::units::Instant;
 
 const COLUMNS: [&[&str]; 1] = [&["t_s", "col", "row", "f_sw", "f_se", "f_nw", "f_ne"]];

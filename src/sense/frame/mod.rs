@@ -1,8 +1,15 @@
 //! The forces and qualities of all sensors at one instant.
 
+mod calibration_fault;
+mod hold_doubt;
+mod quality;
+
 use glam::Vec2;
 
-use super::{CalibrationFault, HoldDoubt, Quality};
+pub use calibration_fault::CalibrationFault;
+pub use hold_doubt::HoldDoubt;
+pub use quality::Quality;
+
 use crate::floor::{Corner, Geometry};
 use crate::units::{Instant, Newtons};
 

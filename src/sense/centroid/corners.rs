@@ -3,7 +3,7 @@
 //! Corners are in the order sw, se, nw, ne: the neighbours of a corner differ from it in one bit of its number, its
 //! diagonal in both.
 
-use super::Quality;
+use crate::sense::Quality;
 
 /// Reading below which a corner has lifted off, or is about to: the plate's weight on it is gone.
 const LIFTED_N: f32 = -2.0;
@@ -35,7 +35,7 @@ const ABOVE: f32 = 0.1;
 const TOLD: f32 = 0.03;
 
 /// Whether a floor can produce these forces: no NaN, none above 1 MN.
-pub(super) fn is_possible(forces: &[f32; 4]) -> bool {
+pub(in crate::sense) fn is_possible(forces: &[f32; 4]) -> bool {
     // All four are checked: that takes less time than a branch after each.
     forces.iter().fold(true, |all, force| all & (force.abs() <= 1e6))
 }
@@ -46,13 +46,13 @@ pub(super) fn is_possible(forces: &[f32; 4]) -> bool {
 ///
 /// # Source
 /// Four equal springs under a rigid plate: f_sw + f_ne = f_se + f_nw.
-pub(super) fn expected(forces: [f32; 4], corner: usize) -> f32 {
+pub(in crate::sense) fn expected(forces: [f32; 4], corner: usize) -> f32 {
     forces[corner ^ 1] + forces[corner ^ 2] - forces[corner ^ 3]
 }
 
 /// Meaning of the [`expected`] value of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Told {
+pub(in crate::sense) enum Told {
     /// The exact load, except for unequal supports and gains.
     Exactly,
     /// A lower bound of the load.
@@ -66,7 +66,7 @@ pub(super) enum Told {
 /// # Source
 /// Springs push but do not pull: with its diagonal in the air, a corner carries the [`expected`] load or more; with a
 /// neighbour in the air, that load or less, since the plate tips over it.
-pub(super) fn told(lifted: [bool; 4], corner: usize) -> Told {
+pub(in crate::sense) fn told(lifted: [bool; 4], corner: usize) -> Told {
     if lifted[corner ^ 1] || lifted[corner ^ 2] {
         Told::Nothing
     } else if lifted[corner ^ 3] {
@@ -77,7 +77,7 @@ pub(super) fn told(lifted: [bool; 4], corner: usize) -> Told {
 }
 
 /// Whether a corner that reads `force` newtons has lifted off, or is about to.
-pub(super) fn has_lifted(force: f32) -> bool {
+pub(in crate::sense) fn has_lifted(force: f32) -> bool {
     force < LIFTED_N
 }
 
@@ -113,7 +113,7 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
 /// the plate's other corners, or a little more than the reading without evidence from these.
 ///
 /// Near its end a part may also read too much: then the force is lowered.
-pub(super) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
+pub(in crate::sense) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
     let at_end = quality.map(|quality| quality == Quality::Degraded);
     let lifted = forces.map(has_lifted);
     std::array::from_fn(|corner| {
@@ -148,8 +148,8 @@ fn lacking(forces: [f32; 4], at_end: [bool; 4], corner: usize) -> f32 {
 }
 
 /// The standard deviation of each of `forces` beyond the general uncertainty of sensors (N), by the quality of the
-/// sensors; `may_start` as in [`super::ForceFrame::may_start`].
-pub(super) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may_start: bool) -> [f32; 4] {
+/// sensors; `may_start` as in [`crate::sense::ForceFrame::may_start`].
+pub(in crate::sense) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may_start: bool) -> [f32; 4] {
     let whole: f32 = forces.iter().sum();
     let at_end = quality.iter().filter(|&&quality| quality == Quality::Degraded).count() as f32;
     let lifted = forces.map(has_lifted);
@@ -188,7 +188,7 @@ const IN_THE_AIR: f32 = 0.03;
 /// # Source
 /// Plate on four springs: f_sw - f_se - f_nw + f_ne lies between zero (rigid) and that of the load's place (limp).
 #[inline]
-pub(super) fn contradicted([sw, se, nw, ne]: [f32; 4]) -> [f32; 4] {
+pub(in crate::sense) fn contradicted([sw, se, nw, ne]: [f32; 4]) -> [f32; 4] {
     let whole = (sw + se) + (nw + ne);
     let diagonal = (sw - se) + (ne - nw);
     let place = ((se - sw) + (ne - nw)) * ((nw - sw) + (ne - se)) / whole;

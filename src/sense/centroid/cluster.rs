@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use super::loaded::{LoadedTiles, TileSet};
 use crate::floor::Geometry;
+use crate::sense::loaded::{LoadedTiles, TileSet};
 
 /// Groups of loaded tiles that touch along an edge or at a corner.
 #[derive(Clone, Debug)]
-pub(super) struct Clusters {
+pub(in crate::sense) struct Clusters {
     /// Positions in the list of loaded tiles, one cluster after the other.
     members: Vec<u32>,
     spans: Vec<Range<usize>>,
@@ -22,7 +22,7 @@ pub(super) struct Clusters {
 
 impl Clusters {
     /// Reserves room for every tile of a floor, so that finding clusters never allocates.
-    pub(super) fn new(geometry: &Geometry) -> Self {
+    pub(in crate::sense) fn new(geometry: &Geometry) -> Self {
         let tiles = geometry.tile_count().min(4096);
         Self {
             members: Vec::with_capacity(tiles),
@@ -35,7 +35,7 @@ impl Clusters {
     }
 
     /// Finds the clusters of `tiles`, in the order of their first tile.
-    pub(super) fn update(&mut self, tiles: &LoadedTiles) {
+    pub(in crate::sense) fn update(&mut self, tiles: &LoadedTiles) {
         let Self { members, spans, of, of_last, unassigned, found } = self;
         std::mem::swap(of, of_last);
         of.resize(tiles.list().len(), 0);
@@ -66,22 +66,22 @@ impl Clusters {
 
     /// The cluster of the last frame that contained the tile at position `before` of its list; `None` past its end.
     #[inline]
-    pub(super) fn of_last(&self, before: u32) -> Option<u32> {
+    pub(in crate::sense) fn of_last(&self, before: u32) -> Option<u32> {
         self.of_last.get(before as usize).copied()
     }
 
     /// Range of one cluster among the members of all; `None` past the last.
-    pub(super) fn span(&self, cluster: usize) -> Option<Range<usize>> {
+    pub(in crate::sense) fn span(&self, cluster: usize) -> Option<Range<usize>> {
         self.spans.get(cluster).cloned()
     }
 
     /// One cluster as positions in the list of loaded tiles; `None` past the last.
-    pub(super) fn get(&self, cluster: usize) -> Option<&[u32]> {
+    pub(in crate::sense) fn get(&self, cluster: usize) -> Option<&[u32]> {
         self.members.get(self.span(cluster)?)
     }
 
     /// Each cluster as positions in the list of loaded tiles.
-    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+    pub(in crate::sense) fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> {
         self.spans.iter().map(|span| &self.members[span.clone()])
     }
 }

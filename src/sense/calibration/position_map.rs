@@ -4,8 +4,8 @@ use glam::Vec2;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use super::tile::Wrench;
 use crate::floor::{Corner, Geometry, PositionMap};
+use crate::sense::Wrench;
 
 /// One known point, pressed.
 #[derive(Clone, Copy, Debug, PartialEq)]

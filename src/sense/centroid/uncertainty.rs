@@ -2,9 +2,9 @@
 
 use glam::{Vec2, Vec4};
 
-use super::contact::Covariance;
 use super::tile::LoadedTile;
 use crate::floor::Geometry;
+use crate::sense::Covariance;
 
 /// The uncertainty that remains after calibration of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,10 +2,10 @@
 
 use std::io::BufRead;
 
-use super::calibration::{Fit, FitError, LoadPoint};
 use super::law_choice::Comparison;
-use super::table::{Row, Table, TableError, TableNotes, shown};
+use super::law_fit::{Fit, FitError, LoadPoint};
 use crate::floor::{Calibration, Corner, Geometry, SensorId, TileId};
+use crate::sense::table::{Row, Table, TableError, TableNotes, shown};
 use crate::units::Newtons;
 
 /// The measurements of each sensor in a table.

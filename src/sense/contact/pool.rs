@@ -2,34 +2,34 @@
 
 use smallvec::SmallVec;
 
-use super::Quality;
-use super::contact::{Contact, ContactId, Covariance, TileLoad};
+use super::{Contact, ContactId, Covariance, TileLoad};
+use crate::sense::Quality;
 
 /// The contacts of one frame, in reused objects.
 ///
 /// A contact on many tiles keeps its list on the heap; reuse of the objects keeps those lists too, so that nothing is
 /// allocated once the floor has been at its fullest.
 #[derive(Clone, Debug, Default)]
-pub(super) struct ContactPool {
+pub(in crate::sense) struct ContactPool {
     contacts: Vec<Contact>,
     used: usize,
 }
 
 impl ContactPool {
     /// A pool of `contacts` contacts at first, each with room for [`ROOM`] tiles.
-    pub(super) fn with_capacity(contacts: usize) -> Self {
+    pub(in crate::sense) fn with_capacity(contacts: usize) -> Self {
         let mut pool = Self { contacts: Vec::with_capacity(contacts), used: 0 };
         pool.contacts.resize_with(contacts, roomy);
         pool
     }
 
-    pub(super) fn clear(&mut self) {
+    pub(in crate::sense) fn clear(&mut self) {
         self.used = 0;
     }
 
     /// A contact with the identifier `id` and default values.
     #[inline]
-    pub(super) fn add(&mut self, id: ContactId) -> &mut Contact {
+    pub(in crate::sense) fn add(&mut self, id: ContactId) -> &mut Contact {
         if self.used == self.contacts.len() {
             self.contacts.push(roomy());
         }
@@ -45,11 +45,11 @@ impl ContactPool {
         contact
     }
 
-    pub(super) fn contacts_mut(&mut self) -> &mut [Contact] {
+    pub(in crate::sense) fn contacts_mut(&mut self) -> &mut [Contact] {
         self.contacts.get_mut(..self.used).unwrap_or_default()
     }
 
-    pub(super) fn contacts(&self) -> &[Contact] {
+    pub(in crate::sense) fn contacts(&self) -> &[Contact] {
         self.contacts.get(..self.used).unwrap_or_default()
     }
 }
@@ -63,7 +63,7 @@ fn roomy() -> Contact {
 
 impl Contact {
     /// Sorts the tiles, heaviest first, and derives the difference vector from them.
-    pub(super) fn finish(&mut self) {
+    pub(in crate::sense) fn finish(&mut self) {
         let order = |a: &TileLoad, b: &TileLoad| b.force.0.total_cmp(&a.force.0).then(a.index.cmp(&b.index));
         match &mut self.tiles[..] {
             [] | [_] => {}

@@ -5,8 +5,8 @@ use std::io::BufRead;
 use glam::Vec2;
 
 use super::position_map::{MapError, MapFit, Press, Sighting};
-use super::table::{Row, Table, TableError, TableNotes};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId, TileId};
+use crate::sense::table::{Row, Table, TableError, TableNotes};
 
 /// The points pressed on each tile.
 #[derive(Clone, Debug, PartialEq)]
