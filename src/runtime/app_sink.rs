@@ -11,7 +11,7 @@ use triple_buffer::Input;
 use super::event::Event;
 use super::queue::QueueInput;
 use crate::serve::Command;
-use crate::sink::{CrackRateLimiter, EventSink, OwnedReport, Report, Worker};
+use crate::sink::{CrackRateLimiter, EventSink, Report, Worker};
 use crate::units::Instant;
 use crate::widget::WidgetId;
 use crate::wire::ControlMessage;
@@ -73,6 +73,13 @@ pub(super) struct AppSink {
 }
 
 impl AppSink {
+    fn put(&mut self, event: Option<Event>) {
+        if let Some(event) = event {
+            self.events.put(event);
+            self.wake();
+        }
+    }
+
     fn wake(&self) {
         if let Some(waker) = &self.waker {
             waker.wake();
@@ -81,7 +88,7 @@ impl AppSink {
 }
 
 impl EventSink for AppSink {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         match report {
             Report::Held(report) => {
                 let now = self.held.input_buffer_mut();
@@ -91,12 +98,11 @@ impl EventSink for AppSink {
             }
             // The snapshot contains these.
             Report::Contacts(..) | Report::Alive(..) => {}
-            report => {
-                if let Some(event) = OwnedReport::of(report, &mut self.cracks).and_then(Event::of) {
-                    self.events.put(event);
-                    self.wake();
-                }
+            Report::Ground(event) => {
+                let crack = self.cracks.news(event).map(Report::Crack);
+                self.put(crack.as_ref().and_then(Event::of));
             }
+            report => self.put(Event::of(report)),
         }
     }
 

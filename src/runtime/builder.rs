@@ -17,7 +17,7 @@ use super::held::HeldWatch;
 use super::queue::{Queue, QueueInput};
 use super::session::{Inner, Session};
 use super::snapshot::Shown;
-use super::thread::{self, Actuators, OpenActuators, Plan, Told};
+use super::thread::{self, Actuators, EndWatchers, OpenActuators, Plan};
 use crate::engine;
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
@@ -337,11 +337,11 @@ impl SessionBuilder {
             snapshots,
             stop: Arc::clone(&self.stop),
         };
-        let told = Told { queue: Arc::clone(&queue), held: Arc::clone(&held), waker };
+        let watchers = EndWatchers { queue: Arc::clone(&queue), held: Arc::clone(&held), waker };
         let (ready, is_ready) = sync_channel(1);
         let sensing = ThreadBuilder::new()
             .name("sensing".into())
-            .spawn(move || thread::run(plan, &told, &ready))
+            .spawn(move || thread::run(plan, &watchers, &ready))
             .map_err(StartError::Thread)?;
         let thread = Mutex::new(Some(sensing));
         let session = Session::new(Inner {

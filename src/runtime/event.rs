@@ -5,9 +5,9 @@ use std::fmt;
 use glam::Vec2;
 
 use crate::sense::ContactId;
-use crate::sink::OwnedReport;
+use crate::sink::Report;
 use crate::units::{Instant, Newtons};
-use crate::widget::{EventKind, WidgetEvent, WidgetId};
+use crate::widget::{EventKind, WidgetId};
 use crate::wire::LinkState;
 
 /// An event on a floor.
@@ -134,30 +134,34 @@ impl Event {
     }
 
     /// The event for a report; `None` for reports that [`super::Session::held`] and snapshots cover.
-    pub(super) fn of(told: OwnedReport) -> Option<Self> {
-        let at = told.at();
-        let (id, kind) = match told {
-            OwnedReport::Event(WidgetEvent { id, kind, contact, force, position, .. }) => {
-                let event = Self::new(at, Some(id), Kind::Control(kind));
+    pub(super) fn of(report: &Report<'_>) -> Option<Self> {
+        let at = report.at();
+        let (id, kind) = match report {
+            Report::Event(event) => {
+                let (contact, force, position) = (event.contact, event.force, event.position);
+                let event = Self::new(at, Some(event.id.clone()), Kind::Control(event.kind));
                 return Some(Self { contact, force, position, ..event });
             }
-            OwnedReport::Control(_, state) => (Some(state.id.clone()), Kind::State),
-            OwnedReport::Page(shown) => (Some(shown.page), Kind::Page),
-            OwnedReport::Link(_, state) => (None, Kind::Link(state)),
-            OwnedReport::LinkCause(_, cause) => {
-                let message = cause.map(|cause| format!("{}: {cause}", cause.name())).unwrap_or_default();
+            Report::Control(_, state) => (Some(state.id.clone()), Kind::State),
+            Report::Page(shown) => (Some(shown.page.clone()), Kind::Page),
+            Report::Link(_, state) => (None, Kind::Link(*state)),
+            Report::LinkCause(_, cause) => {
+                let message =
+                    cause.as_ref().map(|cause| format!("{}: {cause}", cause.name())).unwrap_or_default();
                 return Some(Self { message, ..Self::new(at, None, Kind::LinkCause) });
             }
-            OwnedReport::Health(..) => (None, Kind::Health),
-            OwnedReport::Device(..) => (None, Kind::Device),
-            OwnedReport::Muted(..) => (None, Kind::Muted),
-            OwnedReport::Crack(news) => {
+            Report::Health(..) => (None, Kind::Health),
+            Report::Device(..) => (None, Kind::Device),
+            Report::Muted(..) => (None, Kind::Muted),
+            Report::Crack(news) => {
                 let kind = Kind::Crack { seed: news.seed, energy_j: news.energy_j };
                 return Some(Self { position: Vec2::new(news.x_m, news.y_m), ..Self::new(at, None, kind) });
             }
-            OwnedReport::Contacts(..) | OwnedReport::Held(_) | OwnedReport::Alive(..) => return None,
+            Report::Contacts(..) | Report::Held(_) | Report::Alive(..) => return None,
+            // The sink makes cracks of these.
+            Report::Ground(_) => return None,
             // A session serves at most one area: only a gateway reports several.
-            OwnedReport::Area(_) => return None,
+            Report::Area(_) => return None,
         };
         Some(Self::new(at, id, kind))
     }

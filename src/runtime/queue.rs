@@ -158,11 +158,13 @@ impl Drop for QueueInput {
 
 #[cfg(test)]
 mod tests {
+    use std::borrow::Cow;
+
     use glam::Vec2;
 
     use super::*;
     use crate::runtime::{EndReason, Kind};
-    use crate::sink::OwnedReport;
+    use crate::sink::Report;
     use crate::units::{Instant, Newtons};
     use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
     use crate::wire::LinkState;
@@ -170,7 +172,8 @@ mod tests {
     fn event(ms: u64, id: &str, kind: EventKind) -> Event {
         let (at, id) = (Instant::from_millis(ms), WidgetId::new(id));
         let (force, position) = (Newtons(100.0), Vec2::ZERO);
-        Event::of(OwnedReport::Event(WidgetEvent { at, id, kind, contact: None, force, position })).unwrap()
+        let event = WidgetEvent { at, id, kind, contact: None, force, position };
+        Event::of(&Report::Event(Cow::Owned(event))).unwrap()
     }
 
     fn changed(ms: u64, id: &str) -> Event {
@@ -206,7 +209,7 @@ mod tests {
     fn an_app_that_never_reads_misses_no_end_of_a_press_no_state_and_not_how_much() {
         let queue = Arc::new(Queue::new(true));
         let mut input = QueueInput::new(Arc::clone(&queue), true);
-        input.put(Event::of(OwnedReport::Link(Instant::START, LinkState::Lost)).unwrap());
+        input.put(Event::of(&Report::Link(Instant::START, LinkState::Lost)).unwrap());
         let ids: Vec<String> = (0..20).map(|number| format!("control {number}")).collect();
         for ms in 0..5000 {
             let id = &ids[ms as usize % ids.len()];

@@ -59,7 +59,7 @@ pub(super) struct Plan {
 }
 
 /// Receivers of the end of a session.
-pub(super) struct Told {
+pub(super) struct EndWatchers {
     pub(super) queue: Arc<Queue>,
     pub(super) held: Arc<HeldWatch>,
     pub(super) waker: Option<Arc<Waker>>,
@@ -68,30 +68,34 @@ pub(super) struct Told {
 /// Serves until the end, on this thread or on one of the pool; sends to `ready` once the first snapshot exists, or
 /// the error that prevents the start.
 #[cfg_attr(not(feature = "threads"), expect(unused_mut, reason = "no pool to take from it"))]
-pub(super) fn run(mut plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) {
+pub(super) fn run(mut plan: Plan, watchers: &EndWatchers, ready: &SyncSender<Result<(), StartError>>) {
     #[cfg(feature = "threads")]
     if let Some(pool) = plan.pool.take() {
         if plan.realtime {
             pool.for_each_thread(|| _ = claim_priority(Rank::Sensing));
         }
-        return pool.run(|| run_here(plan, told, ready));
+        return pool.run(|| run_here(plan, watchers, ready));
     }
-    run_here(plan, told, ready);
+    run_here(plan, watchers, ready);
 }
 
-fn run_here(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) {
+fn run_here(plan: Plan, watchers: &EndWatchers, ready: &SyncSender<Result<(), StartError>>) {
     let clock = Arc::clone(&plan.clock);
     // After a panic, inconsistent state is only read to cancel presses.
-    let served = catch_unwind(AssertUnwindSafe(|| serve(plan, told, ready)));
-    told.held.end();
+    let served = catch_unwind(AssertUnwindSafe(|| serve(plan, watchers, ready)));
+    watchers.held.end();
     let (reason, message) = served.unwrap_or_else(|panic| (EndReason::Panicked, text(panic.as_ref())));
-    told.queue.end(Event::ended(clock(), reason, message));
-    if let Some(waker) = &told.waker {
+    watchers.queue.end(Event::ended(clock(), reason, message));
+    if let Some(waker) = &watchers.waker {
         waker.wake();
     }
 }
 
-fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) -> (EndReason, String) {
+fn serve(
+    plan: Plan,
+    watchers: &EndWatchers,
+    ready: &SyncSender<Result<(), StartError>>,
+) -> (EndReason, String) {
     let stop = Arc::clone(&plan.stop);
     let realtime = plan.realtime;
     let mut server = match server(plan) {
@@ -110,7 +114,7 @@ fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) ->
     }
     let served = catch_unwind(AssertUnwindSafe(|| server.run(&stop)));
     // Before the outputs close, which may take a while.
-    told.held.end();
+    watchers.held.end();
     drop(server);
     match served {
         Ok(Ok(())) if stop.load(Ordering::Relaxed) => (EndReason::Stopped, String::new()),

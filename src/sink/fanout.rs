@@ -36,7 +36,7 @@ impl std::fmt::Debug for Fanout {
 }
 
 impl EventSink for Fanout {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         self.sinks.iter_mut().for_each(|sink| sink.report(report));
     }
 
@@ -59,7 +59,7 @@ mod tests {
     struct Tell(&'static str, Sender<String>);
 
     impl EventSink for Tell {
-        fn report(&mut self, report: Report<'_>) {
+        fn report(&mut self, report: &Report<'_>) {
             self.1.send(format!("{} {report:?}", self.0)).unwrap();
         }
 
@@ -77,7 +77,7 @@ mod tests {
         let (tell, received) = channel();
         let mut fanout = Fanout::new().with(Tell("a", tell.clone())).with(Tell("b", tell));
         let reports = [Report::Link(Instant::START, LinkState::Live), Report::Alive(Instant::START, 8)];
-        reports.into_iter().for_each(|report| fanout.report(report));
+        reports.iter().for_each(|report| fanout.report(report));
         fanout.poll(Instant::from_micros(5));
         assert_eq!(fanout.dropped(), 6);
         drop(fanout);

@@ -55,8 +55,6 @@ pub use manual::ManualSink;
 pub use mono::write_mono;
 #[cfg(feature = "net")]
 pub use osc::OscSink;
-#[cfg(feature = "net")]
-pub(crate) use report::OwnedReport;
 pub use report::Report;
 pub use silent::SilentSink;
 #[cfg(feature = "net")]
@@ -93,7 +91,7 @@ pub trait ActuatorSink {
 /// A sink for reports to other programs; it never blocks its caller.
 pub trait EventSink: Send {
     /// Accepts one report; reports come in order.
-    fn report(&mut self, report: Report<'_>);
+    fn report(&mut self, report: &Report<'_>);
 
     /// Sends periodic and delayed reports. Called every few milliseconds, also while no frames come.
     fn poll(&mut self, _now: Instant) {}

@@ -7,7 +7,6 @@ use std::sync::mpsc::Receiver;
 
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::periodic::{Latest, PeriodicSender};
-use super::report::OwnedReport;
 use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
@@ -37,7 +36,7 @@ pub struct OscSink {
 
 #[derive(Debug)]
 enum Job {
-    Told(OwnedReport),
+    Report(Report<'static>),
     /// Send the contacts that are the latest when the job runs.
     Contacts,
     /// The floor counts as empty.
@@ -93,24 +92,24 @@ impl OscSink {
 }
 
 impl EventSink for OscSink {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         if let Report::Contacts(at, contacts) = report {
             let queue = || self.worker.try_offer(Job::Contacts);
-            if self.periodic.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
-                self.periodic.reported(at, contacts);
+            if self.periodic.is_due(*at, contacts) && self.latest.store(*at, contacts, queue) {
+                self.periodic.reported(*at, contacts);
             }
             return;
         }
-        let Some(told) = OwnedReport::of(report, &mut self.cracks) else { return };
+        let Some(owned) = report.limited(&mut self.cracks) else { return };
         // A repeated report may be lost; the end of a hold may not.
         let is_repeated = match report {
             Report::Held(report) => report.ended.is_empty(),
             Report::Alive(..) => true,
             _ => false,
         };
-        let job = Job::Told(told);
+        let job = Job::Report(owned);
         let _ = if is_repeated { self.worker.try_offer(job) } else { self.worker.offer(job) };
-        if let Report::Link(at, state) = report {
+        if let &Report::Link(at, state) = report {
             self.link = state;
             if state == LinkState::Lost {
                 self.say_nobody_is_there(at);
@@ -155,7 +154,7 @@ impl Sender {
         let mut bytes = Vec::new();
         for job in jobs {
             match job {
-                Job::Told(told) => self.tell(told, &mut bytes),
+                Job::Report(report) => self.write(&report, &mut bytes),
                 Job::Contacts => self.contacts(&latest.fetch().1, &mut bytes),
                 Job::Nobody => self.contacts(&[], &mut bytes),
             }
@@ -166,35 +165,37 @@ impl Sender {
         write_contacts(&self.prefix, contacts, bytes, |datagram| self.out.send(datagram));
     }
 
-    fn tell(&mut self, told: OwnedReport, bytes: &mut Vec<u8>) {
+    fn write(&mut self, report: &Report<'_>, bytes: &mut Vec<u8>) {
         let prefix = &self.prefix;
-        match told {
-            OwnedReport::Event(event) => write_event(prefix, &event, bytes),
-            OwnedReport::Contacts(_, contacts) => return self.contacts(&contacts, bytes),
-            OwnedReport::Page(shown) => write_page(prefix, shown.page.as_str(), bytes),
-            OwnedReport::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
+        match report {
+            Report::Event(event) => write_event(prefix, event, bytes),
+            Report::Contacts(_, contacts) => return self.contacts(contacts, bytes),
+            Report::Page(shown) => write_page(prefix, shown.page.as_str(), bytes),
+            // The queue has the cracks in their place.
+            Report::Ground(_) => return,
+            &Report::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
                 write_crack(prefix, seed, [energy_j, x_m, y_m], skipped, bytes);
             }
-            OwnedReport::Link(_, state) => {
-                self.link = state;
-                write_health(prefix, state, self.cause.as_ref(), &self.health, bytes);
+            Report::Link(_, state) => {
+                self.link = *state;
+                write_health(prefix, *state, self.cause.as_ref(), &self.health, bytes);
             }
-            OwnedReport::LinkCause(_, cause) => {
-                write_health(prefix, self.link, cause.as_ref(), &self.health, bytes);
-                self.cause = cause;
+            Report::LinkCause(_, cause) => {
+                write_health(prefix, self.link, cause.as_deref(), &self.health, bytes);
+                self.cause = cause.as_deref().cloned();
             }
-            OwnedReport::Health(_, health) => {
-                write_health(prefix, self.link, self.cause.as_ref(), &health, bytes);
-                self.health = health;
+            Report::Health(_, health) => {
+                write_health(prefix, self.link, self.cause.as_ref(), health, bytes);
+                self.health.clone_from(health);
             }
-            OwnedReport::Device(_, status) => write_device(prefix, &status, bytes),
-            OwnedReport::Held(report) => {
-                return write_held(prefix, &report, bytes, |datagram| self.out.send(datagram));
+            Report::Device(_, status) => write_device(prefix, status, bytes),
+            Report::Held(report) => {
+                return write_held(prefix, report, bytes, |datagram| self.out.send(datagram));
             }
-            OwnedReport::Alive(_, sequence) => write_alive(prefix, sequence, bytes),
-            OwnedReport::Muted(_, muted) => write_mute(prefix, &muted, bytes),
-            OwnedReport::Control(_, state) => write_control(prefix, &state, bytes),
-            OwnedReport::Area(news) => write_area(prefix, &news, bytes),
+            Report::Alive(_, sequence) => write_alive(prefix, *sequence, bytes),
+            Report::Muted(_, muted) => write_mute(prefix, muted, bytes),
+            Report::Control(_, state) => write_control(prefix, state, bytes),
+            Report::Area(news) => write_area(prefix, news, bytes),
         }
         self.out.send(bytes);
     }

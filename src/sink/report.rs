@@ -1,6 +1,7 @@
 //! Reports to other programs.
 
-#[cfg(feature = "net")]
+use std::borrow::Cow;
+
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::{AreaNews, HeldReport};
 use crate::engine::{ControlState, PageShown};
@@ -12,83 +13,80 @@ use crate::widget::WidgetEvent;
 use crate::wire::{LinkCause, LinkState};
 
 /// One report to other programs; times are on the floor's sample clock.
-#[derive(Clone, Copy, Debug)]
+///
+/// The sensing thread lends the content to its sinks; [`Report::owned`] copies it for another thread.
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Report<'a> {
     /// An event of a control.
-    Event(&'a WidgetEvent),
+    Event(Cow<'a, WidgetEvent>),
     /// The contacts of one frame; reported for every frame, so a sink limits the rate itself.
-    Contacts(Instant, &'a [Contact]),
+    Contacts(Instant, Cow<'a, [Contact]>),
     /// Another page is shown, or an app has asked for the current one.
-    Page(&'a PageShown),
+    Page(Cow<'a, PageShown>),
     /// A ground event under a foot.
-    Ground(&'a GroundEvent),
+    Ground(Cow<'a, GroundEvent>),
+    /// A crack: [`Report::limited`] makes it of ground events, at a rate that other programs can follow.
+    Crack(CrackNews),
     /// The floor's link has changed its state.
     Link(Instant, LinkState),
     /// The cause of unusable frames has changed; `None` when it is gone.
-    LinkCause(Instant, Option<&'a LinkCause>),
+    LinkCause(Instant, Option<Cow<'a, LinkCause>>),
     /// The state of the sensors has changed; reported at most once a second.
-    Health(Instant, &'a SensorHealth),
+    Health(Instant, Cow<'a, SensorHealth>),
     /// The state of the device that drives the actuators has changed; reported at most once a second.
-    Device(Instant, &'a DeviceStatus),
+    Device(Instant, Cow<'a, DeviceStatus>),
     /// The held controls: at once when they change, and 50 times a second while there are any.
-    Held(&'a HeldReport),
+    Held(Cow<'a, HeldReport>),
     /// An alive message, numbered from 1; sent ten times a second, also while no packets come.
     Alive(Instant, u32),
     /// The mute state has changed, or an app has asked for it.
-    Muted(Instant, &'a Muted),
+    Muted(Instant, Cow<'a, Muted>),
     /// The state of a control: an app has changed it or asked for it, or it has the guard `HoldToRun` and has gone
     /// off or on.
-    Control(Instant, &'a ControlState),
+    Control(Instant, Cow<'a, ControlState>),
     /// The state of one area of a floor that several computers serve has changed.
-    Area(&'a AreaNews),
+    Area(Cow<'a, AreaNews>),
 }
 
-/// A report on its way to another thread.
-#[cfg(feature = "net")]
-#[derive(Debug)]
-pub(crate) enum OwnedReport {
-    Event(WidgetEvent),
-    Contacts(Instant, Vec<Contact>),
-    Page(PageShown),
-    Crack(CrackNews),
-    Link(Instant, LinkState),
-    LinkCause(Instant, Option<LinkCause>),
-    Health(Instant, SensorHealth),
-    Device(Instant, DeviceStatus),
-    Held(HeldReport),
-    Alive(Instant, u32),
-    Muted(Instant, Muted),
-    Control(Instant, Box<ControlState>),
-    Area(AreaNews),
-}
+impl Report<'_> {
+    /// Returns the same report with a copy of all that it borrows.
+    #[must_use]
+    pub fn owned(&self) -> Report<'static> {
+        match self {
+            Self::Event(event) => Report::Event(owned(event.as_ref())),
+            Self::Contacts(at, contacts) => Report::Contacts(*at, Cow::Owned(contacts.to_vec())),
+            Self::Page(page) => Report::Page(owned(page.as_ref())),
+            Self::Ground(event) => Report::Ground(owned(event.as_ref())),
+            Self::Crack(news) => Report::Crack(*news),
+            Self::Link(at, state) => Report::Link(*at, *state),
+            Self::LinkCause(at, cause) => Report::LinkCause(*at, cause.as_deref().map(owned)),
+            Self::Health(at, health) => Report::Health(*at, owned(health.as_ref())),
+            Self::Device(at, status) => Report::Device(*at, owned(status.as_ref())),
+            Self::Held(report) => Report::Held(owned(report.as_ref())),
+            Self::Alive(at, sequence) => Report::Alive(*at, *sequence),
+            Self::Muted(at, muted) => Report::Muted(*at, owned(muted.as_ref())),
+            Self::Control(at, state) => Report::Control(*at, owned(state.as_ref())),
+            Self::Area(news) => Report::Area(owned(news.as_ref())),
+        }
+    }
 
-#[cfg(feature = "net")]
-impl OwnedReport {
-    /// Copies `report`; `None` for ground events that `cracks` drops.
-    pub(crate) fn of(report: Report<'_>, cracks: &mut CrackRateLimiter) -> Option<Self> {
-        Some(match report {
-            Report::Event(event) => Self::Event(event.clone()),
-            Report::Contacts(at, contacts) => Self::Contacts(at, contacts.to_vec()),
-            Report::Page(page) => Self::Page(page.clone()),
-            Report::Ground(event) => Self::Crack(cracks.news(event)?),
-            Report::Link(at, state) => Self::Link(at, state),
-            Report::LinkCause(at, cause) => Self::LinkCause(at, cause.cloned()),
-            Report::Health(at, health) => Self::Health(at, health.clone()),
-            Report::Device(at, status) => Self::Device(at, status.clone()),
-            Report::Held(report) => Self::Held(report.clone()),
-            Report::Alive(at, sequence) => Self::Alive(at, sequence),
-            Report::Muted(at, muted) => Self::Muted(at, muted.clone()),
-            Report::Control(at, state) => Self::Control(at, Box::new(state.clone())),
-            Report::Area(news) => Self::Area(news.clone()),
-        })
+    /// Returns an owned report for other programs: a crack in the place of a ground event, and `None` for a ground
+    /// event that `cracks` drops.
+    pub fn limited(&self, cracks: &mut CrackRateLimiter) -> Option<Report<'static>> {
+        match self {
+            Self::Ground(event) => cracks.news(event).map(Report::Crack),
+            report => Some(report.owned()),
+        }
     }
 
     /// Returns the time of the report.
-    pub(crate) const fn at(&self) -> Instant {
+    #[must_use]
+    pub fn at(&self) -> Instant {
         match self {
             Self::Event(event) => event.at,
             Self::Page(page) => page.at,
+            Self::Ground(event) => event.at,
             Self::Crack(news) => news.at,
             Self::Held(report) => report.at,
             Self::Area(news) => news.at,
@@ -102,4 +100,9 @@ impl OwnedReport {
             | Self::Control(at, _) => *at,
         }
     }
+}
+
+/// Returns a copy of `content`.
+fn owned<T: Clone>(content: &T) -> Cow<'static, T> {
+    Cow::Owned(content.clone())
 }

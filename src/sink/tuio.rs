@@ -76,9 +76,9 @@ impl TuioSink {
 }
 
 impl EventSink for TuioSink {
-    fn report(&mut self, report: Report<'_>) {
-        match report {
-            Report::Contacts(at, contacts) => {
+    fn report(&mut self, report: &Report<'_>) {
+        match *report {
+            Report::Contacts(at, ref contacts) => {
                 let queue = || self.worker.try_offer(Job::Contacts);
                 if self.periodic.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
                     self.periodic.reported(at, contacts);

@@ -58,7 +58,7 @@ impl Watchdog {
 }
 
 impl EventSink for Watchdog {
-    fn report(&mut self, _: Report<'_>) {}
+    fn report(&mut self, _: &Report<'_>) {}
 
     fn poll(&mut self, _: Instant) {
         match self.last_sign {

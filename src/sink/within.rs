@@ -1,5 +1,7 @@
 //! Limits reports to the contacts in one area of a floor.
 
+use std::borrow::Cow;
+
 use crate::floor::{Area, Geometry};
 use crate::sense::Contact;
 use crate::sink::{EventSink, Report};
@@ -22,12 +24,12 @@ impl<S: EventSink> Within<S> {
 }
 
 impl<S: EventSink> EventSink for Within<S> {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         let Report::Contacts(at, contacts) = report else { return self.inner.report(report) };
         let own = contacts.iter().filter(|contact| self.area.holds(&self.geometry, contact.centroid));
         self.contacts.clear();
         self.contacts.extend(own.cloned());
-        self.inner.report(Report::Contacts(at, &self.contacts));
+        self.inner.report(&Report::Contacts(*at, Cow::Borrowed(&self.contacts)));
     }
 
     fn poll(&mut self, now: Instant) {

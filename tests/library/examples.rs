@@ -1,5 +1,6 @@
 //! The examples run and behave as documented.
 
+use std::borrow::Cow;
 use std::net::UdpSocket;
 use std::time::Duration;
 
@@ -52,7 +53,7 @@ fn the_osc_listener_hears_controls_and_answers() {
         event("satellite", EventKind::Changed(Value::Switch(true))),
         event("home", EventKind::Clicked),
     ] {
-        events.report(Report::Event(&event));
+        events.report(&Report::Event(Cow::Borrowed(&event)));
     }
     let answer_to = floor.local_addr().unwrap().to_string();
     let (mut received, mut held) = (Vec::new(), Held::default());

@@ -125,10 +125,10 @@ fn contacts(file: &Path, to: &Path) -> Result<(), Failure> {
 struct ContactRows(Arc<Mutex<Vec<u8>>>);
 
 impl EventSink for ContactRows {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         let Report::Contacts(at, contacts) = report else { return };
         let mut rows = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        for contact in contacts {
+        for contact in contacts.iter() {
             let (at_s, id, force) = (at.secs(), contact.id.0, contact.force.0);
             let (centroid, velocity, ambiguous) = (contact.centroid, contact.velocity, contact.ambiguous);
             // A write to memory never fails.

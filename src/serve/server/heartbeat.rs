@@ -1,5 +1,6 @@
 //! Periodic reports, so that a listener detects the end of a hold by the end of the reports.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use crate::outgoing::HeldReport;
@@ -35,7 +36,7 @@ impl Heartbeat {
         held: impl Iterator<Item = &'a WidgetId> + Clone,
         seen: Instant,
         now: Instant,
-        mut tell: impl FnMut(Report<'_>),
+        mut tell: impl FnMut(&Report<'_>),
     ) {
         let Self { report, held_due, alive, alive_due } = self;
         let is_news =
@@ -47,12 +48,12 @@ impl Heartbeat {
             report.sequence = report.sequence.wrapping_add(1);
             report.at = now;
             *held_due = next(*held_due, HELD_EVERY, now);
-            tell(Report::Held(report));
+            tell(&Report::Held(Cow::Borrowed(report)));
         }
         if now >= *alive_due {
             *alive = alive.wrapping_add(1);
             *alive_due = next(*alive_due, ALIVE_EVERY, now);
-            tell(Report::Alive(now, *alive));
+            tell(&Report::Alive(now, *alive));
         }
     }
 }

@@ -11,6 +11,7 @@ mod outputs;
 mod requests;
 mod sensors;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender};
@@ -330,7 +331,7 @@ impl Server {
         self.link_checked = now;
         let Some(state) = self.link.update(&self.assembler, self.engine.floor_file(), now) else { return };
         self.haptics.update_mute(self.link.is_lost());
-        self.outputs.report(Report::Link(now, state));
+        self.outputs.report(&Report::Link(now, state));
         self.is_stale = true;
     }
 
@@ -342,13 +343,13 @@ impl Server {
             return;
         }
         if let Some(status) = self.haptics.device_news(now) {
-            self.outputs.report(Report::Device(now, status));
+            self.outputs.report(&Report::Device(now, Cow::Borrowed(status)));
         }
         self.tell_everything();
         let (counters, link) = (self.counters(), self.link.state());
         self.note_cause(&counters, now);
         if let Some(health) = self.sensors.health_news(&self.assembler, link, now) {
-            self.outputs.report(Report::Health(now, health));
+            self.outputs.report(&Report::Health(now, Cow::Borrowed(health)));
         }
         self.note_off();
     }
@@ -363,7 +364,7 @@ impl Server {
         for index in news {
             let id = self.engine.layout().widgets.get(index).map(|widget| widget.id.clone());
             if let Some(state) = id.and_then(|id| self.engine.control_state(id.as_str())) {
-                self.outputs.report(Report::Control(self.source.now(), &state));
+                self.outputs.report(&Report::Control(self.source.now(), Cow::Owned(state)));
             }
         }
     }
@@ -375,7 +376,7 @@ impl Server {
         if self.causes.update(&facts, now) {
             let cause = self.causes.cause();
             self.link.note_cause(cause, now);
-            self.outputs.report(Report::LinkCause(now, cause));
+            self.outputs.report(&Report::LinkCause(now, cause.map(Cow::Borrowed)));
             self.is_stale = true;
         }
     }

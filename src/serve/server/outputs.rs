@@ -1,5 +1,7 @@
 //! Reports to other programs, and their rates.
 
+use std::borrow::Cow;
+
 use super::heartbeat::Heartbeat;
 use crate::engine::Step;
 use crate::serve::changes::ChangeLimiter;
@@ -17,7 +19,7 @@ pub(super) struct Outputs {
 
 impl Outputs {
     /// Sends one report.
-    pub(super) fn report(&mut self, report: Report<'_>) {
+    pub(super) fn report(&mut self, report: &Report<'_>) {
         if let Some(sink) = &mut self.sink {
             sink.report(report);
         }
@@ -26,16 +28,16 @@ impl Outputs {
     /// Reports the results of a frame of time `at`.
     pub(super) fn step(&mut self, step: &Step<'_>, at: Instant) {
         let Some(sink) = &mut self.sink else { return };
-        let events = self.changes.thin(step.events, at).iter().map(Report::Event);
-        let page = step.page.into_iter().map(Report::Page);
-        let grounds = step.grounds.iter().map(Report::Ground);
-        let contacts = [Report::Contacts(at, step.contacts)];
-        events.chain(page).chain(grounds).chain(contacts).for_each(|report| sink.report(report));
+        let events = self.changes.thin(step.events, at).iter().map(lent(Report::Event));
+        let page = step.page.into_iter().map(lent(Report::Page));
+        let grounds = step.grounds.iter().map(lent(Report::Ground));
+        let contacts = [Report::Contacts(at, Cow::Borrowed(step.contacts))];
+        events.chain(page).chain(grounds).chain(contacts).for_each(|report| sink.report(&report));
     }
 
     /// Reports events that must not wait.
     pub(super) fn events(&mut self, events: &[WidgetEvent]) {
-        events.iter().for_each(|event| self.report(Report::Event(event)));
+        events.iter().map(lent(Report::Event)).for_each(|report| self.report(&report));
     }
 
     /// Reports the held controls if they have changed or the report is due, and sends the alive report.
@@ -55,7 +57,11 @@ impl Outputs {
         let Some(sink) = &mut self.sink else { return };
         // Otherwise the frames provide the time, so that the same frames give the same reports.
         if floor_is_lost {
-            self.changes.thin(&[], now).iter().for_each(|event| sink.report(Report::Event(event)));
+            self.changes
+                .thin(&[], now)
+                .iter()
+                .map(lent(Report::Event))
+                .for_each(|report| sink.report(&report));
         }
         sink.poll(now);
     }
@@ -64,4 +70,9 @@ impl Outputs {
     pub(super) fn dropped(&self) -> u64 {
         self.sink.as_ref().map_or(0, |sink| sink.dropped())
     }
+}
+
+/// Makes a report of borrowed content.
+fn lent<'a, T: Clone + 'a>(report: impl Fn(Cow<'a, T>) -> Report<'a>) -> impl Fn(&'a T) -> Report<'a> {
+    move |content| report(Cow::Borrowed(content))
 }

@@ -1,5 +1,6 @@
 //! Processing of requests: carry out, answer, report.
 
+use std::borrow::Cow;
 use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
@@ -183,7 +184,7 @@ impl Server {
     fn tell_control(&mut self, id: &WidgetId, asked: Option<&Request>) {
         let Some(state) = self.engine.control_state(id.as_str()) else { return };
         self.is_stale = true;
-        self.outputs.report(Report::Control(self.source.now(), &state));
+        self.outputs.report(&Report::Control(self.source.now(), Cow::Borrowed(&state)));
         if let Some(request) = asked {
             write_control(&self.answers.prefix, &state, &mut self.answers.bytes);
             self.send_answer(request);
@@ -193,13 +194,13 @@ impl Server {
     fn tell_page(&mut self, request: &Request) {
         let page = self.engine.page().unwrap_or_default();
         let shown = PageShown { at: self.source.now(), page: WidgetId::new(page) };
-        self.outputs.report(Report::Page(&shown));
+        self.outputs.report(&Report::Page(Cow::Owned(shown)));
         write_page(&self.answers.prefix, page, &mut self.answers.bytes);
         self.send_answer(request);
     }
 
     fn answer_mute(&mut self, request: &Request) {
-        self.outputs.report(Report::Muted(self.source.now(), self.haptics.muted()));
+        self.outputs.report(&Report::Muted(self.source.now(), Cow::Borrowed(self.haptics.muted())));
         write_mute(&self.answers.prefix, self.haptics.muted(), &mut self.answers.bytes);
         self.send_answer(request);
     }
@@ -208,7 +209,7 @@ impl Server {
     fn tell_mute(&mut self, is_news: Result<bool, MuteError>) -> Result<(), MuteError> {
         if is_news? {
             self.is_stale = true;
-            self.outputs.report(Report::Muted(self.source.now(), self.haptics.muted()));
+            self.outputs.report(&Report::Muted(self.source.now(), Cow::Borrowed(self.haptics.muted())));
         }
         Ok(())
     }

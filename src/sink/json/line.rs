@@ -7,10 +7,9 @@ use crate::engine::{ControlState, ValueRange};
 use crate::feel::DeviceStatus;
 use crate::floor::SensorId;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
-use crate::sink::AreaNews;
 use crate::sink::backlog::Gap;
 use crate::sink::crack_rate::CrackNews;
-use crate::sink::report::OwnedReport;
+use crate::sink::{AreaNews, Report};
 use crate::widget::{Detail, Scale, Value, WidgetEvent, WidgetId};
 use crate::wire::LinkCause;
 
@@ -145,7 +144,7 @@ impl<'a> Line<'a> {
     pub(super) fn of(job: &'a Job) -> Option<Self> {
         let (at, body) = match job {
             Job::Gap(Gap { at, dropped }) => (*at, Body::Gap { dropped: *dropped }),
-            Job::Told(told) => (told.at(), Body::of(told)?),
+            Job::Report(report) => (report.at(), Body::of(report)?),
         };
         // A division, not a multiplication: it gives the number nearest to the decimal fraction, with six places at
         // most.
@@ -154,35 +153,36 @@ impl<'a> Line<'a> {
 }
 
 impl<'a> Body<'a> {
-    fn of(told: &'a OwnedReport) -> Option<Self> {
-        Some(match told {
-            OwnedReport::Event(event) => Self::control(event),
-            OwnedReport::Contacts(_, contacts) => {
+    fn of(report: &'a Report<'_>) -> Option<Self> {
+        Some(match report {
+            Report::Event(event) => Self::control(event),
+            Report::Contacts(_, contacts) => {
                 Self::Contacts { contacts: contacts.iter().map(ContactEntry::of).collect() }
             }
-            OwnedReport::Page(shown) => Self::Page { page: shown.page.as_str() },
-            &OwnedReport::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
+            Report::Page(shown) => Self::Page { page: shown.page.as_str() },
+            &Report::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
                 Self::Crack { seed, energy_j, x_m, y_m, skipped }
             }
-            OwnedReport::Link(_, state) => Self::Link { state: state.name() },
-            OwnedReport::LinkCause(_, cause) => Self::LinkCause {
-                cause: cause.as_ref().map(LinkCause::name),
-                board: cause.as_ref().and_then(LinkCause::board),
+            Report::Link(_, state) => Self::Link { state: state.name() },
+            Report::LinkCause(_, cause) => Self::LinkCause {
+                cause: cause.as_deref().map(LinkCause::name),
+                board: cause.as_deref().and_then(LinkCause::board),
                 why: cause.as_ref().map(ToString::to_string).unwrap_or_default(),
             },
-            OwnedReport::Health(_, health) => Self::health(health),
-            OwnedReport::Device(_, status) => Self::device(status),
-            OwnedReport::Held(report) => {
+            Report::Health(_, health) => Self::health(health),
+            Report::Device(_, status) => Self::device(status),
+            Report::Held(report) => {
                 let held = report.held.iter().map(WidgetId::as_str).collect();
                 Self::Held { held, sequence: report.sequence }
             }
-            OwnedReport::Alive(..) => return None,
-            OwnedReport::Muted(_, muted) => {
+            Report::Ground(_) | Report::Alive(..) => return None,
+            Report::Muted(_, muted) => {
                 let tiles = muted.tiles.iter().map(|tile| [tile.column, tile.row]).collect();
                 Self::Mute { all: muted.all, tiles }
             }
-            OwnedReport::Control(_, state) => Self::state(state),
-            OwnedReport::Area(AreaNews { area, state, why, uncertainty, .. }) => {
+            Report::Control(_, state) => Self::state(state),
+            Report::Area(news) => {
+                let AreaNews { area, state, why, uncertainty, .. } = news.as_ref();
                 Self::Area { area, state: state.name(), why, uncertainty_s: uncertainty.as_secs_f64() }
             }
         })

@@ -4,6 +4,7 @@ mod line;
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
@@ -15,7 +16,6 @@ use self::line::Line;
 use super::backlog::{Backlog, Gap, Worth};
 use super::crack_rate::CrackRateLimiter;
 use super::periodic::PeriodicSender;
-use super::report::OwnedReport;
 use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
 use crate::engine::ControlState;
@@ -69,7 +69,7 @@ pub struct JsonSink {
 
 #[derive(Debug)]
 enum Job {
-    Told(OwnedReport),
+    Report(Report<'static>),
     Gap(Gap),
 }
 
@@ -86,30 +86,30 @@ enum Key {
     Control(WidgetId),
     Area(String),
     /// Every other kind of report has only one state.
-    State(Discriminant<OwnedReport>),
+    State(Discriminant<Report<'static>>),
 }
 
 /// Returns the importance of a report for a slow reader.
-fn worth(told: &OwnedReport) -> Worth<Key> {
-    match told {
-        OwnedReport::Event(event) => {
+fn worth(report: &Report<'static>) -> Worth<Key> {
+    match report {
+        Report::Event(event) => {
             let key = Key::Event(event.id.clone(), event.kind.name());
             match event.kind {
                 EventKind::Changed(_) | EventKind::Ticked => Worth::Latest(key),
                 _ => Worth::Each(key),
             }
         }
-        OwnedReport::Crack(_) | OwnedReport::Alive(..) => Worth::None,
-        OwnedReport::Control(_, state) => Worth::Latest(Key::Control(state.id.clone())),
-        OwnedReport::Area(news) => Worth::Latest(Key::Area(news.area.clone())),
-        OwnedReport::Contacts(..)
-        | OwnedReport::Page(_)
-        | OwnedReport::Link(..)
-        | OwnedReport::LinkCause(..)
-        | OwnedReport::Health(..)
-        | OwnedReport::Device(..)
-        | OwnedReport::Held(_)
-        | OwnedReport::Muted(..) => Worth::Latest(Key::State(discriminant(told))),
+        Report::Ground(_) | Report::Crack(_) | Report::Alive(..) => Worth::None,
+        Report::Control(_, state) => Worth::Latest(Key::Control(state.id.clone())),
+        Report::Area(news) => Worth::Latest(Key::Area(news.area.clone())),
+        Report::Contacts(..)
+        | Report::Page(_)
+        | Report::Link(..)
+        | Report::LinkCause(..)
+        | Report::Health(..)
+        | Report::Device(..)
+        | Report::Held(_)
+        | Report::Muted(..) => Worth::Latest(Key::State(discriminant(report))),
     }
 }
 
@@ -154,16 +154,16 @@ impl JsonSink {
         self
     }
 
-    fn put(&mut self, told: OwnedReport) {
+    fn put(&mut self, report: Report<'static>) {
         self.flush();
         if self.waits {
             self.wait();
         }
-        let job = Job::Told(told);
+        let job = Job::Report(report);
         let waits = if self.backlog.is_empty() { self.worker.hand(job) } else { Some(job) };
-        if let Some(Job::Told(told)) = waits {
-            let (at, worth) = (told.at(), worth(&told));
-            self.backlog.push(at, Job::Told(told), worth);
+        if let Some(Job::Report(report)) = waits {
+            let (at, worth) = (report.at(), worth(&report));
+            self.backlog.push(at, Job::Report(report), worth);
         }
     }
 
@@ -192,10 +192,10 @@ impl Drop for JsonSink {
 }
 
 impl EventSink for JsonSink {
-    fn report(&mut self, report: Report<'_>) {
-        match report {
+    fn report(&mut self, report: &Report<'_>) {
+        match *report {
             Report::Alive(..) => return,
-            Report::Contacts(at, contacts) => {
+            Report::Contacts(at, ref contacts) => {
                 self.flush();
                 match self.contacts.as_mut().filter(|periodic| periodic.is_due(at, contacts)) {
                     Some(periodic) => periodic.reported(at, contacts),
@@ -205,8 +205,8 @@ impl EventSink for JsonSink {
             Report::Link(_, state) => self.lost = matches!(state, LinkState::Lost | LinkState::Waiting),
             _ => {}
         }
-        if let Some(told) = OwnedReport::of(report, &mut self.cracks) {
-            self.put(told);
+        if let Some(report) = report.limited(&mut self.cracks) {
+            self.put(report);
         }
     }
 
@@ -215,7 +215,7 @@ impl EventSink for JsonSink {
         let due = self.contacts.as_mut().filter(|periodic| self.lost && periodic.is_silence_due(now));
         if let Some(periodic) = due {
             periodic.reported(now, &[]);
-            self.put(OwnedReport::Contacts(now, Vec::new()));
+            self.put(Report::Contacts(now, Cow::Borrowed(&[])));
         }
     }
 
@@ -255,7 +255,7 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
 pub fn event_line(event: &WidgetEvent) -> String {
     let mut line = Vec::new();
     // Writing to a vector cannot fail.
-    let _ = write_line(&Job::Told(OwnedReport::Event(event.clone())), &mut line);
+    let _ = write_line(&Job::Report(Report::Event(Cow::Owned(event.clone()))), &mut line);
     String::from_utf8_lossy(&line).trim_end().to_owned()
 }
 
@@ -265,9 +265,9 @@ pub fn event_line(event: &WidgetEvent) -> String {
 #[must_use]
 pub fn control_json(state: &ControlState) -> serde_json::Value {
     let mut line = Vec::new();
-    let report = OwnedReport::Control(Instant::START, Box::new(state.clone()));
+    let report = Report::Control(Instant::START, Cow::Owned(state.clone()));
     // Writing to a vector cannot fail, and the line is valid JSON.
-    let _ = write_line(&Job::Told(report), &mut line);
+    let _ = write_line(&Job::Report(report), &mut line);
     serde_json::from_slice(&line).unwrap_or_default()
 }
 

@@ -43,7 +43,7 @@ fn event(kind: EventKind, contact: Option<ContactId>) -> WidgetEvent {
 }
 
 fn tell(sink: &mut JsonSink, events: &[WidgetEvent]) {
-    events.iter().for_each(|event| sink.report(Report::Event(event)));
+    events.iter().for_each(|event| sink.report(&Report::Event(Cow::Borrowed(event))));
 }
 
 #[test]
@@ -51,13 +51,9 @@ fn what_is_held_is_a_line_with_a_number_and_so_is_that_nothing_is() {
     let (flushed, lines) = channel();
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
     let (at, drive) = (Instant::from_millis(9900), WidgetId::new("drive"));
-    sink.report(Report::Held(&HeldReport {
-        at,
-        held: vec![drive.clone()],
-        sequence: 4,
-        ..HeldReport::default()
-    }));
-    sink.report(Report::Held(&HeldReport { at, ended: vec![drive], sequence: 5, ..HeldReport::default() }));
+    let held = HeldReport { at, held: vec![drive.clone()], sequence: 4, ..HeldReport::default() };
+    let ended = HeldReport { at, ended: vec![drive], sequence: 5, ..HeldReport::default() };
+    [held, ended].into_iter().for_each(|report| sink.report(&Report::Held(Cow::Owned(report))));
     drop(sink);
     let text: String = lines.iter().collect();
     let expected = [r#"{"t_s":9.9,"held":["drive"],"sequence":4}"#, r#"{"t_s":9.9,"held":[],"sequence":5}"#];
@@ -74,12 +70,12 @@ fn each_event_is_a_line_of_its_own_written_before_the_end() {
     tell(&mut sink, &[changed(Value::Pair(Vec2::new(0.5, -1.0))), event(swiped, Some(ContactId(3)))]);
     tell(&mut sink, &[event(EventKind::Cancelled, None)]);
     // Contacts are off by default.
-    sink.report(Report::Contacts(Instant::START, &[Contact::default()]));
-    sink.report(Report::Link(Instant::from_millis(9876), LinkState::Lost));
+    sink.report(&Report::Contacts(Instant::START, Cow::Borrowed(&[Contact::default()])));
+    sink.report(&Report::Link(Instant::from_millis(9876), LinkState::Lost));
     let sensor = SensorId { tile: crate::floor::TileId::new(2, 1), corner: crate::floor::Corner::SouthWest };
     let troubles = vec![(sensor, Trouble::Stuck)];
     let sick = SensorHealth { counts: [143, 0, 0, 1], troubles, ..SensorHealth::default() };
-    sink.report(Report::Health(Instant::from_millis(9900), &sick));
+    sink.report(&Report::Health(Instant::from_millis(9900), Cow::Borrowed(&sick)));
     drop(sink);
     let text: String = lines.iter().collect();
     let rest = r#""force_n":120.5,"x_m":0.61,"y_m":1.2,"contact""#;
@@ -121,7 +117,7 @@ fn what_is_muted_is_told_by_column_and_row() {
     let (flushed, lines) = channel();
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
     let muted = Muted { all: true, tiles: vec![crate::floor::TileId::new(2, 1)] };
-    sink.report(Report::Muted(Instant::from_millis(9900), &muted));
+    sink.report(&Report::Muted(Instant::from_millis(9900), Cow::Borrowed(&muted)));
     drop(sink);
     let line: String = lines.iter().collect();
     assert_eq!(line.trim_end(), r#"{"t_s":9.9,"event":"mute","all":true,"tiles":[[2,1]]}"#);
@@ -134,7 +130,7 @@ fn a_device_that_is_lost_says_why() {
     let state = crate::feel::DeviceState::Lost;
     let why = "unplugged".into();
     let status = DeviceStatus { name: "Card".into(), state, why, channels: 36, ..DeviceStatus::default() };
-    sink.report(Report::Device(Instant::from_millis(9900), &status));
+    sink.report(&Report::Device(Instant::from_millis(9900), Cow::Borrowed(&status)));
     drop(sink);
     let line: String = lines.iter().collect();
     let start =
@@ -199,9 +195,9 @@ fn contacts_are_written_on_request_100_times_a_second() {
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap().with_contacts();
     let foot = Contact { id: ContactId(3), force: Newtons(350.0), ..Contact::default() };
     for ms in 0..25 {
-        sink.report(Report::Contacts(Instant::from_millis(ms), std::slice::from_ref(&foot)));
+        sink.report(&Report::Contacts(Instant::from_millis(ms), Cow::Borrowed(std::slice::from_ref(&foot))));
     }
-    sink.report(Report::Link(Instant::from_millis(30), LinkState::Lost));
+    sink.report(&Report::Link(Instant::from_millis(30), LinkState::Lost));
     for ms in 31..1200 {
         sink.poll(Instant::from_millis(ms));
     }
@@ -235,7 +231,7 @@ fn a_control_that_an_app_changed_is_a_line_of_its_own() {
         label: "Zoom".into(),
         page: None,
     };
-    sink.report(Report::Control(Instant::from_millis(9900), &state));
+    sink.report(&Report::Control(Instant::from_millis(9900), Cow::Borrowed(&state)));
     drop(sink);
     let line: String = lines.iter().collect();
     let expected = r#"{"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"step":null,"options":null,"enabled":true,"off":null,"off_text":null,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}"#;

@@ -30,10 +30,10 @@ enum Told {
 struct Notes(Arc<Mutex<Vec<Told>>>);
 
 impl EventSink for Notes {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         let told = match report {
-            Report::Event(event) => Told::Event(event.clone()),
-            Report::Link(at, state) => Told::Link(at, state),
+            Report::Event(event) => Told::Event(WidgetEvent::clone(event)),
+            Report::Link(at, state) => Told::Link(*at, *state),
             Report::Held(held) => Told::Held(held.at, held.held.iter().map(ToString::to_string).collect()),
             _ => return,
         };

@@ -1,5 +1,6 @@
 //! Events and contacts as another program receives them, over loopback.
 
+use std::borrow::Cow;
 use std::net::UdpSocket;
 use std::time::Duration;
 
@@ -62,13 +63,11 @@ fn events_arrive_in_order_up_to_the_last() {
         force: Newtons::ZERO,
         position: Vec2::ZERO,
     };
-    sink.report(Report::Link(Instant::START, LinkState::Live));
-    sink.report(Report::Health(
-        Instant::START,
-        &SensorHealth { counts: [143, 0, 0, 1], ..SensorHealth::default() },
-    ));
+    sink.report(&Report::Link(Instant::START, LinkState::Live));
+    let health = SensorHealth { counts: [143, 0, 0, 1], ..SensorHealth::default() };
+    sink.report(&Report::Health(Instant::START, Cow::Owned(health)));
     for number in 0..100 {
-        sink.report(Report::Event(&event(number)));
+        sink.report(&Report::Event(Cow::Borrowed(&event(number))));
     }
     drop(sink);
     // Changes of the link and changes of the sensors both report both.
@@ -89,7 +88,7 @@ fn contacts_arrive_at_100_hz_and_end_with_none() {
     for ms in 0..300 {
         let here = (5..105).contains(&ms);
         let contacts = if here { vec![foot(ms as f32)] } else { vec![] };
-        sink.report(Report::Contacts(Instant::from_millis(ms), &contacts));
+        sink.report(&Report::Contacts(Instant::from_millis(ms), Cow::Borrowed(&contacts)));
         if ms == 0 {
             assert_eq!(hear(&listener), nobody, "who waits learns that the floor is there");
         }
@@ -112,19 +111,19 @@ fn that_nobody_is_there_is_said_every_second_on_an_empty_and_on_a_lost_floor() {
     let (listener, mut sink) = listen();
     let nobody = [("/underfoot/contacts".to_owned(), Some(OscType::Int(0)))];
     let health = |state: &str| [("/underfoot/health".to_owned(), Some(OscType::String(state.into())))];
-    sink.report(Report::Link(Instant::START, LinkState::Live));
+    sink.report(&Report::Link(Instant::START, LinkState::Live));
     assert_eq!(hear(&listener), health("live"));
     for ms in 0..2500 {
         let now = Instant::from_millis(ms);
-        sink.report(Report::Contacts(now, &[]));
+        sink.report(&Report::Contacts(now, Cow::Borrowed(&[])));
         sink.poll(now);
         if ms % 1000 == 0 {
             assert_eq!(hear(&listener), nobody);
         }
     }
-    sink.report(Report::Contacts(Instant::from_millis(2500), &[foot(0.5)]));
+    sink.report(&Report::Contacts(Instant::from_millis(2500), Cow::Borrowed(&[foot(0.5)])));
     assert_eq!(hear(&listener).len(), 2);
-    sink.report(Report::Link(Instant::from_millis(2600), LinkState::Lost));
+    sink.report(&Report::Link(Instant::from_millis(2600), LinkState::Lost));
     assert_eq!(hear(&listener), health("lost"));
     assert_eq!(hear(&listener), nobody, "at once");
     // No frames come: only the clock advances.
@@ -141,7 +140,7 @@ fn that_nobody_is_there_is_said_every_second_on_an_empty_and_on_a_lost_floor() {
 #[test]
 fn a_sink_that_ends_under_a_foot_says_that_nobody_is_there() {
     let (listener, mut sink) = listen();
-    sink.report(Report::Contacts(Instant::START, &[foot(0.5)]));
+    sink.report(&Report::Contacts(Instant::START, Cow::Borrowed(&[foot(0.5)])));
     assert_eq!(hear(&listener).len(), 2);
     drop(sink);
     assert_eq!(hear(&listener), [("/underfoot/contacts".into(), Some(OscType::Int(0)))]);

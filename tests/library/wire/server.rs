@@ -89,11 +89,11 @@ impl SensorSource for Visit {
 struct Notes(mpsc::Sender<(u64, String)>);
 
 impl EventSink for Notes {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         let (at, what) = match report {
             Report::Event(event) => (event.at, format!("{} {}", event.id, event.kind.name())),
-            Report::Link(at, state) => (at, format!("link {state:?}")),
-            Report::Health(at, health) => (at, format!("health {health}")),
+            Report::Link(at, state) => (*at, format!("link {state:?}")),
+            Report::Health(at, health) => (*at, format!("health {health}")),
             _ => return,
         };
         self.0.send((at.micros() / 1000, what)).unwrap();

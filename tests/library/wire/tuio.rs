@@ -1,5 +1,6 @@
 //! TUIO as a client reads it: frames, coordinates, datagram sizes, final frames.
 
+use std::borrow::Cow;
 use std::net::UdpSocket;
 use std::time::Duration;
 
@@ -261,15 +262,15 @@ fn nobody_stays_behind_as_a_ghost() {
         let (listener, mut sink) = listen(version);
         let frame = || (0..per_frame).map(|_| alive(&listener)).collect::<Vec<_>>();
         // An empty floor is reported too, so that a waiting client knows that the server runs.
-        sink.report(Report::Contacts(Instant::START, &[]));
+        sink.report(&Report::Contacts(Instant::START, Cow::Borrowed(&[])));
         assert_eq!(frame(), vec![Vec::<i32>::new(); per_frame]);
-        sink.report(Report::Contacts(Instant::from_millis(1), &[foot(1, 0.5, 0.5)]));
+        sink.report(&Report::Contacts(Instant::from_millis(1), Cow::Borrowed(&[foot(1, 0.5, 0.5)])));
         assert_eq!(frame(), vec![vec![1]; per_frame]);
         // The floor falls silent: there are no more frames that would report it.
-        sink.report(Report::Link(Instant::from_millis(100), LinkState::Lost));
+        sink.report(&Report::Link(Instant::from_millis(100), LinkState::Lost));
         assert_eq!(frame(), vec![Vec::<i32>::new(); per_frame]);
-        sink.report(Report::Link(Instant::from_millis(200), LinkState::Live));
-        sink.report(Report::Contacts(Instant::from_millis(201), &[foot(2, 0.5, 0.5)]));
+        sink.report(&Report::Link(Instant::from_millis(200), LinkState::Live));
+        sink.report(&Report::Contacts(Instant::from_millis(201), Cow::Borrowed(&[foot(2, 0.5, 0.5)])));
         assert_eq!(frame(), vec![vec![2]; per_frame]);
         // The program ends under a foot: two final frames, since one may be lost.
         drop(sink);
@@ -282,7 +283,10 @@ fn nobody_stays_behind_as_a_ghost() {
 fn a_hundred_frames_a_second_at_most() {
     let (listener, mut sink) = listen(TuioVersion::Two);
     for ms in 0..100 {
-        sink.report(Report::Contacts(Instant::from_millis(ms), &[foot(1, 0.5, 0.001 * ms as f32)]));
+        sink.report(&Report::Contacts(
+            Instant::from_millis(ms),
+            Cow::Borrowed(&[foot(1, 0.5, 0.001 * ms as f32)]),
+        ));
         if ms % 10 == 0 {
             assert_eq!(alive(&listener), [1]);
         }

@@ -9,6 +9,7 @@ use underfoot::feel::ScopeReader;
 use underfoot::glam::Vec2;
 use underfoot::runtime::Session;
 use underfoot::sink::{EventSink, Report};
+use underfoot::widget::WidgetEvent;
 use underfoot_sim::{Foot, FootHandle};
 use underfoot_window::preview::{EventNews, FootSink, PreviewFoot, ScopeFeed};
 
@@ -19,9 +20,10 @@ pub(super) struct ToWindow {
 }
 
 impl EventSink for ToWindow {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         if let Report::Event(event) = report
-            && let Err(TrySendError::Full(_)) = self.events.try_send(EventNews::Event(event.clone()))
+            && let Err(TrySendError::Full(_)) =
+                self.events.try_send(EventNews::Event(WidgetEvent::clone(event)))
         {
             self.missed += 1;
         }

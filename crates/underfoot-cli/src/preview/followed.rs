@@ -1,5 +1,6 @@
 //! A floor known from JSON lines, behind the window: one of several computers, which has no common stream of packets.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -164,7 +165,7 @@ impl FollowedFloor {
     fn take(&mut self, line: &str) {
         match self.mirror.take(line) {
             Ok(Some(event)) => {
-                self.events.report(Report::Event(&event));
+                self.events.report(&Report::Event(Cow::Owned(event)));
             }
             Ok(None) => {}
             Err(error) => {

@@ -1,16 +1,18 @@
 //! Requests of apps: the gateway sends each to the node that it concerns, or to all.
 
+use std::borrow::Cow;
 use std::net::SocketAddr;
 
 use underfoot::engine::{ControlState, PageShown};
 use underfoot::feel::Muted;
+use underfoot::sink::Report;
 use underfoot::units::Instant;
 use underfoot::widget::{SetError, WidgetId};
 use underfoot::wire::{ControlMessage, Request, is_pattern, matches};
 
 use super::Gateway;
+use super::output::Output;
 use super::requests::{Answered, Asker};
-use super::told::Told;
 use crate::message::{NodeState, Standing};
 
 /// The answer to an app's request.
@@ -123,7 +125,7 @@ impl Gateway {
         }
         let id = WidgetId::new(&page);
         self.shared.page = Some(page);
-        self.out.push(Told::Page(PageShown { at: now, page: id.clone() }));
+        self.tell_all(Report::Page(Cow::Owned(PageShown { at: now, page: id.clone() })));
         let mut others = self.live_areas();
         others.retain(|area| *area != number);
         let others = self.named(&others);
@@ -144,9 +146,9 @@ impl Gateway {
             self.keep(&message, now);
             let is_asked = matches!(message, ControlMessage::Get { .. } | ControlMessage::GetAll);
             for state in states.iter().map(NodeState::state) {
-                self.out.push(Told::Control(now, Box::new(state.clone())));
+                self.tell_all(Report::Control(now, Cow::Owned(state.clone())));
                 if let Some(to) = sender.filter(|_| is_asked) {
-                    self.out.push(Told::Answer(to, Answer::Control(Box::new(state))));
+                    self.out.push(Output::Answer(to, Answer::Control(Box::new(state))));
                 }
             }
             if message == ControlMessage::GetAll {
@@ -159,25 +161,25 @@ impl Gateway {
     /// Answers a request about the state of the whole floor.
     fn tell_of_all(&mut self, message: &ControlMessage, sender: Option<SocketAddr>, now: Instant) {
         let answer = if *message == ControlMessage::GetMute {
-            self.out.push(Told::Muted(now, self.shared.muted.clone()));
+            self.tell_all(Report::Muted(now, Cow::Owned(self.shared.muted.clone())));
             Answer::Muted(self.shared.muted.clone())
         } else {
             let page = self.shared.page().to_owned();
-            self.out.push(Told::Page(PageShown { at: now, page: WidgetId::new(&page) }));
+            self.tell_all(Report::Page(Cow::Owned(PageShown { at: now, page: WidgetId::new(&page) })));
             Answer::Page(page)
         };
-        self.out.extend(sender.map(|to| Told::Answer(to, answer)));
+        self.out.extend(sender.map(|to| Output::Answer(to, answer)));
     }
 
     fn keep(&mut self, message: &ControlMessage, now: Instant) {
         if self.shared.keep(message) {
-            self.out.push(Told::Muted(now, self.shared.muted.clone()));
+            self.tell_all(Report::Muted(now, Cow::Owned(self.shared.muted.clone())));
         }
     }
 
     fn refuse(&mut self, sender: Option<SocketAddr>, message: &ControlMessage, why: String) {
         self.counters.denied += 1;
-        self.out.extend(sender.map(|to| Told::Answer(to, Answer::Refused(message.path(), why))));
+        self.out.extend(sender.map(|to| Output::Answer(to, Answer::Refused(message.path(), why))));
     }
 
     fn is_live(&self, number: usize) -> bool {

@@ -16,13 +16,14 @@ mod clock;
 mod held;
 mod join;
 mod layouts;
+mod output;
 mod presses;
 mod requests;
 mod shared;
 #[cfg(test)]
 mod tests;
-mod told;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashSet};
 use std::time::Duration;
 
@@ -31,7 +32,7 @@ use thiserror::Error;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema::write_layout;
-use underfoot::sink::AreaNews;
+use underfoot::sink::{AreaNews, Report};
 use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::LinkState;
@@ -50,7 +51,7 @@ use crate::message::{
 pub use area::LOST_AFTER;
 pub use ask::Answer;
 pub use clock::NodeClock;
-pub use told::{Counters, Told};
+pub use output::{Counters, Output};
 
 /// Time for which the reports of one area wait for those of other areas about earlier times.
 pub const WINDOW: Duration = Duration::from_millis(25);
@@ -111,7 +112,7 @@ pub struct Gateway {
     /// Whether nodes need a message before the next beat is due.
     has_news: bool,
     counters: Counters,
-    out: Vec<Told>,
+    out: Vec<Output>,
 }
 
 impl Gateway {
@@ -243,7 +244,7 @@ impl Gateway {
     }
 
     /// The reports that are due at `now`, a time at or after that of all earlier calls.
-    pub fn advance(&mut self, now: Instant) -> Vec<Told> {
+    pub fn advance(&mut self, now: Instant) -> Vec<Output> {
         for number in 0..self.areas.len() {
             let Some(area) = self.areas.get_mut(number) else { continue };
             let Some(standing) = area.fallen(now) else { continue };
@@ -276,7 +277,7 @@ impl Gateway {
     }
 
     /// The final reports of a gateway that stops at `now`: it cancels all holds, which are unknown from then on.
-    pub fn end(&mut self, now: Instant) -> Vec<Told> {
+    pub fn end(&mut self, now: Instant) -> Vec<Output> {
         for number in 0..self.areas.len() {
             if self.areas.get(number).is_some_and(|area| area.standing == Standing::Live) {
                 self.fall(number, Standing::Lost, "the gateway has stopped", now);
@@ -309,8 +310,9 @@ impl Gateway {
         };
         if self.complained.len() < COMPLAINTS && self.complained.insert(message.node) {
             let (name, area) = (&message.name, shown(&message.area, LONGEST_AREA));
-            self.out
-                .push(Told::Notice(format!("the node at {name} for area \"{area}\" is not heard: it {why}")));
+            self.out.push(Output::Notice(format!(
+                "the node at {name} for area \"{area}\" is not heard: it {why}"
+            )));
         }
         None
     }
@@ -326,7 +328,7 @@ impl Gateway {
             let uncertainty = area.clock.uncertainty(now).unwrap_or_default();
             let news =
                 AreaNews { at, area: name, state: Standing::Live.into(), why: String::new(), uncertainty };
-            self.out.push(Told::Area(news));
+            self.out.push(Output::Report(Report::Area(Cow::Owned(news))));
             area.page.clone_from(&message.page);
             self.tell_mutes(number, now);
         } else if is_torn {
@@ -370,7 +372,7 @@ impl Gateway {
         let Some(area) = self.areas.get_mut(number) else { return };
         let cancelled = area.presses.cancel(now);
         area.presses.shut(held);
-        self.out.extend(cancelled.into_iter().map(Told::Event));
+        self.out.extend(cancelled.into_iter().map(Output::from));
     }
 
     /// Takes an area off the floor: cancels its holds and ends its contacts.
@@ -382,9 +384,15 @@ impl Gateway {
         self.joiner.lose(number, now);
         let name = self.names.get(number).cloned().unwrap_or_default();
         self.requests.lose(number, &name);
-        self.out.extend(cancelled.into_iter().map(Told::Event));
+        self.out.extend(cancelled.into_iter().map(Output::from));
         let (why, uncertainty) = (why.to_owned(), Duration::ZERO);
-        self.out.push(Told::Area(AreaNews { at: now, area: name, state: standing.into(), why, uncertainty }));
+        let news = AreaNews { at: now, area: name, state: standing.into(), why, uncertainty };
+        self.tell_all(Report::Area(Cow::Owned(news)));
+    }
+
+    /// Reports to all outputs.
+    fn tell_all(&mut self, report: Report<'static>) {
+        self.out.push(Output::Report(report));
     }
 
     fn tell(&mut self, number: usize, at: Instant, happened: Instant, item: Item) {
@@ -402,13 +410,13 @@ impl Gateway {
                     return;
                 }
                 self.counters.late += u64::from(at < self.told_until);
-                self.out.push(Told::Event(told));
+                self.out.push(told.into());
             }
             Item::Frame { contacts } => self.joiner.frame(number, at, &contacts),
             Item::Held { held, values } => {
                 self.counters.unpressed += area.presses.hold(&held);
                 let changed = values.map(|values| area.presses.compare(&values, at)).unwrap_or_default();
-                self.out.extend(changed.into_iter().map(Told::Event));
+                self.out.extend(changed.into_iter().map(Output::from));
             }
         }
     }
@@ -430,14 +438,14 @@ impl Gateway {
                 format!("the node of area \"{area}\" does not take the layout of the others: {why}")
             }
         };
-        self.out.push(Told::Notice(notice));
+        self.out.push(Output::Notice(notice));
     }
 
     fn tell_contacts(&mut self, until: Instant, now: Instant) {
         let is_live = self.areas.iter().any(|area| area.standing == Standing::Live);
         if !is_live {
             if std::mem::take(&mut self.is_anybody_there) {
-                self.out.push(Told::Contacts(now, Vec::new()));
+                self.tell_all(Report::Contacts(now, Cow::Borrowed(&[])));
             }
             return;
         }
@@ -447,7 +455,7 @@ impl Gateway {
         self.contacts_told = Some(until);
         let contacts = self.joiner.contacts(until);
         self.is_anybody_there = !contacts.is_empty();
-        self.out.push(Told::Contacts(until, contacts));
+        self.tell_all(Report::Contacts(until, Cow::Owned(contacts)));
     }
 
     fn tell_state(&mut self, now: Instant) {
@@ -460,18 +468,18 @@ impl Gateway {
         };
         if link != self.link {
             self.link = link;
-            self.out.push(Told::Link(now, link));
+            self.out.push(Output::Report(Report::Link(now, link)));
         }
         let held: Vec<&str> = live().flat_map(|area| area.presses.held()).collect();
         let holding = live().filter(|area| area.presses.held().next().is_some());
         let age = holding.filter_map(|area| area.age(now)).max().unwrap_or_default();
         if let Some(report) = self.held.report(&held, age, now) {
-            self.out.push(Told::Held(report.clone()));
+            self.out.push(Output::Report(Report::Held(Cow::Owned(report.clone()))));
         }
         let (number, due) = &mut self.alive;
         if now >= *due {
             (*number, *due) = (number.wrapping_add(1), now + ALIVE_EVERY);
-            self.out.push(Told::Alive(now, *number));
+            self.out.push(Output::Report(Report::Alive(now, *number)));
         }
     }
 }
@@ -486,9 +494,9 @@ fn live<'a>(
 }
 
 /// The events among the reports.
-pub fn events(told: &[Told]) -> impl Iterator<Item = &WidgetEvent> {
-    told.iter().filter_map(|told| match told {
-        Told::Event(event) => Some(event),
+pub fn events(told: &[Output]) -> impl Iterator<Item = &WidgetEvent> {
+    told.iter().filter_map(|told| match told.report()? {
+        Report::Event(event) => Some(event.as_ref()),
         _ => None,
     })
 }

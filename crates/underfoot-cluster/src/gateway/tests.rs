@@ -89,7 +89,7 @@ impl Node {
 /// A gateway and all its reports.
 struct Stage {
     gateway: Gateway,
-    told: Vec<Told>,
+    told: Vec<Output>,
 }
 
 impl Stage {
@@ -115,7 +115,7 @@ impl Stage {
     fn names(&self) -> (Vec<u32>, usize) {
         let (mut names, mut most) = (Vec::new(), 0);
         for told in &self.told {
-            if let Told::Contacts(_, contacts) = told {
+            if let Output::Report(Report::Contacts(_, contacts)) = told {
                 most = most.max(contacts.len());
                 for contact in
                     contacts.iter().filter(|contact| !names.contains(&contact.id.0)).collect::<Vec<_>>()
@@ -129,7 +129,7 @@ impl Stage {
 
     fn contacts(&self) -> Vec<(u32, f32)> {
         let last = self.told.iter().rev().find_map(|told| match told {
-            Told::Contacts(_, contacts) => {
+            Output::Report(Report::Contacts(_, contacts)) => {
                 Some(contacts.iter().map(|one| (one.id.0, one.centroid.x)).collect())
             }
             _ => None,
@@ -139,7 +139,7 @@ impl Stage {
 
     fn last_area(&self) -> Option<&AreaNews> {
         self.told.iter().rev().find_map(|told| match told {
-            Told::Area(news) => Some(news),
+            Output::Report(Report::Area(news)) => Some(news.as_ref()),
             _ => None,
         })
     }
@@ -303,9 +303,9 @@ fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
     assert_eq!(stage.contacts(), [(2, 3.0)], "east's foot is still there, west's is not");
     let news = stage.last_area().unwrap();
     assert_eq!((news.area.as_str(), news.state), ("west", AreaState::Lost));
-    assert!(stage.told.contains(&Told::Link(news.at, LinkState::Partial)));
+    assert!(stage.told.contains(&Output::Report(Report::Link(news.at, LinkState::Partial))));
     let held = stage.told.iter().rev().find_map(|told| match told {
-        Told::Held(report) => Some(report),
+        Output::Report(Report::Held(report)) => Some(report),
         _ => None,
     });
     assert!(held.is_some_and(|report| report.held.is_empty() && report.ended.len() == 1), "{held:?}");
@@ -521,7 +521,7 @@ fn a_notice_shows_the_name_of_a_node_without_control_characters() {
     stage.take(NodeMessage { area: "no\u{7}where".into(), ..message }, START);
     stage.advance(START + 300);
     let notice = stage.told.iter().find_map(|told| match told {
-        Told::Notice(notice) => Some(notice.as_str()),
+        Output::Notice(notice) => Some(notice.as_str()),
         _ => None,
     });
     assert!(
@@ -541,7 +541,7 @@ fn a_node_with_another_floor_file_is_told_about_once_and_not_heard() {
         stage.take(message, at);
         stage.advance(at + 300);
     }
-    let notices = stage.told.iter().filter(|told| matches!(told, Told::Notice(_))).count();
+    let notices = stage.told.iter().filter(|told| matches!(told, Output::Notice(_))).count();
     assert_eq!((notices, stage.gateway.counters().refused), (1, 5));
     assert_eq!(stage.gateway.standing("west"), Some(Standing::Waiting));
 }
@@ -665,7 +665,7 @@ fn ask(stage: &mut Stage, message: ControlMessage, at: u64) {
 
 fn refusals(stage: &Stage) -> Vec<&str> {
     let refused = stage.told.iter().filter_map(|told| match told {
-        Told::Answer(_, Answer::Refused(_, why)) => Some(why.as_str()),
+        Output::Answer(_, Answer::Refused(_, why)) => Some(why.as_str()),
         _ => None,
     });
     refused.collect()
@@ -736,7 +736,10 @@ fn a_page_that_one_node_shows_is_that_of_all() {
     message.page = Some("two".into());
     stage.take(message, at);
     stage.advance(at + 300);
-    let shown = stage.told.iter().any(|told| matches!(told, Told::Page(shown) if shown.page == "two"));
+    let shown = stage
+        .told
+        .iter()
+        .any(|told| matches!(told, Output::Report(Report::Page(shown)) if shown.page == "two"));
     assert!(shown, "{:?}", stage.told);
     let asked = answer_all(&mut stage, &mut west, &mut east, at + 1000);
     assert_eq!(asked, [("east".to_owned(), "page/set".to_owned())]);

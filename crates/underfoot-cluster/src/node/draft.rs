@@ -97,6 +97,8 @@ impl Draft {
 
 #[cfg(test)]
 mod tests {
+    use std::borrow::Cow;
+
     use underfoot::units::{Instant, Newtons};
     use underfoot::widget::{EventKind, WidgetEvent, WidgetId};
 
@@ -105,7 +107,9 @@ mod tests {
     #[test]
     fn all_frames_that_come_at_once_are_told() {
         let mut draft = Draft::default();
-        let note = |draft: &mut Draft, ms| _ = draft.note(&Report::Contacts(Instant::from_millis(ms), &[]));
+        let note = |draft: &mut Draft, ms| {
+            _ = draft.note(&Report::Contacts(Instant::from_millis(ms), Cow::Borrowed(&[])));
+        };
         note(&mut draft, 1);
         draft.sent();
         (2..9).for_each(|ms| note(&mut draft, ms));
@@ -128,12 +132,12 @@ mod tests {
             position: Default::default(),
         };
         let mut draft = Draft::default();
-        draft.note(&Report::Event(&event));
-        draft.note(&Report::Event(&event));
+        draft.note(&Report::Event(Cow::Borrowed(&event)));
+        draft.note(&Report::Event(Cow::Borrowed(&event)));
         assert_eq!((draft.first_event, draft.events.len()), (0, 2));
         draft.sent();
         (0..MOST_EVENTS + 3).for_each(|_| {
-            draft.note(&Report::Event(&event));
+            draft.note(&Report::Event(Cow::Borrowed(&event)));
         });
         let message = draft.message();
         assert_eq!((message.first_event, message.events.len()), (5, MOST_EVENTS));

@@ -42,8 +42,8 @@ impl NodeSink {
 }
 
 impl EventSink for NodeSink {
-    fn report(&mut self, report: Report<'_>) {
-        self.has_frame |= self.draft.note(&report);
+    fn report(&mut self, report: &Report<'_>) {
+        self.has_frame |= self.draft.note(report);
     }
 
     /// Called after each packet, when the holds are known as well.
@@ -75,7 +75,8 @@ mod tests {
         let (out, drafts) = sync_channel(100);
         let mut sink = NodeSink::new(out);
         for ms in 1000..1010 {
-            sink.report(Report::Contacts(Instant::from_millis(ms), &[Contact::default()]));
+            let contacts = vec![Contact::default()];
+            sink.report(&Report::Contacts(Instant::from_millis(ms), contacts.into()));
             sink.poll(Instant::from_millis(ms));
         }
         (1010..=1070).for_each(|ms| sink.poll(Instant::from_millis(ms)));

@@ -14,13 +14,14 @@ use underfoot::schema;
 #[cfg(unix)]
 use underfoot::sink::Watchdog;
 use underfoot::sink::{
-    AreaNews, AreaState, EventSink, Fanout, JsonSink, OscSink, Rank, TuioSink, TuioVersion, claim_priority,
+    AreaNews, AreaState, EventSink, Fanout, JsonSink, OscSink, Rank, Report, TuioSink, TuioVersion,
+    claim_priority,
 };
 use underfoot::source::{Port, UdpSource};
 use underfoot::units::Instant;
 use underfoot::wire::{Prefix, Request};
 use underfoot_cluster::auth::{Kind, Opened, Role};
-use underfoot_cluster::gateway::{Answer, Counters, Gateway, Told};
+use underfoot_cluster::gateway::{Answer, Counters, Gateway, Output};
 use underfoot_cluster::message::{NodeMessage, ToNodes, decode, encode};
 use underfoot_cluster::transport::Transport;
 
@@ -234,8 +235,8 @@ impl RequestSocket {
     }
 
     /// Sends an answer to the app that asked.
-    fn answer(&mut self, told: &Told) {
-        let Told::Answer(to, answer) = told else { return };
+    fn answer(&mut self, told: &Output) {
+        let Output::Answer(to, answer) = told else { return };
         match answer {
             Answer::Control(state) => write_control(&self.prefix, state, &mut self.bytes),
             Answer::Page(page) => write_page(&self.prefix, page, &mut self.bytes),
@@ -261,24 +262,27 @@ fn wait<T>(received: &Receiver<T>) -> Vec<T> {
     }
 }
 
-fn tell(told: &[Told], sinks: &mut Fanout, notices: &Notices) {
+fn tell(told: &[Output], sinks: &mut Fanout, notices: &Notices) {
     for told in told {
-        if let Some(report) = told.report() {
-            sinks.report(report);
-        }
         match told {
-            Told::Area(AreaNews { area, state: AreaState::Live, uncertainty, .. }) => {
-                notices.say(format!(
-                    "Area \"{area}\" is live; its times are sure to {} us.",
-                    uncertainty.as_micros()
-                ));
+            Output::Report(report) => {
+                sinks.report(report);
+                if let Report::Area(news) = report {
+                    notices.say(sentence(news));
+                }
             }
-            Told::Area(AreaNews { area, state, why, .. }) => {
-                notices.say(format!("Area \"{area}\" is {}: {why}.", state.name()));
-            }
-            Told::Notice(notice) => notices.say(notice.clone()),
-            _ => {}
+            Output::Notice(notice) => notices.say(notice.clone()),
+            Output::Answer(..) => {}
         }
+    }
+}
+
+/// Returns the state of an area as a sentence for the operator.
+fn sentence(AreaNews { area, state, why, uncertainty, .. }: &AreaNews) -> String {
+    if *state == AreaState::Live {
+        format!("Area \"{area}\" is live; its times are sure to {} us.", uncertainty.as_micros())
+    } else {
+        format!("Area \"{area}\" is {}: {why}.", state.name())
     }
 }
 

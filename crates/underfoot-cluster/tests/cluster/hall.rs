@@ -398,12 +398,12 @@ impl Frames {
 }
 
 impl EventSink for Frames {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         let mut seen = self.0.lock().unwrap();
         match report {
             Report::Event(event) => seen.events.push((event.at, event.id.clone(), event.kind)),
             Report::Contacts(at, contacts) => {
-                for contact in contacts {
+                for contact in contacts.iter() {
                     let [x, y] = contact.centroid.to_array().map(f64::from);
                     seen.tracks.entry(contact.id.0.into()).or_default().push((at.secs(), x, y));
                 }

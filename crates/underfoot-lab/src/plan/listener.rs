@@ -29,7 +29,7 @@ impl Listener {
 }
 
 impl EventSink for Listener {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         if let Report::Contacts(_, contacts) = report {
             self.contacts.clear();
             self.contacts.extend_from_slice(contacts);

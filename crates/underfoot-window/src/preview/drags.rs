@@ -44,11 +44,11 @@ impl FootSink for Mouse {
 struct Told(Arc<Mutex<(Vec<WidgetEvent>, Vec<LinkState>)>>);
 
 impl EventSink for Told {
-    fn report(&mut self, report: Report<'_>) {
+    fn report(&mut self, report: &Report<'_>) {
         let mut told = self.0.lock().unwrap();
         match report {
-            Report::Event(event) => told.0.push(event.clone()),
-            Report::Link(_, state) => told.1.push(state),
+            Report::Event(event) => told.0.push(WidgetEvent::clone(event)),
+            Report::Link(_, state) => told.1.push(*state),
             _ => {}
         }
     }
