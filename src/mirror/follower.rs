@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::greeting::spoken;
-use super::{Greeting, ServerLine};
+use super::Greeting;
 use crate::engine::{ControlState, Snapshot};
 use crate::layout::Layout;
+use crate::outgoing::json::{Message, StateRecord};
 use crate::widget::WidgetId;
 use crate::wire::{ControlMessage, read_json};
 
@@ -26,7 +26,7 @@ const MOST_TRIES: u8 = 3;
 #[derive(Clone, Debug, Default)]
 pub struct Follower {
     /// The controls of its layout, with the last report about each.
-    controls: BTreeMap<String, Option<Word<ServerLine>>>,
+    controls: BTreeMap<String, Option<Word<StateRecord>>>,
     pages: Vec<String>,
     page: Option<Word<String>>,
 }
@@ -66,19 +66,19 @@ impl Follower {
         self.page = greeting.page.as_ref().map(|page| Word::new(page.clone(), now));
     }
 
-    /// Processes a line of the server, at `now` on any monotonic clock. Ignores controls and pages that its layout
+    /// Processes a message of the server, at `now` on any monotonic clock. Ignores controls and pages that its layout
     /// does not have.
-    pub fn hear(&mut self, line: &ServerLine, now: Duration) {
-        match line.event() {
-            "state" => self.hear_state(line, now + SETTLED),
-            "changed" => {
-                if let Some(Some(control)) = self.controls.get_mut(&line.id.0) {
-                    control.said.value = line.value.clone();
+    pub fn hear(&mut self, message: &Message, now: Duration) {
+        match message {
+            Message::State(state) => self.hear_state(state, now + SETTLED),
+            Message::Control(event) if event.event == "changed" => {
+                if let Some(Some(control)) = self.controls.get_mut(event.id.as_str()) {
+                    control.said.value = event.value.clone();
                     (control.due, control.tries) = (now + SETTLED, 0);
                 }
             }
-            "page" => {
-                let known = line.page.as_ref().filter(|page| self.pages.contains(&page.0));
+            Message::Page(shown) => {
+                let known = shown.page.as_ref().filter(|page| self.pages.contains(&page.0));
                 self.page = known.map(|page| Word::new(page.0.clone(), now + SETTLED));
             }
             _ => {}
@@ -91,8 +91,8 @@ impl Follower {
         self.controls.len()
     }
 
-    fn hear_state(&mut self, state: &ServerLine, due: Duration) {
-        if let Some(control) = self.controls.get_mut(&state.id.0) {
+    fn hear_state(&mut self, state: &StateRecord, due: Duration) {
+        if let Some(control) = self.controls.get_mut(state.id.as_str()) {
             *control = Some(Word::new(state.clone(), due));
         }
     }
@@ -106,8 +106,7 @@ impl Follower {
             let Some(state) = ControlState::of(layout, index, here).filter(|state| !state.pressed) else {
                 continue;
             };
-            let Some(own) = spoken(&state) else { continue };
-            let wanted = differences(&widget.id, &own, &word.said);
+            let wanted = differences(&widget.id, &StateRecord::from(&state), &word.said);
             if !wanted.is_empty() && word.take_try(now) {
                 asked.extend(wanted);
             }
@@ -124,23 +123,27 @@ impl Follower {
 }
 
 /// The requests that change a control from the state `own` to the state `said`.
-fn differences(id: &WidgetId, own: &ServerLine, said: &ServerLine) -> Vec<ControlMessage> {
+fn differences(id: &WidgetId, own: &StateRecord, said: &StateRecord) -> Vec<ControlMessage> {
     let mut asked = Vec::new();
     let mut ask = |request: &str, arguments: &[Value]| {
         asked.extend(read_json(&format!("widget/{id}/{request}"), arguments));
     };
     // The range precedes the value, which must be within it.
-    for (own, said, request) in [
-        (&own.range, &said.range, "range/set"),
-        (&own.value, &said.value, "set"),
-        (&own.label, &said.label, "label"),
-        (&own.indicator, &said.indicator, "indicator"),
-    ] {
-        if let Some(arguments) = said.arguments().filter(|_| own != said) {
+    for (own, said, request) in [(&own.range, &said.range, "range/set"), (&own.value, &said.value, "set")] {
+        if let Some(arguments) =
+            said.arguments().filter(|arguments| own.arguments().as_ref() != Some(arguments))
+        {
             ask(request, &arguments);
         }
     }
-    if let Some(on) = said.locked.flag().filter(|_| own.locked != said.locked) {
+    for (own, said, request) in
+        [(&own.label, &said.label, "label"), (&own.indicator, &said.indicator, "indicator")]
+    {
+        if let Some(text) = said.as_ref().filter(|_| own != said) {
+            ask(request, &[json!(text)]);
+        }
+    }
+    if let Some(on) = said.locked.filter(|_| own.locked != said.locked) {
         ask(if on { "lock" } else { "unlock" }, &[]);
     }
     // All other reasons for a control to be off follow from the same packets here.

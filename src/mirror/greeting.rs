@@ -1,18 +1,16 @@
 //! The greeting: the data that a window needs first when it joins.
 
-use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde::Deserialize;
 use thiserror::Error;
 
-use super::line::{Few, Word};
-use super::{ServerLine, VERSION};
+use super::VERSION;
 use crate::engine::{ControlState, Snapshot};
 use crate::floor::Floor;
 use crate::layout::Layout;
+use crate::outgoing::json::{Few, GreetingRecord, Head, Line, Message, StateRecord, json_value};
 use crate::recording::read_layout;
 use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
-use crate::sink::control_json;
 use crate::units::Instant;
 
 /// Reasons why a window can't join.
@@ -49,37 +47,11 @@ pub struct Greeting {
     /// Whether the server accepts layouts from others.
     pub takes_layouts: bool,
     /// The state of each control.
-    pub controls: Vec<ServerLine>,
-}
-
-/// The greeting as sent.
-#[derive(Serialize)]
-struct Words {
-    event: &'static str,
-    version: u8,
-    method: &'static str,
-    t_s: f64,
-    page: Option<String>,
-    takes_layouts: bool,
-    floor: String,
-    layout: String,
-    controls: Vec<Value>,
+    pub controls: Vec<StateRecord>,
 }
 
 /// Maximum number of controls in a greeting: as many as a layout has.
 const MOST_CONTROLS: usize = 4096;
-
-/// The greeting as received, within its limits.
-#[derive(Deserialize)]
-struct Read {
-    method: Word,
-    t_s: f64,
-    page: Option<Word>,
-    takes_layouts: bool,
-    floor: String,
-    layout: String,
-    controls: Few<ServerLine, MOST_CONTROLS>,
-}
 
 /// Parsed first, since another version may differ in everything else.
 #[derive(Deserialize)]
@@ -102,25 +74,26 @@ impl Greeting {
         takes_layouts: bool,
     ) -> String {
         let states = (0..layout.widgets.len()).filter_map(|index| ControlState::of(layout, index, snapshot));
-        let words = Words {
-            event: EVENT,
+        let line = |state: ControlState| Line::new(Instant::START, Message::State(StateRecord::from(&state)));
+        let record = GreetingRecord {
+            event: EVENT.into(),
             version: VERSION,
-            method: if method == Method::Eq4 { EQ4 } else { TRACKER },
+            method: if method == Method::Eq4 { EQ4 } else { TRACKER }.into(),
             t_s: snapshot.at.secs(),
-            page: layout.pages.get(snapshot.page).map(|page| page.id.to_string()),
+            page: layout.pages.get(snapshot.page).map(|page| page.id.as_str().into()),
             takes_layouts,
             floor: schema::write_floor(floor),
             layout: schema::write_layout(layout),
-            controls: states.map(|state| control_json(&state)).collect(),
+            controls: states.map(|state| json_value(&line(state))).collect::<Vec<_>>(),
         };
         // Strings and numbers can always be written as JSON.
-        serde_json::to_string(&words).unwrap_or_default()
+        serde_json::to_string(&record).unwrap_or_default()
     }
 
     /// Whether a line is a greeting, regardless of its content.
     #[must_use]
-    pub fn is_in(line: &ServerLine) -> bool {
-        line.event() == EVENT
+    pub fn is_in(head: &Head) -> bool {
+        head.event() == EVENT
     }
 
     /// Parses a line of [`Greeting::line`].
@@ -133,7 +106,7 @@ impl Greeting {
         {
             return Err(MirrorError::Version(u8::try_from(version).unwrap_or(u8::MAX)));
         }
-        let words: Read = serde_json::from_str(line)?;
+        let words: GreetingRecord<Few<StateRecord, MOST_CONTROLS>> = serde_json::from_str(line)?;
         let floor = schema::parse_floor(&words.floor, "the server's floor")?;
         let layout = read_layout(&words.layout, &floor.geometry)?;
         // The cast saturates.
@@ -142,16 +115,11 @@ impl Greeting {
             floor,
             layout,
             layout_text: words.layout,
-            method: if words.method.0 == EQ4 { Method::Eq4 } else { Method::Tracker },
+            method: if words.method == EQ4 { Method::Eq4 } else { Method::Tracker },
             now,
             page: words.page.map(|page| page.0),
             takes_layouts: words.takes_layouts,
             controls: words.controls.kept,
         })
     }
-}
-
-/// The state of a control in the form of a server's lines.
-pub(super) fn spoken(state: &ControlState) -> Option<ServerLine> {
-    ServerLine::deserialize(control_json(state)).ok()
 }

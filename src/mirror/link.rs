@@ -8,12 +8,13 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, Builder};
 use std::time::{Duration, Instant};
 
-use serde_json::{Value, json};
+use serde_json::Value;
 use tungstenite::handshake::HandshakeError;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, Message, WebSocket};
 
-use super::{Greeting, MirrorInput, MirrorSource, ServerLine};
+use super::{Greeting, MirrorInput, MirrorSource};
+use crate::outgoing::json::{Head, Line, RequestRecord};
 
 /// Interval between attempts to reach an absent server.
 const AGAIN: Duration = Duration::from_secs(1);
@@ -47,7 +48,7 @@ pub enum MirrorNews {
     /// The server has another layout, or repeats the state of its floor. Packets continue; the layout is among them.
     Again(Box<Greeting>),
     /// A report about the server's controls or pages, or the reason for a refused request.
-    Line(Box<ServerLine>),
+    Line(Box<Line>),
     /// The server is lost or can't be joined, with the reason. The link tries again.
     Lost(String),
 }
@@ -75,7 +76,8 @@ impl MirrorLink {
     /// Sends a request to the server, as web pages do: `widget/zoom/set` with `[0.5]`. A refusal arrives as a line;
     /// while the server is absent or accepts no requests, the request is dropped.
     pub fn ask(&self, request: &str, arguments: &[Value]) {
-        let line = json!({"request": request, "args": arguments}).to_string();
+        let record = RequestRecord { args: arguments.to_vec(), request: request.to_owned() };
+        let line = serde_json::to_string(&record).unwrap_or_default();
         // A failed link has reported its failure.
         let _ = self.asks.try_send(line);
     }
@@ -192,13 +194,17 @@ impl Link {
 
     /// Processes a line; the inner error is the reason why the server can't be shown.
     fn hear(&self, text: &str, input: &mut Option<MirrorInput>) -> Result<Result<(), String>, Over> {
-        let line = match ServerLine::read(text) {
-            Ok(line) => line,
-            Err(error) => return Ok(Err(format!("the server says what makes no sense: {error}"))),
+        let no_sense = |error| format!("the server says what makes no sense: {error}");
+        let head = match Head::read(text.as_bytes()) {
+            Ok(head) => head,
+            Err(error) => return Ok(Err(no_sense(error))),
         };
-        if !Greeting::is_in(&line) {
-            if PASSED_ON.contains(&line.event()) {
-                self.tell(MirrorNews::Line(Box::new(line)))?;
+        if !Greeting::is_in(&head) {
+            if PASSED_ON.contains(&head.event()) {
+                match head.line(text.as_bytes()) {
+                    Ok(line) => self.tell(MirrorNews::Line(Box::new(line)))?,
+                    Err(error) => return Ok(Err(no_sense(error))),
+                }
             }
             return Ok(Ok(()));
         }

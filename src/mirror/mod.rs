@@ -13,7 +13,6 @@ mod feed;
 mod follower;
 mod frame;
 mod greeting;
-mod line;
 #[cfg(feature = "web")]
 mod link;
 mod source;
@@ -25,7 +24,6 @@ pub use feed::MirrorFeed;
 pub use follower::Follower;
 pub use frame::BadFrame;
 pub use greeting::{Greeting, MirrorError};
-pub use line::ServerLine;
 #[cfg(feature = "web")]
 pub use link::{MirrorLink, MirrorNews};
 pub use source::{MirrorInput, MirrorSource};

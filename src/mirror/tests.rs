@@ -7,10 +7,11 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use super::frame::{self, BadFrame};
-use super::{Follower, Greeting, MirrorError, MirrorSource, ServerLine};
+use super::{Follower, Greeting, MirrorError, MirrorSource};
 use crate::engine::{Engine, Snapshot};
 use crate::floor::Floor;
 use crate::layout::Layout;
+use crate::outgoing::json::{Head, Line, Message};
 use crate::recording::{Entries, Entry, decoder};
 use crate::schema::{Kinds, builtin_layout, parse_layout};
 use crate::sense::Method;
@@ -172,12 +173,13 @@ fn a_greeting_says_the_floor_as_it_is_and_how_its_controls_are() {
     let mut floor = Floor::default();
     floor.tare[7][2] = Newtons(3.5);
     let line = Greeting::line(&floor, &layout, &seen(&engine), Method::Eq4, false);
-    assert!(Greeting::is_in(&said(&line)) && !Greeting::is_in(&said(r#"{"event": "floor"}"#)));
+    let is_greeting = |text: &str| Greeting::is_in(&Head::read(text.as_bytes()).unwrap());
+    assert!(is_greeting(&line) && !is_greeting(r#"{"event": "floor"}"#));
     let read = Greeting::read(&line).unwrap();
     assert_eq!((read.floor, read.method, read.takes_layouts), (floor, Method::Eq4, false));
     assert_eq!(read.layout.widgets.len(), layout.widgets.len());
-    let home = read.controls.iter().find(|control| control.id.0 == "home").unwrap();
-    assert_eq!(home.enabled.flag(), Some(false));
+    let home = read.controls.iter().find(|control| control.id == "home").unwrap();
+    assert_eq!(home.enabled, Some(false));
 
     let with = |field: &str, value: Value| {
         let mut other: Value = serde_json::from_str(&line).unwrap();
@@ -189,8 +191,8 @@ fn a_greeting_says_the_floor_as_it_is_and_how_its_controls_are() {
     assert!(matches!(Greeting::read(r#"{"event": "mirror"}"#), Err(MirrorError::Greeting(_))));
 }
 
-fn said(line: &str) -> ServerLine {
-    ServerLine::read(line).unwrap()
+fn said(line: &str) -> Message {
+    Line::read(line.as_bytes()).unwrap().message
 }
 
 #[test]

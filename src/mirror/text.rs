@@ -1,16 +1,17 @@
 //! A floor reconstructed from its JSON lines, for windows without its packets.
 
-use std::borrow::Cow;
 use std::time::Duration;
 
 use glam::Vec2;
-use serde::Deserialize;
+use serde::de;
 use thiserror::Error;
 
-use super::line::{Few, Reason, Said, Word};
 use crate::engine::{Engine, FootRole, FootState, Snapshot};
 use crate::floor::{Area, Floor, Geometry};
 use crate::layout::Layout;
+use crate::outgoing::json::{
+    AreaRecord, ContactsRecord, EventRecord, JsonValue, Line, Message, StateRecord, Word,
+};
 use crate::outgoing::{AreaNews, AreaState};
 use crate::sense::{Contact, ContactId, Method, Quality};
 use crate::units::{Instant, Newtons};
@@ -34,58 +35,6 @@ pub struct TextMirror {
     /// For each control, the contact that presses it.
     pressed_by: Vec<Option<ContactId>>,
     snapshot: Snapshot,
-}
-
-/// Maximum number of contacts shown: more than fit into the longest line of a floor.
-const MOST_CONTACTS: usize = 2048;
-
-/// Maximum number of held controls in one line: as many as a layout has.
-const MOST_HELD: usize = 4096;
-
-/// The possible fields of a line; see [`crate::sink::JsonSink`].
-#[derive(Deserialize)]
-struct Line<'a> {
-    t_s: f64,
-    #[serde(borrow)]
-    event: Option<Cow<'a, str>>,
-    #[serde(borrow)]
-    id: Option<Cow<'a, str>>,
-    #[serde(default)]
-    value: Said,
-    #[serde(default)]
-    force_n: f32,
-    #[serde(default)]
-    x_m: f32,
-    #[serde(default)]
-    y_m: f32,
-    contact: Option<u32>,
-    contacts: Option<Few<ContactLine, MOST_CONTACTS>>,
-    held: Option<Few<Word, MOST_HELD>>,
-    page: Option<Word>,
-    area: Option<Word>,
-    state: Option<Word>,
-    #[serde(default)]
-    why: Reason,
-    #[serde(default)]
-    uncertainty_s: f64,
-    #[serde(default)]
-    dropped: u64,
-    enabled: Option<bool>,
-    #[serde(borrow)]
-    off: Option<Cow<'a, str>>,
-    locked: Option<bool>,
-    armed: Option<bool>,
-    pressed: Option<bool>,
-}
-
-#[derive(Deserialize)]
-struct ContactLine {
-    id: u32,
-    x_m: f32,
-    y_m: f32,
-    force_n: f32,
-    x_velocity_m_s: f32,
-    y_velocity_m_s: f32,
 }
 
 impl TextMirror {
@@ -150,32 +99,30 @@ impl TextMirror {
     /// malformed, and nothing else changes.
     pub fn take(&mut self, line: &str) -> Result<Option<WidgetEvent>, BadLine> {
         self.snapshot.counters.datagrams += 1;
-        let line: Line<'_> =
-            serde_json::from_str(line).inspect_err(|_| self.snapshot.counters.malformed += 1)?;
-        let at = Instant::START + Duration::try_from_secs_f64(line.t_s).unwrap_or_default();
+        let (at, message) = read(line).inspect_err(|_| self.snapshot.counters.malformed += 1)?;
         self.snapshot.at = self.snapshot.at.max(at);
-        if let Some(held) = line.held {
-            let ids = held.kept.iter().map(|id| id.0.as_str());
-            let known = ids.filter(|id| self.layout.widget_index(id).is_some()).map(WidgetId::new);
-            // At most the number of controls, however often a line names them.
-            self.snapshot.held = known.take(self.layout.widgets.len()).collect();
-            return Ok(None);
-        }
-        match line.event.as_deref().unwrap_or_default() {
-            "contacts" => self.take_contacts(line.contacts.unwrap_or_default()),
-            "area" => self.take_area(at, line),
-            "link" => self.take_link(line.state.map(|state| state.0).unwrap_or_default().as_str()),
-            "page" => self.take_page(line.page.as_ref().map(|page| page.0.as_str())),
-            "gap" => self.snapshot.unsent_events += line.dropped,
-            "state" => self.take_state(&line),
-            name => return Ok(self.take_event(at, name, &line)),
+        match message {
+            Message::Held(report) => {
+                let ids = report.held.kept.iter().map(Word::as_str);
+                let known = ids.filter(|id| self.layout.widget_index(id).is_some()).map(WidgetId::new);
+                // At most the number of controls, however often a line names them.
+                self.snapshot.held = known.take(self.layout.widgets.len()).collect();
+            }
+            Message::Contacts(record) => self.take_contacts(record),
+            Message::Area(record) => self.take_area(at, record),
+            Message::Link(record) => self.take_link(record.state.as_str()),
+            Message::Page(record) => self.take_page(record.page.as_ref().map(Word::as_str)),
+            Message::Gap(record) => self.snapshot.unsent_events += record.dropped,
+            Message::State(record) => self.take_state(&record),
+            Message::Control(record) => return Ok(self.take_event(at, &record)),
+            _ => {}
         }
         Ok(None)
     }
 
     /// Ends the lines: clears the contacts and the controls that they held.
     pub fn end(&mut self) {
-        self.take_contacts(Few::default());
+        self.take_contacts(ContactsRecord::default());
         self.show_link(LinkState::Lost);
         self.areas.iter_mut().for_each(|(_, news)| news.state = AreaState::Lost);
         self.snapshot.held.clear();
@@ -185,12 +132,12 @@ impl TextMirror {
         });
     }
 
-    fn take_contacts(&mut self, contacts: Few<ContactLine, MOST_CONTACTS>) {
+    fn take_contacts(&mut self, ContactsRecord { contacts }: ContactsRecord) {
         self.snapshot.counters.frames += 1;
         self.snapshot.unsent_events += contacts.left_out;
         self.snapshot.contacts.clear();
         self.snapshot.contacts.extend(contacts.kept.into_iter().map(|contact| Contact {
-            id: ContactId(contact.id),
+            id: contact.id,
             centroid: Vec2::new(contact.x_m, contact.y_m),
             force: Newtons(contact.force_n),
             velocity: Vec2::new(contact.x_velocity_m_s, contact.y_velocity_m_s),
@@ -225,17 +172,14 @@ impl TextMirror {
         state.press_share = contact.map_or(0.0, |contact| contact.force.0 / least.max(1.0));
     }
 
-    fn take_area(&mut self, at: Instant, line: Line<'_>) {
-        let named = |(area, _): &&mut (Area, AreaNews)| line.area.as_ref().is_some_and(|id| id.0 == area.id);
+    fn take_area(&mut self, at: Instant, record: AreaRecord) {
+        let named = |(area, _): &&mut (Area, AreaNews)| record.area == area.id.as_str();
         let Some((_, news)) = self.areas.iter_mut().find(named) else { return };
-        let Some(state) = AreaState::ALL
-            .into_iter()
-            .find(|state| line.state.as_ref().is_some_and(|name| name.0 == state.name()))
-        else {
+        let Some(state) = AreaState::ALL.into_iter().find(|state| record.state == state.name()) else {
             return;
         };
-        let uncertainty = Duration::try_from_secs_f64(line.uncertainty_s).unwrap_or_default();
-        *news = AreaNews { at, area: news.area.clone(), state, why: line.why.0, uncertainty };
+        let uncertainty = Duration::try_from_secs_f64(record.uncertainty_s).unwrap_or_default();
+        *news = AreaNews { at, area: news.area.clone(), state, why: record.why.0, uncertainty };
         self.show_areas();
     }
 
@@ -288,13 +232,13 @@ impl TextMirror {
         }
     }
 
-    fn take_state(&mut self, line: &Line<'_>) {
-        let Some(index) = line.id.as_deref().and_then(|id| self.layout.widget_index(id)) else { return };
+    fn take_state(&mut self, line: &StateRecord) {
+        let Some(index) = self.layout.widget_index(line.id.as_str()) else { return };
         let Some(state) = self.snapshot.widgets.get_mut(index) else { return };
         state.value = state.value.map(|known| like(known, &line.value).unwrap_or(known));
         if let Some(enabled) = line.enabled {
             // A reason that this version does not know also keeps the control off.
-            let named = line.off.as_deref().and_then(OffReason::from_name);
+            let named = line.off.as_ref().and_then(|off| OffReason::from_name(off.as_str()));
             state.off = named.or((!enabled).then_some(OffReason::Disabled));
             state.disabled = state.off == Some(OffReason::Disabled);
         }
@@ -303,12 +247,12 @@ impl TextMirror {
         state.pressed = line.pressed.unwrap_or(state.pressed);
     }
 
-    fn take_event(&mut self, at: Instant, name: &str, line: &Line<'_>) -> Option<WidgetEvent> {
-        let id = line.id.as_deref()?;
+    fn take_event(&mut self, at: Instant, line: &EventRecord) -> Option<WidgetEvent> {
+        let id = line.id.as_str();
         let index = self.layout.widget_index(id)?;
         let state = self.snapshot.widgets.get_mut(index)?;
-        let kind = EventKind::of(name, detail(state.value, &line.value))?;
-        let contact = line.contact.map(ContactId);
+        let kind = EventKind::of(line.event.as_str(), detail(state.value, &line.value))?;
+        let contact = line.contact;
         match kind {
             EventKind::Pressed => state.pressed = true,
             EventKind::Released | EventKind::Cancelled => (state.pressed, state.warned) = (false, false),
@@ -332,27 +276,38 @@ impl TextMirror {
     }
 }
 
+/// Returns time and message of a line.
+fn read(text: &str) -> Result<(Instant, Message), serde_json::Error> {
+    let line = Line::read(text.as_bytes())?;
+    let at = line.at.ok_or_else(|| de::Error::missing_field("t_s"))?;
+    Ok((at, line.message))
+}
+
 /// The detail of an event besides its name, for a control with a value like `known`.
-fn detail(known: Option<Value>, said: &Said) -> Option<Detail> {
-    let is_said = |direction: &Direction| matches!(said, Said::Text(name) if name == direction.name());
+fn detail(known: Option<Value>, said: &JsonValue) -> Option<Detail> {
+    let is_said = |direction: &Direction| matches!(said, JsonValue::Text(name) if *name == direction.name());
     let direction = || Direction::ALL.into_iter().find(is_said);
     let value = known.and_then(|known| like(known, said));
     value.map(Detail::Value).or_else(|| direction().map(Detail::Direction))
 }
 
 /// A value of the same kind as `known`; `None` if the kind differs or the number is not finite.
-fn like(known: Value, said: &Said) -> Option<Value> {
-    let single = |number: f64| Some(number as f32).filter(|number| number.is_finite());
+fn like(known: Value, said: &JsonValue) -> Option<Value> {
     match (known, said) {
-        (Value::Switch(_), Said::Flag(on)) => Some(Value::Switch(*on)),
-        (Value::Number(_), Said::Number(number)) => single(*number).map(Value::Number),
-        (Value::Choice(_), Said::Number(number)) => {
-            let is_choice = number.fract() == 0.0 && (0.0..=f64::from(u16::MAX)).contains(number);
-            is_choice.then_some(Value::Choice(*number as u16))
+        (Value::Switch(_), JsonValue::Flag(on)) => Some(Value::Switch(*on)),
+        (Value::Number(_), said) => said.number().filter(|number| number.is_finite()).map(Value::Number),
+        (Value::Choice(_), said) => said.number().and_then(choice).map(Value::Choice),
+        (Value::Pair(_), JsonValue::Numbers(pair)) => {
+            Some(Vec2::from(*pair)).filter(|pair| pair.is_finite()).map(Value::Pair)
         }
-        (Value::Pair(_), Said::Numbers([x, y])) => Some(Value::Pair(Vec2::new(single(*x)?, single(*y)?))),
         _ => None,
     }
+}
+
+/// The index that a number stands for, if any.
+fn choice(number: f32) -> Option<u16> {
+    let is_choice = number.fract() == 0.0 && (0.0..=f32::from(u16::MAX)).contains(&number);
+    is_choice.then_some(number as u16)
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
-//! Encoding of events, contacts and states as datagrams for other programs, OSC and TUIO: pure, no sockets.
+//! Encoding of events, contacts and states for other programs, as OSC, TUIO and JSON: pure, no sockets.
 
 mod area;
 mod held;
+pub mod json;
 mod osc;
 mod tuio;
 mod tuio1;

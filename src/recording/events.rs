@@ -2,10 +2,9 @@
 
 use std::io::{self, Write};
 
-use serde::Deserialize;
-
 use super::recorder::Recorder;
 use super::writer::Job;
+use crate::outgoing::json::Head;
 use crate::units::Instant;
 
 /// Receives JSON lines, each as a message of its own.
@@ -13,12 +12,6 @@ use crate::units::Instant;
 pub(super) struct EventLines {
     recorder: Recorder,
     line: Vec<u8>,
-}
-
-/// The one field that all lines have.
-#[derive(Deserialize)]
-struct Timed {
-    t_s: f64,
 }
 
 impl EventLines {
@@ -31,10 +24,7 @@ impl EventLines {
         if line.is_empty() {
             return Ok(());
         }
-        let at = serde_json::from_slice(&line).map_or(Instant::START, |Timed { t_s }| {
-            // The cast saturates.
-            Instant::from_micros((t_s * 1e6).round() as u64)
-        });
+        let at = Head::read(&line).ok().and_then(|head| head.at()).unwrap_or(Instant::START);
         if self.recorder.hand_job(Job::Event(at, line)).is_some() {
             self.recorder.note_lost(1);
             return Err(io::Error::other("the recording does not keep up"));

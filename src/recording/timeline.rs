@@ -1,10 +1,9 @@
 //! An overview of a recording: its span and its important events.
 
-use serde::Deserialize;
-
 use super::entry::Entry;
 use super::messages::Part;
 use super::reader::Recording;
+use crate::outgoing::json::{Line, Message};
 use crate::units::Instant;
 
 /// An overview of a recording.
@@ -68,26 +67,13 @@ impl Recording {
     }
 }
 
-/// The fields of an event line that matter here.
-#[derive(Deserialize)]
-struct Line {
-    t_s: f64,
-    #[serde(default)]
-    event: String,
-    #[serde(default)]
-    id: String,
-    #[serde(default)]
-    state: serde_json::Value,
-}
-
 fn mark(line: &[u8]) -> Option<Mark> {
-    let line: Line = serde_json::from_slice(line).ok()?;
-    let kind = match line.event.as_str() {
-        "pressed" => MarkKind::Pressed(line.id),
-        "cancelled" => MarkKind::Cancelled(line.id),
-        "link" if line.state == "lost" => MarkKind::LinkLost,
+    let line = Line::read(line).ok()?;
+    let kind = match line.message {
+        Message::Control(event) if event.event == "pressed" => MarkKind::Pressed(event.id.0),
+        Message::Control(event) if event.event == "cancelled" => MarkKind::Cancelled(event.id.0),
+        Message::Link(link) if link.state == "lost" => MarkKind::LinkLost,
         _ => return None,
     };
-    // The cast saturates.
-    Some(Mark { at: Instant::from_micros((line.t_s * 1e6).round() as u64), kind })
+    Some(Mark { at: line.at?, kind })
 }

@@ -49,7 +49,7 @@ pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, outp
 pub(crate) use disk::Disk;
 pub use fanout::Fanout;
 #[cfg(feature = "net")]
-pub use json::{JsonSink, event_line};
+pub use json::JsonSink;
 pub use manual::ManualSink;
 #[cfg(feature = "wav")]
 pub use mono::write_mono;
@@ -68,8 +68,6 @@ pub use within::Within;
 pub(crate) use worker::Worker;
 
 pub use crack_rate::{CrackNews, CrackRateLimiter};
-#[cfg(feature = "net")]
-pub use json::control_json;
 pub use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
 #[cfg(feature = "net")]
 pub use priority::{Rank, claim_priority, step_back};

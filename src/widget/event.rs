@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 use glam::Vec2;
-use serde::{Serialize, Serializer};
 
 use crate::floor::ContactId;
 use crate::units::{Instant, Newtons};
@@ -46,9 +45,8 @@ impl PartialEq<&str> for WidgetId {
     }
 }
 
-/// The value of a control; as JSON true or false, a number, or two numbers in a list.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
+/// The value of a control.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// On or off: the value of a switch, or of a control that acts while it is held.
     Switch(bool),
@@ -57,11 +55,7 @@ pub enum Value {
     /// Index of a selector's option, from 0.
     Choice(u16),
     /// Two finite numbers, eastwards and northwards.
-    Pair(#[serde(serialize_with = "as_list")] Vec2),
-}
-
-fn as_list<S: Serializer>(pair: &Vec2, serializer: S) -> Result<S::Ok, S::Error> {
-    pair.to_array().serialize(serializer)
+    Pair(Vec2),
 }
 
 impl From<bool> for Value {
@@ -95,8 +89,7 @@ impl From<Vec2> for Value {
 }
 
 /// The direction of a swipe.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// Away from the user.
     North,
@@ -191,8 +184,7 @@ impl EventKind {
 }
 
 /// The content of an event besides its name.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Detail {
     /// The new value of the control.
     Value(Value),

@@ -104,7 +104,7 @@ fn contacts(file: &Path, to: &Path) -> Result<(), Failure> {
     let source = recording.source(Speed::Max);
     let progress = source.progress();
     let mut out = create(to)?;
-    writeln!(out, "t_s,id,x_m,y_m,force_n,vx_m_s,vy_m_s,ambiguous").map_err(failed)?;
+    writeln!(out, "t_s,id,x_m,y_m,force_n,x_velocity_m_s,y_velocity_m_s,ambiguous").map_err(failed)?;
     let rows = Arc::<Mutex<Vec<u8>>>::default();
     let mut server =
         Server::new(&floor, layout, method, source).with_events(Box::new(ContactRows(Arc::clone(&rows))));

@@ -4,10 +4,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::Serialize;
-use underfoot::sense::{
-    Contact, ContactId, Covariance, Cursor, CursorPicker, ForceFrame, ForceTable, Method, Quality, Sensing,
-};
+use underfoot::outgoing::json::{ContactRecord, CursorRecord, SensedRecord};
+use underfoot::sense::{Contact, Cursor, CursorPicker, ForceFrame, ForceTable, Method, Sensing};
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
@@ -71,84 +69,15 @@ pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
     table::conclude(table::left_out(&args.file, forces.problems()).as_slice())
 }
 
-#[derive(Serialize)]
-struct Line<'a> {
-    t_s: f64,
-    contacts: Contacts<'a>,
-    cursor: Option<CursorLine>,
-}
-
-/// Serialises directly from the contacts, without a list per line.
-struct Contacts<'a>(&'a [Contact]);
-
-impl Serialize for Contacts<'_> {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.iter().map(ContactLine::of))
-    }
-}
-
-#[derive(Serialize)]
-struct ContactLine<'a> {
-    id: ContactId,
-    x_m: f32,
-    y_m: f32,
-    force_n: f32,
-    tiles: Tiles<'a>,
-    vx_m_s: f32,
-    vy_m_s: f32,
-    covariance_m2: Covariance,
-    ambiguous: bool,
-    quality: Quality,
-    difference_m: Option<[f32; 2]>,
-}
-
-impl<'a> ContactLine<'a> {
-    fn of(contact: &'a Contact) -> Self {
-        Self {
-            id: contact.id,
-            x_m: contact.centroid.x,
-            y_m: contact.centroid.y,
-            force_n: contact.force.0,
-            tiles: Tiles(contact),
-            vx_m_s: contact.velocity.x,
-            vy_m_s: contact.velocity.y,
-            covariance_m2: contact.covariance,
-            ambiguous: contact.ambiguous,
-            quality: contact.quality,
-            difference_m: contact.difference.map(Into::into),
-        }
-    }
-}
-
-struct Tiles<'a>(&'a Contact);
-
-impl Serialize for Tiles<'_> {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.tiles.iter().map(|load| [load.tile.column, load.tile.row]))
-    }
-}
-
-#[derive(Serialize)]
-struct CursorLine {
-    id: ContactId,
-    x_m: f32,
-    y_m: f32,
-    force_n: f32,
-}
-
 fn write_line(
     out: &mut impl Write,
     t_s: f64,
     contacts: &[Contact],
     cursor: Option<Cursor>,
 ) -> io::Result<()> {
-    let cursor = cursor.map(|cursor| CursorLine {
-        id: cursor.contact,
-        x_m: cursor.position.x,
-        y_m: cursor.position.y,
-        force_n: cursor.force.0,
-    });
-    serde_json::to_writer(&mut *out, &Line { t_s, contacts: Contacts(contacts), cursor })?;
+    let contacts = contacts.iter().map(ContactRecord::full).collect();
+    let record = SensedRecord { t_s, contacts, cursor: cursor.map(CursorRecord::from) };
+    serde_json::to_writer(&mut *out, &record)?;
     out.write_all(b"\n")
 }
 

@@ -4,7 +4,7 @@ mod cursor;
 pub(super) mod pool;
 
 use glam::Vec2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 pub use cursor::Cursor;
@@ -30,7 +30,7 @@ pub struct TileLoad {
 }
 
 /// Uncertainty of a position: the symmetric 2 x 2 covariance matrix, in square metres.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Covariance {
     /// Variance eastwards.
     pub xx: f32,

@@ -1,11 +1,11 @@
 //! The faults of a sensor, and its recovery from them.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::sense::Quality;
 
 /// A sensor fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, thiserror::Error)]
 #[serde(rename_all = "snake_case")]
 pub enum Trouble {
     /// No current: it reads zero although its plate's weight alone requires more.

@@ -12,15 +12,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant as HostInstant};
 
-use self::line::Line;
 use super::backlog::{Backlog, Gap, Worth};
 use super::crack_rate::CrackRateLimiter;
 use super::periodic::PeriodicSender;
 use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
-use crate::engine::ControlState;
 use crate::units::Instant;
-use crate::widget::{EventKind, WidgetEvent, WidgetId};
+use crate::widget::{EventKind, WidgetId};
 use crate::wire::LinkState;
 
 /// Writes one JSON object per event and line.
@@ -250,29 +248,8 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
     }
 }
 
-/// Returns one event as [`JsonSink`] writes it, without the end of the line.
-#[must_use]
-pub fn event_line(event: &WidgetEvent) -> String {
-    let mut line = Vec::new();
-    // Writing to a vector cannot fail.
-    let _ = write_line(&Job::Report(Report::Event(Cow::Owned(event.clone()))), &mut line);
-    String::from_utf8_lossy(&line).trim_end().to_owned()
-}
-
-/// Returns the state of a control as the fields of a line that [`JsonSink`] writes; `t_s` is 0.
-///
-/// Numbers are those of the text: 0.1 is 0.1, not the nearest single-precision number.
-#[must_use]
-pub fn control_json(state: &ControlState) -> serde_json::Value {
-    let mut line = Vec::new();
-    let report = Report::Control(Instant::START, Cow::Owned(state.clone()));
-    // Writing to a vector cannot fail, and the line is valid JSON.
-    let _ = write_line(&Job::Report(report), &mut line);
-    serde_json::from_slice(&line).unwrap_or_default()
-}
-
 fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
-    let Some(line) = Line::of(job) else { return Ok(()) };
+    let Some(line) = line::line(job) else { return Ok(()) };
     let mut line = serde_json::to_vec(&line)?;
     line.push(b'\n');
     out.write_all(&line)

@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource, ServerLine};
+use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource};
+use underfoot::outgoing::json::{JsonValue, Message, RefusalRecord};
 use underfoot::recording::{PacketTap, TappedPackets};
 use underfoot::runtime::Session;
 use underfoot::schema;
@@ -216,7 +217,7 @@ impl ServedFloor {
         match news {
             MirrorNews::Joined(greeting, source) => self.join_again(&greeting, source),
             MirrorNews::Again(greeting) => self.take(&greeting),
-            MirrorNews::Line(line) => self.hear_line(&line),
+            MirrorNews::Line(line) => self.hear_line(&line.message),
             MirrorNews::Lost(why) => self.shared.state().link = ServerLink::Lost(why),
         }
     }
@@ -249,14 +250,14 @@ impl ServedFloor {
         self.follower.begin(greeting, self.begun.elapsed());
     }
 
-    fn hear_line(&mut self, line: &ServerLine) {
-        if line.event() != "error" {
-            return self.follower.hear(line, self.begun.elapsed());
-        }
-        let why = line.why().to_owned();
-        match self.tried.take_if(|_| line.request() == LAYOUT) {
+    fn hear_line(&mut self, message: &Message) {
+        let Message::Error(RefusalRecord { request, why }) = message else {
+            return self.follower.hear(message, self.begun.elapsed());
+        };
+        let (request, why) = (request.as_str(), why.0.clone());
+        match self.tried.take_if(|_| request == LAYOUT) {
             Some(name) => drop(self.window.layouts.try_send(LayoutNews::Refused { name, diagnostics: why })),
-            None => self.say(format!("The server refuses {}: {why}", line.request())),
+            None => self.say(format!("The server refuses {request}: {why}")),
         }
     }
 
@@ -288,7 +289,7 @@ impl ServedFloor {
                 self.link.ask(&format!("widget/{id}/{}", if enabled { "enable" } else { "disable" }), &[]);
             }
             PreviewCommand::Set { id, value } => {
-                let arguments = match json!(value) {
+                let arguments = match json!(JsonValue::from(value)) {
                     serde_json::Value::Array(pair) => pair,
                     one => vec![one],
                 };

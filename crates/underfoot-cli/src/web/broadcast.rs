@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tracing::warn;
 use tungstenite::{Bytes, Message};
+use underfoot::outgoing::json::{self, ClientsRecord, Line};
 
 /// Maximum number of lines that wait for one client: two seconds of contacts.
 const WAITING: usize = 256;
@@ -148,7 +149,8 @@ impl State {
     /// Sends the numbers of clients to all of them.
     fn tell_counts(&mut self) {
         let (connected, dropped) = (self.there.len(), self.dropped);
-        self.tell(&format!(r#"{{"event":"clients","connected":{connected},"dropped":{dropped}}}"#));
+        let counts = ClientsRecord { connected, dropped };
+        self.tell(&Line::timeless(json::Message::Clients(counts)).text());
     }
 }
 

@@ -3,11 +3,11 @@
 use std::sync::mpsc::sync_channel;
 use std::time::Duration;
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value};
 use underfoot::mirror::Greeting;
+use underfoot::outgoing::json::{FloorRecord, PlacedControl, Sentence, StateRecord, json_value};
 use underfoot::runtime::Snapshot;
 use underfoot::serve::Command;
-use underfoot::sink::control_json;
 
 use super::Shared;
 
@@ -29,35 +29,33 @@ pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
 /// The floor and its controls as a line: for each control its place, and all fields of a line about its state.
 pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
     let geometry = &shared.floor.geometry;
-    let controls: Vec<Value> = seen
-        .layout
-        .widgets
-        .iter()
-        .map(|widget| {
-            let (at, size) = (widget.area.min, widget.area.max - widget.area.min);
-            let mut control = json!({
-                "kind": widget.kind,
-                "x_m": at.x, "y_m": at.y, "width_m": size.x, "depth_m": size.y,
-            });
-            let state = seen.control(widget.id.as_str()).map(|state| control_json(&state));
-            if let (Some(control), Some(Value::Object(state))) = (control.as_object_mut(), state) {
-                // These two fields mark a separate line.
-                control.extend(state.into_iter().filter(|(field, _)| field != "event" && field != "t_s"));
-            }
-            control
-        })
-        .collect();
-    let size = geometry.bounds().max;
-    json!({
-        "event": "floor",
-        "title": seen.layout.title,
-        "width_m": size.x, "depth_m": size.y,
-        "tile_m": geometry.tile_m(),
-        "link": seen.floor.link.name(),
-        "link_cause": seen.floor.link_cause.as_ref().map(|cause| cause.name()),
-        "why": seen.floor.link_cause.as_ref().map(ToString::to_string),
-        "page": seen.page(),
-        "controls": controls,
-    })
-    .to_string()
+    let controls = seen.layout.widgets.iter().map(|widget| {
+        let (at, size) = (widget.area.min, widget.area.max - widget.area.min);
+        let state = seen.control(widget.id.as_str()).map(|state| json_value(&StateRecord::from(&state)));
+        let control = PlacedControl {
+            kind: widget.kind.clone(),
+            x_m: at.x.into(),
+            y_m: at.y.into(),
+            width_m: size.x.into(),
+            depth_m: size.y.into(),
+            state: if let Some(Value::Object(state)) = state { state } else { Map::default() },
+        };
+        // With the fields in the order of their names.
+        serde_json::to_value(control).unwrap_or_default()
+    });
+    let (size, cause) = (geometry.bounds().max, seen.floor.link_cause.as_ref());
+    let record = FloorRecord {
+        controls: controls.collect(),
+        depth_m: size.y.into(),
+        event: "floor".into(),
+        link: seen.floor.link.name().into(),
+        link_cause: cause.map(|cause| cause.name().into()),
+        page: seen.page().map(Into::into),
+        tile_m: geometry.tile_m().into(),
+        title: seen.layout.title.clone(),
+        why: cause.map(|cause| Sentence(cause.to_string())),
+        width_m: size.x.into(),
+    };
+    // Texts and numbers can always be written as JSON.
+    serde_json::to_string(&record).unwrap_or_default()
 }

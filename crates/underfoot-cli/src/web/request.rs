@@ -4,8 +4,8 @@ use std::net::SocketAddr;
 use std::sync::mpsc::sync_channel;
 use std::time::{Duration, Instant};
 
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::Value;
+use underfoot::outgoing::json::{Line, Message, RefusalRecord, RequestRecord, Sentence};
 use underfoot::runtime::{ControlsOff, Session};
 use underfoot::serve::Command;
 use underfoot::wire::{ControlMessage, read_json};
@@ -15,15 +15,6 @@ use super::{MOST_BYTES, Shared};
 
 /// Maximum time to wait for an answer of the floor.
 const PATIENCE: Duration = Duration::from_millis(200);
-
-/// `{"request":"widget/zoom/set","args":[0.5]}`
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Asked {
-    request: String,
-    #[serde(default)]
-    args: Vec<Value>,
-}
 
 /// Keeps controls off as long as the requesting client is connected, such as a window that checks the floor.
 const CONTROLS_OFF: &str = "controls_off";
@@ -46,7 +37,8 @@ impl Standing {
 
 /// The line with the reason for the refusal of a request.
 fn refused(request: &str, why: &str) -> String {
-    json!({"event": "error", "request": request, "why": why}).to_string()
+    let (request, why) = (request.into(), Sentence::from(why));
+    Line::timeless(Message::Error(RefusalRecord { request, why })).text()
 }
 
 /// Minimum interval between two requests of one client to switch all controls off.
@@ -65,7 +57,7 @@ pub(super) fn process(
     {
         return Err(refused(layout::REQUEST, why));
     }
-    let asked: Asked = serde_json::from_str(text).map_err(|error| refused("", &error.to_string()))?;
+    let asked: RequestRecord = serde_json::from_str(text).map_err(|error| refused("", &error.to_string()))?;
     let why = |why: String| refused(&asked.request, &why);
     if !shared.apps.iter().any(|network| network.contains(peer.ip())) {
         return Err(why("requests from this address are not taken".into()));

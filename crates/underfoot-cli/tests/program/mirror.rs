@@ -267,9 +267,9 @@ fn refused(news: &Receiver<MirrorNews>) -> String {
     let end = Instant::now() + AT_LAST;
     loop {
         if let Ok(MirrorNews::Line(line)) = news.recv_timeout(Duration::from_secs(1))
-            && line.event() == "error"
+            && let underfoot::outgoing::json::Message::Error(refusal) = line.message
         {
-            return line.why().to_owned();
+            return refusal.why.0;
         }
         assert!(Instant::now() < end, "nothing is refused");
     }
@@ -408,7 +408,7 @@ fn a_hostile_server_takes_no_memory_of_a_window_that_joins_it() {
     while !served.is_finished() {
         assert!(begun.elapsed() < 10 * AT_LAST, "the server is held up");
         let Ok(MirrorNews::Line(line)) = news.recv_timeout(Duration::from_millis(100)) else { continue };
-        follower.hear(&line, begun.elapsed());
+        follower.hear(&line.message, begun.elapsed());
         let seen = window.session.snapshot();
         follower.corrections(&seen.layout, &seen.floor, begun.elapsed());
         // As many sentences as a window shows.

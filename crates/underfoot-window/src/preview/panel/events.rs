@@ -9,7 +9,7 @@ use super::super::app::App;
 use super::super::messages::Happened;
 use super::super::style::{Row, quiet, section};
 use underfoot::engine::IgnoredPress;
-use underfoot::sink::event_line;
+use underfoot::outgoing::json::{IgnoredRecord, event_line};
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, Value, WidgetEvent};
 use underfoot_scene::egui_painter::color;
@@ -88,15 +88,8 @@ fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
     let lines = listed.filter_map(|happened| match happened {
         Happened::Event(event) => Some(event_line(event) + "\n"),
         Happened::Ignored(press) => {
-            let line = serde_json::json!({
-                "t_s": press.at.secs(),
-                "event": "ignored",
-                "id": press.id.as_str(),
-                "why": press.why.to_string(),
-                "contact": press.contact.0,
-                "force_n": press.force.0,
-            });
-            Some(line.to_string() + "\n")
+            let line = serde_json::to_string(&IgnoredRecord::from(press)).ok()?;
+            Some(line + "\n")
         }
         Happened::GroundEvent { .. } => None,
     });
