@@ -26,21 +26,21 @@ const MOST_TRIES: u8 = 3;
 #[derive(Clone, Debug, Default)]
 pub struct Follower {
     /// The controls of its layout, with the last report about each.
-    controls: BTreeMap<String, Option<Word<StateRecord>>>,
+    controls: BTreeMap<String, Option<Target<StateRecord>>>,
     pages: Vec<String>,
-    page: Option<Word<String>>,
+    page: Option<Target<String>>,
 }
 
-/// A report of the server.
+/// A state to reach, as the server last reported it.
 #[derive(Clone, Debug)]
-struct Word<T> {
+struct Target<T> {
     said: T,
     /// Time of the next comparison.
     due: Duration,
     tries: u8,
 }
 
-impl<T> Word<T> {
+impl<T> Target<T> {
     fn new(said: T, due: Duration) -> Self {
         Self { said, due, tries: 0 }
     }
@@ -63,7 +63,7 @@ impl Follower {
         self.controls = ids.collect();
         self.pages = greeting.layout.pages.iter().map(|page| page.id.to_string()).collect();
         greeting.controls.iter().for_each(|control| self.hear_state(control, now));
-        self.page = greeting.page.as_ref().map(|page| Word::new(page.clone(), now));
+        self.page = greeting.page.as_ref().map(|page| Target::new(page.clone(), now));
     }
 
     /// Processes a message of the server, at `now` on any monotonic clock. Ignores controls and pages that its layout
@@ -79,7 +79,7 @@ impl Follower {
             }
             Message::Page(shown) => {
                 let known = shown.page.as_ref().filter(|page| self.pages.contains(&page.0));
-                self.page = known.map(|page| Word::new(page.0.clone(), now + SETTLED));
+                self.page = known.map(|page| Target::new(page.0.clone(), now + SETTLED));
             }
             _ => {}
         }
@@ -93,7 +93,7 @@ impl Follower {
 
     fn hear_state(&mut self, state: &StateRecord, due: Duration) {
         if let Some(control) = self.controls.get_mut(state.id.as_str()) {
-            *control = Some(Word::new(state.clone(), due));
+            *control = Some(Target::new(state.clone(), due));
         }
     }
 
@@ -101,13 +101,13 @@ impl Follower {
     pub fn corrections(&mut self, layout: &Layout, here: &Snapshot, now: Duration) -> Vec<ControlMessage> {
         let mut asked = Vec::new();
         for (index, widget) in layout.widgets.iter().enumerate() {
-            let word = self.controls.get_mut(widget.id.as_str()).and_then(Option::as_mut);
-            let Some(word) = word.filter(|word| now >= word.due) else { continue };
+            let target = self.controls.get_mut(widget.id.as_str()).and_then(Option::as_mut);
+            let Some(target) = target.filter(|target| now >= target.due) else { continue };
             let Some(state) = ControlState::of(layout, index, here).filter(|state| !state.pressed) else {
                 continue;
             };
-            let wanted = differences(&widget.id, &StateRecord::from(&state), &word.said);
-            if !wanted.is_empty() && word.take_try(now) {
+            let wanted = differences(&widget.id, &StateRecord::from(&state), &target.said);
+            if !wanted.is_empty() && target.take_try(now) {
                 asked.extend(wanted);
             }
         }

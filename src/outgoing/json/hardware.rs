@@ -84,7 +84,8 @@ pub struct HealthRecord {
 }
 
 /// A sensor with a fault.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct TroubleRecord {
     /// Column of its tile.
     pub col: u16,
@@ -92,8 +93,8 @@ pub struct TroubleRecord {
     pub row: u16,
     /// Its corner: [`crate::floor::Corner::name`].
     pub corner: Word,
-    /// The fault.
-    pub trouble: Trouble,
+    /// The fault: [`Trouble::name`].
+    pub trouble: Word,
 }
 
 impl From<&SensorHealth> for HealthRecord {
@@ -104,7 +105,7 @@ impl From<&SensorHealth> for HealthRecord {
             col: tile.column,
             row: tile.row,
             corner: corner.name().into(),
-            trouble,
+            trouble: trouble.name().into(),
         };
         let troubles = troubles.iter().map(record).collect();
         Self { live, degraded, stale, faulty, uncalibrated, foreign, troubles }

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::text::MOST_OF_A_SENTENCE;
 use super::*;
-use crate::sense::{ContactId, Covariance, Quality, Trouble};
+use crate::sense::{ContactId, Covariance, Quality};
 use crate::units::Instant;
 use crate::widget::{Direction, EventKind, Value};
 use underfoot_format::label::MAX_LABEL;
@@ -109,7 +109,7 @@ impl Content {
         let [col, row, channels, board] = self.wholes;
         let [sample_rate, block] = self.large;
         let [energy_j, x_m, y_m, ..] = self.numbers;
-        let trouble = TroubleRecord { col, row, corner: "sw".into(), trouble: Trouble::Stuck };
+        let trouble = TroubleRecord { col, row, corner: "sw".into(), trouble: "stuck".into() };
         let contacts = [self.contact(), self.full_contact(None), self.full_contact(Some([x_m, y_m]))];
         vec![
             Message::Page(PageRecord { page: self.flags[0].then(|| one.clone()) }),

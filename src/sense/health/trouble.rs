@@ -1,12 +1,9 @@
 //! The faults of a sensor, and its recovery from them.
 
-use serde::{Deserialize, Serialize};
-
 use crate::sense::Quality;
 
 /// A sensor fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, thiserror::Error)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum Trouble {
     /// No current: it reads zero although its plate's weight alone requires more.
     #[error("open circuit")]
@@ -26,6 +23,21 @@ pub enum Trouble {
     /// Its readings scatter by several newtons on an empty, quiet tile.
     #[error("noisy")]
     Noisy,
+}
+
+impl Trouble {
+    /// Its name in JSON.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Open => "open",
+            Self::Short => "short",
+            Self::Stuck => "stuck",
+            Self::Offset => "offset",
+            Self::Drifted => "drifted",
+            Self::Noisy => "noisy",
+        }
+    }
 }
 
 /// Time for which a load without response is only suspect, not yet a fault (s).
