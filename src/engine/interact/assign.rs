@@ -1,21 +1,13 @@
 //! The feet of each region, assigned to the controls below them.
 
-use std::time::Duration;
-
-use super::belief::{certainly_presses, is_believed, is_unlearned};
-use super::foot::foot_input;
+use super::candidate::{Candidate, Conditions, Refusal};
 use super::unanswered::switched_off;
 use super::{Interaction, Moment, holds_to_run, report};
 use crate::engine::feet::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
-use crate::engine::ignored::Ignored;
 use crate::engine::region::{Finger, Held};
 use crate::layout::{CursorRule, Layout};
 use crate::sense::Contact;
-use crate::widget::{Guard, Input, OffReason, WidgetEvent};
-
-/// Time after the landing within which a foot may enter a control without sliding on (our choice: a heel-first
-/// landing rolls forward for about a quarter of a second).
-const LANDING: Duration = Duration::from_millis(300);
+use crate::widget::WidgetEvent;
 
 impl Interaction {
     pub(super) fn step_region(&mut self, index: usize, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
@@ -26,11 +18,13 @@ impl Interaction {
         let works = |contact: &Contact, foot: &FootHistory| {
             let widget = hits.widget_at(at.layout, page, contact.centroid);
             let spec = widget.and_then(|widget| at.layout.widgets.get(widget));
-            spec.is_some_and(|spec| spec.region == index && !foot.is_step_on(PressMode::of(spec), at.now()))
+            spec.is_some_and(|spec| {
+                spec.region == index && foot.may_operate(PressMode::of(spec), at.now()).is_ok()
+            })
         };
         let may = |contact: &Contact| {
             let all = region.cursor != CursorRule::Working;
-            feet.of(contact.id).is_none_or(|foot| foot.may_lead() && (all || works(contact, foot)))
+            feet.of(contact.id).is_none_or(|foot| foot.may_lead().is_ok() && (all || works(contact, foot)))
         };
         state.point(region, at.contacts, may, at.now());
         // Taken out while the rest of the interaction works with them.
@@ -100,38 +94,11 @@ impl Interaction {
         else {
             return;
         };
-        let (foot, weight) = (self.feet.of(contact.id), self.feet.weight(contact.id));
-        let (mode, thresholds) = (PressMode::of(spec), spec.behaviour.thresholds().for_weight(weight));
-        let slid_on = is_new
-            && contact.force >= thresholds.release
-            && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
-        // A foot with unreliable force at the press stays unreliable when it lightens.
-        let presses = contact.force >= thresholds.press;
-        let believed = is_believed(contact, thresholds.guard, at.frame);
-        // The noise estimate comes soon: the foot may stay.
-        let waits = matches!(thresholds.guard, Guard::HoldToRun { .. }) && is_unlearned(contact, at.frame);
-        let unbelieved = presses && !believed && !waits;
-        let (input, why) =
-            if let Some(foot) = foot.filter(|foot| foot.is_step_on(mode, now) || foot.is_object()) {
-                let why = if foot.is_object() { Ignored::Object } else { Ignored::Step };
-                (Input::Stepping { force: contact.force }, Some(why))
-            } else if slid_on || unbelieved {
-                let why = if slid_on { Ignored::SlidOn } else { Ignored::Unbelieved };
-                (Input::SlidOn { force: contact.force }, Some(why))
-            } else {
-                let risen = self.rises.has_risen(contact) || !presses;
-                let meant = foot.is_none_or(|foot| foot.is_meant(mode, thresholds.guard, now));
-                let enough = !presses || certainly_presses(contact, &thresholds, at.frame);
-                let why = [
-                    (control.needs_lift(), Ignored::NotSeenUnloaded),
-                    (!risen || !enough || waits, Ignored::Unbelieved),
-                    (!meant, Ignored::Guard),
-                    (rivals, Ignored::Off(OffReason::OtherHeld)),
-                ];
-                let why = why.into_iter().find(|(is_so, _)| presses && *is_so).map(|(_, why)| why);
-                let may = believed && risen && enough && meant && !rivals;
-                (foot_input(contact, spec, at.frame, weight, may), why)
-            };
+        let conditions = Conditions { is_new, needs_lift: control.needs_lift(), rivals, rises: &self.rises };
+        let (input, why) = match Candidate::new(contact, spec, &self.feet, at).input(&conditions) {
+            Ok(input) => (input, None),
+            Err(Refusal { why, input }) => (input, Some(why)),
+        };
         let why = switched_off(control).or(why);
         let emitted = control.step(now, input);
         if contact.force.0 >= AS_GOOD_AS_LIFTED_N {

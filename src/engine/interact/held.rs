@@ -37,8 +37,8 @@ impl Interaction {
                 let guard = spec.behaviour.thresholds().guard;
                 let mode = PressMode::of(spec);
                 let falls = guard != Guard::Free && foot.is_some_and(FootHistory::falls);
-                let is_step = |foot: &FootHistory| foot.is_step_on(mode, at.now()) || foot.is_object();
-                if falls || foot.is_some_and(is_step) {
+                let steps = |foot: &FootHistory| foot.may_operate(mode, at.now()).is_err();
+                if falls || foot.is_some_and(steps) {
                     Input::Stepping { force: contact.force }
                 } else if off && !control.captures() {
                     Input::SlidOff

@@ -2,6 +2,7 @@
 
 mod assign;
 mod belief;
+mod candidate;
 mod foot;
 mod held;
 mod off;
