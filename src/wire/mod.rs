@@ -19,6 +19,7 @@ mod packet;
 mod pattern;
 mod prefix;
 mod sensor_message;
+pub(crate) mod sent;
 mod split;
 
 pub(crate) use cause::guess_format;
