@@ -3,14 +3,14 @@
 use super::candidate::{Candidate, Conditions, Refusal};
 use super::unanswered::switched_off;
 use super::{Interaction, Moment, holds_to_run, report};
+use crate::engine::event::ControlEvent;
 use crate::engine::feet::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
 use crate::engine::region::{Finger, Held};
 use crate::layout::{CursorRule, Layout};
 use crate::sense::Contact;
-use crate::widget::WidgetEvent;
 
 impl Interaction {
-    pub(super) fn step_region(&mut self, index: usize, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+    pub(super) fn step_region(&mut self, index: usize, at: &Moment<'_>, events: &mut Vec<ControlEvent>) {
         let Some((state, region)) = self.regions.get_mut(index).zip(at.layout.regions.get(index)) else {
             return;
         };
@@ -50,7 +50,7 @@ impl Interaction {
         index: usize,
         fingers: &mut [Finger],
         at: &Moment<'_>,
-        events: &mut Vec<WidgetEvent>,
+        events: &mut Vec<ControlEvent>,
     ) {
         for this in 0..fingers.len() {
             let Some(&finger) = fingers.get(this).filter(|finger| finger.held.is_none()) else { continue };
@@ -85,7 +85,7 @@ impl Interaction {
         finger: &mut Finger,
         is_new: bool,
         at: &Moment<'_>,
-        events: &mut Vec<WidgetEvent>,
+        events: &mut Vec<ControlEvent>,
     ) {
         let now = at.now();
         let Some(contact) = at.contact(finger.cursor.contact) else { return };

@@ -5,12 +5,13 @@ use glam::Vec2;
 use super::belief::{is_believed, is_certain, is_sensed};
 use super::foot::{foot_input, place};
 use super::{Interaction, Moment, report};
+use crate::engine::event::ControlEvent;
 use crate::engine::feet::{FootHistory, PressMode};
 use crate::engine::region::Finger;
 use crate::floor::Geometry;
 use crate::sense::ForceFrame;
 use crate::units::Newtons;
-use crate::widget::{EventKind, Guard, Input, WidgetEvent};
+use crate::widget::{EventKind, Guard, Input};
 
 /// Distance beyond its edge within which a control keeps the foot that presses it (our choice: within the sway of a
 /// foot that is meant to stay).
@@ -18,7 +19,7 @@ const SLIDE_OFF_MARGIN_M: f32 = 0.03;
 
 impl Interaction {
     /// An engaged control follows its own foot, independent of the cursor.
-    pub(super) fn step_held(&mut self, finger: &mut Finger, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+    pub(super) fn step_held(&mut self, finger: &mut Finger, at: &Moment<'_>, events: &mut Vec<ControlEvent>) {
         let Some(mut held) = finger.held else { return };
         let (Some(spec), Some(control)) =
             (at.layout.widgets.get(held.widget), self.controls.get_mut(held.widget))

@@ -10,6 +10,7 @@ mod readings;
 mod unanswered;
 
 use self::readings::tiles_under;
+use super::event::ControlEvent;
 use super::feet::FootHistories;
 use super::ignored::IgnoredPresses;
 use super::region::{Held, RegionState};
@@ -19,7 +20,7 @@ use crate::floor::Geometry;
 use crate::layout::{HitIndex, Layout};
 use crate::sense::{Contact, ContactId, Cursor, ForceFrame};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Control, Emitted, Guard, Input, WidgetEvent};
+use crate::widget::{Control, Emitted, Guard, Input};
 
 /// The state of all controls of one layout.
 #[derive(Debug)]
@@ -182,7 +183,7 @@ impl Interaction {
         change: impl FnOnce(&mut Control) -> Emitted,
         layout: &Layout,
         now: Instant,
-        events: &mut Vec<WidgetEvent>,
+        events: &mut Vec<ControlEvent>,
     ) {
         let Some(control) = self.controls.get_mut(widget) else { return };
         let emitted = change(control);
@@ -197,7 +198,7 @@ impl Interaction {
         widget: usize,
         layout: &Layout,
         now: Instant,
-        events: &mut Vec<WidgetEvent>,
+        events: &mut Vec<ControlEvent>,
     ) {
         let Some(control) = self.controls.get_mut(widget) else { return };
         let emitted = control.cancel();
@@ -210,7 +211,7 @@ impl Interaction {
     ///
     /// Goes through the controls themselves, not through the regions that assign feet to them, so that it also works
     /// after a step that was interrupted.
-    pub(super) fn cancel_all(&mut self, layout: &Layout, now: Instant, events: &mut Vec<WidgetEvent>) {
+    pub(super) fn cancel_all(&mut self, layout: &Layout, now: Instant, events: &mut Vec<ControlEvent>) {
         for widget in 0..self.controls.len() {
             if self.controls.get(widget).is_some_and(|control| !control.is_at_rest()) {
                 self.cancel(widget, layout, now, events);
@@ -224,7 +225,7 @@ impl Interaction {
         frame: &ForceFrame,
         contacts: &[Contact],
         layout: &Layout,
-        events: &mut Vec<WidgetEvent>,
+        events: &mut Vec<ControlEvent>,
     ) {
         let at = Moment { frame, contacts, layout };
         self.feet.update(contacts, &layout.stances, at.now());
@@ -240,7 +241,7 @@ impl Interaction {
     }
 
     /// Controls with no foot on them come to rest.
-    fn rest(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+    fn rest(&mut self, at: &Moment<'_>, events: &mut Vec<ControlEvent>) {
         let mut awake = std::mem::take(&mut self.awake);
         awake.retain(|&widget| {
             let touched =
@@ -280,19 +281,12 @@ fn report(
     widget: usize,
     held: Option<Held>,
     emitted: &Emitted,
-    events: &mut Vec<WidgetEvent>,
+    events: &mut Vec<ControlEvent>,
 ) {
     let Some(spec) = layout.widgets.get(widget) else { return };
     let (contact, force, position) = match held {
         Some(held) => (Some(held.contact), held.force, held.position),
         None => (None, Newtons::ZERO, spec.area.centre()),
     };
-    events.extend(emitted.iter().map(|&kind| WidgetEvent {
-        at,
-        id: spec.id.clone(),
-        kind,
-        contact,
-        force,
-        position,
-    }));
+    events.extend(emitted.iter().map(|&kind| ControlEvent { at, widget, kind, contact, force, position }));
 }

@@ -3,15 +3,16 @@
 use super::belief::is_sensed;
 use super::off::of_calibration;
 use super::{Interaction, Moment, holds_to_run, report};
+use crate::engine::event::ControlEvent;
 use crate::floor::Geometry;
 use crate::layout::{HitIndex, Layout};
 use crate::sense::Quality;
-use crate::widget::{Control, Input, WidgetEvent};
+use crate::widget::{Control, Input};
 
 impl Interaction {
     /// Inhibits controls that act while they are held: on a floor with doubtful calibration, and where the readings
     /// below them are unsuitable.
-    pub(super) fn inhibit(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+    pub(super) fn inhibit(&mut self, at: &Moment<'_>, events: &mut Vec<ControlEvent>) {
         let fault = at.frame.calibration_fault.map(of_calibration);
         for widget in (0..self.controls.len()).filter(|&widget| holds_to_run(at.layout, widget)) {
             let inhibited = fault.or_else(|| self.of_readings(widget, at.frame));
@@ -23,7 +24,7 @@ impl Interaction {
     }
 
     /// Cancels controls on tiles without sensing.
-    pub(super) fn lose_unsensed(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+    pub(super) fn lose_unsensed(&mut self, at: &Moment<'_>, events: &mut Vec<ControlEvent>) {
         for widget in self.lost.drain(..) {
             if let Some(unsensed) = self.unsensed.get_mut(widget) {
                 *unsensed = false;
