@@ -215,8 +215,15 @@ mod tests {
 
     #[test]
     fn floors_send_their_reports_and_the_events_of_controls() {
-        for sent in ["alive", "mute", "widget/zoom/pressed", "widget/zoom/swiped", "widget/zoom/off", "area"]
-        {
+        for sent in [
+            "alive",
+            "mute",
+            "widget/zoom/pressed",
+            "widget/zoom/swiped",
+            "widget/zoom/held",
+            "widget/zoom/off",
+            "area",
+        ] {
             assert!(is_sent_by_floors(sent), "{sent}");
         }
         for other in ["get", "widget", "widget/zoom/set", "mute/set", "layout/zoom/pressed"] {
