@@ -92,7 +92,7 @@ pub use scene::{Body, Scene, SceneKind};
 pub use script::Script;
 pub use seam::SeamConfig;
 pub use sensor::{PartConfig, SensorFault};
-pub use session::{SimulationError, session, session_with};
+pub use session::{SimulationError, session, session_from_files, session_with};
 pub use simulated::{Pace, SimulatedSource};
 pub use slide::Slide;
 pub use visit::{Visit, visit};
