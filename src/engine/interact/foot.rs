@@ -31,7 +31,7 @@ impl PressMode {
         let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
         match &widget.behaviour {
             Behaviour::Lean(_) => Self::Stand,
-            Behaviour::Button(button) if button.gestures.long_press.is_none() && !held => Self::Tap,
+            Behaviour::Button(button) if !button.gestures.lasts() && !held => Self::Tap,
             Behaviour::Switch(_) | Behaviour::Selector(_) if !held => Self::Tap,
             Behaviour::Button(_) | Behaviour::Switch(_) | Behaviour::Selector(_) | Behaviour::Stepper(_) => {
                 Self::Hold
