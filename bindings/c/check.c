@@ -1,4 +1,4 @@
-/* Checks the library for C: ./check RECORDING LAYOUT. Prints each failure, and then ends with 1. */
+/* Checks the library for C: ./check RECORDING LAYOUT SCENARIO. Prints each failure, and then ends with 1. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,6 +33,34 @@ static void replays(const char *recording)
     CHECK(!uf_session_replay(recording, NAN, NULL, error, sizeof error));
     CHECK(!uf_session_replay(recording, -1, NULL, error, sizeof error));
     CHECK(!uf_session_replay(NULL, 1, NULL, error, sizeof error));
+}
+
+/* One call simulates a person who clicks home. */
+static void simulates(const char *layout, const char *scenario)
+{
+    uf_session *floor = uf_session_simulated(layout, scenario, NULL, error, sizeof error);
+    CHECK(floor);
+    CHECK(uf_address(floor, error, sizeof error) == 0);
+    uf_event event = { .size = sizeof event };
+    int clicked = 0, status;
+    while ((status = uf_next(floor, &event, -1)) == UF_OK) {
+        if (event.kind != UF_CONTROL || strcmp(event.id, "home") || strcmp(event.name, "clicked")) continue;
+        clicked++;
+        uf_stop(floor);
+    }
+    CHECK(status == UF_OVER && clicked == 1);
+    CHECK(event.kind == UF_END && !strcmp(event.text, "stopped"));
+    uf_close(floor);
+
+    CHECK(!uf_session_simulated("no such layout.ron", scenario, NULL, error, sizeof error));
+    CHECK(strstr(error, "no such layout.ron") && !strncmp(uf_last_error(), error, strlen(error)));
+    CHECK(!uf_session_simulated(layout, "no such scenario.ron", NULL, error, sizeof error));
+    CHECK(strstr(error, "no such scenario.ron"));
+    /* A layout is no scenario. */
+    CHECK(!uf_session_simulated(layout, layout, NULL, error, sizeof error) && strstr(error, layout));
+    CHECK(!uf_session_simulated(NULL, scenario, NULL, error, sizeof error));
+    CHECK(!uf_session_simulated(layout, "\xff", NULL, error, sizeof error));
+    CHECK(!strcmp(error, "the path of the scenario is not UTF-8"));
 }
 
 static float number(const uf_session *floor, const char *id)
@@ -97,12 +125,13 @@ static void reasons(uf_session *floor)
 
 int main(int argc, char **argv)
 {
-    if (argc < 3) {
-        fprintf(stderr, "usage: %s RECORDING LAYOUT\n", argv[0]);
+    if (argc < 4) {
+        fprintf(stderr, "usage: %s RECORDING LAYOUT SCENARIO\n", argv[0]);
         return 2;
     }
     CHECK(!strcmp(uf_last_error(), ""));
     replays(argv[1]);
+    simulates(argv[2], argv[3]);
     uf_session *floor = uf_session_listen("127.0.0.1:0", argv[2], NULL, error, sizeof error);
     if (!floor) {
         fprintf(stderr, "%s\n", error);

@@ -1,4 +1,4 @@
-/* Prints what feet do, and stops with the floor. */
+/* Prints what the feet on a simulated floor do, and stops with it. */
 #include <stdio.h>
 #include <string.h>
 #include <underfoot.h>
@@ -6,7 +6,7 @@
 int main(void)
 {
     char error[1024];
-    uf_session *floor = uf_session_listen("127.0.0.1:9000", "map.ron", NULL, error, sizeof error);
+    uf_session *floor = uf_session_simulated("map.ron", NULL, NULL, error, sizeof error);
     if (!floor) {
         fprintf(stderr, "%s\n", error);
         return 1;

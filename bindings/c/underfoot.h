@@ -1,6 +1,7 @@
 /* A force-sensing floor in a C program.
  *
- * uf_session_listen starts a thread that receives the floor's packets; uf_next takes the next event. Any thread may
+ * uf_session_listen starts a thread that receives the floor's packets, and uf_session_simulated one that simulates a
+ * floor and the people on it, for trials without hardware; uf_next takes the next event. Any thread may
  * call any function, but no thread may use a session while another one closes it. No function lets a panic out.
  * Metres, newtons, seconds; x east and y north from the floor's south-west corner.
  *
@@ -138,9 +139,15 @@ uf_session *uf_session_listen(const char *address, const char *layout, const uf_
 uf_session *uf_session_replay(const char *recording, double speed, const uf_options *options, char *error,
                               size_t error_size);
 
+/* Starts a simulated floor of 6 x 6 tiles, with the page of controls in the file `layout` and the people and faults of
+ * the file `scenario`; with NULL the built-in scenario, which fits the shipped layout map.ron. It runs in real time and
+ * ends with the scenario. Of the options only `every_change` counts. NULL as above. */
+uf_session *uf_session_simulated(const char *layout, const char *scenario, const uf_options *options, char *error,
+                                 size_t error_size);
+
 /* Writes the address for boards, such as "127.0.0.1:9000", with the port that the system chose for port 0, cut to
- * `address_size` bytes with the closing 0. Returns the length of the whole text: 0 for a recording, negative on
- * failure. */
+ * `address_size` bytes with the closing 0. Returns the length of the whole text: 0 for a recording and for a simulated
+ * floor, negative on failure. */
 int uf_address(const uf_session *session, char *address, size_t address_size);
 
 /* The controls of the layout: their number, and the id of each, from 0 (UF_OK or UF_UNKNOWN). An id of

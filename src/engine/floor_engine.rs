@@ -7,9 +7,10 @@ use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
 use crate::widget::{
-    Behaviour, Control, EventKind, Indicator, OffReason, SetError, Value, WidgetEvent, WidgetId,
+    Behaviour, Control, Emitted, EventKind, Indicator, OffReason, SetError, Value, WidgetEvent, WidgetId,
 };
 
+use super::event::ControlEvent;
 use super::ignored::{IgnoredPress, SHOWN};
 use super::interact::Interaction;
 use super::overrides::Overrides;
@@ -46,6 +47,8 @@ pub struct Engine {
     has_begun: bool,
     /// Events of calls between two steps; the next step reports them.
     pending: Vec<WidgetEvent>,
+    /// Events of one call, before they get ids.
+    indexed: Vec<ControlEvent>,
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
     sustained: SustainedCues,
@@ -102,6 +105,7 @@ impl Engine {
             overrides: Overrides::default(),
             responses,
             pending: Vec::with_capacity(CUES),
+            indexed: Vec::with_capacity(CUES),
             events: Vec::with_capacity(CUES),
             cues,
             sustained: SustainedCues::new(),
@@ -137,13 +141,15 @@ impl Engine {
 
     fn respond<'a>(&'a mut self, frame: &ForceFrame, given: Option<&'a [Contact]>) -> Step<'a> {
         let contacts = given.unwrap_or_else(|| self.sensing.contacts());
-        self.events.clear();
-        self.events.append(&mut self.pending);
         self.cues.clear();
         self.sustained.clear();
-        self.interaction.step(frame, contacts, &self.layout, &mut self.events);
+        self.events.clear();
+        self.events.append(&mut self.pending);
+        self.indexed.clear();
+        self.indexed.extend(self.events.iter().map(|event| ControlEvent::indexed(event, &self.layout)));
+        self.interaction.step(frame, contacts, &self.layout, &mut self.indexed);
         let (interaction, now) = (&self.interaction, Now::of(frame, &self.layout, contacts));
-        self.responses.answer(&self.events, now, &mut self.cues);
+        self.responses.answer(&self.indexed, now, &mut self.cues);
         let sliding = interaction.sliding();
         self.responses.last(sliding, &interaction.holding(), now, &mut self.cues, &mut self.sustained);
         let broken = self.grounds.step(frame, &self.last_frame, contacts, self.interaction.page());
@@ -152,6 +158,8 @@ impl Engine {
         keep(&mut self.last_frame, frame);
         self.has_begun = true;
         self.follow_clicks();
+        let new = self.indexed.iter().skip(self.events.len());
+        self.events.extend(new.filter_map(|event| event.named(&self.layout)));
         self.take_waiting_layout();
         self.take_waiting_page();
         self.page_told = self.page_shown.take();
@@ -195,7 +203,9 @@ impl Engine {
     pub fn cancel_all(&mut self) -> &[WidgetEvent] {
         self.events.clear();
         self.events.append(&mut self.pending);
-        self.interaction.cancel_all(&self.layout, self.last_frame.at, &mut self.events);
+        self.indexed.clear();
+        self.interaction.cancel_all(&self.layout, self.last_frame.at, &mut self.indexed);
+        self.events.extend(self.indexed.iter().filter_map(|event| event.named(&self.layout)));
         &self.events
     }
 
@@ -272,9 +282,7 @@ impl Engine {
     /// [`SetError::Unknown`] if the layout has no such control.
     pub fn set_enabled(&mut self, id: &str, enabled: bool) -> Result<(), SetError> {
         let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
-        let now = self.last_frame.at;
-        let switch = |control: &mut Control| control.set_disabled(!enabled);
-        self.interaction.change(widget, switch, &self.layout, now, &mut self.pending);
+        self.change(widget, |control| control.set_disabled(!enabled));
         Ok(())
     }
 
@@ -286,10 +294,15 @@ impl Engine {
     /// [`SetError::Unknown`] if the layout has no such control.
     pub fn set_locked(&mut self, id: &str, locked: bool) -> Result<(), SetError> {
         let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
-        let now = self.last_frame.at;
-        let lock = |control: &mut Control| control.set_locked(locked);
-        self.interaction.change(widget, lock, &self.layout, now, &mut self.pending);
+        self.change(widget, |control| control.set_locked(locked));
         Ok(())
+    }
+
+    /// Changes the state of a control; the next step reports the events.
+    fn change(&mut self, widget: usize, change: impl FnOnce(&mut Control) -> Emitted) {
+        self.indexed.clear();
+        self.interaction.change(widget, change, &self.layout, self.last_frame.at, &mut self.indexed);
+        self.pending.extend(self.indexed.iter().filter_map(|event| event.named(&self.layout)));
     }
 
     /// Sets the lamp of the control named `id`.
@@ -396,10 +409,8 @@ impl Engine {
 
     /// Takes over the page that a click requests.
     fn follow_clicks(&mut self) {
-        let clicked = self.events.iter().filter(|event| event.kind == EventKind::Clicked);
-        let goto = clicked
-            .filter_map(|event| self.layout.widgets.get(self.layout.widget_index(event.id.as_str())?)?.goto)
-            .next_back();
+        let clicked = self.indexed.iter().filter(|event| event.kind == EventKind::Clicked);
+        let goto = clicked.filter_map(|event| self.layout.widgets.get(event.widget)?.goto).next_back();
         self.waiting_page = goto.or(self.waiting_page);
     }
 
@@ -431,9 +442,11 @@ impl Engine {
                     .is_none_or(|old| !has_like(waiting, old.id.as_str(), &old.behaviour))
             })
             .collect();
+        self.indexed.clear();
         for widget in vanished {
-            self.interaction.cancel(widget, &self.layout, now, &mut self.pending);
+            self.interaction.cancel(widget, &self.layout, now, &mut self.indexed);
         }
+        self.pending.extend(self.indexed.iter().filter_map(|event| event.named(&self.layout)));
         if self.interaction.is_engaged() {
             return;
         }

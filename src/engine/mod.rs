@@ -9,6 +9,7 @@
 //! ```
 
 mod control_state;
+mod event;
 mod feet;
 mod floor_engine;
 mod ignored;

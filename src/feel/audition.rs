@@ -57,10 +57,6 @@ impl Gesture {
                 let release_s = release.as_ref().map(|_| first);
                 Self { release_s, length_s: first + second, ..still }
             }
-            EffectKind::Continuous(tone) => Self { length_s: 0.1 + tone.whole_s().min(LONGEST_S), ..still },
-            EffectKind::Sequence(sequence) => {
-                Self { length_s: 0.1 + sequence.length_s().min(LONGEST_S), ..still }
-            }
             EffectKind::Detents(_) => {
                 let at = |at_s, value| Moment {
                     at_s,
@@ -104,7 +100,10 @@ impl Gesture {
                 }
                 Self { moments, press_s: None, length_s: 2.65, ..still }
             }
-            _ => Self { length_s: 1.0, ..still },
+            kind => {
+                let played_s = kind.timeline().map(|timeline| timeline.end_s().min(LONGEST_S));
+                Self { length_s: played_s.map_or(1.0, |played_s| 0.1 + played_s), ..still }
+            }
         }
     }
 
@@ -140,13 +139,7 @@ impl Gesture {
 
 /// Slip speed and normal force at which a rubbed material has its full level.
 fn full(effect: &Effect) -> (f32, Newtons) {
-    match effect.kind.lasting() {
-        Some(Lasting::Friction(friction)) => (friction.full_speed_m_s, friction.full_force),
-        Some(lasting) => lasting
-            .material()
-            .map_or((0.6, Newtons(200.0)), |material| (material.full_speed_m_s, material.full_force)),
-        None => (0.6, Newtons(200.0)),
-    }
+    effect.kind.lasting().and_then(|lasting| lasting.full()).unwrap_or((0.6, Newtons(200.0)))
 }
 
 /// An effect under a gesture, rendered millisecond by millisecond.

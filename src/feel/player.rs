@@ -57,7 +57,7 @@ impl Player {
             EffectKind::Continuous(tone) => {
                 cues.push(Cue { tone: Some(tone.clone()), manner: effect.manner, ..cue });
             }
-            EffectKind::Sequence(_) => self.begin(effect, owner, false, &cue),
+            kind if kind.timeline().is_some() => self.begin(effect, owner, false, &cue),
             _ => {}
         }
     }
@@ -122,10 +122,10 @@ impl Player {
 impl Playing {
     /// Appends the parts that begin before `until`; tones of held effects are sustained cues instead.
     fn begin_parts(&mut self, until: Instant, cues: &mut Vec<Cue>) {
-        let EffectKind::Sequence(sequence) = &self.effect.kind else { return };
-        while let Some(begins) = sequence.parts.get(self.next).map(|part| self.at + seconds(part.at_s))
+        let Some(timeline) = self.effect.kind.timeline() else { return };
+        while let Some(begins) = timeline.written(self.next).map(|part| self.at + seconds(part.at_s))
             && begins <= until
-            && let Some(part) = sequence.part(self.next)
+            && let Some(part) = timeline.part(self.next)
         {
             self.next += 1;
             let (spots, manner, audio_gain) = (self.spots.clone(), self.effect.manner, self.audio_gain);
@@ -145,18 +145,18 @@ impl Playing {
         let t = now.since(self.at).as_secs_f32();
         match &self.effect.kind {
             EffectKind::Continuous(tone) => self.push(0, tone.level, tone.noise, tone.held_at(t), sustained),
-            EffectKind::Sequence(sequence) => {
-                for (index, part) in sequence.parts.iter().enumerate() {
+            kind => {
+                let Some(timeline) = kind.timeline() else { return };
+                for (index, part) in (0..).zip(timeline.all_written()) {
                     if let PartKind::Tone(tone) = &part.kind
                         && (part.at_s..part.at_s + tone.whole_s()).contains(&t)
                     {
-                        let share = sequence.share_at(t);
+                        let share = timeline.share_at(t);
                         let (level, hz) = tone.at(t - part.at_s);
-                        self.push(index as u32, tone.level, tone.noise, (level * share, hz), sustained);
+                        self.push(index, tone.level, tone.noise, (level * share, hz), sustained);
                     }
                 }
             }
-            _ => {}
         }
     }
 
@@ -180,10 +180,10 @@ impl Playing {
     }
 
     fn is_over(&self, now: Instant) -> bool {
-        match &self.effect.kind {
-            EffectKind::Sequence(sequence) if !self.held => self.next >= sequence.parts.len(),
-            EffectKind::Sequence(_) | EffectKind::Continuous(_) if self.held => false,
-            _ => now > self.at,
+        match self.effect.kind.timeline() {
+            Some(_) if self.held => false,
+            Some(timeline) => timeline.written(self.next).is_none(),
+            None => now > self.at,
         }
     }
 }

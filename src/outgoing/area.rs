@@ -2,10 +2,8 @@
 
 use std::time::Duration;
 
-use rosc::OscType;
-
-use super::osc::message;
 use crate::units::Instant;
+use crate::wire::sent::{self, Sent};
 use crate::wire::{Prefix, write};
 
 /// State of one area of a floor at the gateway that joins the areas.
@@ -56,15 +54,18 @@ pub struct AreaNews {
 /// Writes the state of an area as the OSC message `/underfoot/area`: its name, state and reason, three strings, and
 /// the uncertainty of its times in seconds, a float.
 pub fn write_area(prefix: &Prefix, news: &AreaNews, bytes: &mut Vec<u8>) {
-    let texts = [news.area.as_str(), news.state.name(), news.why.as_str()];
-    let mut args: Vec<OscType> = texts.map(|text| OscType::String(text.into())).into();
-    args.push(OscType::Float(news.uncertainty.as_secs_f32()));
-    write(&message(prefix.address("area"), args), bytes);
+    let message = sent::Area {
+        area: news.area.clone(),
+        state: news.state.name().into(),
+        why: news.why.clone(),
+        uncertainty: news.uncertainty.as_secs_f32(),
+    };
+    write(&message.packet(prefix), bytes);
 }
 
 #[cfg(test)]
 mod tests {
-    use rosc::{OscPacket, decoder};
+    use rosc::{OscPacket, OscType, decoder};
 
     use super::*;
 

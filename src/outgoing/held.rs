@@ -1,10 +1,8 @@
 //! OSC messages that are repeated while they are valid.
 
-use rosc::OscType;
-
-use super::osc::{message, of_widget};
 use crate::units::Instant;
 use crate::widget::WidgetId;
+use crate::wire::sent::{self, Sent};
 use crate::wire::{Prefix, write};
 
 /// The controls held by feet at one moment; repeated 50 times a second while there are any.
@@ -28,23 +26,23 @@ pub struct HeldReport {
 ///
 /// Both arguments are ints; the sequence continues with negative numbers after 2^31 - 1.
 pub fn write_held(prefix: &Prefix, report: &HeldReport, bytes: &mut Vec<u8>, mut send: impl FnMut(&[u8])) {
-    let held = report.held.iter().map(|id| (id, 1));
-    let ended = report.ended.iter().map(|id| (id, 0));
-    for (id, on) in ended.chain(held) {
-        let args = [on, report.sequence.cast_signed()].map(OscType::Int).into();
-        write(&message(of_widget(prefix, id, "held"), args), bytes);
+    let held = report.held.iter().map(|id| (id, true));
+    let ended = report.ended.iter().map(|id| (id, false));
+    for (id, held) in ended.chain(held) {
+        let message = sent::Held { held, sequence: report.sequence.cast_signed() };
+        write(&message.packet_of(prefix, id), bytes);
         send(bytes);
     }
 }
 
 /// Writes the alive signal of the server as the OSC message `/underfoot/alive <sequence>`, an int.
 pub fn write_alive(prefix: &Prefix, sequence: u32, bytes: &mut Vec<u8>) {
-    write(&message(prefix.address("alive"), vec![OscType::Int(sequence.cast_signed())]), bytes);
+    write(&sent::Alive { sequence: sequence.cast_signed() }.packet(prefix), bytes);
 }
 
 #[cfg(test)]
 mod tests {
-    use rosc::{OscMessage, OscPacket, decoder};
+    use rosc::{OscMessage, OscPacket, OscType, decoder};
 
     use super::*;
 

@@ -1,11 +1,12 @@
 //! OSC messages for events, contacts and states.
 
-use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
+use rosc::{OscBundle, OscPacket, OscTime};
 
 use crate::engine::{ControlState, ValueRange};
 use crate::feel::{DeviceStatus, Muted};
 use crate::sense::{Contact, SensorHealth};
-use crate::widget::{Detail, Value, WidgetEvent, WidgetId};
+use crate::widget::{WidgetEvent, WidgetId};
+use crate::wire::sent::{self, Sent};
 use crate::wire::{LinkCause, LinkState, Prefix, write};
 
 /// Maximum number of contacts in one datagram: it stays below 1500 bytes, the size that every network carries
@@ -20,24 +21,8 @@ const CONTACTS_PER_DATAGRAM: usize = 20;
 /// (newtons), x and y (floor metres), as floats. Characters of the id that are invalid in OSC addresses are written
 /// as `_`.
 pub fn write_event(prefix: &Prefix, event: &WidgetEvent, bytes: &mut Vec<u8>) {
-    let mut args = Vec::with_capacity(5);
-    match event.kind.detail() {
-        Some(Detail::Value(value)) => write_value(value, &mut args),
-        Some(Detail::Direction(direction)) => args.push(OscType::String(direction.name().into())),
-        None => {}
-    }
-    args.extend([event.force.0, event.position.x, event.position.y].map(OscType::Float));
-    let address = of_widget(prefix, &event.id, event.kind.name());
-    write(&message(address, args), bytes);
-}
-
-fn write_value(value: Value, args: &mut Vec<OscType>) {
-    match value {
-        Value::Number(number) => args.push(OscType::Float(number)),
-        Value::Switch(on) => args.push(OscType::Int(on.into())),
-        Value::Choice(choice) => args.push(OscType::Int(choice.into())),
-        Value::Pair(pair) => args.extend([OscType::Float(pair.x), OscType::Float(pair.y)]),
-    }
+    let place = sent::Place { force: event.force.0, x: event.position.x, y: event.position.y };
+    write(&sent::event_packet(prefix, &event.id, event.kind, place), bytes);
 }
 
 /// Writes the contacts of one instant as OSC bundles and passes each datagram to `send`.
@@ -56,7 +41,7 @@ pub fn write_contacts(
     let mut rest = contacts;
     loop {
         let (now, later) = rest.split_at(rest.len().min(CONTACTS_PER_DATAGRAM));
-        let mut content = vec![message(prefix.address("contacts"), vec![OscType::Int(count)])];
+        let mut content = vec![sent::Contacts { count }.packet(prefix)];
         content.extend(now.iter().map(|each| contact(prefix, each)));
         write(&at_once(content), bytes);
         send(bytes);
@@ -87,12 +72,19 @@ pub fn write_health(
     bytes: &mut Vec<u8>,
 ) {
     let SensorHealth { counts: [_, degraded, stale, faulty], uncalibrated, troubles, .. } = health;
-    let mut args = vec![OscType::String(state.name().into())];
-    args.extend([degraded, stale, faulty, uncalibrated].map(|&count| OscType::Int(count.cast_signed())));
-    args.extend(cause.map(|cause| OscType::String(format!("link: {}: {cause}", cause.name()))));
+    let mut details: Vec<String> =
+        cause.map(|cause| format!("link: {}: {cause}", cause.name())).into_iter().collect();
     let named = troubles.iter().take(NAMED_SENSORS);
-    args.extend(named.map(|(sensor, trouble)| OscType::String(format!("{sensor}: {trouble}"))));
-    write(&message(prefix.address("health"), args), bytes);
+    details.extend(named.map(|(sensor, trouble)| format!("{sensor}: {trouble}")));
+    let message = sent::Health {
+        state: state.name().into(),
+        degraded: degraded.cast_signed(),
+        silent: stale.cast_signed(),
+        faulty: faulty.cast_signed(),
+        uncalibrated: uncalibrated.cast_signed(),
+        details,
+    };
+    write(&message.packet(prefix), bytes);
 }
 
 /// Writes the state of the device that drives the actuators as the OSC message `/underfoot/device`.
@@ -101,16 +93,19 @@ pub fn write_health(
 /// last one empty while it plays); then channels, samples per second, frames in a block, underruns so far, and number
 /// of reopenings (ints); then its priority: `real-time`, `denied`, or `host` if its host sets it.
 pub fn write_device(prefix: &Prefix, status: &DeviceStatus, bytes: &mut Vec<u8>) {
-    let int = |count: u64| OscType::Int(i32::try_from(count).unwrap_or(i32::MAX));
-    let mut args = vec![
-        OscType::String(status.name.clone()),
-        OscType::String(status.state.name().into()),
-        OscType::String(status.why.clone()),
-    ];
-    let numbers = [status.channels.into(), status.sample_rate.into(), status.block.into()];
-    args.extend(numbers.into_iter().chain([status.underruns, status.reopened]).map(int));
-    args.push(OscType::String(status.priority.name().into()));
-    write(&message(prefix.address("device"), args), bytes);
+    let int = |count: u64| i32::try_from(count).unwrap_or(i32::MAX);
+    let message = sent::Device {
+        device: status.name.clone(),
+        state: status.state.name().into(),
+        why: status.why.clone(),
+        channels: int(status.channels.into()),
+        sample_rate: int(status.sample_rate.into()),
+        block: int(status.block.into()),
+        underruns: int(status.underruns),
+        reopened: int(status.reopened),
+        priority: status.priority.name().into(),
+    };
+    write(&message.packet(prefix), bytes);
 }
 
 /// Writes a crack of the ice as the OSC message `/underfoot/crack`.
@@ -124,16 +119,15 @@ pub fn write_crack(
     skipped: u32,
     bytes: &mut Vec<u8>,
 ) {
-    let int = |number: u32| OscType::Int(number.min(i32::MAX as u32).cast_signed());
-    let mut args = vec![int(seed)];
-    args.extend(energy_and_place.map(OscType::Float));
-    args.push(int(skipped));
-    write(&message(prefix.address("crack"), args), bytes);
+    let int = |number: u32| number.min(i32::MAX as u32).cast_signed();
+    let [energy, x, y] = energy_and_place;
+    let message = sent::Crack { seed: int(seed), energy, x, y, skipped: int(skipped) };
+    write(&message.packet(prefix), bytes);
 }
 
 /// Writes the shown page as the OSC message `/underfoot/page` with one string; empty in a layout without pages.
 pub fn write_page(prefix: &Prefix, page: &str, bytes: &mut Vec<u8>) {
-    write(&message(prefix.address("page"), vec![OscType::String(page.into())]), bytes);
+    write(&sent::Page { page: page.into() }.packet(prefix), bytes);
 }
 
 /// Writes the mute state as the OSC message `/underfoot/mute`.
@@ -141,15 +135,14 @@ pub fn write_page(prefix: &Prefix, page: &str, bytes: &mut Vec<u8>) {
 /// First whether everything is muted (int, 0 or 1), then column and row of each muted tile (ints), 100 tiles at most.
 pub fn write_mute(prefix: &Prefix, muted: &Muted, bytes: &mut Vec<u8>) {
     let places = muted.tiles.iter().take(NAMED_TILES).flat_map(|tile| [tile.column, tile.row]);
-    let args = std::iter::once(u16::from(muted.all)).chain(places).map(|number| OscType::Int(number.into()));
-    write(&message(prefix.address("mute"), args.collect()), bytes);
+    let message = sent::Mute { all: muted.all, tiles: places.map(i32::from).collect() };
+    write(&message.packet(prefix), bytes);
 }
 
 /// Writes the reason for rejecting a request as the OSC message `/underfoot/error`: the request's address, and a
 /// sentence.
 pub fn write_error(prefix: &Prefix, address: &str, why: &str, bytes: &mut Vec<u8>) {
-    let args = vec![OscType::String(address.into()), OscType::String(why.into())];
-    write(&message(prefix.address("error"), args), bytes);
+    write(&sent::Error { address: address.into(), why: why.into() }.packet(prefix), bytes);
 }
 
 /// Writes the state of a control as an OSC bundle.
@@ -163,33 +156,40 @@ pub fn write_control(prefix: &Prefix, state: &ControlState, bytes: &mut Vec<u8>)
     let ControlState { id, value, range, enabled, off, locked, pressed, armed, indicator, label, page } =
         state;
     let mut content = Vec::new();
-    if let Some(value) = value {
-        let mut args = Vec::new();
-        write_value(*value, &mut args);
-        content.push(message(of_widget(prefix, id, "value"), args));
+    if let Some(value) = *value {
+        content.push(sent::ValueOfControl { value }.packet_of(prefix, id));
     }
-    let mut args: Vec<OscType> =
-        [enabled, locked, pressed, armed].into_iter().map(|&flag| OscType::Int(flag.into())).collect();
-    args.extend([indicator.name(), label].map(|text| OscType::String(text.into())));
-    content.push(message(of_widget(prefix, id, "state"), args));
-    let [reason, text] = off.as_ref().map_or([""; 2], |off| [off.reason.name(), &off.text]);
-    let args = [reason, text].map(|text| OscType::String(text.into())).into();
-    content.push(message(of_widget(prefix, id, "off"), args));
-    if let Some(range) = range {
-        let args = match range {
-            ValueRange::Number(scale) => [scale.min, scale.max, scale.step].map(OscType::Float).into(),
-            ValueRange::Pair(x, y) => [x.min, x.max, y.min, y.max].map(OscType::Float).into(),
-            ValueRange::Choices(choices) => choices.iter().cloned().map(OscType::String).collect(),
-        };
-        content.push(message(of_widget(prefix, id, "range"), args));
-    }
-    let page = page.as_ref().map_or("", WidgetId::as_str);
-    content.push(message(of_widget(prefix, id, "page"), vec![OscType::String(page.into())]));
+    let state = sent::State {
+        enabled: *enabled,
+        locked: *locked,
+        pressed: *pressed,
+        armed: *armed,
+        indicator: indicator.name().into(),
+        label: label.clone(),
+    };
+    content.push(state.packet_of(prefix, id));
+    let [reason, text] = off.as_ref().map_or([""; 2], |off| [off.reason.name(), &off.text]).map(String::from);
+    content.push(sent::Off { reason, text }.packet_of(prefix, id));
+    content.extend(range.as_ref().map(|range| range_packet(prefix, id, range)));
+    let page = page.as_ref().map_or("", WidgetId::as_str).into();
+    content.push(sent::PageOfControl { page }.packet_of(prefix, id));
     write(&at_once(content), bytes);
 }
 
-pub(super) fn of_widget(prefix: &Prefix, id: &WidgetId, what: &str) -> String {
-    prefix.address(&format!("widget/{}/{what}", address_part(id)))
+fn range_packet(prefix: &Prefix, id: &WidgetId, range: &ValueRange) -> OscPacket {
+    match range {
+        ValueRange::Number(scale) => {
+            sent::RangeOfNumber { least: scale.min, greatest: scale.max, step: scale.step }
+                .packet_of(prefix, id)
+        }
+        ValueRange::Pair(x, y) => {
+            sent::RangeOfPair { x_least: x.min, x_greatest: x.max, y_least: y.min, y_greatest: y.max }
+                .packet_of(prefix, id)
+        }
+        ValueRange::Choices(choices) => {
+            sent::RangeOfChoices { choices: choices.to_vec() }.packet_of(prefix, id)
+        }
+    }
 }
 
 /// Puts these messages into one datagram.
@@ -198,33 +198,29 @@ pub(super) fn at_once(content: Vec<OscPacket>) -> OscPacket {
     OscPacket::Bundle(OscBundle { timetag: OscTime { seconds: 0, fractional: 1 }, content })
 }
 
-pub(super) fn message(addr: String, args: Vec<OscType>) -> OscPacket {
-    OscPacket::Message(OscMessage { addr, args })
-}
-
 fn contact(prefix: &Prefix, contact: &Contact) -> OscPacket {
-    let floats =
-        [contact.centroid.x, contact.centroid.y, contact.force.0, contact.velocity.x, contact.velocity.y];
-    let id = OscType::Int(contact.id.0.cast_signed());
-    let args = std::iter::once(id).chain(floats.map(OscType::Float)).collect();
-    message(prefix.address("contact"), args)
-}
-
-fn address_part(id: &WidgetId) -> String {
-    let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | '+' | ':');
-    id.as_str().chars().map(|c| if fits(c) { c } else { '_' }).collect()
+    let message = sent::OneContact {
+        id: contact.id.0.cast_signed(),
+        x: contact.centroid.x,
+        y: contact.centroid.y,
+        force: contact.force.0,
+        x_velocity: contact.velocity.x,
+        y_velocity: contact.velocity.y,
+    };
+    message.packet(prefix)
 }
 
 #[cfg(test)]
 mod tests {
     use glam::Vec2;
+    use rosc::{OscMessage, OscType};
 
     use super::*;
     use crate::floor::{Corner, SensorId, TileId};
     use crate::sense::Trouble;
     use crate::sense::{ContactId, Covariance, Quality, TileLoad};
     use crate::units::{Instant, Newtons};
-    use crate::widget::{Direction, EventKind};
+    use crate::widget::{Direction, EventKind, Value};
     use crate::wire::{Limits, check};
 
     fn event(kind: EventKind) -> WidgetEvent {
@@ -236,6 +232,10 @@ mod tests {
             force: Newtons(120.0),
             position: Vec2::new(0.5, 1.25),
         }
+    }
+
+    fn message(addr: String, args: Vec<OscType>) -> OscPacket {
+        OscPacket::Message(OscMessage { addr, args })
     }
 
     fn decoded(bytes: &[u8]) -> OscPacket {

@@ -151,12 +151,8 @@ impl SessionBuilder {
     /// # Errors
     /// Every error in the file, its kinds and its effects.
     pub fn layout_file(self, path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
-        let path = path.as_ref();
-        let loaded = schema::load_layout(path, &schema::kinds_beside(path)?, &self.floor.geometry)?;
-        if !loaded.warnings.is_empty() {
-            tracing::warn!("{}", loaded.warnings);
-        }
-        Ok(self.layout(loaded.layout))
+        let loaded = schema::load_layout_and_kinds(path.as_ref(), &self.floor.geometry)?;
+        Ok(self.layout(loaded.log_warnings()))
     }
 
     /// Sets the page of controls, which must have been checked for the floor set before.

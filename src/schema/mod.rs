@@ -56,7 +56,7 @@ pub use floor_text::write_floor;
 pub use ground::ground_fields;
 pub use kind::{Kind, Kinds};
 pub use locate::{ControlPart, Remark};
-pub use page::{Loaded, folder_beside, kinds_beside, load_layout, parse_layout};
+pub use page::{Loaded, folder_beside, kinds_beside, load_layout, load_layout_and_kinds, parse_layout};
 pub use places::Places;
 pub use reference::{Chapter, reference, write_reference};
 #[cfg(feature = "save")]

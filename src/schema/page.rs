@@ -40,6 +40,25 @@ pub struct Loaded {
     pub places: Places,
 }
 
+impl Loaded {
+    /// Logs the warnings and returns the layout.
+    #[must_use]
+    pub fn log_warnings(self) -> Layout {
+        if !self.warnings.is_empty() {
+            tracing::warn!("{}", self.warnings);
+        }
+        self.layout
+    }
+}
+
+/// Reads the layout in the file at `path` as [`load_layout`] does, made of [`kinds_beside`] it.
+///
+/// # Errors
+/// Every problem of the file, of its kinds and of its effects. The layout is never partial.
+pub fn load_layout_and_kinds(path: &Path, geometry: &Geometry) -> Result<Loaded, Diagnostics> {
+    load_layout(path, &kinds_beside(path)?, geometry)
+}
+
 /// Reads the layout in the file at `path`, made of `kinds` and placed on a floor of this `geometry`.
 ///
 /// # Errors

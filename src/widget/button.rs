@@ -117,6 +117,13 @@ record! {
     pub hard: Option<HardStage> = "hard_n", HARD => None;
 }
 
+impl Gestures {
+    /// Whether a press that lasts means something else than a tap.
+    pub(crate) const fn lasts(&self) -> bool {
+        self.long_press.is_some()
+    }
+}
+
 const HARD: Stage = Stage {
     press: num(10.0..=2000.0),
     release: num(1.0..=2000.0),

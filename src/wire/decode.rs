@@ -9,6 +9,7 @@ use super::command::{self, NoCommand};
 use super::guard::{self, Form, Limits, Malformed};
 use super::message::ControlMessage;
 use super::sensor_message::RawMessage;
+use super::sent::is_sent_by_floors;
 use super::{LinkCause, LinkCounters, Prefix, SensorPacket};
 use crate::floor::Floor;
 use crate::units::Instant;
@@ -260,7 +261,7 @@ impl Decoder {
             WireError::WrongShape { address, .. } => Some(address),
             WireError::UnknownAddress { address, .. } => {
                 let path = self.prefix.path(address)?;
-                (!command::is_sent_by_floors(path)).then_some(address)
+                (!is_sent_by_floors(path)).then_some(address)
             }
             WireError::TooEarly { .. } => Some("#bundle"),
             _ => None,

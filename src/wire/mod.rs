@@ -18,6 +18,7 @@ mod packet;
 mod pattern;
 mod prefix;
 mod sensor_message;
+pub(crate) mod sent;
 mod split;
 
 pub use cause::guess_format;

@@ -1,5 +1,6 @@
 //! A session from the view of an app: its events, state, requests and refusals.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Duration;
@@ -298,4 +299,20 @@ fn a_floor_simulated_in_the_same_process_is_calibrated() {
     let off = session.control("drive").unwrap().state().unwrap().off.map(|off| off.reason);
     // The floor falls silent only with its end.
     assert!(matches!(off, None | Some(OffReason::LinkLost)), "{off:?}");
+}
+
+#[test]
+fn a_floor_is_simulated_from_files() {
+    let session = sim::session_from_files("layouts/map.ron", None).unwrap().start().unwrap();
+    let first = session.events().find(|event| matches!(event.kind, Kind::Control(_))).unwrap();
+    assert_eq!((first.id(), first.kind), ("home", Kind::Control(EventKind::Pressed)));
+    // A layout is no scenario.
+    for (layout, scenario, wrong) in [
+        ("no such.ron", None, "no such.ron"),
+        ("layouts/map.ron", Some("no such.ron"), "no such.ron"),
+        ("layouts/map.ron", Some("layouts/map.ron"), "layouts/map.ron"),
+    ] {
+        let problem = sim::session_from_files(layout, scenario.map(Path::new)).map(drop).unwrap_err();
+        assert!(problem.to_string().contains(wrong), "{problem}");
+    }
 }

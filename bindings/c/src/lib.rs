@@ -85,14 +85,10 @@ pub unsafe extern "C" fn uf_session_listen(
             return Err("address and layout must be texts in UTF-8".to_owned());
         };
         let every_change = every_change(options)?;
+        let floor = options.map_or(ptr::null(), |options| options.floor_path);
         // SAFETY: as the caller promises.
-        let floor = options
-            .filter(|options| !options.floor_path.is_null())
-            .map(|options| unsafe { text(options.floor_path) });
-        match floor {
-            Some(None) => Err("the path of the floor file is not UTF-8".to_owned()),
-            floor => UfSession::listen(address, layout, floor.flatten(), every_change),
-        }
+        let floor = unsafe { optional_path(floor, "floor file") }?;
+        UfSession::listen(address, layout, floor, every_change)
     });
     // SAFETY: as the caller promises.
     unsafe { handed_out(started, error, error_size) }
@@ -119,6 +115,43 @@ pub unsafe extern "C" fn uf_session_replay(
     });
     // SAFETY: as the caller promises.
     unsafe { handed_out(started, error, error_size) }
+}
+
+/// Starts a simulated floor; see `underfoot.h`.
+///
+/// # Safety
+/// The texts are null or end with 0, `options` is null or of its declared size, `error` is null or has `error_size`
+/// bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_session_simulated(
+    layout: *const c_char,
+    scenario: *const c_char,
+    options: *const UfOptions,
+    error: *mut c_char,
+    error_size: usize,
+) -> *mut UfSession {
+    // SAFETY: as the caller promises.
+    let (layout, options) = unsafe { (text(layout), options.as_ref()) };
+    let started = contained(Err("a fault of the library".to_owned()), || {
+        let layout = layout.ok_or("the path of the layout must be a text in UTF-8")?;
+        // SAFETY: as the caller promises.
+        let scenario = unsafe { optional_path(scenario, "scenario") }?;
+        UfSession::simulated(layout, scenario, every_change(options)?)
+    });
+    // SAFETY: as the caller promises.
+    unsafe { handed_out(started, error, error_size) }
+}
+
+/// The path at `path`; `None` for null, and an error that names `file` for bytes that are not UTF-8.
+///
+/// # Safety
+/// `path` is null or ends with a 0 and stays as it is for `'a`.
+unsafe fn optional_path<'a>(path: *const c_char, file: &str) -> Result<Option<&'a str>, String> {
+    if path.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: as the caller promises.
+    unsafe { text(path) }.map(Some).ok_or_else(|| format!("the path of the {file} is not UTF-8"))
 }
 
 /// Whether the options request every value.
@@ -542,7 +575,7 @@ pub unsafe extern "C" fn uf_stop(session: *mut UfSession) {
 /// Ends the floor and frees the session; see `underfoot.h`.
 ///
 /// # Safety
-/// `session` is null, or was returned by `uf_session_listen` and is in use nowhere else.
+/// `session` is null, or was returned by a `uf_session_` function and is in use nowhere else.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_close(session: *mut UfSession) {
     if !session.is_null() {

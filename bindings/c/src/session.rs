@@ -5,6 +5,7 @@ use std::ffi::c_int;
 use std::io::{Read, Write};
 #[cfg(unix)]
 use std::os::{fd::AsRawFd, unix::net::UnixStream};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -47,6 +48,17 @@ impl UfSession {
             _ => return Err("the speed is a number above 0, or 0 for as fast as can be".to_owned()),
         };
         let builder = Session::replay(recording, speed).map_err(|error| error.to_string())?;
+        Self::start(builder, every_change)
+    }
+
+    /// Plays a scenario on a simulated floor; without a file the built-in one.
+    pub(crate) fn simulated(
+        layout: &str,
+        scenario: Option<&str>,
+        every_change: bool,
+    ) -> Result<Self, String> {
+        let builder = underfoot_sim::session_from_files(layout, scenario.map(Path::new))
+            .map_err(|error| error.to_string())?;
         Self::start(builder, every_change)
     }
 

@@ -1,7 +1,7 @@
-"""Prints what feet do: python follow.py 127.0.0.1:9000 map.ron, and elsewhere `underfoot simulate`."""
+"""Prints what the feet on a simulated floor do: python follow.py map.ron, or with a scenario after the layout."""
 import sys, underfoot
 
-with underfoot.listen(*sys.argv[1:3]) as floor:
+with underfoot.simulated(*sys.argv[1:3]) as floor:
     for event in floor:
         match event:
             case underfoot.ChangedEvent(id, value):

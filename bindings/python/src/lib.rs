@@ -4,6 +4,7 @@
 
 mod event;
 
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -79,21 +80,51 @@ fn refused(refusal: &Refusal) -> PyErr {
     }
 }
 
-/// A session that listens, before it starts.
-fn listening(
-    address: String,
-    layout: std::path::PathBuf,
-    floor: Option<std::path::PathBuf>,
-) -> PyResult<SessionBuilder> {
-    let mut builder = Session::listen(address);
-    if let Some(path) = floor {
-        builder = builder.floor_file(path).map_err(|problems| PyValueError::new_err(problems.to_string()))?;
+/// A floor that has started, for the constructor of [`PySession`] and of its subclasses.
+#[pyclass(frozen, module = "underfoot._underfoot")]
+struct Started(Session);
+
+impl Started {
+    /// Starts the session that `builder` gives, while other threads run.
+    fn new(
+        py: Python<'_>,
+        every_change: bool,
+        builder: impl FnOnce() -> PyResult<SessionBuilder> + Send,
+    ) -> PyResult<Self> {
+        py.detach(move || {
+            let builder = builder()?;
+            let builder = if every_change { builder.every_change() } else { builder };
+            builder.start().map(Self).map_err(|error| PyOSError::new_err(error.to_string()))
+        })
     }
-    builder.layout_file(layout).map_err(|problems| PyValueError::new_err(problems.to_string()))
 }
 
-/// A session on a recording, before it starts.
-fn replaying(recording: std::path::PathBuf, speed: Option<f64>) -> PyResult<SessionBuilder> {
+/// The error for files with problems.
+fn bad_files(problems: impl std::fmt::Display) -> PyErr {
+    PyValueError::new_err(problems.to_string())
+}
+
+/// Starts a floor with boards that send to `address`.
+#[pyfunction]
+fn listen(
+    py: Python<'_>,
+    address: String,
+    layout: PathBuf,
+    floor: Option<PathBuf>,
+    every_change: bool,
+) -> PyResult<Started> {
+    Started::new(py, every_change, move || {
+        let mut builder = Session::listen(address);
+        if let Some(path) = floor {
+            builder = builder.floor_file(path).map_err(bad_files)?;
+        }
+        builder.layout_file(layout).map_err(bad_files)
+    })
+}
+
+/// Replays a recording; as fast as possible without a `speed`.
+#[pyfunction]
+fn replay(py: Python<'_>, recording: PathBuf, speed: Option<f64>, every_change: bool) -> PyResult<Started> {
     let speed = match speed {
         None => Speed::Max,
         Some(times) if times > 0.0 && times.is_finite() => Speed::Times(times),
@@ -103,7 +134,22 @@ fn replaying(recording: std::path::PathBuf, speed: Option<f64>) -> PyResult<Sess
             ));
         }
     };
-    Session::replay(recording, speed).map_err(|error| PyOSError::new_err(error.to_string()))
+    Started::new(py, every_change, move || {
+        Session::replay(recording, speed).map_err(|error| PyOSError::new_err(error.to_string()))
+    })
+}
+
+/// Starts a simulated floor; without a file `scenario`, with the built-in one.
+#[pyfunction]
+fn simulated(
+    py: Python<'_>,
+    layout: PathBuf,
+    scenario: Option<PathBuf>,
+    every_change: bool,
+) -> PyResult<Started> {
+    Started::new(py, every_change, move || {
+        underfoot_sim::session_from_files(layout, scenario.as_deref()).map_err(bad_files)
+    })
 }
 
 /// The state of a control, as a dictionary; `off` as a tuple of reason and text.
@@ -158,26 +204,8 @@ impl From<Given> for Value {
 #[pymethods]
 impl PySession {
     #[new]
-    #[pyo3(signature = (address=None, layout=None, *, floor=None, every_change=false, recording=None, speed=Some(1.0)))]
-    fn new(
-        py: Python<'_>,
-        address: Option<String>,
-        layout: Option<std::path::PathBuf>,
-        floor: Option<std::path::PathBuf>,
-        every_change: bool,
-        recording: Option<std::path::PathBuf>,
-        speed: Option<f64>,
-    ) -> PyResult<Self> {
-        let started = py.detach(move || {
-            let builder = match (address, layout, recording) {
-                (Some(address), Some(layout), None) => listening(address, layout, floor)?,
-                (None, None, Some(recording)) if floor.is_none() => replaying(recording, speed)?,
-                _ => return Err(PyTypeError::new_err("a floor has an address and a layout, or a recording")),
-            };
-            let builder = if every_change { builder.every_change() } else { builder };
-            builder.start().map_err(|error| PyOSError::new_err(error.to_string()))
-        })?;
-        Ok(Self { floor: Mutex::new(Some(started)), over: AtomicBool::new(false) })
+    fn new(started: &Started) -> Self {
+        Self { floor: Mutex::new(Some(started.0.clone())), over: AtomicBool::new(false) }
     }
 
     /// The next event within `timeout` seconds; without a number, waits for ever. `None` when there is none.
@@ -365,7 +393,7 @@ impl PySession {
 #[pymodule]
 mod _underfoot {
     #[pymodule_export]
-    use super::{PySession, Refused};
+    use super::{PySession, Refused, listen, replay, simulated};
 
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "Python's name")]

@@ -1,6 +1,7 @@
-"""The library for Python against a recorded visit: RECORDING names the file, LAYOUT a layout for a floor that listens.
+"""The library for Python against a recorded visit and a simulated one: RECORDING names the recording, LAYOUT a layout
+for a floor that listens, SCENARIO a visit to that layout.
 
-    RECORDING=visit.mcap LAYOUT=layouts/map.ron python -m unittest discover bindings/python/tests
+    RECORDING=visit.mcap LAYOUT=layouts/map.ron SCENARIO=visit.ron python -m unittest discover bindings/python/tests
 """
 
 import asyncio
@@ -8,12 +9,13 @@ import copy
 import math
 import os
 import pickle
+import tempfile
 import unittest
 
 import underfoot
 from underfoot import ChangedEvent, ControlEvent, EndedEvent, Event
 
-RECORDING, LAYOUT = os.environ["RECORDING"], os.environ["LAYOUT"]
+RECORDING, LAYOUT, SCENARIO = (os.environ[name] for name in ("RECORDING", "LAYOUT", "SCENARIO"))
 
 
 def visit():
@@ -83,6 +85,40 @@ def zoom_of(event):
                 case ChangedEvent("zoom", float(zoom)) if zoom == value:
                     return [zoom]
     return []
+
+
+class Simulated(unittest.TestCase):
+    def test_a_simulated_floor_is_one_line(self):
+        for scenario in (None, SCENARIO):
+            with underfoot.simulated(LAYOUT, scenario) as floor:
+                self.assertIsNone(floor.address)
+                told = []
+                for event in floor:
+                    told.append((event.id, event.name))
+                    if told[-1] == ("home", "clicked"):
+                        floor.stop()
+            self.assertIn(("home", "pressed"), told)
+            self.assertIn(("home", "clicked"), told)
+            self.assertEqual((event.kind, event.reason), ("ended", "stopped"))
+
+    def test_a_simulated_floor_ends_with_its_scenario(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "wait.ron")
+            with open(path, "w") as file:
+                file.write('Scenario(title: "Nobody", steps: [Wait(ms: 300)])')
+            *_, last = underfoot.simulated(LAYOUT, path)
+        self.assertEqual((last.kind, last.reason), ("ended", "source_ended"))
+
+    def test_files_with_errors_are_named(self):
+        # A layout is no scenario.
+        for layout, scenario, wrong in (
+            ("no such.ron", None, "no such.ron"),
+            (LAYOUT, "no such.ron", "no such.ron"),
+            (LAYOUT, LAYOUT, LAYOUT),
+        ):
+            with self.assertRaises(ValueError) as failure:
+                underfoot.simulated(layout, scenario)
+            self.assertIn(wrong, str(failure.exception))
 
 
 class Listening(unittest.TestCase):
@@ -157,10 +193,10 @@ class Listening(unittest.TestCase):
         self.assertEqual(array.dtype, numpy.float32)
         self.assertFalse(array.flags.owndata)
 
-    def test_a_session_is_made_of_an_address_or_of_a_recording(self):
-        for wrong in ({}, {"address": "127.0.0.1:0"}, {"address": "127.0.0.1:0", "layout": LAYOUT, "recording": RECORDING}):
+    def test_a_floor_is_made_by_the_functions_only(self):
+        for wrong in ((), (LAYOUT,), ("127.0.0.1:0", LAYOUT)):
             with self.assertRaises(TypeError):
-                underfoot.Floor(**wrong)
+                underfoot.Floor(*wrong)
 
     def test_messages_name_no_options_of_a_program(self):
         with self.assertRaises(OSError) as failure:

@@ -89,3 +89,5 @@ async def follow_async() -> None:
 
 with underfoot.listen("127.0.0.1:9000", "map.ron") as floor:
     follow(floor)
+with underfoot.simulated("map.ron", "visit.ron", every_change=True) as floor:
+    follow(floor)

@@ -2,6 +2,7 @@
 
 import asyncio
 
+from . import _underfoot
 from ._types import (
     AnyEvent,
     ChangedEvent,
@@ -45,6 +46,7 @@ __all__ = [
     "__version__",
     "listen",
     "replay",
+    "simulated",
 ]
 
 # Interval at which `async for` looks for events, in seconds: that of the floor's snapshots.
@@ -105,8 +107,12 @@ def _state(state):
 
 
 def listen(address, layout, *, floor=None, every_change=False):
-    return Floor(address, layout, floor=floor, every_change=every_change)
+    return Floor(_underfoot.listen(address, layout, floor, every_change))
 
 
 def replay(recording, *, speed=1.0, every_change=False):
-    return Floor(recording=recording, speed=speed, every_change=every_change)
+    return Floor(_underfoot.replay(recording, speed, every_change))
+
+
+def simulated(layout, scenario=None, *, every_change=False):
+    return Floor(_underfoot.simulated(layout, scenario, every_change))

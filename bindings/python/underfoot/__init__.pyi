@@ -2,7 +2,7 @@
 
 Metres, newtons, seconds; x east and y north from the floor's south-west corner.
 
-    with underfoot.listen("127.0.0.1:9000", "map.ron") as floor:
+    with underfoot.simulated("map.ron") as floor:
         for event in floor:
             print(event)
 """
@@ -39,17 +39,8 @@ class Floor:
 
     KeyError names a control that the layout lacks, with the nearest name; or a page, with the names of all."""
 
-    def __init__(
-        self,
-        address: str | None = None,
-        layout: str | PathLike[str] | None = None,
-        *,
-        floor: str | PathLike[str] | None = None,
-        every_change: bool = False,
-        recording: str | PathLike[str] | None = None,
-        speed: float | None = 1.0,
-    ) -> None:
-        """Use `listen` and `replay`."""
+    def __init__(self, started: object) -> None:
+        """Use `listen`, `replay` and `simulated`."""
     def __enter__(self) -> Floor: ...
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
@@ -78,7 +69,8 @@ class Floor:
         closed floor; KeyError for a control that the layout lacks, which would never be held."""
     @property
     def address(self) -> str | None:
-        """The address for boards, with the port that the system chose for port 0; None for a recording."""
+        """The address for boards, with the port that the system chose for port 0; None for a recording and for a
+        simulated floor."""
     @property
     def dropped(self) -> int:
         """Number of events that were dropped because the program did not take them."""
@@ -134,3 +126,14 @@ def replay(
 ) -> Floor:
     """Replays a recorded floor, with its layout: the same events, at `speed` times the original speed, or with None as
     fast as possible. It ends with the recording. OSError gives the reason why the recording cannot be read."""
+
+def simulated(
+    layout: str | PathLike[str],
+    scenario: str | PathLike[str] | None = None,
+    *,
+    every_change: bool = False,
+) -> Floor:
+    """Starts a simulated floor of 6 x 6 tiles, with the page of controls in the file `layout` and the people and faults
+    of the file `scenario`; without it, the built-in scenario, which fits the shipped layout map.ron.
+
+    It runs in real time and ends with the scenario. ValueError describes an error in a file."""

@@ -5,8 +5,7 @@ use std::path::Path;
 use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Layout;
 use underfoot::source::Faults;
-use underfoot_scene::scene::Shoe;
-use underfoot_sim::{self as sim, Foot, Scenario, Script, SimConfig, SimFloor};
+use underfoot_sim::{self as sim, Scenario, Script, SimConfig, SimFloor};
 
 use super::failure::Failure;
 
@@ -92,16 +91,4 @@ fn made_for(layout: &Layout, geometry: &Geometry) -> Script {
         );
     }
     visit.script
-}
-
-/// Returns the shoe of a simulated foot, as long as the foot itself.
-pub(crate) fn shoe(foot: &Foot) -> Shoe {
-    Shoe {
-        position: foot.position,
-        heading_rad: foot.heading,
-        length_m: foot.length_m,
-        force: foot.force,
-        roll: foot.roll,
-        left: foot.left,
-    }
 }

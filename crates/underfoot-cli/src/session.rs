@@ -220,7 +220,7 @@ impl Camera {
         let snapshot = self.best.map_or(self.now, |(_, snapshot)| snapshot);
         let mut feet = Vec::new();
         script.feet_at(snapshot.at, &mut feet);
-        let shoes: Vec<Shoe> = feet.iter().map(play::shoe).collect();
+        let shoes: Vec<Shoe> = feet.iter().map(Shoe::from).collect();
         let mut scene = Scene::new();
         let view = View {
             show: Show::PICTURE,

@@ -94,7 +94,7 @@ pub use script::Script;
 pub use seam::SeamConfig;
 pub use sensor::{PartConfig, SensorFault};
 #[cfg(feature = "net")]
-pub use session::{SimulationError, session, session_with};
+pub use session::{SimulationError, session, session_from_files, session_with};
 pub use simulated::{Pace, SimulatedSource};
 pub use slide::Slide;
 pub use visit::{Visit, visit};

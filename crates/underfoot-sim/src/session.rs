@@ -1,5 +1,7 @@
 //! Sessions on simulated floors.
 
+use std::path::Path;
+
 use thiserror::Error;
 
 use super::foot::FootDriver;
@@ -9,6 +11,7 @@ use super::{Scenario, SimConfig, SimFloor};
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::{Session, SessionBuilder};
+use underfoot::schema;
 use underfoot::source::{BadFault, FaultInjector, Faults, FloorInput};
 use underfoot::units::HostClock;
 use underfoot_format::diagnostic::Diagnostics;
@@ -20,7 +23,10 @@ const SEED: u64 = 1;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// The scenario does not fit the layout.
+    /// The file of the layout, its kinds or its effects have errors.
+    #[error(transparent)]
+    Layout(Diagnostics),
+    /// The scenario has errors, or does not fit the layout.
     #[error(transparent)]
     Scenario(#[from] Diagnostics),
     /// A fault of the scenario is invalid.
@@ -50,6 +56,25 @@ pub fn session(layout: Layout, scenario: &Scenario) -> Result<SessionBuilder, Si
         FaultInjector::new(source, faults, SEED).into()
     };
     Ok(Session::source(input, clock).floor(floor).layout(layout))
+}
+
+/// A session like [`session`], from files: the page in the file `layout`, with the kinds and effects in the folders
+/// `widgets` and `effects` beside the file or beside its folder, and the scenario in the file `scenario`; without one
+/// [`Scenario::SESSION`], which fits the shipped layout `map`. Logs warnings about the layout.
+///
+/// # Errors
+/// [`SimulationError`] has the problems of the files, or the reasons why they can't be read.
+pub fn session_from_files(
+    layout: impl AsRef<Path>,
+    scenario: Option<&Path>,
+) -> Result<SessionBuilder, SimulationError> {
+    let loaded = schema::load_layout_and_kinds(layout.as_ref(), &Floor::default().geometry);
+    let layout = loaded.map_err(SimulationError::Layout)?.log_warnings();
+    let scenario = match scenario {
+        Some(path) => Scenario::load(path)?,
+        None => Scenario::parse("session", Scenario::SESSION)?,
+    };
+    session(layout, &scenario)
 }
 
 /// A session on a simulated `floor`, calibrated as in the lab, with the feet that `driver` moves. Set the layout, but

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
+use super::super::ignored::Ignored;
 use super::super::people::{Person, SAME_FOOT_M, STANCE_M};
 use super::super::snapshot::FootRole;
 use super::super::step::{CARRIES, Landing, Loading, RESTS, RESTS_N, Since, StepWatch, Support};
@@ -140,18 +141,36 @@ impl FootHistory {
         self.still.is_object()
     }
 
-    /// Whether it stands in a stance zone.
-    pub(in crate::engine) fn is_in_stance(&self) -> bool {
-        self.in_stance
+    /// Whether it may be a cursor.
+    ///
+    /// # Errors
+    /// It stands in a stance zone, or is an object.
+    pub(in crate::engine) fn may_lead(&self) -> Result<(), Ignored> {
+        if self.in_stance {
+            Err(Ignored::Stance)
+        } else if self.is_object() {
+            Err(Ignored::Object)
+        } else {
+            Ok(())
+        }
     }
 
-    /// Whether it may be a cursor: neither a standing foot in its zone nor an object.
-    pub(in crate::engine) fn may_lead(&self) -> bool {
-        !self.in_stance && !self.is_object()
+    /// Whether a control of this mode may respond to it.
+    ///
+    /// # Errors
+    /// It is an object, or it walks, stands or rests there.
+    pub(in crate::engine) fn may_operate(&self, mode: PressMode, now: Instant) -> Result<(), Ignored> {
+        if self.is_object() {
+            Err(Ignored::Object)
+        } else if self.is_step_on(mode, now) {
+            Err(Ignored::Step)
+        } else {
+            Ok(())
+        }
     }
 
-    /// Whether it walks, stands or rests on a control of this mode, so that the control must not respond.
-    pub(in crate::engine) fn is_step_on(&self, mode: PressMode, now: Instant) -> bool {
+    /// Whether it walks, stands or rests on a control of this mode.
+    pub(super) fn is_step_on(&self, mode: PressMode, now: Instant) -> bool {
         match mode {
             PressMode::Tap => self.step || self.watch.stands(now) || self.watch.rests(now),
             PressMode::Hold | PressMode::Follow => {

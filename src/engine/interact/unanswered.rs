@@ -18,23 +18,16 @@ impl Interaction {
                 continue;
             }
             let foot = self.feet.of(contact.id);
-            let is = |so: fn(&FootHistory) -> bool| foot.is_some_and(so);
             let in_region = at
                 .layout
                 .regions
                 .get(spec.region)
                 .is_some_and(|region| region.area.contains(contact.centroid));
-            let why = if is(FootHistory::is_in_stance) {
-                Ignored::Stance
-            } else if is(FootHistory::is_object) {
-                Ignored::Object
-            } else if !in_region {
-                Ignored::OutsideRegion
-            } else if foot.is_some_and(|foot| foot.is_step_on(PressMode::of(spec), at.now())) {
-                Ignored::Step
-            } else {
-                Ignored::OtherFoot
-            };
+            let may = foot.map_or(Ok(()), FootHistory::may_lead);
+            let may = may.and(if in_region { Ok(()) } else { Err(Ignored::OutsideRegion) });
+            let operates = |foot: &FootHistory| foot.may_operate(PressMode::of(spec), at.now());
+            let may = may.and_then(|()| foot.map_or(Ok(()), operates));
+            let why = may.err().unwrap_or(Ignored::OtherFoot);
             let why = switched_off(control).unwrap_or(why);
             self.ignored.note(contact.id, widget, contact.force, Some(why));
         }

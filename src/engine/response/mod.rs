@@ -4,6 +4,7 @@ mod values;
 
 use std::sync::Arc;
 
+use super::event::ControlEvent;
 use super::interact::Sliding;
 use crate::feel::{
     Click, Clicks, Cue, Effect, EffectKind, Manner, Player, Spot, Spots, SustainedCue, SustainedCues, key,
@@ -12,7 +13,7 @@ use crate::ground::GroundEvent;
 use crate::layout::{Layout, Widget};
 use crate::sense::{Contact, ContactId, ForceFrame};
 use crate::units::Instant;
-use crate::widget::{Behaviour, Control, EventKind, Value, WidgetEvent};
+use crate::widget::{Behaviour, Control, EventKind, Value};
 
 use values::{Ends, Shares, Way};
 
@@ -66,9 +67,9 @@ impl Responses {
     /// Appends the cues that answer `events`, on the tiles under the contacts that caused them.
     ///
     /// Neither a cancel nor the change that it reverts has a cue: the foot has left, or the floor is unreliable.
-    pub(super) fn answer(&mut self, events: &[WidgetEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
+    pub(super) fn answer(&mut self, events: &[ControlEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
         for (number, event) in events.iter().enumerate() {
-            let Some(widget) = now.layout.widget_index(event.id.as_str()) else { continue };
+            let widget = event.widget;
             let Some(spec) = now.layout.widgets.get(widget) else { continue };
             let way = match event.kind {
                 EventKind::Changed(value) => self.shares.go(widget, &spec.behaviour, value),
@@ -76,7 +77,7 @@ impl Responses {
             };
             let next = events.get(number + 1);
             let taken_back =
-                next.is_some_and(|next| next.kind == EventKind::Cancelled && next.id == event.id);
+                next.is_some_and(|next| next.kind == EventKind::Cancelled && next.widget == widget);
             let Some(id) = event.contact.filter(|_| !taken_back) else { continue };
             let spots = match now.contact(id) {
                 Some(contact) => spots(contact),
@@ -96,7 +97,7 @@ impl Responses {
             }
             let changes = events
                 .iter()
-                .any(|other| other.id == event.id && matches!(other.kind, EventKind::Changed(_)));
+                .any(|other| other.widget == widget && matches!(other.kind, EventKind::Changed(_)));
             if event.kind == EventKind::Pressed && !changes && self.shares.is_at_end(widget) && steps(spec) {
                 let way = self.shares.stay(widget);
                 if let Some((click, manner)) = self.stop((widget, spec), way, event, now) {
@@ -116,7 +117,7 @@ impl Responses {
         &mut self,
         (number, widget): (usize, &Widget),
         way: Way,
-        event: &WidgetEvent,
+        event: &ControlEvent,
         now: Now<'_>,
     ) -> Option<(Click, Manner)> {
         if let (Some(high), Some(effect)) = (way.end, &widget.feel.end) {

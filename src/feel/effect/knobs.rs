@@ -1,8 +1,6 @@
 //! Every number of an effect by its name, for adjustment by hand.
 
-use super::Knob;
-use super::{Effect, EffectKind};
-use crate::feel::Lasting;
+use super::{Effect, EffectKind, Knob};
 use underfoot_format::{Record, Variants, hand::Hand};
 
 impl Effect {
@@ -26,13 +24,9 @@ impl Effect {
     /// Balances the model of a rubbed material to its level.
     pub(super) fn balance(&mut self) {
         let Some(lasting) = self.kind.lasting() else { return };
-        match (&mut self.kind, lasting.balanced(self.manner.band)) {
-            (EffectKind::Friction(own), Lasting::Friction(friction)) => *own = friction,
-            (EffectKind::StickSlip(own), Lasting::StickSlip(stick)) => *own = stick,
-            (EffectKind::Texture(own), Lasting::Texture(texture)) => *own = texture,
-            (EffectKind::Grains(own), Lasting::Grains(grains)) => *own = grains,
-            // A kind played by another kind's model is balanced there.
-            _ => {}
+        let balanced = lasting.balanced(self.manner.band);
+        if let (Some(own), Some(balanced)) = (self.kind.material_mut(), balanced.material()) {
+            own.trim = balanced.trim;
         }
     }
 }

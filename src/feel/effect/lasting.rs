@@ -217,4 +217,22 @@ impl Lasting {
             Self::Friction(_) | Self::Hum(_) => None,
         }
     }
+
+    /// The common part of rubbed materials, for changes; `None` for friction noise and hums.
+    pub(crate) fn material_mut(&mut self) -> Option<&mut Material> {
+        match self {
+            Self::StickSlip(stick) => Some(&mut stick.material),
+            Self::Texture(texture) => Some(&mut texture.material),
+            Self::Grains(grains) => Some(&mut grains.material),
+            Self::Friction(_) | Self::Hum(_) => None,
+        }
+    }
+
+    /// Slip speed (m/s) and normal force of its full level; `None` for hums, whose sender sets the level.
+    pub(crate) fn full(&self) -> Option<(f32, Newtons)> {
+        match self {
+            Self::Friction(friction) => Some((friction.full_speed_m_s, friction.full_force)),
+            _ => self.material().map(|material| (material.full_speed_m_s, material.full_force)),
+        }
+    }
 }

@@ -14,6 +14,7 @@ mod parts;
 mod reading;
 mod sequence;
 mod stops;
+mod timeline;
 mod tone;
 
 use serde::{Deserialize, Serialize};
@@ -24,6 +25,7 @@ pub use lasting::{Friction, Grains, Hum, Lasting, Material, Resonance, StickSlip
 pub use reading::{Effects, NamedEffect};
 pub use sequence::{CurvePoint, MAX_PARTS, Part, PartKind, Sequence};
 pub use stops::{Detents, EndStop, MAX_MARKS, Push};
+pub(crate) use timeline::Timeline;
 pub use tone::{MAX_POINTS, Tone, TonePoint};
 
 use self::reading::BandFields;
@@ -119,6 +121,16 @@ impl EffectKind {
         Self::NAMES
     }
 
+    /// The clicks and tones that it plays; `None` for effects driven by a foot or a value.
+    pub(crate) fn timeline(&self) -> Option<&dyn Timeline> {
+        match self {
+            Self::Click(clicks) => Some(clicks),
+            Self::Continuous(tone) => Some(tone),
+            Self::Sequence(sequence) => Some(sequence),
+            _ => None,
+        }
+    }
+
     /// The effect as a moving foot drives it; `None` for effects played once or driven by a value.
     #[must_use]
     pub fn lasting(&self) -> Option<Lasting> {
@@ -127,6 +139,16 @@ impl EffectKind {
             Self::StickSlip(stick) => Some(Lasting::StickSlip(*stick)),
             Self::Texture(texture) => Some(Lasting::Texture(*texture)),
             Self::Grains(grains) => Some(Lasting::Grains(*grains)),
+            _ => None,
+        }
+    }
+
+    /// The common part of rubbed materials; `None` for other effects.
+    fn material_mut(&mut self) -> Option<&mut Material> {
+        match self {
+            Self::StickSlip(stick) => Some(&mut stick.material),
+            Self::Texture(texture) => Some(&mut texture.material),
+            Self::Grains(grains) => Some(&mut grains.material),
             _ => None,
         }
     }

@@ -95,14 +95,7 @@ impl PartRecord {
             }
         };
         let part = |at_s, kind| Part { at_s, kind: changed(kind) };
-        match plays.kind.clone() {
-            EffectKind::Click(Clicks { press, .. }) => vec![part(at_s, PartKind::Click(press))],
-            EffectKind::Continuous(tone) => vec![part(at_s, PartKind::Tone(tone))],
-            EffectKind::Sequence(inner) => (0..inner.parts.len())
-                .filter_map(|index| inner.part(index))
-                .map(|inner| part(at_s + inner.at_s, inner.kind))
-                .collect(),
-            _ => Vec::new(),
-        }
+        let parts = plays.kind.timeline().into_iter().flat_map(|timeline| timeline.parts());
+        parts.map(|inner| part(at_s + inner.at_s, inner.kind)).collect()
     }
 }

@@ -1,12 +1,13 @@
 //! Clicks and tones one after the other.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 
 use super::parts::Parts;
 use super::tone::{STRENGTH, TIME, check_order};
-use super::{MAX_POINTS, Tone, TonePoint};
+use super::{MAX_POINTS, Timeline, Tone, TonePoint};
 use crate::feel::Click;
 use underfoot_format::{Rec, list, record};
 
@@ -52,13 +53,13 @@ record! {
     pub level: f32 = "level", STRENGTH;
 }
 
-impl Sequence {
-    /// Part number `index` with the curve applied; `None` if there is no such part.
-    ///
-    /// # Real-time
-    /// No allocation.
-    #[must_use]
-    pub fn part(&self, index: usize) -> Option<Part> {
+impl Timeline for Sequence {
+    fn written(&self, index: usize) -> Option<Cow<'_, Part>> {
+        self.parts.get(index).map(Cow::Borrowed)
+    }
+
+    /// Part number `index` with the curve applied.
+    fn part(&self, index: usize) -> Option<Part> {
         let part = self.parts.get(index)?;
         let kind = match &part.kind {
             PartKind::Click(click) => PartKind::Click(click.scaled(self.share_at(part.at_s), 1.0)),
@@ -67,19 +68,8 @@ impl Sequence {
         Some(Part { at_s: part.at_s, kind })
     }
 
-    /// End time of the last part, in seconds from the start.
-    #[must_use]
-    pub fn length_s(&self) -> f32 {
-        let end = |part: &Part| match &part.kind {
-            PartKind::Click(click) => part.at_s + click.length_s(),
-            PartKind::Tone(tone) => part.at_s + tone.whole_s(),
-        };
-        self.parts.iter().map(end).fold(0.0, f32::max)
-    }
-
     /// Value of the curve `t` seconds from the start.
-    #[must_use]
-    pub(crate) fn share_at(&self, t: f32) -> f32 {
+    fn share_at(&self, t: f32) -> f32 {
         let after = self.curve.iter().position(|point| point.at_s > t).unwrap_or(self.curve.len());
         let before = after.checked_sub(1).and_then(|before| self.curve.get(before));
         match (before, self.curve.get(after)) {
@@ -88,7 +78,9 @@ impl Sequence {
             (Some(a), Some(b)) => a.level + (b.level - a.level) * (t - a.at_s) / (b.at_s - a.at_s).max(1e-6),
         }
     }
+}
 
+impl Sequence {
     /// `tone`, begun at `start`, with its own curve times this one; keeps the first sixteen points of both curves.
     fn curved(&self, tone: &Tone, start: f32) -> Tone {
         if self.curve.is_empty() {
@@ -142,6 +134,7 @@ mod tests {
             assert!((tone.at(t).0 - level).abs() < 1e-5, "{t} s: {:?}", tone.at(t));
         }
         assert_eq!(sequence.part(2), None);
-        assert!((sequence.length_s() - 1.5).abs() < 1e-5);
+        let timeline: &dyn Timeline = &sequence;
+        assert!((timeline.end_s() - 1.5).abs() < 1e-5);
     }
 }

@@ -49,11 +49,8 @@ impl Lasting {
         // A sine's root mean square is its amplitude over the root of two.
         let trim = (std::f32::consts::FRAC_1_SQRT_2 / rms).clamp(TRIMS.0, TRIMS.1);
         let trim = if trim.is_finite() { trim } else { 1.0 };
-        match &mut self {
-            Self::StickSlip(stick) => stick.material.trim = trim,
-            Self::Texture(texture) => texture.material.trim = trim,
-            Self::Grains(grains) => grains.material.trim = trim,
-            Self::Friction(_) | Self::Hum(_) => {}
+        if let Some(material) = self.material_mut() {
+            material.trim = trim;
         }
         self
     }

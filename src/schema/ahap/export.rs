@@ -21,17 +21,11 @@ use crate::feel::{Click, Clicks, Effect, EffectKind, Impulse, Manner, Mode, Part
 /// [`AhapError::Driven`] for an effect driven by a foot or a value.
 pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), AhapError> {
     let mut lost = Lost::default();
-    let parts: Vec<Part> = match &effect.kind {
-        EffectKind::Click(Clicks { press, release }) => {
-            lost.note(release.is_some(), "what is felt for a release");
-            vec![Part { at_s: 0.0, kind: PartKind::Click(press.clone()) }]
-        }
-        EffectKind::Continuous(tone) => vec![Part { at_s: 0.0, kind: PartKind::Tone(tone.clone()) }],
-        EffectKind::Sequence(sequence) => {
-            (0..sequence.parts.len()).filter_map(|index| sequence.part(index)).collect()
-        }
-        other => return Err(AhapError::Driven(other.name())),
-    };
+    let timeline = effect.kind.timeline().ok_or(AhapError::Driven(effect.kind.name()))?;
+    let parts: Vec<Part> = timeline.parts().collect();
+    if let EffectKind::Click(Clicks { release, .. }) = &effect.kind {
+        lost.note(release.is_some(), "what is felt for a release");
+    }
     let Manner { band, duck_db, priority } = effect.manner;
     lost.note(band != Manner::PLAIN.band, "the band");
     lost.note(duck_db != Manner::PLAIN.duck_db, "ducking");

@@ -8,9 +8,9 @@ use underfoot::floor::{Calibration, CalibrationRecord, Floor, LawKind};
 use underfoot::sense::{Candidate, Fit, FitError, Judgement, LoadTable, SensorLoads, Verdict};
 use underfoot_scene::picture;
 
-use super::{MOST_BYTES, count, plot, rounded, today};
+use super::{MOST_BYTES, Out, count, plot, rounded, say_if_unsaved, today};
 use crate::failure::Failure;
-use crate::floor_args::{FloorArgs, FloorOut, saved_json};
+use crate::floor_args::FloorArgs;
 use crate::table;
 
 /// Options of `underfoot calibrate curves`.
@@ -53,7 +53,7 @@ const PLOT_PX: u32 = 1800;
 
 /// Fits the laws, reports them, and saves the floor.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let out = args.out.as_deref().or(args.floor.floor.as_deref()).map(FloorOut::new);
+    let out = Out::new(args.out.as_deref(), &args.floor);
     let mut floor = args.floor.load()?;
     let loads = LoadTable::read(table::open(&args.table, MOST_BYTES)?, &floor.geometry)
         .map_err(|error| table::refused(&args.table, "table of sensors", &error))?;
@@ -71,13 +71,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let scene = plot::draw(&judged);
         picture::write(&scene, fonts(), path, PLOT_PX)?;
     }
-    let saved = match &out {
-        Some(out) => Some((out.path(), out.save(&floor)?)),
-        None => None,
-    };
+    let saved = out.save(&floor)?;
     if args.json {
         let sensors: Vec<_> = judged.iter().map(|(loads, judgement)| as_json(loads, judgement)).collect();
-        let saved = saved.as_ref().map(|(path, saved)| saved_json(path, saved));
         outln!("{}", json!({ "sensors": sensors, "maps_dropped": dropped, "saved": saved }));
     } else {
         outln!("{}", summary(&judged));
@@ -85,9 +81,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             print(&judged, args.laws);
         }
         say_saturated(&judged);
-        if saved.is_none() {
-            errln!("Nothing is kept: say where with --out FLOOR.ron.");
-        }
+        say_if_unsaved(saved.as_ref());
     }
     if dropped > 0 {
         let maps = count(dropped, "position map");

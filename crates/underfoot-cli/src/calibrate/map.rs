@@ -6,9 +6,9 @@ use serde_json::json;
 use underfoot::floor::{Floor, MapRecord, TileId};
 use underfoot::sense::{Errors, MapError, MapFit, PressTable};
 
-use super::{MOST_BYTES, count, rounded, today};
+use super::{MOST_BYTES, Out, count, rounded, say_if_unsaved, today};
 use crate::failure::Failure;
-use crate::floor_args::{FloorArgs, FloorOut, saved_json};
+use crate::floor_args::FloorArgs;
 use crate::table;
 
 /// Options of `underfoot calibrate map`.
@@ -35,7 +35,7 @@ pub(crate) struct Args {
 
 /// Fits the maps, reports them, and saves the floor.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let out = args.out.as_deref().or(args.floor.floor.as_deref()).map(FloorOut::new);
+    let out = Out::new(args.out.as_deref(), &args.floor);
     let mut floor = args.floor.load()?;
     let pressed = PressTable::read(table::open(&args.table, MOST_BYTES)?, &floor)
         .map_err(|error| table::refused(&args.table, "table of points", &error))?;
@@ -47,13 +47,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let fits: Vec<_> = pressed.tiles.iter().map(|points| (points.tile, points.fit(&floor))).collect();
     keep(&mut floor, &fits);
-    let saved = match &out {
-        Some(out) => Some((out.path(), out.save(&floor)?)),
-        None => None,
-    };
+    let saved = out.save(&floor)?;
     if args.json {
         let tiles: Vec<_> = fits.iter().map(|(tile, fit)| as_json(*tile, fit)).collect();
-        let saved = saved.as_ref().map(|(path, saved)| saved_json(path, saved));
         outln!("{}", json!({ "tiles": tiles, "saturated": pressed.saturated, "saved": saved }));
     } else {
         print(&fits);
@@ -61,9 +57,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             let points = count(pressed.saturated, "point");
             outln!("{points} with a sensor at 98 % of its range or above left out.");
         }
-        if saved.is_none() {
-            errln!("Nothing is kept: say where with --out FLOOR.ron.");
-        }
+        say_if_unsaved(saved.as_ref());
     }
     table::conclude(&failures(&fits).chain(left_out).collect::<Vec<_>>())
 }

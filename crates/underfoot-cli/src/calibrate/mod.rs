@@ -5,12 +5,14 @@ mod map;
 mod plot;
 mod tare;
 
+use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Subcommand;
-use underfoot::floor::Day;
+use underfoot::floor::{Day, Floor};
 
 use super::failure::Failure;
+use super::floor_args::{FloorArgs, FloorOut, saved_json};
 
 /// Options of `underfoot calibrate`.
 #[derive(clap::Args, Debug)]
@@ -55,4 +57,26 @@ fn count(number: usize, what: &str) -> String {
 /// Rounds a residual to four decimals, for a file.
 fn rounded(residual: f32) -> f32 {
     (f64::from(residual * 1e4).round() / 1e4) as f32
+}
+
+/// The floor file for the result of a calibration, if one is named.
+struct Out<'p>(Option<FloorOut<'p>>);
+
+impl<'p> Out<'p> {
+    /// The file of `--out`, or else the file of `floor`; call it before the work begins.
+    fn new(out: Option<&'p Path>, floor: &'p FloorArgs) -> Self {
+        Self(out.or(floor.floor.as_deref()).map(FloorOut::new))
+    }
+
+    /// Saves `floor`; returns the paths of the floor and its backup for programs, `None` without a file.
+    fn save(&self, floor: &Floor) -> Result<Option<serde_json::Value>, Failure> {
+        self.0.as_ref().map(|out| Ok(saved_json(out.path(), &out.save(floor)?))).transpose()
+    }
+}
+
+/// Says that a result is not kept, if it was not `saved`.
+fn say_if_unsaved(saved: Option<&serde_json::Value>) {
+    if saved.is_none() {
+        errln!("Nothing is kept: say where with --out FLOOR.ron.");
+    }
 }

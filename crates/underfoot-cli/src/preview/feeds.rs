@@ -4,7 +4,6 @@ use std::sync::mpsc::{SyncSender, TrySendError};
 use std::thread;
 use std::time::Duration;
 
-use crate::play;
 use underfoot::feel::ScopeReader;
 use underfoot::glam::Vec2;
 use underfoot::runtime::Session;
@@ -71,7 +70,7 @@ fn foot(shoe: &PreviewFoot) -> Foot {
 
 /// The shoe around a foot.
 pub(super) fn shoe(foot: &Foot) -> PreviewFoot {
-    PreviewFoot { length_m: foot.length_m + SHOE_M, ..play::shoe(foot) }
+    PreviewFoot { length_m: foot.length_m + SHOE_M, ..PreviewFoot::from(foot) }
 }
 
 /// Signals of the actuators, as the window draws them.

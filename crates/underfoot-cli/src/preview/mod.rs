@@ -16,6 +16,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
+use clap::Args as _;
 use underfoot::feel::Renderer;
 use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
@@ -64,12 +65,12 @@ pub(crate) struct Args {
     listen: Option<SocketAddr>,
     /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. The window then sends
     /// nothing to outputs or actuators.
-    #[arg(long, value_name = "ADDR", value_parser = read_address, conflicts_with_all = SERVED_HERE, conflicts_with_all = ["floor", "grid"])]
+    #[arg(long, value_name = "ADDR", value_parser = read_address, conflicts_with_all = served_here(), conflicts_with_all = ["floor", "grid"])]
     join: Option<SocketAddr>,
     /// Show a floor from the JSON lines in this file, `-` for standard input: the output of `underfoot-cluster
     /// gateway --json --json-contacts` or `underfoot run --json --json-contacts`, with the same layout and floor. The
     /// window then sends nothing to outputs or actuators.
-    #[arg(long, value_name = "FILE", conflicts_with_all = SERVED_HERE, conflicts_with = "join")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = served_here(), conflicts_with = "join")]
     follow: Option<PathBuf>,
     #[command(flatten)]
     boards: BoardArgs,
@@ -105,35 +106,18 @@ pub(crate) struct Args {
 }
 
 /// Options of a floor that is served and felt here; a floor served elsewhere is only shown.
-const SERVED_HERE: [&str; 27] = [
-    "listen",
-    "allow",
-    "pin",
-    "commands",
-    "allow_commands",
-    "scenario",
-    "session",
-    "record",
-    "seed",
-    "ideal",
-    "mapped",
-    "osc",
-    "no_osc",
-    "osc_prefix",
-    "tuio",
-    "tuio2",
-    "tuio_profiles",
-    "json",
-    "json_contacts",
-    "wav",
-    "rate",
-    "sound",
-    "device",
-    "block",
-    "resample",
-    "delay_ms",
-    "eq4",
-];
+fn served_here() -> Vec<clap::Id> {
+    let groups = [
+        SimArgs::augment_args,
+        BoardArgs::augment_args,
+        CommandArgs::augment_args,
+        OutputArgs::augment_args,
+        ActuateArgs::augment_args,
+    ];
+    let command = groups.into_iter().fold(clap::Command::new(""), |command, add| add(command));
+    let own = ["listen", "scenario", "session", "record", "eq4"].map(clap::Id::from);
+    own.into_iter().chain(command.get_arguments().map(|option| option.get_id().clone())).collect()
+}
 
 /// Interval between two updates of the window's data: half of a frame.
 const LOOK: Duration = Duration::from_millis(8);
@@ -433,7 +417,7 @@ impl Args {
 mod tests {
     use clap::Args as _;
 
-    use super::{Args, SERVED_HERE};
+    use super::{Args, served_here};
 
     /// Options of the view, for a floor served here or elsewhere, and the hidden one that explains where a layout stands.
     const SHOWN: [&str; 11] = [
@@ -445,7 +429,8 @@ mod tests {
     fn every_option_is_of_a_floor_served_here_or_of_any() {
         let command = Args::augment_args(clap::Command::new("preview"));
         let mut options: Vec<&str> = command.get_arguments().map(|option| option.get_id().as_str()).collect();
-        let mut known: Vec<&str> = SERVED_HERE.into_iter().chain(SHOWN).collect();
+        let served = served_here();
+        let mut known: Vec<&str> = served.iter().map(clap::Id::as_str).chain(SHOWN).collect();
         options.sort_unstable();
         known.sort_unstable();
         assert_eq!(options, known);

@@ -115,12 +115,18 @@ fn a_recording_of_an_earlier_version_gives_the_events_that_it_gave_then() {
     }
 }
 
+/// The lines of a written floor, except its comments: later versions may word them better.
+fn without_comments(text: &str) -> Vec<&str> {
+    text.lines().filter(|line| !line.trim_start().starts_with("//")).collect()
+}
+
 #[test]
 fn a_floor_file_of_an_earlier_version_is_written_as_it_was() {
     for file in files("floors") {
         let floor = load_floor(&file).unwrap_or_else(|problems| panic!("{problems}"));
         if name(&file) != "newtons.ron" {
-            assert_eq!(write_floor(&floor), fs::read_to_string(&file).unwrap(), "{}", name(&file));
+            let (then, now) = (fs::read_to_string(&file).unwrap(), write_floor(&floor));
+            assert_eq!(without_comments(&now), without_comments(&then), "{}", name(&file));
         }
     }
 }

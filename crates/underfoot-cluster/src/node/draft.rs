@@ -77,21 +77,11 @@ impl Draft {
         self.told = self.frame.unwrap_or(0);
     }
 
-    /// The message.
+    /// The message; `head` has its sender, its time and all else that a draft lacks.
     #[must_use]
-    pub fn message(self) -> NodeMessage {
+    pub fn message(self, head: NodeMessage) -> NodeMessage {
         let Self { frame, silent, contacts, earlier, first_event, events, held, page, .. } = self;
-        NodeMessage {
-            frame,
-            silent,
-            contacts,
-            earlier,
-            first_event,
-            events,
-            held,
-            page,
-            ..NodeMessage::default()
-        }
+        NodeMessage { frame, silent, contacts, earlier, first_event, events, held, page, ..head }
     }
 }
 
@@ -113,12 +103,12 @@ mod tests {
         note(&mut draft, 1);
         draft.sent();
         (2..9).for_each(|ms| note(&mut draft, ms));
-        let message = draft.clone().message();
+        let message = draft.clone().message(NodeMessage::default());
         let told: Vec<u64> = message.earlier.iter().map(|frame| frame.at / 1000).collect();
         assert_eq!((told, message.frame), ((2..8).collect(), Some(8000)));
         draft.sent();
         note(&mut draft, 10);
-        assert!(draft.message().earlier.is_empty());
+        assert!(draft.message(NodeMessage::default()).earlier.is_empty());
     }
 
     #[test]
@@ -139,7 +129,7 @@ mod tests {
         (0..MOST_EVENTS + 3).for_each(|_| {
             draft.note(&Report::Event(Cow::Borrowed(&event)));
         });
-        let message = draft.message();
+        let message = draft.message(NodeMessage::default());
         assert_eq!((message.first_event, message.events.len()), (5, MOST_EVENTS));
     }
 }

@@ -69,6 +69,7 @@ mod tests {
     use underfoot::sense::Contact;
 
     use super::*;
+    use crate::message::NodeMessage;
 
     #[test]
     fn frames_are_told_every_2_ms_and_silence_every_20() {
@@ -80,7 +81,10 @@ mod tests {
             sink.poll(Instant::from_millis(ms));
         }
         (1010..=1070).for_each(|ms| sink.poll(Instant::from_millis(ms)));
-        let frames: Vec<_> = drafts.try_iter().map(|draft| draft.message().frame.unwrap() / 1000).collect();
+        let frames: Vec<_> = drafts
+            .try_iter()
+            .map(|draft| draft.message(NodeMessage::default()).frame.unwrap() / 1000)
+            .collect();
         assert_eq!(frames, [1000, 1002, 1004, 1006, 1008, 1009, 1009, 1009, 1009]);
     }
 }

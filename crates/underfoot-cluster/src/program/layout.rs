@@ -25,12 +25,9 @@ pub(super) fn load(path: &Path, geometry: &Geometry) -> Result<Layout, Failure> 
             &Kinds::shipped(Effects::builtin())?,
             geometry,
         )?,
-        None => schema::load_layout(path, &schema::kinds_beside(path)?, geometry)?,
+        None => schema::load_layout_and_kinds(path, geometry)?,
     };
-    if !loaded.warnings.is_empty() {
-        tracing::warn!("{}", loaded.warnings);
-    }
-    Ok(loaded.layout)
+    Ok(loaded.log_warnings())
 }
 
 /// The layout that a gateway has sent as `text`.

@@ -111,23 +111,8 @@ impl Teller {
     }
 
     fn send(&mut self, draft: Draft, values: Option<Vec<(String, NodeValue)>>) {
-        let NodeMessage { frame, silent, contacts, earlier, first_event, events, held, page, .. } =
-            draft.message();
         let (layout, answers) = self.worker.report();
-        let message = NodeMessage {
-            frame,
-            silent,
-            contacts,
-            earlier,
-            first_event,
-            events,
-            held,
-            values,
-            page,
-            answers,
-            layout,
-            ..self.head.clone()
-        };
+        let message = draft.message(NodeMessage { values, answers, layout, ..self.head.clone() });
         let (body, mut sealed) = (encode(&message), Vec::new());
         // Sealed last, so that only the message's transmission follows the time in it.
         locked(&self.session).seal(AuthKind::Node, &body, (self.clock)(), &mut sealed);

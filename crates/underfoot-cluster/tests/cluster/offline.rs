@@ -78,11 +78,19 @@ fn messages(hall: (&Floor, &Layout, usize), area: &str, node: u64) -> Vec<NodeMe
     serve(hall, &part, layout.clone().part(area, &floor.geometry), NodeSink::new(out));
     let numbered = drafts.try_iter().zip(1..);
     let message = numbered.map(|(draft, sequence)| {
-        let told = draft.message();
+        let area = area.id.clone();
+        let head = NodeMessage {
+            version: VERSION,
+            floor: fingerprint(floor),
+            area,
+            node,
+            sequence,
+            ..NodeMessage::default()
+        };
+        let told = draft.message(head);
         let sent = told.frame.unwrap_or(0) + 5000;
         let echo = Some(Echo { sent: sent - 200, received: sent });
-        let area = area.id.clone();
-        NodeMessage { version: VERSION, floor: fingerprint(floor), area, node, sequence, sent, echo, ..told }
+        NodeMessage { sent, echo, ..told }
     });
     message.filter(|message| message.frame.is_some()).collect()
 }

@@ -267,7 +267,7 @@ impl Pond {
 
     fn picture(&self, feet: &[Foot]) -> Scene {
         let snapshot = self.snapshot();
-        let shoes: Vec<Shoe> = feet.iter().map(shoe).collect();
+        let shoes: Vec<Shoe> = feet.iter().map(Shoe::from).collect();
         let show = Show { ruler: true, ..Show::PROJECTOR };
         let mut scene = Scene::new();
         let view = View {
@@ -284,16 +284,4 @@ fn shipped(geometry: &Geometry) -> Result<Layout, ExperimentError> {
     let text = builtin_layout("pond").unwrap_or_default();
     let loaded = parse_layout(text, "pond", &Kinds::builtin(), geometry);
     loaded.map(|loaded| loaded.layout).map_err(|problems| ExperimentError::Layout(problems.to_string()))
-}
-
-/// Returns the shoe of a simulated foot, as long as the foot itself.
-fn shoe(foot: &Foot) -> Shoe {
-    Shoe {
-        position: foot.position,
-        heading_rad: foot.heading,
-        length_m: foot.length_m,
-        force: foot.force,
-        roll: foot.roll,
-        left: foot.left,
-    }
 }

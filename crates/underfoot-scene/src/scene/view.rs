@@ -26,6 +26,21 @@ pub struct Shoe {
     pub left: bool,
 }
 
+/// The shoe of a simulated foot, as long as the foot itself.
+#[cfg(feature = "sim")]
+impl From<&underfoot_sim::Foot> for Shoe {
+    fn from(foot: &underfoot_sim::Foot) -> Self {
+        Self {
+            position: foot.position,
+            heading_rad: foot.heading,
+            length_m: foot.length_m,
+            force: foot.force,
+            roll: foot.roll,
+            left: foot.left,
+        }
+    }
+}
+
 /// Accessor of one layer of a [`Show`], for reading or switching it.
 pub type Layer = fn(&mut Show) -> &mut bool;
 

@@ -1,0 +1,128 @@
+//! The table: every message of a floor, apart from the events of its controls.
+
+use super::FieldRange::{Indicators, OffReasons, Pages, Text};
+use super::{Sent, arguments};
+use crate::widget::Value;
+
+/// Makes messages: `Name "address" report "meaning" answer "meaning" { arguments }`, and the list of their addresses.
+macro_rules! messages {
+    ($($name:ident $path:literal $(report $report:literal)? $(answer $answer:literal)? { $($fields:tt)* })+) => {
+        $(
+            arguments! {
+                $(#[doc = $report])?
+                $(#[doc = $answer])?
+                $name { $($fields)* }
+            }
+
+            impl Sent for $name {
+                const PATH: &'static str = $path;
+                const REPORT: &'static str = concat!($($report)?);
+                const ANSWER: &'static str = concat!($($answer)?);
+            }
+        )+
+
+        /// The addresses of all messages; an address can occur several times.
+        pub(super) const PATHS: &[&str] = &[$($path),+];
+    };
+}
+
+messages! {
+    Contacts "contacts" report "How many contacts follow; 100 times a second at most." {
+        count: i32 = Text("0 or more"),
+    }
+    OneContact "contact" report "One contact, in the bundle of `contacts`." {
+        id: i32 = Text("one for as long as it stays down"),
+        x: f32 = Text("m, eastwards"),
+        y: f32 = Text("m, northwards"),
+        force: f32 = Text("N"),
+        x_velocity: f32 = Text("m/s"),
+        y_velocity: f32 = Text("m/s"),
+    }
+    Alive "alive" report "The floor is served; 10 times a second." {
+        sequence: i32 = Text("one more each time"),
+    }
+    Health "health"
+    report "How boards and sensors are doing, when that changes; then up to eight sensors in trouble, a string each." {
+        state: String = Text("waiting, live, partial or lost"),
+        degraded: i32 = Text("sensors"),
+        silent: i32 = Text("sensors"),
+        faulty: i32 = Text("sensors"),
+        uncalibrated: i32 = Text("sensors"),
+        ..details: Vec<String>
+    }
+    Area "area" report "How an area stands, when that changes; told by a gateway." {
+        area: String = Text(""),
+        state: String = Text("waiting, live, lost or disputed"),
+        why: String = Text("empty while it is live"),
+        uncertainty: f32 = Text("s, of the times of its events"),
+    }
+    Device "device" report "The device that moves the actuators, when that changes." {
+        device: String = Text(""),
+        state: String = Text("playing, lost, faulty or unfit"),
+        why: String = Text("empty while it plays"),
+        channels: i32 = Text(""),
+        sample_rate: i32 = Text("Hz"),
+        block: i32 = Text("frames"),
+        underruns: i32 = Text(""),
+        reopened: i32 = Text(""),
+        priority: String = Text("real-time, denied or host"),
+    }
+    Crack "crack" report "The ice has cracked; 200 times a second at most." {
+        seed: i32 = Text("where cracks come from"),
+        energy: f32 = Text("J"),
+        x: f32 = Text("m, eastwards"),
+        y: f32 = Text("m, northwards"),
+        skipped: i32 = Text("cracks since the last message that were not told"),
+    }
+    Page "page" report "Another page is shown." answer "The page that is shown." {
+        page: String = Pages,
+    }
+    Mute "mute" report "Something was muted, or no longer." answer "The actuators that are muted." {
+        all: bool = Text("0 or 1"),
+        tiles: Vec<i32> = Text("column and row of each single tile, 100 at most"),
+    }
+    Error "error" answer "A request was refused." {
+        address: String = Text("as it was asked"),
+        why: String = Text(""),
+    }
+
+    Held "widget/<id>/held"
+    report "Whether a foot holds it; 1 comes 50 times a second: not heard for 100 ms, it is released." {
+        held: bool = Text("0 or 1"),
+        sequence: i32 = Text("one more each time"),
+    }
+    ValueOfControl "widget/<id>/value"
+    answer "Its value; sent to all listeners when an app asks for it or changes it." {
+        ..value: Value
+    }
+    State "widget/<id>/state" answer "How it is; told to all likewise." {
+        enabled: bool = Text("0 or 1"),
+        locked: bool = Text("0 or 1"),
+        pressed: bool = Text("0 or 1"),
+        armed: bool = Text("0 or 1"),
+        indicator: String = Indicators,
+        label: String = Text(""),
+    }
+    Off "widget/<id>/off"
+    answer "Why no foot can press it; told to all likewise, and when a `HoldToRun` control goes off or on." {
+        reason: String = OffReasons,
+        text: String = Text("the reason in a sentence, with the floor file it is about; may be empty"),
+    }
+    RangeOfNumber "widget/<id>/range" answer "The range of its value." {
+        least: f32 = Text(""),
+        greatest: f32 = Text(""),
+        step: f32 = Text(""),
+    }
+    RangeOfPair "widget/<id>/range" answer "The range of its value." {
+        x_least: f32 = Text(""),
+        x_greatest: f32 = Text(""),
+        y_least: f32 = Text(""),
+        y_greatest: f32 = Text(""),
+    }
+    RangeOfChoices "widget/<id>/range" answer "The range of its value." {
+        choices: Vec<String> = Text("the name of each"),
+    }
+    PageOfControl "widget/<id>/page" answer "Where it is." {
+        page: String = Text("empty if it is on all"),
+    }
+}
