@@ -4,16 +4,19 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
+#[path = "../tests/support/corrupt.rs"]
+mod corrupt;
+
 use std::hint::black_box;
 use std::net::UdpSocket;
 use std::time::Duration;
 
+use corrupt::{bundle_bomb, hostile_address, tag_bomb};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::Assembler;
 use underfoot::source::UdpSource;
 use underfoot::units::Instant;
-use underfoot::wire::corrupt::{bundle_bomb, hostile_address, tag_bomb};
 use underfoot::wire::{Batch, Decoder, Limits, Readings, SensorEncoder, SensorFormat, SensorPacket, check};
 
 /// The packets of one millisecond, one per board.

@@ -40,4 +40,4 @@ pub use state::{GroundCounters, GroundEvent, GroundState};
 pub use elastic::{Elastic, Motion};
 pub use fracture::{Fracture, Growth};
 pub use grounds::Grounds;
-pub use onsets::{MOST_PER_S, Onsets};
+pub use onsets::Onsets;

@@ -4,7 +4,7 @@ use rand_distr::{Distribution, Exp1};
 use rand_pcg::Pcg64Mcg;
 
 /// Maximum rate of one process, in events per second.
-pub const MOST_PER_S: f64 = 16_000.0;
+const MOST_PER_S: f64 = 16_000.0;
 
 /// Times of events: a Poisson process with a rate that follows a signal.
 ///
@@ -31,7 +31,7 @@ impl Onsets {
     /// Advances by `step_s` seconds, in which the rate changes linearly from the first to the second of `rates` (per
     /// second); passes to `event` the place of each event within the step, 0 to 1.
     ///
-    /// Rates below zero or NaN count as zero, rates above [`MOST_PER_S`] as that.
+    /// Rates below zero or NaN count as zero, rates above 16,000 as that.
     pub fn advance(
         &mut self,
         rates: [f64; 2],

@@ -20,4 +20,4 @@ pub use osc::{
 };
 pub use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM, tuio_first_frame};
 pub use tuio1::Tuio1;
-pub use tuio2::{TUIO_FULL_FORCE_N, Tuio2};
+pub use tuio2::Tuio2;

@@ -9,12 +9,12 @@ use crate::units::Instant;
 
 /// Force that is reported as pressure 1, in newtons: a person of 100 kg on one foot. Greater forces are reported as
 /// 1.
-pub const TUIO_FULL_FORCE_N: f32 = 1000.0;
+const TUIO_FULL_FORCE_N: f32 = 1000.0;
 
 /// Contacts as TUIO 2.0 pointers, with their force as pressure.
 ///
 /// Positions run from 0 to 1, from the floor's north-west corner, y towards the south; the floor's dimension is in
-/// millimetres. Pressure is force over [`TUIO_FULL_FORCE_N`]. Type, user and component are 0: the floor identifies
+/// millimetres. Pressure is force over 1000 N, at most 1. Type, user and component are 0: the floor identifies
 /// feet, not people.
 ///
 /// # Source

@@ -14,7 +14,7 @@ use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version::{self, FORMAT_VERSION, VERSION};
-use crate::feel::{Effect, Effects, NamedEffect};
+use crate::feel::{Effects, NamedEffect};
 use underfoot_format::codec::By;
 use underfoot_format::describe::FieldType;
 use underfoot_format::text::Text;
@@ -165,10 +165,4 @@ pub fn write_named_effect(effect: &NamedEffect) -> String {
         text.push_str(&format!("    {name}: {},\n", value.lay_out(1, name.len() + 6)));
     }
     text + ")\n"
-}
-
-/// Writes the effect as a value of `plays`, with its lines indented by `indent` levels.
-#[must_use]
-pub fn write_effect(effect: &Effect, indent: usize) -> String {
-    effect.to_ron().lay_out(indent, 4 * indent + "plays: ".len())
 }

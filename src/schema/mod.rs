@@ -67,6 +67,6 @@ pub use underfoot_format::describe::{Description, FieldDescription, FieldType};
 pub use version::FORMAT_VERSION;
 pub use write::write_layout;
 
-pub use effect::{is_effect_name, write_effect, write_named_effect};
+pub use effect::{is_effect_name, write_named_effect};
 pub use file::{BoundedFile, open_bounded, read_bounded};
 pub use lists::MAX_WIDGETS;

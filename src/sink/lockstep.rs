@@ -25,11 +25,6 @@ impl Lockstep {
         &self.renderer
     }
 
-    #[cfg(feature = "wav")]
-    pub(super) fn renderer_mut(&mut self) -> &mut Renderer {
-        &mut self.renderer
-    }
-
     /// Frames rendered so far.
     pub(super) fn frames(&self) -> u64 {
         self.frames

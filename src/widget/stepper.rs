@@ -64,12 +64,6 @@ record! {
     pub fastest: Duration = "fastest_ms", num(0.0..=5000.0).milli() => Duration::from_millis(60);
 }
 
-impl Repeat {
-    /// No repetition.
-    pub const NEVER: Self =
-        Self { after: None, every: Duration::from_millis(250), fastest: Duration::from_millis(60) };
-}
-
 /// Ratio of each pause to the one before.
 const ACCELERATION: f32 = 0.85;
 

@@ -27,7 +27,7 @@ impl Limits {
     pub const MAX_DEPTH: usize = 8;
 
     /// Maximum nesting of arrays within a message.
-    pub const MAX_ARRAY_DEPTH: usize = 4;
+    const MAX_ARRAY_DEPTH: usize = 4;
 
     /// Limits for sensor boards and apps: 8 KiB, bundles four deep, 256 messages of 256 arguments.
     pub const SENSORS: Self = Self { bytes: 8192, depth: 4, elements: 256, tags: 256, address: 128 };

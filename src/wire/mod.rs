@@ -6,7 +6,6 @@
 mod argument;
 mod cause;
 mod command;
-pub mod corrupt;
 mod counters;
 mod decode;
 mod encode;

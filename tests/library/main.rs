@@ -3,6 +3,8 @@
 //! One test program for all: linking a program for each file would take minutes and gigabytes.
 #![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "../support/corrupt.rs"]
+mod corrupt;
 #[path = "../support/pages.rs"]
 mod pages;
 #[path = "../support/sender.rs"]

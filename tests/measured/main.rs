@@ -3,6 +3,8 @@
 
 use assert_no_alloc::AllocDisabler;
 
+#[path = "../support/corrupt.rs"]
+mod corrupt;
 #[path = "../sense_support/mod.rs"]
 mod sense_support;
 #[path = "../support/mod.rs"]

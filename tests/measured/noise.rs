@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::corrupt::Corruptor;
 use crate::support::layout;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -11,7 +12,6 @@ use underfoot::layout::Layout;
 use underfoot::sense::{Assembler, Method};
 use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
-use underfoot::wire::corrupt::Corruptor;
 use underfoot::wire::{Batch, Decoder, LinkCounters, SensorEncoder, SensorFormat, SensorPacket};
 use underfoot_sim::{self as sim, Foot, FootDriver, Scenario, Script, SimConfig, SimFloor};
 

@@ -39,7 +39,8 @@ pub(crate) fn others() -> Vec<Behaviour> {
     let scale = Scale { step: 0.5, ..Scale::new(-10.0, 10.0) };
     let options = ["Pan", "Zoom by hand", "Turn"].map(Arc::from).into();
     let slider = SliderSpec::new(thresholds, Scale::UNIT);
-    let repeat = Repeat::NEVER;
+    let repeat =
+        Repeat { after: None, every: Duration::from_millis(250), fastest: Duration::from_millis(60) };
     let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
     vec![
         Behaviour::Hold(HoldSpec { thresholds }),

@@ -51,20 +51,34 @@ enum Clock {
     Host(FloorClock),
 }
 
+impl Clock {
+    /// The clock of a floor at this pace; a free-running floor needs no host.
+    fn at(pace: Pace, host: impl FnOnce() -> Arc<dyn Host>) -> Self {
+        match pace {
+            Pace::FreeRunning => Self::Virtual,
+            Pace::RealTime => Self::Host(FloorClock::new(host())),
+        }
+    }
+}
+
 impl SimulatedSource {
     /// The packets of `floor` under the feet that `driver` moves.
+    ///
+    /// # Panics
+    /// At [`Pace::RealTime`] in a browser, whose clock the standard library cannot read; [`SimulatedSource::on`] takes
+    /// another host.
     #[must_use]
     pub fn new(floor: SimFloor, driver: Box<dyn FootDriver>, pace: Pace) -> Self {
-        Self::on(floor, driver, pace, Arc::new(Machine(std::time::Instant::now())))
+        Self::with_clock(floor, driver, Clock::at(pace, || Arc::new(Machine(std::time::Instant::now()))))
     }
 
     /// As [`SimulatedSource::new`], on a given host.
     #[must_use]
     pub fn on(floor: SimFloor, driver: Box<dyn FootDriver>, pace: Pace, host: Arc<dyn Host>) -> Self {
-        let clock = match pace {
-            Pace::FreeRunning => Clock::Virtual,
-            Pace::RealTime => Clock::Host(FloorClock::new(host)),
-        };
+        Self::with_clock(floor, driver, Clock::at(pace, || host))
+    }
+
+    fn with_clock(floor: SimFloor, driver: Box<dyn FootDriver>, clock: Clock) -> Self {
         let board = floor.readings().len();
         Self {
             floor,

@@ -114,8 +114,7 @@ impl ModalBank {
     }
 
     /// Frequency of the highest mode that can be struck, in hertz: 1000 at 44.1 kHz, 2180 at 96 kHz.
-    #[must_use]
-    pub fn highest_hz(&self) -> f64 {
+    fn highest_hz(&self) -> f64 {
         if self.is_slow() { self.sample_rate / 2.0 } else { self.sample_rate / 44.0 }
     }
 
@@ -129,9 +128,10 @@ impl ModalBank {
 
     /// Strikes a mode; the very next sample rendered is the first to move.
     ///
-    /// `frequency_hz` lies between 0 and [`ModalBank::highest_hz`], `decay_s` (the time to 1/e) is 0.001 or more,
-    /// `amplitude` any finite number; other values have no effect. If the bank is full, the new mode steals the slot
-    /// of the mode with the least energy, and the function returns true.
+    /// `frequency_hz` lies between 0 and the highest frequency of the bank (1000 Hz at 44.1 kHz, 2180 Hz at 96 kHz),
+    /// `decay_s` (the time to 1/e) is 0.001 or more, `amplitude` any finite number; other values have no effect. If
+    /// the bank is full, the new mode steals the slot of the mode with the least energy, and the function returns
+    /// true.
     ///
     /// # Real-time
     /// No allocation. A mode that is not ringing yet costs about as much as the

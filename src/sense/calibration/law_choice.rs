@@ -55,12 +55,13 @@ const BENCH: f64 = 1e-3;
 impl Comparison {
     /// Fits every law to `points` and selects one.
     ///
-    /// [`Fit::of_law`] fits each law. Akaike's information criterion compares them, with normal errors of one of two
-    /// spreads, the one with the lower value for the law: constant in newtons, or in proportion to the load. Every
-    /// law has two parameters and a spread, so the criterion's terms for their number, and its correction for few
-    /// measurements, are the same for all. Errors that resemble their neighbours (hysteresis, a wave that no law
-    /// follows) are not independent evidence: the difference is scaled by the share of measurements that count as
-    /// independent. Readings of next to nothing are left out of the comparison, like saturated ones.
+    /// The fit of each law is that of [`Fit::of`] for the exponential one. Akaike's information criterion compares
+    /// them, with normal errors of one of two spreads, the one with the lower value for the law: constant in newtons,
+    /// or in proportion to the load. Every law has two parameters and a spread, so the criterion's terms for their
+    /// number, and its correction for few measurements, are the same for all. Errors that resemble their neighbours
+    /// (hysteresis, a wave that no law follows) are not independent evidence: the difference is scaled by the share of
+    /// measurements that count as independent. Readings of next to nothing are left out of the comparison, like
+    /// saturated ones.
     ///
     /// The paper's exponential law is selected if its excess is at most 2, then a straight line if its excess is at
     /// most 4; otherwise the law with the lowest value. Fewer than five measurements permit no comparison: the first

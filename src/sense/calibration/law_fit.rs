@@ -78,15 +78,7 @@ impl Fit {
     /// Minimum difference of voltages that determines an exponent, in volts (our choice).
     const MIN_SPREAD_V: f32 = 0.05;
 
-    /// The paper's exponential law that fits `points` best; see [`Fit::of_law`].
-    ///
-    /// # Errors
-    /// As [`Fit::of_law`].
-    pub fn of(points: &[LoadPoint]) -> Result<Self, FitError> {
-        Self::of_law(LawKind::Exponential, points)
-    }
-
-    /// The law of this kind that fits `points` best, in any order; repeated loads are useful.
+    /// The paper's exponential law that fits `points` best, in any order; repeated loads are useful.
     ///
     /// Minimises the squares of the force error in newtons, so heavy loads have the most weight: a foot works in that
     /// range. Points with a force of zero or less enter the fit but do not count as measurements on their own. Leave
@@ -99,8 +91,8 @@ impl Fit {
     /// # Source
     /// `f = a exp(b v)` by least squares (paper, section 2.2), here by
     /// Levenberg-Marquardt from the straight line through `ln f`; the others alike, the linear one directly.
-    pub fn of_law(kind: LawKind, points: &[LoadPoint]) -> Result<Self, FitError> {
-        Loads::of(points)?.fit(kind)
+    pub fn of(points: &[LoadPoint]) -> Result<Self, FitError> {
+        Loads::of(points)?.fit(LawKind::Exponential)
     }
 }
 
@@ -401,8 +393,9 @@ mod tests {
             Calibration::of(LawKind::Linear, [82.0, 0.4]),
             Calibration::of(LawKind::Linear, [82.0, -1.0]),
         ] {
-            let fit =
-                Fit::of_law(law.kind(), &ramp(law, 40)).unwrap_or_else(|error| panic!("{law}: {error}"));
+            let fit = Loads::of(&ramp(law, 40))
+                .and_then(|loads| loads.fit(law.kind()))
+                .unwrap_or_else(|error| panic!("{law}: {error}"));
             let near = |(found, truth): (f32, f32)| (found - truth).abs() <= 1e-3 * truth.abs();
             let numbers = fit.calibration.numbers().into_iter().zip(law.numbers());
             assert!(numbers.into_iter().all(near) && fit.residual < 1e-5, "{law}: {fit:?}");
@@ -423,7 +416,7 @@ mod tests {
         ]
         .map(|(volts, force)| LoadPoint::new(volts, Newtons(force)));
         for (kind, numbers, residual) in SCIPY {
-            let fit = Fit::of_law(kind, &points).unwrap();
+            let fit = Loads::of(&points).unwrap().fit(kind).unwrap();
             let near = |found: f32, truth: f32| (found / truth - 1.0).abs() < 2e-4;
             let [a, b] = fit.calibration.numbers();
             assert!(near(a, numbers[0]) && near(b, numbers[1]) && near(fit.residual, residual), "{fit:?}");

@@ -54,10 +54,10 @@ pub struct Judgement {
 
 impl Verdict {
     /// Maximum residual of a good sensor: real parts miss their law by about 8 % of full scale (our choice).
-    pub const GOOD: f32 = 0.08;
+    const GOOD: f32 = 0.08;
 
     /// Maximum residual of a usable sensor (our choice).
-    pub const POOR: f32 = 0.15;
+    const POOR: f32 = 0.15;
 
     /// The word for it: `good`, `poor`, `unmeasured` or `replace`.
     #[must_use]

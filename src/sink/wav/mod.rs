@@ -171,11 +171,6 @@ impl WavSink {
         self.lockstep.renderer()
     }
 
-    /// Returns the renderer, for its scope.
-    pub fn renderer_mut(&mut self) -> &mut Renderer {
-        self.lockstep.renderer_mut()
-    }
-
     /// Returns the number of frames dropped so far because the disk was too slow.
     #[must_use]
     pub fn left_out(&self) -> u64 {

@@ -1,11 +1,11 @@
 //! Invalid datagrams: none may crash the program, and none may change the events of feet.
 
+use crate::corrupt::{Corruptor, bundle_bomb, hostile_address, tag_bomb};
 use proptest::prelude::*;
 use rosc::{OscPacket, encoder};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::{Assembler, ForceFrame, Quality};
 use underfoot::units::Instant;
-use underfoot::wire::corrupt::{Corruptor, bundle_bomb, hostile_address, tag_bomb};
 use underfoot::wire::{
     Batch, Decoder, Limits, LinkCounters, Malformed, Readings, SensorEncoder, SensorFormat, SensorPacket,
     WireError, check,
@@ -189,4 +189,37 @@ fn the_fragments_above_do_reach_the_decoder() {
         check(&bytes, &Limits::SENSORS).is_ok()
     });
     assert!(passed.count() > 20);
+}
+
+/// Limits that let a bomb of any size through to the depth checks.
+const ROOMY: Limits = Limits { bytes: 65_507, tags: 65_507, address: 65_507, ..Limits::SENSORS };
+
+#[test]
+fn bombs_are_well_formed_but_for_their_depth() {
+    assert_eq!(check(&bundle_bomb(4), &ROOMY), Ok(()));
+    assert!(matches!(check(&bundle_bomb(5), &ROOMY), Err(Malformed::TooDeep { .. })));
+    assert!(matches!(check(&bundle_bomb(3000), &ROOMY), Err(Malformed::TooDeep { .. })));
+    assert!(matches!(check(&tag_bomb(20_000), &ROOMY), Err(Malformed::TooDeep { .. })));
+    assert_eq!(check(&hostile_address(50_000), &ROOMY), Ok(()));
+}
+
+#[test]
+fn bombs_fit_their_datagram_and_are_refused_by_size_too() {
+    for bomb in [bundle_bomb(3000), tag_bomb(60_000), hostile_address(60_000)] {
+        assert!(bomb.len() <= 65_507);
+        assert!(matches!(check(&bomb, &Limits::SENSORS), Err(Malformed::TooLarge { .. })));
+    }
+}
+
+#[test]
+fn the_same_seed_makes_the_same_garbage() {
+    let make = |seed| {
+        let mut corruptor = Corruptor::new(seed);
+        (0..100).map(|_| corruptor.corrupt(&[7; 60])).collect::<Vec<_>>()
+    };
+    assert_eq!(make(5), make(5));
+    assert_ne!(make(5), make(6));
+    // An empty model must work too.
+    let mut corruptor = Corruptor::new(1);
+    (0..100).for_each(|_| drop(corruptor.corrupt(&[])));
 }
