@@ -5,8 +5,7 @@ use std::collections::VecDeque;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 
-use super::super::app::App;
-use super::super::messages::Happened;
+use super::super::messages::{Happened, Messages};
 use super::super::style::{Row, quiet, section};
 use underfoot::engine::IgnoredPress;
 use underfoot::sink::event_line;
@@ -18,55 +17,50 @@ use underfoot_scene::scene::Theme;
 /// Height of one line, in points.
 const LINE: f32 = 18.0;
 
-impl App {
-    /// Shows the events, newest first, in `height` points with its heading.
-    pub(super) fn events_part(&mut self, ui: &mut Ui, height: f32) {
-        let theme = &self.theme;
-        let top = ui.cursor().top();
-        section(ui, theme, "Events", |ui| {
-            ui.label(quiet(theme, format!("{} so far", self.messages.event_count)).size(12.0));
-        });
-        self.search_events(ui);
-        let theme = &self.theme;
-        let left = height - (ui.cursor().top() - top) - 8.0;
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let wanted = self.wanted_events.to_lowercase();
-        let recent: Vec<&Happened> =
-            self.messages.recent.iter().filter(|happened| is_wanted(happened, &wanted)).collect();
-        let area = ScrollArea::vertical().id_salt("events").max_height(left).min_scrolled_height(left);
-        area.auto_shrink(false).show_rows(ui, LINE, recent.len().max(1), |ui, lines| {
-            if recent.is_empty() {
-                ui.label(quiet(theme, if wanted.is_empty() { "nothing yet" } else { "nothing with that" }));
-            }
-            for happened in lines.filter_map(|line| recent.get(line)) {
-                match happened {
-                    Happened::Event(event) => show(ui, theme, event),
-                    Happened::Ignored(press) => show_ignored(ui, theme, press),
-                    Happened::GroundEvent { material, count, at, .. } => {
-                        gave_way(ui, theme, material, *count, *at);
-                    }
+/// Shows the events, newest first, in `height` points with its heading; `search` holds the text that its
+/// lines must contain, empty for all.
+pub(super) fn events_part(ui: &mut Ui, theme: &Theme, messages: &Messages, search: &mut String, height: f32) {
+    let top = ui.cursor().top();
+    section(ui, theme, "Events", |ui| {
+        ui.label(quiet(theme, format!("{} so far", messages.event_count)).size(12.0));
+    });
+    search_events(ui, messages, search);
+    let left = height - (ui.cursor().top() - top) - 8.0;
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let wanted = search.to_lowercase();
+    let recent: Vec<&Happened> =
+        messages.recent.iter().filter(|happened| is_wanted(happened, &wanted)).collect();
+    let area = ScrollArea::vertical().id_salt("events").max_height(left).min_scrolled_height(left);
+    area.auto_shrink(false).show_rows(ui, LINE, recent.len().max(1), |ui, lines| {
+        if recent.is_empty() {
+            ui.label(quiet(theme, if wanted.is_empty() { "nothing yet" } else { "nothing with that" }));
+        }
+        for happened in lines.filter_map(|line| recent.get(line)) {
+            match happened {
+                Happened::Event(event) => show(ui, theme, event),
+                Happened::Ignored(press) => show_ignored(ui, theme, press),
+                Happened::GroundEvent { material, count, at, .. } => {
+                    gave_way(ui, theme, material, *count, *at);
                 }
             }
-        });
-        ui.spacing_mut().item_spacing.y = 5.0;
-    }
+        }
+    });
+    ui.spacing_mut().item_spacing.y = 5.0;
 }
 
-impl App {
-    /// A search field for the list, and a button that copies the listed events.
-    fn search_events(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            let room = (ui.available_width() - 70.0).max(60.0);
-            let field = TextEdit::singleline(&mut self.wanted_events).hint_text("Search").desired_width(room);
-            let field = ui.add(field);
-            field.widget_info(|| WidgetInfo::labeled(Role::SearchInput, true, "Search events"));
-            let copy = ui.button("Copy").on_hover_text("The listed events as JSON lines, oldest first");
-            copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Copy events"));
-            if copy.clicked() {
-                ui.ctx().copy_text(exported(&self.messages.recent, &self.wanted_events));
-            }
-        });
-    }
+/// A search field for the list, and a button that copies the listed events.
+fn search_events(ui: &mut Ui, messages: &Messages, search: &mut String) {
+    ui.horizontal(|ui| {
+        let room = (ui.available_width() - 70.0).max(60.0);
+        let field = TextEdit::singleline(search).hint_text("Search").desired_width(room);
+        let field = ui.add(field);
+        field.widget_info(|| WidgetInfo::labeled(Role::SearchInput, true, "Search events"));
+        let copy = ui.button("Copy").on_hover_text("The listed events as JSON lines, oldest first");
+        copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Copy events"));
+        if copy.clicked() {
+            ui.ctx().copy_text(exported(&messages.recent, search));
+        }
+    });
 }
 
 /// Whether a line contains all words of `wanted`, which is in lower case: in its control, its event, the reason for
