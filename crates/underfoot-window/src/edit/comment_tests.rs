@@ -6,7 +6,7 @@ use glam::Vec2;
 use proptest::prelude::*;
 
 use super::splice::comments;
-use super::{Address, Document, Edit, Item, List, grouping, ungrouping};
+use super::{Address, Document, Edit, Item, RecordList, grouping, ungrouping};
 use underfoot::floor::Floor;
 use underfoot::schema::Kinds;
 
@@ -91,7 +91,7 @@ proptest! {
         let (said, shown) = (words(&document), placed(&document));
         let is_chosen = |index: usize| chosen[index % 6];
         let records: Vec<Address> =
-            (0..controls.len()).filter(|index| is_chosen(*index)).map(|index| Address::of(List::Widgets, index)).collect();
+            (0..controls.len()).filter(|index| is_chosen(*index)).map(|index| Address::of(RecordList::Widgets, index)).collect();
         prop_assume!(!records.is_empty());
 
         let items = document.items();
@@ -108,7 +108,7 @@ proptest! {
         prop_assert_eq!(words(&document), said.clone(), "apart again: {}", document.text());
         prop_assert_eq!(placed(&document), shown.clone());
 
-        document.edit(&[Edit::Reorder { record: Address::of(List::Widgets, 0), to }]).unwrap();
+        document.edit(&[Edit::Reorder { record: Address::of(RecordList::Widgets, 0), to }]).unwrap();
         prop_assert_eq!(words(&document), said.clone(), "in another order: {}", document.text());
 
         let copied = document.copy(&records);

@@ -2,28 +2,28 @@
 
 use glam::DVec2;
 
-use super::address::{Address, List, list_of};
+use super::address::{Address, RecordList, list_of};
 use super::change::Edit;
 use super::document::Document;
 use super::item::Item;
 use super::place::{RELATIVE, pair};
-use super::refusal::Refusal;
-use super::splice::{Lines, Piece, comments, spliced};
+use super::refusal::EditRefusal;
+use super::splice::{RecordText, TextLines, comments, spliced};
 use underfoot_format::outline::Outline;
 
 /// The edits that make one group of `items`, and its address: it replaces the first of them, and its place is
 /// their south-west corner.
 ///
 /// # Errors
-/// [`Refusal::Apart`] for records of several lists, or that are not controls; [`Refusal::PlacedByGroup`] as
+/// [`EditRefusal::Apart`] for records of several lists, or that are not controls; [`EditRefusal::PlacedByGroup`] as
 /// [`Document::placing`].
-pub fn grouping(document: &Document, items: &[&Item]) -> Result<(Vec<Edit>, Address), Refusal> {
+pub fn grouping(document: &Document, items: &[&Item]) -> Result<(Vec<Edit>, Address), EditRefusal> {
     let mut items: Vec<&Item> = items.to_vec();
     items.sort_by(|a, b| a.record.cmp(&b.record));
-    let home = items.first().and_then(|item| item.record.split()).ok_or(Refusal::Apart)?;
+    let home = items.first().and_then(|item| item.record.split()).ok_or(EditRefusal::Apart)?;
     let is_here = |item: &&Item| item.record.split().is_some_and(|it| (&it.0, it.1) == (&home.0, home.1));
-    if home.1 != List::Widgets || !items.iter().all(is_here) {
-        return Err(Refusal::Apart);
+    if home.1 != RecordList::Widgets || !items.iter().all(is_here) {
+        return Err(EditRefusal::Apart);
     }
     let places: Vec<DVec2> = items.iter().map(|item| place_of(document, item)).collect::<Result<_, _>>()?;
     let corner = places.iter().copied().reduce(DVec2::min).unwrap_or_default();
@@ -46,21 +46,21 @@ pub fn grouping(document: &Document, items: &[&Item]) -> Result<(Vec<Edit>, Addr
 /// The edits that dissolve the group, and the addresses of its records, which replace it.
 ///
 /// # Errors
-/// [`Refusal::Apart`] for a record that is not a group; [`Refusal::PlacedByGroup`] as [`Document::placing`].
+/// [`EditRefusal::Apart`] for a record that is not a group; [`EditRefusal::PlacedByGroup`] as [`Document::placing`].
 pub fn ungrouping(
     document: &Document,
     items: &[Item],
     group: &Item,
-) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
-    let (parent, list, index) = group.record.split().ok_or(Refusal::Apart)?;
+) -> Result<(Vec<Edit>, Vec<Address>), EditRefusal> {
+    let (parent, list, index) = group.record.split().ok_or(EditRefusal::Apart)?;
     let corner = place_of(document, group)?;
     let inner = items.iter().filter(|item| {
-        item.record.split().is_some_and(|(of, list, _)| of == group.record && list == List::Widgets)
+        item.record.split().is_some_and(|(of, list, _)| of == group.record && list == RecordList::Widgets)
     });
     let mut edits = vec![Edit::Take { record: group.record.clone() }];
     let mut places = Vec::new();
     let pieces = inner.map(|item| placed_piece(document, item, place_of(document, item)? + corner));
-    let mut pieces = pieces.collect::<Result<Vec<Piece>, _>>()?;
+    let mut pieces = pieces.collect::<Result<Vec<RecordText>, _>>()?;
     let left = comments_beside(document, &group.record, &pieces);
     if let Some(first) = pieces.first_mut() {
         first.above.splice(0..0, left);
@@ -70,13 +70,13 @@ pub fn ungrouping(
         edits.push(Edit::Insert { at: at.clone(), text: piece.listed("") });
         places.push(at);
     }
-    if places.is_empty() { Err(Refusal::Apart) } else { Ok((edits, places)) }
+    if places.is_empty() { Err(EditRefusal::Apart) } else { Ok((edits, places)) }
 }
 
 /// The comments of a group that do not belong to any of `pieces`, line by line.
-fn comments_beside(document: &Document, group: &Address, pieces: &[Piece]) -> Vec<String> {
+fn comments_beside(document: &Document, group: &Address, pieces: &[RecordText]) -> Vec<String> {
     let piece = group.split().and_then(|(parent, list, index)| {
-        Lines(document.text()).piece(list_of(parent.find(document.root())?, list)?, index)
+        TextLines(document.text()).piece(list_of(parent.find(document.root())?, list)?, index)
     });
     let Some(whole) = piece.map(|piece| piece.listed("")) else { return Vec::new() };
     let mut all: Vec<&str> = comments(&whole);
@@ -95,31 +95,31 @@ fn comments_beside(document: &Document, group: &Address, pieces: &[Piece]) -> Ve
 }
 
 /// Its written place in its list, or the place that it would have if it were written.
-fn place_of(document: &Document, item: &Item) -> Result<DVec2, Refusal> {
+fn place_of(document: &Document, item: &Item) -> Result<DVec2, EditRefusal> {
     match document.pair(&item.record, "at") {
         Some(written) => Ok(written),
-        None if item.is_group => Err(Refusal::PlacedByGroup(item.record.clone())),
+        None if item.is_group => Err(EditRefusal::PlacedByGroup(item.record.clone())),
         None => Ok(item.area.min.as_dvec2() / document.unit_m() - document.origin(&item.record)?),
     }
 }
 
 /// The text of a record with the place `at` of its own.
-fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Result<Piece, Refusal> {
-    let missing = || Refusal::Missing(item.record.clone());
+fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Result<RecordText, EditRefusal> {
+    let missing = || EditRefusal::Missing(item.record.clone());
     let (parent, list, index) = item.record.split().ok_or_else(missing)?;
     let list = parent.find(document.root()).and_then(|parent| list_of(parent, list)).ok_or_else(missing)?;
-    let mut piece = Lines(document.text()).piece(list, index).ok_or_else(missing)?;
+    let mut piece = TextLines(document.text()).piece(list, index).ok_or_else(missing)?;
     let had_at = document.written(&item.record, "at").is_some();
     for field in RELATIVE.iter().filter(|_| !had_at) {
         let root = Outline::parse(&piece.text).ok_or_else(missing)?;
-        piece.text = spliced(&piece.text, Lines(&piece.text).unset(&root, &[field]));
+        piece.text = spliced(&piece.text, TextLines(&piece.text).unset(&root, &[field]));
     }
     let size = item.area.size().as_dvec2() / document.unit_m();
     let needs_size = !had_at && !item.is_group && document.written(&item.record, "size").is_none();
     let size = needs_size.then(|| ("size", pair(size.x, size.y)));
     for (field, value) in [("at", pair(at.x, at.y))].into_iter().chain(size) {
         let root = Outline::parse(&piece.text).ok_or_else(missing)?;
-        piece.text = spliced(&piece.text, Lines(&piece.text).set(&root, &[field], &value));
+        piece.text = spliced(&piece.text, TextLines(&piece.text).set(&root, &[field], &value));
     }
     Ok(piece)
 }
@@ -179,7 +179,7 @@ mod tests {
         );
         let items = document.items();
         let all: Vec<&Item> = items.iter().collect();
-        assert_eq!(grouping(&document, &all), Err(Refusal::Apart));
+        assert_eq!(grouping(&document, &all), Err(EditRefusal::Apart));
         let (edits, _) = grouping(&document, &all[1..]).unwrap();
         document.edit(&edits).unwrap();
         let inner = "(id: \"a\", kind: \"button\", at: (0, 0), size: (0.6, 0.6)), // a";

@@ -6,26 +6,26 @@ use eframe::egui::{self, Ui};
 
 use super::PreviewOptions;
 use super::appearance::Appearance;
-use super::bars::{Activity, TELL_S, TopBar, handle_mute_key, help_bar, notices, problems, warnings};
+use super::bars::{HelpTopic, TELL_S, TopBar, handle_mute_key, help_bar, notices, problems, warnings};
 use super::closing::{Closing, Title, handle_quit_key};
 use super::design::Designer;
 use super::feed::PreviewInput;
 use super::floor_check::FloorCheck;
 use super::floor_view::{FloorFeet, FloorView, OnFloor};
-use super::messages::Messages;
+use super::messages::WindowMessages;
 use super::panel::{SidePanel, Tuner, handle_undo_key};
 use super::plots::Plots;
-use super::presses::Presses;
+use super::presses::PressLog;
 use super::projection::Projection;
 use super::rehearsal::Rehearsal;
-use super::scopes::Scopes;
+use super::scopes::ActuatorScopes;
 use super::selection::Selection;
 use super::shown::ShownFloor;
 use super::status::StatusBar;
 use super::time_line::TimeLine;
 use super::turns::Turns;
 use super::walks::Walks;
-use super::watch::Watch;
+use super::watch::FloorWatch;
 use underfoot_scene::scene;
 
 /// Time between frames: 60 a second.
@@ -40,7 +40,7 @@ pub(super) struct App {
     pub(super) view: FloorView,
     pub(super) feet: FloorFeet,
     pub(super) selection: Selection,
-    pub(super) presses: Presses,
+    pub(super) presses: PressLog,
     pub(super) plots: Plots,
     pub(super) panel: SidePanel,
     pub(super) top_bar: TopBar,
@@ -75,7 +75,8 @@ impl App {
     pub(super) fn new(input: PreviewInput, options: &PreviewOptions) -> Self {
         let (projection, wrong) = Projection::new(&options.projection);
         let channels = input.channels;
-        let mut messages = Messages::new(input.layout, channels.events, channels.layouts, channels.notices);
+        let mut messages =
+            WindowMessages::new(input.layout, channels.events, channels.layouts, channels.notices);
         messages.warnings = input.warnings;
         let (appearance, unread) = Appearance::new(options.theme, options.settings.clone());
         wrong.into_iter().chain(unread).for_each(|wrong| messages.note(wrong));
@@ -84,7 +85,7 @@ impl App {
             view: FloorView::default(),
             feet: FloorFeet::new(input.feet, input.shoes),
             selection: Selection::new(&floor.geometry),
-            presses: if input.playback.is_some() { Presses::recorded() } else { Presses::default() },
+            presses: if input.playback.is_some() { PressLog::recorded() } else { PressLog::default() },
             plots: Plots::default(),
             panel: SidePanel::default(),
             top_bar: TopBar { choices: input.choices, lists_warnings: false },
@@ -104,14 +105,14 @@ impl App {
                 due: Instant::now(),
             },
             shown: ShownFloor {
-                scopes: Scopes::new(input.scopes, &floor),
+                scopes: ActuatorScopes::new(input.scopes, &floor),
                 floor,
                 source: input.source,
                 server_feed: input.server,
                 server: None,
                 snapshots: input.snapshots,
                 messages,
-                watch: Watch::default(),
+                watch: FloorWatch::default(),
                 commands: channels.commands,
                 now_s: 0.0,
             },
@@ -254,15 +255,15 @@ impl App {
     }
 
     /// The use of the window now.
-    fn activity(&self) -> Activity {
+    fn activity(&self) -> HelpTopic {
         let draws_walks = self.walks.as_ref().is_some_and(|walks| walks.are_drawn);
         match () {
-            () if self.is_designing() => Activity::Designing,
-            () if self.is_checking() => Activity::Checking,
-            () if draws_walks => Activity::DrawingWalks,
-            () if self.feet.are_led() => Activity::Stepping,
-            () if self.time_line.is_some() => Activity::Replaying,
-            () => Activity::Watching { is_rendered: self.shown.scopes.is_fed() },
+            () if self.is_designing() => HelpTopic::Designing,
+            () if self.is_checking() => HelpTopic::Checking,
+            () if draws_walks => HelpTopic::DrawingWalks,
+            () if self.feet.are_led() => HelpTopic::Stepping,
+            () if self.time_line.is_some() => HelpTopic::Replaying,
+            () => HelpTopic::Watching { is_rendered: self.shown.scopes.is_fed() },
         }
     }
 

@@ -7,7 +7,7 @@ use eframe::egui;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{Key, Modifiers, PopupCloseBehavior, Ui};
 
-use super::messages::Messages;
+use super::messages::WindowMessages;
 use super::style;
 use super::style::quiet;
 use underfoot::layout::Colour;
@@ -137,7 +137,7 @@ impl Choice {
 
 impl Appearance {
     /// A menu of colours and sizes; it stays open after a click.
-    pub(super) fn menu(&mut self, ui: &mut Ui, messages: &mut Messages) {
+    pub(super) fn menu(&mut self, ui: &mut Ui, messages: &mut WindowMessages) {
         let mut choice = self.choice;
         let window = self.theme();
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -178,7 +178,7 @@ impl Appearance {
     }
 
     /// Ctrl with plus, minus and zero sizes the text, during typing too.
-    pub(super) fn handle_keys(&mut self, ui: &Ui, messages: &mut Messages) {
+    pub(super) fn handle_keys(&mut self, ui: &Ui, messages: &mut WindowMessages) {
         let mut choice = self.choice;
         let count = |key: Key| {
             let plain = ui.input_mut(|i| i.count_and_consume_key(Modifiers::COMMAND, key));
@@ -193,7 +193,7 @@ impl Appearance {
         self.choose(ui.ctx(), choice, messages);
     }
 
-    fn choose(&mut self, ctx: &egui::Context, choice: Choice, messages: &mut Messages) {
+    fn choose(&mut self, ctx: &egui::Context, choice: Choice, messages: &mut WindowMessages) {
         if choice == self.choice {
             return;
         }

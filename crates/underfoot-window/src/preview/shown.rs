@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
 use super::feed::{PreviewCommand, ServerFeed, ServerState};
-use super::messages::Messages;
-use super::scopes::Scopes;
-use super::watch::{Banner, Watch};
+use super::messages::WindowMessages;
+use super::scopes::ActuatorScopes;
+use super::watch::{Banner, FloorWatch};
 use underfoot::engine::Snapshot;
 use underfoot::floor::{Floor, TileId};
 use underfoot::layout::Layout;
@@ -21,9 +21,9 @@ pub(super) struct ShownFloor {
     /// The state of the server in this frame.
     pub(super) server: Option<ServerState>,
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
-    pub(super) messages: Messages,
-    pub(super) scopes: Scopes,
-    pub(super) watch: Watch,
+    pub(super) messages: WindowMessages,
+    pub(super) scopes: ActuatorScopes,
+    pub(super) watch: FloorWatch,
     pub(super) commands: SyncSender<PreviewCommand>,
     /// The window's clock, in seconds.
     pub(super) now_s: f64,

@@ -6,7 +6,7 @@ use eframe::egui::{Align, Label, Layout, Margin, Panel, RichText, Ui, WidgetInfo
 
 use super::feed::{ServerLink, ServerState};
 use super::panel::grouped;
-use super::rate::Rate;
+use super::rate::RateMeter;
 use super::shown::ShownFloor;
 use super::style::panel_frame;
 use underfoot::engine::Snapshot;
@@ -89,9 +89,9 @@ impl Latency {
 pub(super) struct StatusBar {
     /// The number of frames of this window so far.
     drawn: u64,
-    window_frames: Rate,
-    frames: Rate,
-    packets: Rate,
+    window_frames: RateMeter,
+    frames: RateMeter,
+    packets: RateMeter,
     latency: Latency,
 }
 
@@ -99,9 +99,9 @@ impl StatusBar {
     pub(super) fn new(latency: Option<LatencyStages>) -> Self {
         Self {
             drawn: 0,
-            window_frames: Rate::default(),
-            frames: Rate::default(),
-            packets: Rate::default(),
+            window_frames: RateMeter::default(),
+            frames: RateMeter::default(),
+            packets: RateMeter::default(),
             latency: Latency::new(latency),
         }
     }

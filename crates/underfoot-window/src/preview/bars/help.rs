@@ -12,7 +12,7 @@ const HELP: f32 = 560.0;
 
 /// The use of the window by its user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::preview) enum Activity {
+pub(in crate::preview) enum HelpTopic {
     Designing,
     Checking,
     DrawingWalks,
@@ -27,7 +27,7 @@ pub(in crate::preview) enum Activity {
     },
 }
 
-impl Activity {
+impl HelpTopic {
     /// Keys and gestures, each with its action.
     const fn steps(self) -> &'static [(&'static str, &'static str)] {
         match self {
@@ -81,7 +81,7 @@ impl Activity {
 }
 
 /// Shows how to use the floor, if the window is tall enough.
-pub(in crate::preview) fn help_bar(ui: &mut Ui, theme: &Theme, activity: Activity) {
+pub(in crate::preview) fn help_bar(ui: &mut Ui, theme: &Theme, activity: HelpTopic) {
     if ui.ctx().content_rect().height() < HELP {
         return;
     }

@@ -4,7 +4,7 @@ mod help;
 mod notices;
 mod top;
 
-pub(super) use help::{Activity, help_bar};
+pub(super) use help::{HelpTopic, help_bar};
 pub(super) use notices::{notices, problems, warnings};
 pub(super) use top::{TELL_S, TopBar, handle_mute_key};
 

@@ -5,7 +5,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Align, Layout, Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo};
 
 use crate::preview::feed::Warnings;
-use crate::preview::messages::Messages;
+use crate::preview::messages::WindowMessages;
 use crate::preview::style::{panel_colour, quiet};
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -29,7 +29,7 @@ pub(in crate::preview) fn warnings(ui: &mut Ui, theme: &Theme, warnings: &Warnin
 }
 
 /// Shows messages of the program until the user closes them.
-pub(in crate::preview) fn notices(ui: &mut Ui, theme: &Theme, messages: &mut Messages) {
+pub(in crate::preview) fn notices(ui: &mut Ui, theme: &Theme, messages: &mut WindowMessages) {
     if messages.notes.is_empty() {
         return;
     }
@@ -58,7 +58,7 @@ pub(in crate::preview) fn notices(ui: &mut Ui, theme: &Theme, messages: &mut Mes
 }
 
 /// Shows the problems of the layout file, under the floor with the last good layout.
-pub(in crate::preview) fn problems(ui: &mut Ui, theme: &Theme, messages: &Messages) {
+pub(in crate::preview) fn problems(ui: &mut Ui, theme: &Theme, messages: &WindowMessages) {
     let Some(file) = &messages.file else { return };
     let Some(diagnostics) = &file.diagnostics else { return };
     let frame = egui::Frame::new()

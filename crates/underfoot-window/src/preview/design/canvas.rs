@@ -7,10 +7,10 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Sense, Ui, WidgetInfo};
 
 use super::edited::EditedLayout;
-use super::gestures::Gesture;
+use super::gestures::PointerGesture;
 use super::marks::marks;
-use super::palette::Thing;
-use crate::edit::{Address, Item, List};
+use super::palette::PaletteThing;
+use crate::edit::{Address, Item, RecordList};
 use crate::preview::zoom::Zoom;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
@@ -23,15 +23,15 @@ use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 pub(super) struct Canvas {
     pub(super) view: Zoom,
     scene: Scene,
-    pub(super) scale: Scale,
-    pub(super) gesture: Gesture,
+    pub(super) scale: DrawnToScale,
+    pub(super) gesture: PointerGesture,
     /// The thing that the next click puts down.
-    pub(super) placing: Option<Thing>,
+    pub(super) placing: Option<PaletteThing>,
 }
 
 /// The optional marks that are drawn to scale.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Scale {
+pub(super) struct DrawnToScale {
     pub(super) shoes: bool,
     pub(super) reach: bool,
 }
@@ -92,19 +92,19 @@ fn without_hidden<'l>(edited: &EditedLayout, layout: &'l Layout) -> Cow<'l, Layo
         return Cow::Borrowed(layout);
     }
     let hidden: Vec<&Item> = edited.items.iter().filter(|item| edited.is_hidden(&item.record)).collect();
-    let is_left = |list: List, index: usize| {
+    let is_left = |list: RecordList, index: usize| {
         !hidden.iter().any(|item| match list {
-            List::Widgets => item.widgets.contains(&index),
+            RecordList::Widgets => item.widgets.contains(&index),
             _ => item.record == Address::of(list, index),
         })
     };
     let mut layout = layout.clone();
-    keep(&mut layout.widgets, |index| is_left(List::Widgets, index));
-    keep(&mut layout.stances, |index| is_left(List::Stances, index));
+    keep(&mut layout.widgets, |index| is_left(RecordList::Widgets, index));
+    keep(&mut layout.stances, |index| is_left(RecordList::Stances, index));
     let grounds: Vec<bool> = edited
         .items
         .iter()
-        .filter(|item| item.record.list() == Some(List::Grounds))
+        .filter(|item| item.record.list() == Some(RecordList::Grounds))
         .map(|item| !edited.is_hidden(&item.record))
         .collect();
     keep(&mut layout.grounds, |index| grounds.get(index).copied().unwrap_or(true));

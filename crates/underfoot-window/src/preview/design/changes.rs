@@ -4,7 +4,7 @@ use eframe::egui;
 use glam::Vec2;
 
 use super::edited::EditedLayout;
-use crate::edit::{Address, Edit, Item, Refusal, grouping, ungrouping};
+use crate::edit::{Address, Edit, EditRefusal, Item, grouping, ungrouping};
 use underfoot::floor::Rect;
 
 impl EditedLayout {
@@ -98,7 +98,7 @@ impl EditedLayout {
     pub(super) fn put_beside(
         &mut self,
         size: Vec2,
-        edits: impl Fn(&Self, Vec2) -> Result<(Vec<Edit>, Vec<Address>), Refusal>,
+        edits: impl Fn(&Self, Vec2) -> Result<(Vec<Edit>, Vec<Address>), EditRefusal>,
     ) {
         /// Half a shoe, so that a foot on one control does not reach the other (rule U102).
         const GAP_M: f32 = 0.06;

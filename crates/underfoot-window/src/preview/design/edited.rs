@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 
 use eframe::egui;
 
-use crate::edit::{Address, Document, Edit, Item, Refusal};
+use crate::edit::{Address, Document, Edit, EditRefusal, Item};
 use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostic, Diagnostics};
 use underfoot_scene::ergonomics::Finding;
 use underfoot_scene::letters;
 
 /// A message about an action.
-pub(super) struct Message {
+pub(super) struct EditMessage {
     pub(super) text: String,
     pub(super) is_bad: bool,
     /// The revision of the layout to which it refers.
@@ -38,7 +38,7 @@ pub(super) struct EditedLayout {
     /// The number of the drag, or of the held key, that edits now: its edits are one undo step.
     pub(super) stroke: u64,
     /// The last message about an action or a refusal.
-    pub(super) message: Option<Message>,
+    pub(super) message: Option<EditMessage>,
 }
 
 impl EditedLayout {
@@ -76,15 +76,15 @@ impl EditedLayout {
     }
 
     pub(super) fn say(&mut self, text: impl Into<String>) {
-        self.message = Some(Message { text: text.into(), is_bad: false, of: self.document.revision() });
+        self.message = Some(EditMessage { text: text.into(), is_bad: false, of: self.document.revision() });
     }
 
     pub(super) fn complain(&mut self, text: impl Into<String>) {
-        self.message = Some(Message { text: text.into(), is_bad: true, of: self.document.revision() });
+        self.message = Some(EditMessage { text: text.into(), is_bad: true, of: self.document.revision() });
     }
 
     /// The last message, unless the layout has changed since.
-    pub(super) fn message(&self) -> Option<&Message> {
+    pub(super) fn message(&self) -> Option<&EditMessage> {
         self.message.as_ref().filter(|message| message.of == self.document.revision())
     }
 
@@ -98,7 +98,7 @@ impl EditedLayout {
         self.tell(done)
     }
 
-    pub(super) fn tell(&mut self, done: Result<(), Refusal>) -> bool {
+    pub(super) fn tell(&mut self, done: Result<(), EditRefusal>) -> bool {
         match done {
             Ok(()) => self.message = None,
             Err(refusal) => self.complain(refusal.short()),

@@ -8,7 +8,7 @@ use glam::Vec2;
 
 use super::edited::EditedLayout;
 use super::inspector::{Inspector, ROW_PX, effect_name, felt, unit_name};
-use crate::edit::{Address, Edit, Origin, Property};
+use crate::edit::{Address, Edit, FieldOrigin, Property};
 use underfoot::floor::Rect;
 use underfoot_format::describe::FieldType;
 use underfoot_format::number::plain;
@@ -116,7 +116,7 @@ impl Inspector {
         let wanted = self.dragged(edited, &first, wanted);
         let wanted = self.dragged(edited, &second, wanted);
         let Some(edit) = wanted else { return (None, first) };
-        if property.origin == Origin::Written {
+        if property.origin == FieldOrigin::Written {
             return (Some(edit), first);
         }
         // A control that stood beside a neighbour gets a place of its own.
@@ -137,7 +137,7 @@ impl Inspector {
     /// A text field; returns its text once the user has finished.
     fn typed(&mut self, ui: &mut Ui, property: &Property, is_text: bool) -> (Option<String>, Response) {
         // A default is shown as a hint, not as editable text: it may be words.
-        let is_default = property.origin == Origin::Default;
+        let is_default = property.origin == FieldOrigin::Default;
         let shown = if is_text { property.value.trim_matches('"') } else { &property.value };
         let (shown, hint) = if is_default { ("", shown) } else { (shown, "") };
         let typed = self.typed.entry(property.name.clone()).or_insert_with(|| shown.to_owned());
@@ -161,7 +161,7 @@ impl Inspector {
 /// The two numbers of a place or a size, in the layout's unit; the resolved area if the place depends on a
 /// neighbour.
 fn place_of(edited: &EditedLayout, record: &Address, property: &Property) -> Option<[f64; 2]> {
-    if property.origin == Origin::Written {
+    if property.origin == FieldOrigin::Written {
         let (one, other) = property.value.trim_matches(['(', ')']).split_once(',')?;
         let number = |text: &str| text.trim().trim_end_matches(',').trim().parse::<f64>().ok();
         return Some([number(one)?, number(other)?]);

@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use super::canvas::Canvas;
 use super::edited::EditedLayout;
-use crate::edit::{Address, Edges, Grid, Guide, Item, List};
+use crate::edit::{Address, Edges, Item, RecordList, SnapGrid, SnapGuide};
 use crate::preview::pointer::way_while_down;
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
@@ -27,7 +27,7 @@ const LEAST_M: f32 = 0.03;
 
 /// The current gesture of the pointer.
 #[derive(Clone, Debug, Default)]
-pub(super) enum Gesture {
+pub(super) enum PointerGesture {
     #[default]
     None,
     /// Pressed on a record, which moves once the pointer goes further.
@@ -49,7 +49,7 @@ impl Canvas {
         map: ScreenFromFloor,
         screen: egui::Rect,
         edited: &mut EditedLayout,
-    ) -> Trial {
+    ) -> GestureResult {
         let (pointer, pressed, released, space, shift, alt) = ui.input(|i| {
             (
                 i.pointer.interact_pos().or(i.pointer.hover_pos()),
@@ -60,11 +60,11 @@ impl Canvas {
                 i.modifiers.alt,
             )
         });
-        let Some(pointer) = pointer else { return Trial::default() };
+        let Some(pointer) = pointer else { return GestureResult::default() };
         let inside = canvas.contains_pointer() || canvas.rect.contains(pointer) && self.placing.is_some();
         let at = map.floor(pointer);
         let button = match self.gesture {
-            Gesture::Panning => Some(PointerButton::Primary),
+            PointerGesture::Panning => Some(PointerButton::Primary),
             _ => Some(PointerButton::Middle).filter(|_| inside),
         };
         let panned = button.map_or(egui::Vec2::ZERO, |button| ui.input(|i| way_while_down(i, button)));
@@ -83,20 +83,22 @@ impl Canvas {
             edited.stroke += 1;
             self.begin_gesture(edited, (pointer, at), map, space, shift);
         }
-        if let Gesture::Pressed { at: from, record } = self.gesture.clone()
+        if let PointerGesture::Pressed { at: from, record } = self.gesture.clone()
             && from.distance(pointer) > SLACK
         {
             if !edited.selected.contains(&record) {
                 edited.select_only(record);
             }
-            self.gesture = Gesture::Moving { from: map.floor(from), edges: Edges::ALL };
+            self.gesture = PointerGesture::Moving { from: map.floor(from), edges: Edges::ALL };
         }
         let trial = match &self.gesture {
-            Gesture::Moving { from, edges } => moving(edited, at - *from, *edges, map, alt),
-            Gesture::Lasso { from } => Trial { lasso: Some(around(*from, at)), ..Trial::default() },
-            _ => Trial::default(),
+            PointerGesture::Moving { from, edges } => moving(edited, at - *from, *edges, map, alt),
+            PointerGesture::Lasso { from } => {
+                GestureResult { lasso: Some(around(*from, at)), ..GestureResult::default() }
+            }
+            _ => GestureResult::default(),
         };
-        if inside && matches!(self.gesture, Gesture::None) {
+        if inside && matches!(self.gesture, PointerGesture::None) {
             hover(edited, ui, pointer, map);
         }
         if released {
@@ -114,38 +116,46 @@ impl Canvas {
         shift: bool,
     ) {
         if space {
-            self.gesture = Gesture::Panning;
+            self.gesture = PointerGesture::Panning;
             return;
         }
         if let Some(edges) = handle_under(edited, pointer, map) {
-            self.gesture = Gesture::Moving { from: at, edges };
+            self.gesture = PointerGesture::Moving { from: at, edges };
             return;
         }
         match touched(edited, at) {
             // A region is behind everything: a drag across it selects with a rectangle, a click selects the region.
-            Some(record) if record.list() == Some(List::Regions) && !edited.selected.contains(&record) => {
-                self.gesture = Gesture::Lasso { from: at };
+            Some(record)
+                if record.list() == Some(RecordList::Regions) && !edited.selected.contains(&record) =>
+            {
+                self.gesture = PointerGesture::Lasso { from: at };
             }
             Some(record) if shift => edited.toggle(record),
-            Some(record) => self.gesture = Gesture::Pressed { at: pointer, record },
+            Some(record) => self.gesture = PointerGesture::Pressed { at: pointer, record },
             // Locked records are selected in the list.
-            None => self.gesture = Gesture::Lasso { from: at },
+            None => self.gesture = PointerGesture::Lasso { from: at },
         }
     }
 
-    fn end_gesture(&mut self, edited: &mut EditedLayout, trial: &Trial, shift: bool, map: ScreenFromFloor) {
+    fn end_gesture(
+        &mut self,
+        edited: &mut EditedLayout,
+        trial: &GestureResult,
+        shift: bool,
+        map: ScreenFromFloor,
+    ) {
         match std::mem::take(&mut self.gesture) {
             // A second click on a group selects the member under the pointer.
-            Gesture::Pressed { record, at } if edited.selected == [record.clone()] => {
+            PointerGesture::Pressed { record, at } if edited.selected == [record.clone()] => {
                 let inner = edited.document.item_at(&edited.items, edited.page, map.floor(at));
                 edited.select_only(inner.filter(|inner| inner.is_within(&record)).unwrap_or(record));
             }
-            Gesture::Pressed { record, .. } => edited.select_only(record),
-            Gesture::Moving { .. } if !trial.areas.is_empty() => {
+            PointerGesture::Pressed { record, .. } => edited.select_only(record),
+            PointerGesture::Moving { .. } if !trial.areas.is_empty() => {
                 let areas = trial.areas.clone();
                 edited.move_to(&areas);
             }
-            Gesture::Lasso { from } => {
+            PointerGesture::Lasso { from } => {
                 let Some(area) = trial.lasso else { return };
                 if !shift {
                     edited.selected.clear();
@@ -157,7 +167,7 @@ impl Canvas {
                 }
                 let page = edited.page;
                 let inside = edited.items.iter().filter(|item| {
-                    item.record.list() == Some(List::Widgets)
+                    item.record.list() == Some(RecordList::Widgets)
                         && !item.is_group
                         && item.is_on(page)
                         && item.area.overlaps(area)
@@ -179,16 +189,16 @@ impl Canvas {
     fn put_down(
         &mut self,
         edited: &mut EditedLayout,
-        thing: &super::palette::Thing,
+        thing: &super::palette::PaletteThing,
         at: Vec2,
         inside: bool,
         pressed: bool,
         dropped: bool,
         map: ScreenFromFloor,
         alt: bool,
-    ) -> Trial {
+    ) -> GestureResult {
         if !inside {
-            return Trial::default();
+            return GestureResult::default();
         }
         let size = thing.size(&edited.document.floor().geometry);
         let area = Rect::from_centre_size(at, size);
@@ -198,9 +208,9 @@ impl Canvas {
             if edited.put(thing, area) || dropped {
                 self.placing = None;
             }
-            return Trial::default();
+            return GestureResult::default();
         }
-        Trial { areas: vec![area], guides, ..Trial::default() }
+        GestureResult { areas: vec![area], guides, ..GestureResult::default() }
     }
 }
 
@@ -238,10 +248,10 @@ fn hover(edited: &EditedLayout, ui: &Ui, pointer: Pos2, map: ScreenFromFloor) {
 }
 
 /// The result of moving the given edges of the selection by `by`.
-fn moving(edited: &EditedLayout, by: Vec2, edges: Edges, map: ScreenFromFloor, alt: bool) -> Trial {
+fn moving(edited: &EditedLayout, by: Vec2, edges: Edges, map: ScreenFromFloor, alt: bool) -> GestureResult {
     let items = edited.selected_items();
     let Some(all) = crate::edit::around(items.iter().map(|item| item.area)) else {
-        return Trial::default();
+        return GestureResult::default();
     };
     let moved = edges.moved(all, by, LEAST_M);
     let (snapped, guides) = snapped(edited, moved, edges, map, alt);
@@ -256,7 +266,7 @@ fn moving(edited: &EditedLayout, by: Vec2, edges: Edges, map: ScreenFromFloor, a
         Ok(layout) => (Some(layout), None),
         Err(refusal) => (None, Some(refusal.short())),
     };
-    Trial { layout, refused, areas, guides, lasso: None }
+    GestureResult { layout, refused, areas, guides, lasso: None }
 }
 
 fn snapped(
@@ -265,32 +275,32 @@ fn snapped(
     edges: Edges,
     map: ScreenFromFloor,
     alt: bool,
-) -> (Rect, Vec<Guide>) {
+) -> (Rect, Vec<SnapGuide>) {
     if alt {
         return (area, Vec::new());
     }
     let others = edited.items.iter().filter(|item| {
-        matches!(item.record.list(), Some(List::Widgets | List::Regions | List::Stances))
+        matches!(item.record.list(), Some(RecordList::Widgets | RecordList::Regions | RecordList::Stances))
             && item.is_on(edited.page)
             && !item.is_group
             && !edited.selected.iter().any(|selected| item.record.is_within(selected))
     });
     let neighbours: Vec<Rect> = others.map(|item| item.area).collect();
     let geometry = &edited.document.floor().geometry;
-    let grid = Grid { geometry, neighbours: &neighbours, reach_m: PULL / map.scale() };
+    let grid = SnapGrid { geometry, neighbours: &neighbours, reach_m: PULL / map.scale() };
     grid.snap(area, edges)
 }
 
 /// The result that a gesture would have if it ended now.
 #[derive(Default)]
-pub(super) struct Trial {
+pub(super) struct GestureResult {
     /// The layout; `None` where it is refused or unchanged.
     pub(super) layout: Option<Layout>,
     /// The reason for a refusal.
     pub(super) refused: Option<String>,
     /// The areas of the selection, or of the thing that is put down.
     pub(super) areas: Vec<Rect>,
-    pub(super) guides: Vec<Guide>,
+    pub(super) guides: Vec<SnapGuide>,
     pub(super) lasso: Option<Rect>,
 }
 
@@ -298,7 +308,7 @@ pub(super) struct Trial {
 fn group_of(record: &Address) -> Address {
     let mut outermost = record.clone();
     while let Some((parent, ..)) =
-        outermost.split().filter(|(parent, ..)| parent.list() == Some(List::Widgets))
+        outermost.split().filter(|(parent, ..)| parent.list() == Some(RecordList::Widgets))
     {
         outermost = parent;
     }

@@ -9,7 +9,7 @@ use eframe::egui::{Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo};
 
 use super::edited::EditedLayout;
 use super::{Pane, Panes};
-use crate::edit::{Address, Document, Edit, Item, Origin, Property, Section};
+use crate::edit::{Address, Document, Edit, FieldOrigin, FieldSection, Item, Property};
 use crate::preview::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet, section};
 use underfoot::feel::{Effect, Feel, Gesture};
@@ -35,7 +35,7 @@ pub(super) struct Inspector {
 /// The fields on display, with their records and revision.
 #[derive(Default)]
 struct Shown {
-    sections: Vec<Section>,
+    sections: Vec<FieldSection>,
     of: Option<(Vec<Address>, u64)>,
 }
 
@@ -187,7 +187,7 @@ impl Inspector {
         theme: &Theme,
         edited: &mut EditedLayout,
         record: &Address,
-        shown: &[Section],
+        shown: &[FieldSection],
         mut is_led: bool,
     ) -> Option<Edit> {
         let is_common = !self.shared.is_empty();
@@ -222,13 +222,13 @@ impl Inspector {
     ) -> Option<Edit> {
         let mut wanted = None;
         let short = property.short();
-        let is_written = property.origin == Origin::Written;
+        let is_written = property.origin == FieldOrigin::Written;
         ui.horizontal(|ui| {
             let source = match &property.origin {
-                Origin::Written => "written here".to_owned(),
-                Origin::Kind(kind) => format!("from the kind \"{kind}\""),
-                Origin::Default => "not written".to_owned(),
-                Origin::Several => "not the same in all of them".to_owned(),
+                FieldOrigin::Written => "written here".to_owned(),
+                FieldOrigin::Kind(kind) => format!("from the kind \"{kind}\""),
+                FieldOrigin::Default => "not written".to_owned(),
+                FieldOrigin::Several => "not the same in all of them".to_owned(),
             };
             let name = if property.is_place() {
                 format!("{short} ({})", unit_name(&edited.document))
@@ -255,7 +255,7 @@ impl Inspector {
             }
             self.hear(ui, edited, record, property);
             match &property.origin {
-                Origin::Written if !KEPT.contains(&property.name.as_str()) => {
+                FieldOrigin::Written if !KEPT.contains(&property.name.as_str()) => {
                     let reset = ui.small_button("x");
                     reset.widget_info(|| {
                         WidgetInfo::labeled(Role::Button, true, format!("Leave out {short}"))
@@ -264,14 +264,14 @@ impl Inspector {
                         wanted = Some(Edit::unset(record, &property.name));
                     }
                 }
-                Origin::Kind(kind) => {
+                FieldOrigin::Kind(kind) => {
                     let text = quiet(theme, format!("from {kind}")).size(11.5);
                     ui.add(egui::Label::new(text).truncate()).on_hover_text(source);
                 }
-                Origin::Default if !property.value.is_empty() => {
+                FieldOrigin::Default if !property.value.is_empty() => {
                     ui.label(quiet(theme, "default").size(11.5));
                 }
-                Origin::Several => {
+                FieldOrigin::Several => {
                     ui.label(quiet(theme, "differs").size(11.5)).on_hover_text(source);
                 }
                 _ => {}

@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, Modifiers, Ui};
 use glam::Vec2;
 
 use super::{Ask, Designer, Pane, gestures};
-use crate::edit::{List, Template};
+use crate::edit::{RecordList, Template};
 
 /// Distance that an arrow key moves, in metres; with Shift, and with Alt.
 const NUDGE_M: [f32; 3] = [0.01, 0.05, 0.001];
@@ -96,7 +96,7 @@ impl Designer {
                 .edited
                 .items
                 .iter()
-                .filter(|item| item.record.list() == Some(List::Widgets) && item.is_on(page))
+                .filter(|item| item.record.list() == Some(RecordList::Widgets) && item.is_on(page))
                 .filter(|item| !self.edited.is_locked(&item.record) && !self.edited.is_hidden(&item.record));
             self.edited.selected = all.map(|item| item.record.clone()).collect();
         }
@@ -109,7 +109,7 @@ impl Designer {
         }
         if pressed(Key::Escape) {
             self.canvas.placing = None;
-            self.canvas.gesture = gestures::Gesture::None;
+            self.canvas.gesture = gestures::PointerGesture::None;
             self.edited.selected.clear();
         }
         let step = ui.input(|i| match (i.modifiers.shift, i.modifiers.alt) {

@@ -9,7 +9,7 @@ use eframe::egui::{Sense, Ui, WidgetInfo, vec2};
 use super::edited::EditedLayout;
 use super::palette::go_on;
 use super::{Pane, Panes};
-use crate::edit::{Address, List};
+use crate::edit::{Address, RecordList};
 use crate::preview::style::quiet;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::{Theme, in_drawn_order};
@@ -21,7 +21,7 @@ pub(super) fn list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes:
         for (number, name) in names.iter().enumerate() {
             if ui.selectable_label(edited.page == number, format!("Page {name}")).clicked() {
                 edited.page = number;
-                edited.selected = vec![Address::of(List::Pages, number)];
+                edited.selected = vec![Address::of(RecordList::Pages, number)];
             }
         }
     }
@@ -31,15 +31,15 @@ pub(super) fn list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes:
     let mut is_led = panes.leads_to(Pane::Floor);
     for item in edited.items.iter().filter(|item| item.is_on(edited.page)) {
         let what = match item.record.list() {
-            Some(List::Regions) => "Region",
-            Some(List::Stances) => "Stance",
-            Some(List::Grounds) => "Ground",
+            Some(RecordList::Regions) => "Region",
+            Some(RecordList::Stances) => "Stance",
+            Some(RecordList::Grounds) => "Ground",
             _ if item.is_group => "Group",
             _ => "Control",
         };
         let is_selected = edited.selected.contains(&item.record);
         let name = if item.name.is_empty() { item.record.to_string() } else { item.name.clone() };
-        let is_inner = item.record.split().is_some_and(|(of, ..)| of.list() == Some(List::Widgets));
+        let is_inner = item.record.split().is_some_and(|(of, ..)| of.list() == Some(RecordList::Widgets));
         let (is_locked, is_hidden) = (edited.is_locked(&item.record), edited.is_hidden(&item.record));
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -4,9 +4,9 @@ use eframe::egui;
 use eframe::egui::{Pos2, Stroke, StrokeKind, Ui, pos2, vec2};
 use glam::Vec2;
 
-use super::canvas::Scale;
+use super::canvas::DrawnToScale;
 use super::edited::EditedLayout;
-use super::gestures::{HANDLE, Trial, can_be_sized, handles};
+use super::gestures::{GestureResult, HANDLE, can_be_sized, handles};
 use super::labels::{Labels, label};
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
@@ -23,7 +23,7 @@ pub(super) fn marks(
     rect: egui::Rect,
     map: ScreenFromFloor,
     theme: &Theme,
-    trial: &Trial,
+    trial: &GestureResult,
 ) {
     let painter = ui.painter_at(rect);
     let accent = color(theme.accent);
@@ -84,7 +84,7 @@ pub(super) fn marks(
     }
 }
 
-impl Scale {
+impl DrawnToScale {
     /// Two shoes on each place to stand and one under the pointer, if they are switched on.
     pub(super) fn shoes(self, layout: &Layout, pointer: Option<Vec2>) -> Vec<Shoe> {
         /// Length of a sole that is long enough for 95 of 100 people.

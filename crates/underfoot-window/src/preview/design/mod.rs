@@ -28,7 +28,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use canvas::Canvas;
-use edited::{EditedLayout, Message};
+use edited::{EditMessage, EditedLayout};
 
 use crate::edit::{Document, LayoutFile};
 use underfoot::floor::Floor;
@@ -149,7 +149,7 @@ impl Designer {
         if let Some(path) = path.as_deref().filter(|_| !file.is_new()) {
             shelf::note_recent(&state, path);
         }
-        let new = file.is_new().then(|| Message {
+        let new = file.is_new().then(|| EditMessage {
             text: format!("{} is new: F2 designs it, Ctrl+S writes it", file.name()),
             is_bad: false,
             of: document.revision(),

@@ -8,7 +8,7 @@ use glam::Vec2;
 use super::edited::EditedLayout;
 use super::list::list;
 use super::{Pane, Panes};
-use crate::edit::{Address, Document, Edit, List};
+use crate::edit::{Address, Document, Edit, RecordList};
 use crate::preview::style::{panel_frame, section};
 use underfoot::engine::Snapshot;
 use underfoot::floor::{Geometry, Rect};
@@ -28,7 +28,7 @@ const PICTURE: f32 = 34.0;
 
 /// Something to put down.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Thing {
+pub(super) enum PaletteThing {
     /// A control of this kind.
     Control(String),
     Region,
@@ -37,7 +37,7 @@ pub(super) enum Thing {
     Ground(&'static str),
 }
 
-impl Thing {
+impl PaletteThing {
     fn name(&self) -> String {
         match self {
             Self::Control(kind) => kind.replace('_', " "),
@@ -68,7 +68,7 @@ pub(super) fn palette_panel(
     theme: &Theme,
     palette: &mut Palette,
     edited: &mut EditedLayout,
-    placing: &mut Option<Thing>,
+    placing: &mut Option<PaletteThing>,
     panes: &mut Panes,
 ) {
     let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
@@ -87,9 +87,9 @@ pub(super) fn palette_panel(
             ui.set_width(ui.available_width() - 8.0);
             section(ui, theme, "Put down", |_| {});
             let kinds: Vec<String> = edited.document.kinds().iter().map(|kind| kind.name.clone()).collect();
-            let controls = kinds.into_iter().map(Thing::Control);
-            let places = [Thing::Region, Thing::Stance];
-            let grounds = ["Ice", "Snow", "Gravel", "Sand", "Wood"].map(Thing::Ground);
+            let controls = kinds.into_iter().map(PaletteThing::Control);
+            let places = [PaletteThing::Region, PaletteThing::Stance];
+            let grounds = ["Ice", "Snow", "Gravel", "Sand", "Wood"].map(PaletteThing::Ground);
             let is_led = panes.leads_to(Pane::Things);
             let things = controls.chain(places).chain(grounds);
             let shown: Vec<Response> =
@@ -110,9 +110,9 @@ fn show_thing(
     ui: &mut Ui,
     theme: &Theme,
     palette: &mut Palette,
-    thing: Thing,
+    thing: PaletteThing,
     edited: &mut EditedLayout,
-    placing: &mut Option<Thing>,
+    placing: &mut Option<PaletteThing>,
 ) -> Response {
     let size = vec2(ui.available_width(), PICTURE + 6.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
@@ -129,7 +129,7 @@ fn show_thing(
             ui.painter().rect_filled(rect, 6, color(theme.accent).gamma_multiply(0.2));
         }
         let picture = egui::Rect::from_min_size(rect.min + vec2(5.0, 3.0), vec2(54.0, PICTURE));
-        if let Thing::Control(kind) = &thing {
+        if let PaletteThing::Control(kind) = &thing {
             draw_control(ui, theme, palette, &edited.document, kind, picture);
         } else {
             let ink = egui::Stroke::new(1.5, color(theme.accent));
@@ -163,7 +163,7 @@ fn draw_control(
     picture: egui::Rect,
 ) {
     let Some(kind) = document.kinds().get(kind) else { return };
-    let size = Thing::Control(kind.name.clone()).size(&document.floor().geometry);
+    let size = PaletteThing::Control(kind.name.clone()).size(&document.floor().geometry);
     let area = Rect::from_min_size(Vec2::ZERO, size);
     let widget = Widget {
         id: WidgetId::new("it"),
@@ -198,22 +198,24 @@ fn draw_control(
 
 impl EditedLayout {
     /// Puts `thing` on `area`, in floor metres; returns whether the layout accepts it.
-    pub(super) fn put(&mut self, thing: &Thing, area: Rect) -> bool {
+    pub(super) fn put(&mut self, thing: &PaletteThing, area: Rect) -> bool {
         let on_page = |list| {
-            let page = self.layout().pages.get(self.page).map(|_| Address::of(List::Pages, self.page));
+            let page = self.layout().pages.get(self.page).map(|_| Address::of(RecordList::Pages, self.page));
             page.unwrap_or(Address::LAYOUT).entry(list, usize::MAX)
         };
         let place = self.document.placed(area);
         let (at, text) = match thing {
-            Thing::Control(kind) => (on_page(List::Widgets), self.document.new_control(kind, area)),
-            Thing::Ground(name) => (on_page(List::Grounds), format!("{name}({place})")),
-            Thing::Stance => {
-                let text = format!("({place}, label: \"Stand here\")");
-                (Address::LAYOUT.entry(List::Stances, usize::MAX), text)
+            PaletteThing::Control(kind) => {
+                (on_page(RecordList::Widgets), self.document.new_control(kind, area))
             }
-            Thing::Region => {
+            PaletteThing::Ground(name) => (on_page(RecordList::Grounds), format!("{name}({place})")),
+            PaletteThing::Stance => {
+                let text = format!("({place}, label: \"Stand here\")");
+                (Address::LAYOUT.entry(RecordList::Stances, usize::MAX), text)
+            }
+            PaletteThing::Region => {
                 let id = self.document.free_id("region", &[]);
-                (Address::LAYOUT.entry(List::Regions, usize::MAX), format!("(id: \"{id}\", {place})"))
+                (Address::LAYOUT.entry(RecordList::Regions, usize::MAX), format!("(id: \"{id}\", {place})"))
             }
         };
         let done = self.edit(&[Edit::Insert { at: at.clone(), text }]);
@@ -229,12 +231,12 @@ impl EditedLayout {
     }
 
     /// Puts `thing` at the first place of a grid of half tiles that the reader accepts.
-    fn put_somewhere(&mut self, thing: &Thing) {
+    fn put_somewhere(&mut self, thing: &PaletteThing) {
         let geometry = self.document.floor().geometry;
         let size = thing.size(&geometry);
         let step = 0.5 * geometry.pitch_m();
         let within = match thing {
-            Thing::Control(_) => {
+            PaletteThing::Control(_) => {
                 self.layout().regions.first().map_or(geometry.bounds(), |region| region.area)
             }
             _ => geometry.bounds(),
@@ -247,11 +249,11 @@ impl EditedLayout {
                 // Half a shoe of room (rule U102), where possible.
                 let wide = area.grown(0.06);
                 let is_taken = |item: &crate::edit::Item| {
-                    item.record.list() == Some(List::Widgets)
+                    item.record.list() == Some(RecordList::Widgets)
                         && item.is_on(self.page)
                         && item.area.overlaps(wide)
                 };
-                if matches!(thing, Thing::Control(_)) && self.items.iter().any(is_taken) {
+                if matches!(thing, PaletteThing::Control(_)) && self.items.iter().any(is_taken) {
                     continue;
                 }
                 if self.put(thing, area) {
@@ -266,11 +268,11 @@ impl EditedLayout {
 
     fn add_page(&mut self) {
         let id = self.document.free_id("page_1", &[]);
-        let at = Address::of(List::Pages, usize::MAX);
+        let at = Address::of(RecordList::Pages, usize::MAX);
         if self.edit(&[Edit::Insert { at, text: format!("(id: \"{id}\", widgets: [])") }]) {
             self.refresh();
             self.page = self.layout().pages.len().saturating_sub(1);
-            self.selected = vec![Address::of(List::Pages, self.page)];
+            self.selected = vec![Address::of(RecordList::Pages, self.page)];
         }
     }
 }

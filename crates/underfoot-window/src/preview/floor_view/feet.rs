@@ -9,12 +9,12 @@ use eframe::egui::{
 use glam::Vec2;
 
 use crate::preview::feed::{FootSink, ShoeFeed};
-use crate::preview::feet::{Hand, MouseFeet, Move};
+use crate::preview::feet::{HandInput, MouseFeet, Move};
 use crate::preview::keyboard::Keyboard;
 use crate::preview::pointer::{pressed_at, way_while_down};
 use crate::preview::shown::ShownFloor;
 use crate::preview::style::selectable;
-use crate::preview::touches::Touch;
+use crate::preview::touches::FloorTouch;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
 use underfoot_scene::scene::{Shoe, Theme};
 
@@ -150,7 +150,7 @@ impl FloorFeet {
         }
         if let Some(key) = self.keyboard.hand(ui, shown.layout(), hand.elapsed_s) {
             let touches = std::mem::take(&mut hand.touches);
-            hand = Hand { touches, ..key };
+            hand = HandInput { touches, ..key };
         }
         feet.step(&hand, sink.as_mut());
         on_handle || self.grip.held
@@ -250,7 +250,7 @@ fn stand_and_drag(
     (over || was_held, drag)
 }
 
-fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
+fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> HandInput {
     let inside = canvas.contains_pointer();
     let keys = ui.ctx().memory(|memory| memory.focused().is_none());
     let events = ui.input(|i| i.events.clone());
@@ -271,7 +271,8 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
         _ => None,
     });
     let moves = moves.collect();
-    let touches = events.iter().filter_map(|event| Touch::of(event, |at| map.floor(at), is_floor)).collect();
+    let touches =
+        events.iter().filter_map(|event| FloorTouch::of(event, |at| map.floor(at), is_floor)).collect();
     ui.input(|i| {
         let down = i.pointer.primary_down();
         // A press that began on the floor continues beyond its edge, as a foot would.
@@ -279,7 +280,7 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
         let turned = if inside { way_while_down(i, PointerButton::Secondary).x } else { 0.0 };
         let key = |key: Key| f32::from(u8::from(keys && i.key_down(key)));
         let turning_s = i.stable_dt.clamp(0.0, 0.1);
-        Hand {
+        HandInput {
             moves,
             touches,
             pointer: pointer.map(|at| map.floor(at)),
@@ -291,7 +292,7 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
             },
             turn_rad: -turned * TURN_PER_POINT + (key(Key::Q) - key(Key::E)) * TURN_PER_S * turning_s,
             elapsed_s: i.unstable_dt,
-            ..Hand::default()
+            ..HandInput::default()
         }
     })
 }

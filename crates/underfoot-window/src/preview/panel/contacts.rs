@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::super::style::{Row, quiet, row, section};
+use super::super::style::{TextRow, quiet, row, section};
 use underfoot::engine::Snapshot;
 use underfoot::wire::LinkState;
 use underfoot_scene::egui_painter::color;
@@ -21,7 +21,7 @@ const MOST: usize = 8;
 pub(super) fn contacts_part(ui: &mut Ui, theme: &Theme, snapshot: &Snapshot) {
     // The heading's line holds the units, over their columns.
     let rect = section(ui, theme, "Contacts", |_| {});
-    let line = Row { ui, rect, size: 12.0 };
+    let line = TextRow { ui, rect, size: 12.0 };
     for (column, unit) in COLUMNS.into_iter().zip(["x m", "y m", "N", "m/s"]) {
         line.right(column, unit, color(theme.quiet));
     }

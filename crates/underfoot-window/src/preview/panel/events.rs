@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 
-use super::super::messages::{Happened, Messages};
-use super::super::style::{Row, quiet, section};
+use super::super::messages::{Happened, WindowMessages};
+use super::super::style::{TextRow, quiet, section};
 use underfoot::engine::IgnoredPress;
 use underfoot::sink::event_line;
 use underfoot::units::Instant;
@@ -19,7 +19,13 @@ const LINE: f32 = 18.0;
 
 /// Shows the events, newest first, in `height` points with its heading; `search` holds the text that its
 /// lines must contain, empty for all.
-pub(super) fn events_part(ui: &mut Ui, theme: &Theme, messages: &Messages, search: &mut String, height: f32) {
+pub(super) fn events_part(
+    ui: &mut Ui,
+    theme: &Theme,
+    messages: &WindowMessages,
+    search: &mut String,
+    height: f32,
+) {
     let top = ui.cursor().top();
     section(ui, theme, "Events", |ui| {
         ui.label(quiet(theme, format!("{} so far", messages.event_count)).size(12.0));
@@ -49,7 +55,7 @@ pub(super) fn events_part(ui: &mut Ui, theme: &Theme, messages: &Messages, searc
 }
 
 /// A search field for the list, and a button that copies the listed events.
-fn search_events(ui: &mut Ui, messages: &Messages, search: &mut String) {
+fn search_events(ui: &mut Ui, messages: &WindowMessages, search: &mut String) {
     ui.horizontal(|ui| {
         let room = (ui.available_width() - 70.0).max(60.0);
         let field = TextEdit::singleline(search).hint_text("Search").desired_width(room);
@@ -102,7 +108,7 @@ fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
     let spoken = format!("{} ignored {:.0} N: {}", press.id, press.force.0, press.why);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
-    let line = Row { ui, rect, size: 12.5 };
+    let line = TextRow { ui, rect, size: 12.5 };
     line.right(0.19, &format!("{:.3}", press.at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, press.id.as_str(), color(theme.ink));
     line.left(0.58, 0.86, &press.why.to_string(), color(theme.warning));
@@ -115,7 +121,7 @@ fn gave_way(ui: &mut Ui, theme: &Theme, material: &str, count: u64, at: Instant)
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
     let spoken = format!("{material} gave way {count}");
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
-    let line = Row { ui, rect, size: 12.5 };
+    let line = TextRow { ui, rect, size: 12.5 };
     line.right(0.19, &format!("{:.3}", at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, material, color(theme.ink));
     line.left(0.58, 0.82, "gave way", color(theme.haptic));
@@ -127,7 +133,7 @@ fn show(ui: &mut Ui, theme: &Theme, event: &WidgetEvent) {
     let value = value(event.kind);
     let spoken = format!("{} {} {value}", event.id, event.kind.name());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken.trim_end()));
-    let line = Row { ui, rect, size: 12.5 };
+    let line = TextRow { ui, rect, size: 12.5 };
     line.right(0.19, &format!("{:.3}", event.at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, event.id.as_str(), color(theme.ink));
     let colour = match event.kind {

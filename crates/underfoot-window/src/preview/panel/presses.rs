@@ -8,7 +8,7 @@ use eframe::egui::{
 
 use super::super::design::{Designer, Threshold, set_threshold, undo_design};
 use super::super::plots::Plots;
-use super::super::presses::{Press, Presses};
+use super::super::presses::{ControlPress, PressLog};
 use super::super::selection::Selection;
 use super::super::shown::ShownFloor;
 use super::super::style::{panel_colour, plot_button, quiet, row, section};
@@ -50,7 +50,7 @@ pub(super) fn presses_part(
     theme: &Theme,
     shown: &ShownFloor,
     selection: &Selection,
-    presses: &mut Presses,
+    presses: &mut PressLog,
     plots: &mut Plots,
     designer: Option<&mut Designer>,
 ) {
@@ -67,7 +67,7 @@ pub(super) fn presses_part(
     }
     let (forces, people) = presses.counted(&id);
     let spread = PressSpread::of(&forces);
-    let all: Vec<&Press> = presses.of(&id).collect();
+    let all: Vec<&ControlPress> = presses.of(&id).collect();
     strip(ui, theme, &all, spread.as_ref(), thresholds);
     for line in lines(spread.as_ref(), people) {
         ui.add(Label::new(quiet(theme, line).size(12.5)).truncate()).on_hover_text(PEOPLE);
@@ -131,7 +131,7 @@ fn grant(
     id: &WidgetId,
     wish: Wish,
     shown: &ShownFloor,
-    presses: &mut Presses,
+    presses: &mut PressLog,
     designer: Option<&mut Designer>,
 ) {
     match wish {
@@ -145,7 +145,7 @@ fn grant(
     }
 }
 
-fn undo_here(shown: &ShownFloor, presses: &mut Presses, designer: Option<&mut Designer>) {
+fn undo_here(shown: &ShownFloor, presses: &mut PressLog, designer: Option<&mut Designer>) {
     if designer.is_some_and(|designer| undo_design(designer, shown)) {
         presses.told = None;
     }
@@ -155,7 +155,7 @@ fn undo_here(shown: &ShownFloor, presses: &mut Presses, designer: Option<&mut De
 pub(in crate::preview) fn handle_undo_key(
     ui: &Ui,
     shown: &ShownFloor,
-    presses: &mut Presses,
+    presses: &mut PressLog,
     designer: Option<&mut Designer>,
 ) {
     let is_free = designer.as_ref().is_none_or(|designer| !designer.is_open) && !ui.ctx().text_edit_focused();
@@ -183,7 +183,13 @@ fn lines(spread: Option<&PressSpread>, people: usize) -> [String; 2] {
 }
 
 /// Draws presses along an axis in newtons, with the thresholds.
-fn strip(ui: &mut Ui, theme: &Theme, all: &[&Press], spread: Option<&PressSpread>, thresholds: Thresholds) {
+fn strip(
+    ui: &mut Ui,
+    theme: &Theme,
+    all: &[&ControlPress],
+    spread: Option<&PressSpread>,
+    thresholds: Thresholds,
+) {
     let Thresholds { press, release, .. } = thresholds;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STRIP), Sense::hover());
     let spoken = format!("takes {:.0} newtons, lets go below {:.0}", press.0, release.0);
@@ -234,7 +240,7 @@ fn strip(ui: &mut Ui, theme: &Theme, all: &[&Press], spread: Option<&PressSpread
 }
 
 /// Shows one press with a check box; returns whether it counts, after a change.
-fn listed(ui: &mut Ui, theme: &Theme, press: &Press) -> Option<bool> {
+fn listed(ui: &mut Ui, theme: &Theme, press: &ControlPress) -> Option<bool> {
     let why = press.why.map_or("pressed".to_owned(), |why| why.to_string());
     let person = press.person.map_or(String::new(), |person| format!("person {person}"));
     let mut counts = press.counts;

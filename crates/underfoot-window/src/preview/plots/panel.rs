@@ -7,7 +7,7 @@ use eframe::egui::{
     Sense, TextEdit, Ui, WidgetInfo, vec2,
 };
 
-use super::chart::{Chart, Drag, Lines, Trace};
+use super::chart::{Chart, PlotLine, ThresholdDrag, ThresholdPair};
 use super::series::{Series, Unit};
 use super::{MOST, Plots, SPANS};
 use crate::preview::design::{Designer, Threshold, set_threshold};
@@ -164,7 +164,7 @@ impl Plots {
         let mut drag = None;
         for unit in units {
             let of = self.chosen.iter().zip(colours(theme)).filter(|(series, _)| series.unit() == unit);
-            let traces = of.map(|(series, colour)| Trace {
+            let traces = of.map(|(series, colour)| PlotLine {
                 name: series.name(selected.as_ref()),
                 colour,
                 points: self.points(series, &shown.floor.geometry, selected.as_ref()),
@@ -195,13 +195,13 @@ impl Plots {
     fn drag_threshold(
         &mut self,
         id: &WidgetId,
-        drag: Drag,
+        drag: ThresholdDrag,
         shown: &ShownFloor,
         designer: Option<&mut Designer>,
     ) {
         match drag {
-            Drag::To(which, force) => self.dragged = Some((which, force)),
-            Drag::Done(which, force) => {
+            ThresholdDrag::To(which, force) => self.dragged = Some((which, force)),
+            ThresholdDrag::Done(which, force) => {
                 self.dragged = None;
                 self.told = Some(set_threshold(designer, shown, id, which, force));
             }
@@ -217,7 +217,7 @@ impl Plots {
 }
 
 /// The thresholds of a control of `layout`.
-fn thresholds_at(layout: &underfoot::layout::Layout, id: &WidgetId) -> Option<Lines> {
+fn thresholds_at(layout: &underfoot::layout::Layout, id: &WidgetId) -> Option<ThresholdPair> {
     let now = layout.widgets.get(layout.widget_index(id.as_str())?)?.behaviour.thresholds();
     Some([(Threshold::Press, now.press), (Threshold::Release, now.release)])
 }

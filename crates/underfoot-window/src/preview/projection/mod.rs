@@ -21,7 +21,7 @@ use glam::{DVec2, Vec2};
 use self::awake::Awake;
 use self::placement::{Placement, usual_file};
 use super::appearance::Appearance;
-use super::messages::Messages;
+use super::messages::WindowMessages;
 use super::shown::ShownFloor;
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
 use underfoot_scene::scene::{self, Scene, Show, Theme, View};
@@ -350,7 +350,7 @@ impl Projection {
     }
 
     /// While feet use a projected floor, keys and mouse are idle, so the screen would go dark.
-    fn stay_awake(&mut self, messages: &mut Messages) {
+    fn stay_awake(&mut self, messages: &mut WindowMessages) {
         let wanted = self.is_open && self.keeps_awake;
         let awake = &mut self.awake;
         match awake {
@@ -363,7 +363,7 @@ impl Projection {
         }
     }
 
-    fn keep_placement(&self, messages: &mut Messages) {
+    fn keep_placement(&self, messages: &mut WindowMessages) {
         let (Some(placement), Some(file)) = (self.placement, &self.file) else { return };
         if let Err(wrong) = placement.save(file) {
             messages.note(format!("The corners are not remembered: {wrong}"));

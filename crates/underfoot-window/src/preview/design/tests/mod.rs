@@ -233,7 +233,7 @@ fn the_inspector_says_where_a_value_comes_from_and_warnings_can_be_mended() {
     let press = sections.iter().flat_map(|part| &part.properties).find(|one| one.name == "press_n").unwrap();
     assert_eq!(
         (press.value.as_str(), &press.origin),
-        ("60", &crate::edit::Origin::Kind("round_button".into()))
+        ("60", &crate::edit::FieldOrigin::Kind("round_button".into()))
     );
 }
 
