@@ -17,17 +17,17 @@ pub struct Fonts {
 
 #[derive(Default)]
 struct Found {
-    faces: Vec<Arc<Face>>,
+    faces: Vec<Arc<FontFace>>,
     /// The font of each letter so far; `None` for a letter that no font has.
-    of: HashMap<char, Option<Arc<Face>>>,
+    of: HashMap<char, Option<Arc<FontFace>>>,
 }
 
 /// One font.
-pub(super) struct Face {
+pub(super) struct FontFace {
     pub(super) data: FontData,
 }
 
-impl Face {
+impl FontFace {
     pub(super) fn font(&self) -> Option<FontRef<'_>> {
         FontRef::from_index(self.data.bytes(), self.data.index).ok()
     }
@@ -70,7 +70,7 @@ impl Fonts {
 
     fn of(others: Option<Box<dyn FontProvider>>) -> Self {
         let own = definitions().fonts_for_family(&FontFamily::Proportional);
-        let faces = own.into_iter().map(|font| Arc::new(Face { data: font.data })).collect();
+        let faces = own.into_iter().map(|font| Arc::new(FontFace { data: font.data })).collect();
         Self { others, found: Mutex::new(Found { faces, of: HashMap::new() }) }
     }
 
@@ -83,7 +83,7 @@ impl Fonts {
             include_bytes!("../../../../tests/fonts/NotoSansArabic-few.ttf"),
             include_bytes!("../../../../tests/fonts/NotoSansDevanagari-few.ttf"),
         ];
-        let more = files.map(|file| Arc::new(Face { data: FontData::from_static(file) }));
+        let more = files.map(|file| Arc::new(FontFace { data: FontData::from_static(file) }));
         fonts.found.lock().unwrap_or_else(PoisonError::into_inner).faces.extend(more);
         fonts
     }
@@ -96,7 +96,7 @@ impl Fonts {
     }
 
     /// The font for a letter with its marks; `None` if no font has the letter.
-    pub(super) fn face_of(&self, cluster: &str) -> Option<Arc<Face>> {
+    pub(super) fn face_of(&self, cluster: &str) -> Option<Arc<FontFace>> {
         let letter = cluster.chars().next()?;
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(face) = found.of.get(&letter) {
@@ -106,7 +106,7 @@ impl Fonts {
         let face = known.or_else(|| {
             let others = self.others.as_ref().filter(|_| !is_unseen(letter))?;
             let request = FallbackRequest { cluster, family: &FontFamily::Proportional };
-            let face = Arc::new(Face { data: others.font_for(&request)?.data });
+            let face = Arc::new(FontFace { data: others.font_for(&request)?.data });
             found.faces.push(Arc::clone(&face));
             Some(face)
         });
@@ -115,7 +115,7 @@ impl Fonts {
     }
 
     /// The font that draws the boxes for missing letters.
-    pub(super) fn first(&self) -> Option<Arc<Face>> {
+    pub(super) fn first(&self) -> Option<Arc<FontFace>> {
         self.found.lock().unwrap_or_else(PoisonError::into_inner).faces.first().cloned()
     }
 }

@@ -10,7 +10,7 @@ use skrifa::{GlyphId, MetadataProvider};
 use unicode_segmentation::UnicodeSegmentation;
 
 use super::Fonts;
-use super::fonts::Face;
+use super::fonts::FontFace;
 use crate::scene::{Direction, Piece, pieces};
 
 /// One step of an outline, in em from the start of the base line: x to the right, y up.
@@ -38,7 +38,7 @@ pub struct Line {
 
 /// A glyph that has an outline.
 struct Glyph {
-    face: Arc<Face>,
+    face: Arc<FontFace>,
     id: GlyphId,
     at: Vec2,
 }
@@ -50,7 +50,7 @@ pub struct Sign {
     pub text: String,
     /// Its start on the base line, in em.
     pub at: Vec2,
-    face: Arc<Face>,
+    face: Arc<FontFace>,
 }
 
 impl Sign {
@@ -89,8 +89,8 @@ impl Fonts {
 
     /// Splits a piece into parts with one font each, in reading order; each letter without a font is a part of its
     /// own.
-    fn parts<'t>(&self, piece: &'t Piece<'_>) -> Vec<(&'t str, Option<Arc<Face>>)> {
-        let mut parts: Vec<(std::ops::Range<usize>, Option<Arc<Face>>)> = Vec::new();
+    fn parts<'t>(&self, piece: &'t Piece<'_>) -> Vec<(&'t str, Option<Arc<FontFace>>)> {
+        let mut parts: Vec<(std::ops::Range<usize>, Option<Arc<FontFace>>)> = Vec::new();
         for (at, cluster) in piece.text.grapheme_indices(true) {
             let face = self.face_of(cluster);
             let end = at + cluster.len();
@@ -130,7 +130,7 @@ impl Line {
     }
 
     /// Shapes `text` with one font and appends it.
-    fn set(&mut self, text: &str, face: &Arc<Face>, right_to_left: bool) {
+    fn set(&mut self, text: &str, face: &Arc<FontFace>, right_to_left: bool) {
         let Some(font) = face.font() else { return };
         let data = ShaperData::new(&font);
         let mut buffer = UnicodeBuffer::new();
@@ -159,7 +159,7 @@ impl Line {
     }
 
     /// Appends a box for a missing letter, unless the letter is invisible.
-    fn set_box(&mut self, cluster: &str, face: Option<Arc<Face>>) {
+    fn set_box(&mut self, cluster: &str, face: Option<Arc<FontFace>>) {
         let is_seen = cluster.chars().next().is_some_and(|letter| !super::fonts::is_unseen(letter));
         let Some(face) = face.filter(|_| is_seen) else { return };
         let Some(font) = face.font() else { return };
@@ -171,7 +171,7 @@ impl Line {
     }
 }
 
-impl Face {
+impl FontFace {
     /// The factor from the font's units to em, including the font's scale tweak.
     fn scale(&self) -> f32 {
         let units = self

@@ -6,7 +6,7 @@ use underfoot_format::outline::{Element, Outline, OutlineShape};
 
 /// A list of records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum List {
+pub enum RecordList {
     /// Active parts of the floor.
     Regions,
     /// Places to stand.
@@ -19,7 +19,7 @@ pub enum List {
     Pages,
 }
 
-impl List {
+impl RecordList {
     /// All lists, in the order in which layouts write them.
     pub const ALL: [Self; 5] = [Self::Regions, Self::Stances, Self::Widgets, Self::Grounds, Self::Pages];
 
@@ -38,7 +38,7 @@ impl List {
 
 /// The path to a record: entry by entry from the layout itself, which has the empty address.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Address(Vec<(List, usize)>);
+pub struct Address(Vec<(RecordList, usize)>);
 
 impl Address {
     /// The layout itself.
@@ -46,13 +46,13 @@ impl Address {
 
     /// The entry at `index` of the layout's own `list`.
     #[must_use]
-    pub fn of(list: List, index: usize) -> Self {
+    pub fn of(list: RecordList, index: usize) -> Self {
         Self::LAYOUT.entry(list, index)
     }
 
     /// The entry at `index` of this record's `list`.
     #[must_use]
-    pub fn entry(&self, list: List, index: usize) -> Self {
+    pub fn entry(&self, list: RecordList, index: usize) -> Self {
         let mut steps = self.0.clone();
         steps.push((list, index));
         Self(steps)
@@ -60,21 +60,21 @@ impl Address {
 
     /// The record that contains its list, the list, and its index there; `None` for the layout itself.
     #[must_use]
-    pub fn split(&self) -> Option<(Self, List, usize)> {
+    pub fn split(&self) -> Option<(Self, RecordList, usize)> {
         let (&(list, index), parents) = self.0.split_last()?;
         Some((Self(parents.to_vec()), list, index))
     }
 
     /// The list that contains it; `None` for the layout itself.
     #[must_use]
-    pub fn list(&self) -> Option<List> {
+    pub fn list(&self) -> Option<RecordList> {
         self.0.last().map(|(list, _)| *list)
     }
 
     /// The index of the page that it is, or is part of; `None` for a record outside all pages.
     #[must_use]
     pub fn page(&self) -> Option<usize> {
-        self.0.first().filter(|(list, _)| *list == List::Pages).map(|(_, index)| *index)
+        self.0.first().filter(|(list, _)| *list == RecordList::Pages).map(|(_, index)| *index)
     }
 
     /// Whether it is `other` or a part of it.
@@ -95,7 +95,7 @@ impl Address {
         let mut found = vec![(Self::LAYOUT, layout)];
         let mut next = 0;
         while let Some((address, record)) = found.get(next).cloned() {
-            for list in List::ALL {
+            for list in RecordList::ALL {
                 let entries: &[Element] = list_of(record, list).map_or(&[], |list| &list.elements);
                 let entries = entries.iter().enumerate();
                 found.extend(entries.map(|(index, element)| (address.entry(list, index), &element.value)));
@@ -107,7 +107,7 @@ impl Address {
 }
 
 /// The list of `record`, if it is present.
-pub(super) fn list_of(record: &Outline, list: List) -> Option<&Outline> {
+pub(super) fn list_of(record: &Outline, list: RecordList) -> Option<&Outline> {
     let value = &record.field(list.field())?.value;
     (value.shape == OutlineShape::List).then_some(value)
 }

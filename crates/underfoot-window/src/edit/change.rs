@@ -1,8 +1,8 @@
 //! Edits of a layout, and the changes of its text that they cause.
 
-use super::address::{Address, List, list_of};
-use super::refusal::Refusal;
-use super::splice::{Lines, Piece, Splice, spliced};
+use super::address::{Address, RecordList, list_of};
+use super::refusal::EditRefusal;
+use super::splice::{RecordText, Splice, TextLines, spliced};
 use underfoot_format::outline::{Outline, OutlineShape};
 
 /// One change of a layout. In a sequence, each edit addresses the records as the edits before it left them.
@@ -71,8 +71,8 @@ impl Edit {
     }
 
     /// Returns `text` after the edit; `root` is its outline.
-    pub(super) fn done(&self, text: &str, root: &Outline) -> Result<String, Refusal> {
-        let lines = Lines(text);
+    pub(super) fn done(&self, text: &str, root: &Outline) -> Result<String, EditRefusal> {
+        let lines = TextLines(text);
         let splices = match self {
             Self::Set { record, field, value } => {
                 let path: Vec<&str> = field.split('.').collect();
@@ -83,7 +83,7 @@ impl Edit {
                 lines.unset(find(root, record)?, &path)
             }
             Self::Insert { at, text } => {
-                insert(lines, root, at, &Piece::parse(text).ok_or(Refusal::NotARecord)?)?
+                insert(lines, root, at, &RecordText::parse(text).ok_or(EditRefusal::NotARecord)?)?
             }
             Self::Delete { record } => {
                 let (list, index) = in_list(root, record)?;
@@ -100,50 +100,55 @@ impl Edit {
     }
 }
 
-fn find<'o>(root: &'o Outline, address: &Address) -> Result<&'o Outline, Refusal> {
-    address.find(root).ok_or_else(|| Refusal::Missing(address.clone()))
+fn find<'o>(root: &'o Outline, address: &Address) -> Result<&'o Outline, EditRefusal> {
+    address.find(root).ok_or_else(|| EditRefusal::Missing(address.clone()))
 }
 
 /// The list that contains the record at `address`, and its index there.
-fn in_list<'o>(root: &'o Outline, address: &Address) -> Result<(&'o Outline, usize), Refusal> {
-    let missing = || Refusal::Missing(address.clone());
+fn in_list<'o>(root: &'o Outline, address: &Address) -> Result<(&'o Outline, usize), EditRefusal> {
+    let missing = || EditRefusal::Missing(address.clone());
     find(root, address)?;
     let (parent, list, index) = address.split().ok_or_else(missing)?;
     let list = parent.find(root).and_then(|parent| list_of(parent, list)).ok_or_else(missing)?;
     Ok((list, index))
 }
 
-fn insert(lines: Lines<'_>, root: &Outline, at: &Address, piece: &Piece) -> Result<Vec<Splice>, Refusal> {
-    let (parent, list, index) = at.split().ok_or_else(|| Refusal::Missing(at.clone()))?;
+fn insert(
+    lines: TextLines<'_>,
+    root: &Outline,
+    at: &Address,
+    piece: &RecordText,
+) -> Result<Vec<Splice>, EditRefusal> {
+    let (parent, list, index) = at.split().ok_or_else(|| EditRefusal::Missing(at.clone()))?;
     let parent = find(root, &parent)?;
     if let Some(list) = list_of(parent, list) {
         return Ok(lines.insert(list, index, piece));
     }
-    let list = Piece::new(format!("{}: [\n{}]", list.field(), piece.listed("    ")));
+    let list = RecordText::new(format!("{}: [\n{}]", list.field(), piece.listed("    ")));
     Ok(lines.insert(parent, parent.elements.len(), &list))
 }
 
-fn reorder(lines: Lines<'_>, root: &Outline, record: &Address, to: usize) -> Result<String, Refusal> {
+fn reorder(lines: TextLines<'_>, root: &Outline, record: &Address, to: usize) -> Result<String, EditRefusal> {
     let (list, index) = in_list(root, record)?;
     let to = to.min(list.elements.len() - 1);
     if to == index {
         return Ok(lines.0.to_owned());
     }
-    let piece = lines.piece(list, index).ok_or_else(|| Refusal::Missing(record.clone()))?;
+    let piece = lines.piece(list, index).ok_or_else(|| EditRefusal::Missing(record.clone()))?;
     let without = spliced(lines.0, lines.take(list, index));
-    let again = Outline::parse(&without).ok_or_else(|| Refusal::Missing(record.clone()))?;
-    let (parent, kind, _) = record.split().ok_or_else(|| Refusal::Missing(record.clone()))?;
-    let splices = insert(Lines(&without), &again, &parent.entry(kind, to), &piece)?;
+    let again = Outline::parse(&without).ok_or_else(|| EditRefusal::Missing(record.clone()))?;
+    let (parent, kind, _) = record.split().ok_or_else(|| EditRefusal::Missing(record.clone()))?;
+    let splices = insert(TextLines(&without), &again, &parent.entry(kind, to), &piece)?;
     Ok(spliced(&without, splices))
 }
 
 /// Fields by which one entry of a list refers to another.
 pub(super) const NEIGHBOURS: [&str; 4] = ["right_of", "left_of", "above", "below"];
 
-fn rename(root: &Outline, record: &Address, id: &str) -> Result<Vec<Splice>, Refusal> {
+fn rename(root: &Outline, record: &Address, id: &str) -> Result<Vec<Splice>, EditRefusal> {
     let quoted = quoted(id);
     let named = find(root, record)?.field("id").map(|field| &field.value);
-    let named = named.ok_or_else(|| Refusal::Missing(record.clone()))?;
+    let named = named.ok_or_else(|| EditRefusal::Missing(record.clone()))?;
     let mut splices = vec![Splice::new(named.span.clone(), quoted.clone())];
     let Some(old) = named.says.as_deref() else { return Ok(splices) };
     let refers = |fields: &[&str], other: &Outline, splices: &mut Vec<Splice>| {
@@ -152,12 +157,13 @@ fn rename(root: &Outline, record: &Address, id: &str) -> Result<Vec<Splice>, Ref
         splices.extend(same.map(|field| Splice::new(field.value.span.clone(), quoted.clone())));
     };
     match record.list() {
-        Some(List::Widgets) => {
+        Some(RecordList::Widgets) => {
             let (list, _) = in_list(root, record)?;
             list.elements.iter().for_each(|other| refers(&NEIGHBOURS, &other.value, &mut splices));
         }
-        Some(List::Pages) => {
-            let controls = Address::all(root).into_iter().filter(|(at, _)| at.list() == Some(List::Widgets));
+        Some(RecordList::Pages) => {
+            let controls =
+                Address::all(root).into_iter().filter(|(at, _)| at.list() == Some(RecordList::Widgets));
             controls.for_each(|(_, control)| refers(&["goto"], control, &mut splices));
         }
         _ => {}

@@ -2,11 +2,11 @@
 
 use glam::Vec2;
 
-use super::address::{Address, List, list_of};
+use super::address::{Address, RecordList, list_of};
 use super::change::Edit;
 use super::document::Document;
-use super::refusal::Refusal;
-use super::splice::{Lines, Piece, spliced};
+use super::refusal::EditRefusal;
+use super::splice::{RecordText, TextLines, spliced};
 use underfoot_format::outline::Outline;
 use underfoot_format::source::MAX_BYTES;
 
@@ -22,8 +22,8 @@ impl Document {
         let texts = records.iter().filter_map(|address| {
             let (parent, list, index) = address.split()?;
             let list = list_of(parent.find(self.root())?, list)?;
-            let piece = Lines(self.text()).piece(list, index)?;
-            let piece = if with_comments { piece } else { Piece::new(piece.text) };
+            let piece = TextLines(self.text()).piece(list, index)?;
+            let piece = if with_comments { piece } else { RecordText::new(piece.text) };
             Some(piece.listed(""))
         });
         texts.collect()
@@ -39,11 +39,11 @@ impl Document {
         text: &str,
         page: usize,
         by: Vec2,
-    ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+    ) -> Result<(Vec<Edit>, Vec<Address>), EditRefusal> {
         let pages = self.layout().pages.len();
-        let on_page = if page < pages { Address::of(List::Pages, page) } else { Address::LAYOUT };
+        let on_page = if page < pages { Address::of(RecordList::Pages, page) } else { Address::LAYOUT };
         self.pasted(text, by, |record| match list_for(record) {
-            list @ (List::Widgets | List::Grounds) => (on_page.clone(), list),
+            list @ (RecordList::Widgets | RecordList::Grounds) => (on_page.clone(), list),
             list => (Address::LAYOUT, list),
         })
     }
@@ -55,14 +55,14 @@ impl Document {
     /// use get numbers.
     ///
     /// # Errors
-    /// [`Refusal::NotARecord`], [`Refusal::TooLong`].
+    /// [`EditRefusal::NotARecord`], [`EditRefusal::TooLong`].
     pub fn pasting(
         &self,
         text: &str,
         parent: &Address,
-        list: List,
+        list: RecordList,
         by: Vec2,
-    ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+    ) -> Result<(Vec<Edit>, Vec<Address>), EditRefusal> {
         self.pasted(text, by, |_| (parent.clone(), list))
     }
 
@@ -71,21 +71,21 @@ impl Document {
         &self,
         text: &str,
         by: Vec2,
-        home: impl Fn(&Outline) -> (Address, List),
-    ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+        home: impl Fn(&Outline) -> (Address, RecordList),
+    ) -> Result<(Vec<Edit>, Vec<Address>), EditRefusal> {
         if text.len() > MAX_BYTES {
-            return Err(Refusal::TooLong);
+            return Err(EditRefusal::TooLong);
         }
         // A comment at the end of the text must not hide the bracket.
         let text = format!("[\n{}\n]", text.trim());
-        let entries = Outline::parse(&text).ok_or(Refusal::NotARecord)?;
+        let entries = Outline::parse(&text).ok_or(EditRefusal::NotARecord)?;
         let (mut edits, mut places, mut taken) = (Vec::new(), Vec::<Address>::new(), Vec::new());
         for (number, element) in entries.elements.iter().enumerate() {
             if !super::change::is_record(&element.value) {
-                return Err(Refusal::NotARecord);
+                return Err(EditRefusal::NotARecord);
             }
-            let mut piece = Lines(&text).piece(&entries, number).ok_or(Refusal::NotARecord)?;
-            self.renew(&mut piece.text, by, &mut taken).ok_or(Refusal::NotARecord)?;
+            let mut piece = TextLines(&text).piece(&entries, number).ok_or(EditRefusal::NotARecord)?;
+            self.renew(&mut piece.text, by, &mut taken).ok_or(EditRefusal::NotARecord)?;
             let (parent, list) = home(&element.value);
             let is_here = |place: &&Address| place.split().is_some_and(|it| (&it.0, it.1) == (&parent, list));
             let before = places.iter().filter(is_here).count();
@@ -93,7 +93,7 @@ impl Document {
             edits.push(Edit::Insert { at: at.clone(), text: piece.listed("") });
             places.push(at);
         }
-        if edits.is_empty() { Err(Refusal::NotARecord) } else { Ok((edits, places)) }
+        if edits.is_empty() { Err(EditRefusal::NotARecord) } else { Ok((edits, places)) }
     }
 
     /// Gives the record `text` and the records of its group free ids, and moves it.
@@ -106,7 +106,7 @@ impl Document {
             let new =
                 if old.contains('{') { old.replacen('{', "copy_{", 1) } else { self.free_id(&old, taken) };
             taken.push(new.clone());
-            let splices = Lines(text).set(record, &["id"], &format!("\"{new}\""));
+            let splices = TextLines(text).set(record, &["id"], &format!("\"{new}\""));
             *text = spliced(text, splices);
         }
         let root = Outline::parse(text)?;
@@ -118,7 +118,7 @@ impl Document {
             let by = by.as_dvec2() / self.unit_m();
             let moved = [east + by.x, north + by.y].map(|value| (value * 1e4).round() / 1e4);
             let value = format!("({}, {})", moved[0], moved[1]);
-            *text = spliced(text, Lines(text).set(&root, &["at"], &value));
+            *text = spliced(text, TextLines(text).set(&root, &["at"], &value));
         }
         Some(())
     }
@@ -128,8 +128,12 @@ impl Document {
     ///
     /// # Errors
     /// As [`Document::pasting`].
-    pub fn duplicating(&self, records: &[Address], by: Vec2) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
-        let mut lists: Vec<(Address, List)> = Vec::new();
+    pub fn duplicating(
+        &self,
+        records: &[Address],
+        by: Vec2,
+    ) -> Result<(Vec<Edit>, Vec<Address>), EditRefusal> {
+        let mut lists: Vec<(Address, RecordList)> = Vec::new();
         for record in records {
             let home = record.split().map(|(parent, list, _)| (parent, list));
             lists.extend(home.filter(|home| !lists.contains(home)));
@@ -172,15 +176,15 @@ fn last_first(records: &[Address]) -> Vec<&Address> {
 }
 
 /// The list for a record, judging by its fields.
-fn list_for(record: &Outline) -> List {
+fn list_for(record: &Outline) -> RecordList {
     let has = |field: &str| record.field(field).is_some();
     match record.name.as_deref() {
-        Some("Group") => List::Widgets,
-        Some(_) => List::Grounds,
-        None if has("kind") => List::Widgets,
-        None if has("widgets") || has("grounds") => List::Pages,
+        Some("Group") => RecordList::Widgets,
+        Some(_) => RecordList::Grounds,
+        None if has("kind") => RecordList::Widgets,
+        None if has("widgets") || has("grounds") => RecordList::Pages,
         // A place to stand has no id, a region no label.
-        None if has("id") => List::Regions,
-        None => List::Stances,
+        None if has("id") => RecordList::Regions,
+        None => RecordList::Stances,
     }
 }

@@ -6,7 +6,7 @@ use glam::Vec2;
 use proptest::prelude::*;
 
 use super::splice::comments;
-use super::{Address, Document, Edit, Item, List};
+use super::{Address, Document, Edit, Item, RecordList, grouping, ungrouping};
 use underfoot::floor::Floor;
 use underfoot::schema::Kinds;
 
@@ -91,24 +91,24 @@ proptest! {
         let (said, shown) = (words(&document), placed(&document));
         let is_chosen = |index: usize| chosen[index % 6];
         let records: Vec<Address> =
-            (0..controls.len()).filter(|index| is_chosen(*index)).map(|index| Address::of(List::Widgets, index)).collect();
+            (0..controls.len()).filter(|index| is_chosen(*index)).map(|index| Address::of(RecordList::Widgets, index)).collect();
         prop_assume!(!records.is_empty());
 
         let items = document.items();
         let members: Vec<&Item> = items.iter().filter(|item| records.contains(&item.record)).collect();
-        let (edits, group) = document.grouping(&members).unwrap();
+        let (edits, group) = grouping(&document, &members).unwrap();
         document.edit(&edits).unwrap();
         prop_assert_eq!(words(&document), said.clone(), "grouped: {}", document.text());
         prop_assert_eq!(placed(&document), shown.clone());
 
         let items = document.items();
         let group = items.iter().find(|item| item.record == group).unwrap();
-        let (edits, _) = document.ungrouping(&items, group).unwrap();
+        let (edits, _) = ungrouping(&document, &items, group).unwrap();
         document.edit(&edits).unwrap();
         prop_assert_eq!(words(&document), said.clone(), "apart again: {}", document.text());
         prop_assert_eq!(placed(&document), shown.clone());
 
-        document.edit(&[Edit::Reorder { record: Address::of(List::Widgets, 0), to }]).unwrap();
+        document.edit(&[Edit::Reorder { record: Address::of(RecordList::Widgets, 0), to }]).unwrap();
         prop_assert_eq!(words(&document), said.clone(), "in another order: {}", document.text());
 
         let copied = document.copy(&records);
@@ -140,7 +140,7 @@ fn comments_directly_above_go_with_their_control_into_a_group_and_others_stay() 
     );
     let items = document.items();
     let chosen: Vec<&Item> = items.iter().filter(|item| ["a", "c"].contains(&item.name.as_str())).collect();
-    let (edits, _) = document.grouping(&chosen).unwrap();
+    let (edits, _) = grouping(&document, &chosen).unwrap();
     document.edit(&edits).unwrap();
     let wanted = "widgets: [
     // About all of this.
@@ -177,7 +177,7 @@ fn comments_of_a_group_are_kept_when_it_comes_apart() {
     );
     let items = document.items();
     let group = items.iter().find(|item| item.is_group).unwrap();
-    let (edits, _) = document.ungrouping(&items, group).unwrap();
+    let (edits, _) = ungrouping(&document, &items, group).unwrap();
     document.edit(&edits).unwrap();
     for comment in ["// The pair.", "its name", "// left", "// a", "nobody's", "end"] {
         assert_eq!(document.text().matches(comment).count(), 1, "{comment}: {}", document.text());

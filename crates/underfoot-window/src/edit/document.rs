@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::address::{Address, List, list_of};
+use super::address::{Address, RecordList, list_of};
 use super::change::{Edit, is_record};
-use super::history::History;
-use super::refusal::Refusal;
-use super::splice::Piece;
+use super::history::UndoHistory;
+use super::refusal::EditRefusal;
+use super::splice::RecordText;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostics, Kinds, Loaded, parse_layout};
@@ -29,7 +29,7 @@ pub struct Document {
     text: Arc<str>,
     loaded: Arc<Loaded>,
     root: Arc<Outline>,
-    history: History,
+    history: UndoHistory,
     kinds: Arc<Kinds>,
     floor: Arc<Floor>,
     /// The number of texts so far.
@@ -50,7 +50,7 @@ impl Document {
             text: bare.into(),
             loaded: Arc::new(loaded),
             root: Arc::new(root),
-            history: History::default(),
+            history: UndoHistory::default(),
             kinds: Arc::clone(kinds),
             floor: Arc::clone(floor),
             revision: 0,
@@ -169,18 +169,18 @@ impl Document {
     /// Applies `edits` as one undo step.
     ///
     /// # Errors
-    /// [`Refusal`]; nothing changes then.
-    pub fn edit(&mut self, edits: &[Edit]) -> Result<(), Refusal> {
+    /// [`EditRefusal`]; nothing changes then.
+    pub fn edit(&mut self, edits: &[Edit]) -> Result<(), EditRefusal> {
         self.edit_in(edits, None)
     }
 
     /// Applies `edits`; consecutive edits with the same `stroke`, such as those of a drag, are one undo step.
     ///
     /// # Errors
-    /// [`Refusal`]; nothing changes then.
-    pub fn edit_in(&mut self, edits: &[Edit], stroke: Option<u64>) -> Result<(), Refusal> {
+    /// [`EditRefusal`]; nothing changes then.
+    pub fn edit_in(&mut self, edits: &[Edit], stroke: Option<u64>) -> Result<(), EditRefusal> {
         let text = self.edited(edits)?;
-        self.take(text, stroke).map_err(Refusal::Unreadable)
+        self.take(text, stroke).map_err(EditRefusal::Unreadable)
     }
 
     /// Replaces the text by `text`; consecutive changes with the same `stroke` are one undo step.
@@ -194,22 +194,22 @@ impl Document {
     /// The layout that `edits` would produce.
     ///
     /// # Errors
-    /// [`Refusal`], as [`Document::edit`].
-    pub fn trial(&self, edits: &[Edit]) -> Result<Layout, Refusal> {
+    /// [`EditRefusal`], as [`Document::edit`].
+    pub fn trial(&self, edits: &[Edit]) -> Result<Layout, EditRefusal> {
         let text = self.edited(edits)?;
         let read = parse_layout(&text, &self.name, &self.kinds, &self.floor.geometry);
-        read.map(|loaded| loaded.layout).map_err(Refusal::Unreadable)
+        read.map(|loaded| loaded.layout).map_err(EditRefusal::Unreadable)
     }
 
-    fn edited(&self, edits: &[Edit]) -> Result<String, Refusal> {
+    fn edited(&self, edits: &[Edit]) -> Result<String, EditRefusal> {
         let mut text = self.text.to_string();
         let mut root: Option<Outline> = None;
         for edit in edits {
             if let Edit::Insert { text, .. } = edit
-                && !Piece::parse(text)
+                && !RecordText::parse(text)
                     .is_some_and(|piece| Outline::parse(&piece.text).as_ref().is_some_and(is_record))
             {
-                return Err(Refusal::NotARecord);
+                return Err(EditRefusal::NotARecord);
             }
             text = edit.done(&text, root.as_ref().unwrap_or(&self.root))?;
             match Outline::parse(&text) {
@@ -274,7 +274,7 @@ impl Document {
 
     /// The number of records in the list of `parent`.
     #[must_use]
-    pub fn count(&self, parent: &Address, list: List) -> usize {
+    pub fn count(&self, parent: &Address, list: RecordList) -> usize {
         parent.find(&self.root).and_then(|parent| list_of(parent, list)).map_or(0, |list| list.elements.len())
     }
 

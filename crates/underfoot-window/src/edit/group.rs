@@ -2,124 +2,126 @@
 
 use glam::DVec2;
 
-use super::address::{Address, List, list_of};
+use super::address::{Address, RecordList, list_of};
 use super::change::Edit;
 use super::document::Document;
 use super::item::Item;
 use super::place::{RELATIVE, pair};
-use super::refusal::Refusal;
-use super::splice::{Lines, Piece, comments, spliced};
+use super::refusal::EditRefusal;
+use super::splice::{RecordText, TextLines, comments, spliced};
 use underfoot_format::outline::Outline;
 
-impl Document {
-    /// The edits that make one group of `items`, and its address: it replaces the first of them, and its place is
-    /// their south-west corner.
-    ///
-    /// # Errors
-    /// [`Refusal::Apart`] for records of several lists, or that are not controls; [`Refusal::PlacedByGroup`] as
-    /// [`Document::placing`].
-    pub fn grouping(&self, items: &[&Item]) -> Result<(Vec<Edit>, Address), Refusal> {
-        let mut items: Vec<&Item> = items.to_vec();
-        items.sort_by(|a, b| a.record.cmp(&b.record));
-        let home = items.first().and_then(|item| item.record.split()).ok_or(Refusal::Apart)?;
-        let is_here = |item: &&Item| item.record.split().is_some_and(|it| (&it.0, it.1) == (&home.0, home.1));
-        if home.1 != List::Widgets || !items.iter().all(is_here) {
-            return Err(Refusal::Apart);
-        }
-        let places: Vec<DVec2> = items.iter().map(|item| self.place_of(item)).collect::<Result<_, _>>()?;
-        let corner = places.iter().copied().reduce(DVec2::min).unwrap_or_default();
-        let mut text = format!(
-            "Group(id: \"{}\", at: {}, widgets: [\n",
-            self.free_id("group_1", &[]),
-            pair(corner.x, corner.y)
-        );
-        for (item, place) in items.iter().zip(&places) {
-            text.push_str(&self.placed_piece(item, *place - corner)?.listed("    "));
-        }
-        text.push_str("])");
-        let records: Vec<Address> = items.iter().map(|item| item.record.clone()).collect();
-        let mut edits = self.taking(&records);
-        let at = home.0.entry(home.1, home.2);
-        edits.push(Edit::Insert { at: at.clone(), text });
-        Ok((edits, at))
+/// The edits that make one group of `items`, and its address: it replaces the first of them, and its place is
+/// their south-west corner.
+///
+/// # Errors
+/// [`EditRefusal::Apart`] for records of several lists, or that are not controls; [`EditRefusal::PlacedByGroup`] as
+/// [`Document::placing`].
+pub fn grouping(document: &Document, items: &[&Item]) -> Result<(Vec<Edit>, Address), EditRefusal> {
+    let mut items: Vec<&Item> = items.to_vec();
+    items.sort_by(|a, b| a.record.cmp(&b.record));
+    let home = items.first().and_then(|item| item.record.split()).ok_or(EditRefusal::Apart)?;
+    let is_here = |item: &&Item| item.record.split().is_some_and(|it| (&it.0, it.1) == (&home.0, home.1));
+    if home.1 != RecordList::Widgets || !items.iter().all(is_here) {
+        return Err(EditRefusal::Apart);
     }
+    let places: Vec<DVec2> = items.iter().map(|item| place_of(document, item)).collect::<Result<_, _>>()?;
+    let corner = places.iter().copied().reduce(DVec2::min).unwrap_or_default();
+    let mut text = format!(
+        "Group(id: \"{}\", at: {}, widgets: [\n",
+        document.free_id("group_1", &[]),
+        pair(corner.x, corner.y)
+    );
+    for (item, place) in items.iter().zip(&places) {
+        text.push_str(&placed_piece(document, item, *place - corner)?.listed("    "));
+    }
+    text.push_str("])");
+    let records: Vec<Address> = items.iter().map(|item| item.record.clone()).collect();
+    let mut edits = document.taking(&records);
+    let at = home.0.entry(home.1, home.2);
+    edits.push(Edit::Insert { at: at.clone(), text });
+    Ok((edits, at))
+}
 
-    /// The edits that dissolve the group, and the addresses of its records, which replace it.
-    ///
-    /// # Errors
-    /// [`Refusal::Apart`] for a record that is not a group; [`Refusal::PlacedByGroup`] as [`Document::placing`].
-    pub fn ungrouping(&self, items: &[Item], group: &Item) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
-        let (parent, list, index) = group.record.split().ok_or(Refusal::Apart)?;
-        let corner = self.place_of(group)?;
-        let inner = items.iter().filter(|item| {
-            item.record.split().is_some_and(|(of, list, _)| of == group.record && list == List::Widgets)
-        });
-        let mut edits = vec![Edit::Take { record: group.record.clone() }];
-        let mut places = Vec::new();
-        let pieces = inner.map(|item| self.placed_piece(item, self.place_of(item)? + corner));
-        let mut pieces = pieces.collect::<Result<Vec<Piece>, _>>()?;
-        let left = self.comments_beside(&group.record, &pieces);
-        if let Some(first) = pieces.first_mut() {
-            first.above.splice(0..0, left);
-        }
-        for piece in pieces {
-            let at = parent.entry(list, index + places.len());
-            edits.push(Edit::Insert { at: at.clone(), text: piece.listed("") });
-            places.push(at);
-        }
-        if places.is_empty() { Err(Refusal::Apart) } else { Ok((edits, places)) }
+/// The edits that dissolve the group, and the addresses of its records, which replace it.
+///
+/// # Errors
+/// [`EditRefusal::Apart`] for a record that is not a group; [`EditRefusal::PlacedByGroup`] as [`Document::placing`].
+pub fn ungrouping(
+    document: &Document,
+    items: &[Item],
+    group: &Item,
+) -> Result<(Vec<Edit>, Vec<Address>), EditRefusal> {
+    let (parent, list, index) = group.record.split().ok_or(EditRefusal::Apart)?;
+    let corner = place_of(document, group)?;
+    let inner = items.iter().filter(|item| {
+        item.record.split().is_some_and(|(of, list, _)| of == group.record && list == RecordList::Widgets)
+    });
+    let mut edits = vec![Edit::Take { record: group.record.clone() }];
+    let mut places = Vec::new();
+    let pieces = inner.map(|item| placed_piece(document, item, place_of(document, item)? + corner));
+    let mut pieces = pieces.collect::<Result<Vec<RecordText>, _>>()?;
+    let left = comments_beside(document, &group.record, &pieces);
+    if let Some(first) = pieces.first_mut() {
+        first.above.splice(0..0, left);
     }
+    for piece in pieces {
+        let at = parent.entry(list, index + places.len());
+        edits.push(Edit::Insert { at: at.clone(), text: piece.listed("") });
+        places.push(at);
+    }
+    if places.is_empty() { Err(EditRefusal::Apart) } else { Ok((edits, places)) }
+}
 
-    /// The comments of a group that do not belong to any of `pieces`, line by line.
-    fn comments_beside(&self, group: &Address, pieces: &[Piece]) -> Vec<String> {
-        let piece = group.split().and_then(|(parent, list, index)| {
-            Lines(self.text()).piece(list_of(parent.find(self.root())?, list)?, index)
-        });
-        let Some(whole) = piece.map(|piece| piece.listed("")) else { return Vec::new() };
-        let mut all: Vec<&str> = comments(&whole);
-        let inner: Vec<String> = pieces.iter().map(|piece| piece.listed("")).collect();
-        for taken in inner.iter().flat_map(|piece| comments(piece)) {
-            // Moving may have turned it into a block comment and changed its indentation.
-            let words = |comment: &str| {
-                let words = comment.split(|letter: char| letter.is_whitespace() || "/*".contains(letter));
-                words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
-            };
-            if let Some(at) = all.iter().position(|comment| words(comment) == words(taken)) {
-                all.remove(at);
-            }
+/// The comments of a group that do not belong to any of `pieces`, line by line.
+fn comments_beside(document: &Document, group: &Address, pieces: &[RecordText]) -> Vec<String> {
+    let piece = group.split().and_then(|(parent, list, index)| {
+        TextLines(document.text()).piece(list_of(parent.find(document.root())?, list)?, index)
+    });
+    let Some(whole) = piece.map(|piece| piece.listed("")) else { return Vec::new() };
+    let mut all: Vec<&str> = comments(&whole);
+    let inner: Vec<String> = pieces.iter().map(|piece| piece.listed("")).collect();
+    for taken in inner.iter().flat_map(|piece| comments(piece)) {
+        // Moving may have turned it into a block comment and changed its indentation.
+        let words = |comment: &str| {
+            let words = comment.split(|letter: char| letter.is_whitespace() || "/*".contains(letter));
+            words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+        };
+        if let Some(at) = all.iter().position(|comment| words(comment) == words(taken)) {
+            all.remove(at);
         }
-        all.into_iter().flat_map(|comment| comment.lines().map(|line| line.trim().to_owned())).collect()
     }
+    all.into_iter().flat_map(|comment| comment.lines().map(|line| line.trim().to_owned())).collect()
+}
 
-    /// Its written place in its list, or the place that it would have if it were written.
-    fn place_of(&self, item: &Item) -> Result<DVec2, Refusal> {
-        match self.pair(&item.record, "at") {
-            Some(written) => Ok(written),
-            None if item.is_group => Err(Refusal::PlacedByGroup(item.record.clone())),
-            None => Ok(item.area.min.as_dvec2() / self.unit_m() - self.origin(&item.record)?),
-        }
+/// Its written place in its list, or the place that it would have if it were written.
+fn place_of(document: &Document, item: &Item) -> Result<DVec2, EditRefusal> {
+    match document.pair(&item.record, "at") {
+        Some(written) => Ok(written),
+        None if item.is_group => Err(EditRefusal::PlacedByGroup(item.record.clone())),
+        None => Ok(item.area.min.as_dvec2() / document.unit_m() - document.origin(&item.record)?),
     }
+}
 
-    /// The text of a record with the place `at` of its own.
-    fn placed_piece(&self, item: &Item, at: DVec2) -> Result<Piece, Refusal> {
-        let missing = || Refusal::Missing(item.record.clone());
-        let (parent, list, index) = item.record.split().ok_or_else(missing)?;
-        let list = parent.find(self.root()).and_then(|parent| list_of(parent, list)).ok_or_else(missing)?;
-        let mut piece = Lines(self.text()).piece(list, index).ok_or_else(missing)?;
-        let had_at = self.written(&item.record, "at").is_some();
-        for field in RELATIVE.iter().filter(|_| !had_at) {
-            let root = Outline::parse(&piece.text).ok_or_else(missing)?;
-            piece.text = spliced(&piece.text, Lines(&piece.text).unset(&root, &[field]));
-        }
-        let size = item.area.size().as_dvec2() / self.unit_m();
-        let needs_size = !had_at && !item.is_group && self.written(&item.record, "size").is_none();
-        let size = needs_size.then(|| ("size", pair(size.x, size.y)));
-        for (field, value) in [("at", pair(at.x, at.y))].into_iter().chain(size) {
-            let root = Outline::parse(&piece.text).ok_or_else(missing)?;
-            piece.text = spliced(&piece.text, Lines(&piece.text).set(&root, &[field], &value));
-        }
-        Ok(piece)
+/// The text of a record with the place `at` of its own.
+fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Result<RecordText, EditRefusal> {
+    let missing = || EditRefusal::Missing(item.record.clone());
+    let (parent, list, index) = item.record.split().ok_or_else(missing)?;
+    let list = parent.find(document.root()).and_then(|parent| list_of(parent, list)).ok_or_else(missing)?;
+    let mut piece = TextLines(document.text()).piece(list, index).ok_or_else(missing)?;
+    let had_at = document.written(&item.record, "at").is_some();
+    for field in RELATIVE.iter().filter(|_| !had_at) {
+        let root = Outline::parse(&piece.text).ok_or_else(missing)?;
+        piece.text = spliced(&piece.text, TextLines(&piece.text).unset(&root, &[field]));
     }
+    let size = item.area.size().as_dvec2() / document.unit_m();
+    let needs_size = !had_at && !item.is_group && document.written(&item.record, "size").is_none();
+    let size = needs_size.then(|| ("size", pair(size.x, size.y)));
+    for (field, value) in [("at", pair(at.x, at.y))].into_iter().chain(size) {
+        let root = Outline::parse(&piece.text).ok_or_else(missing)?;
+        piece.text = spliced(&piece.text, TextLines(&piece.text).set(&root, &[field], &value));
+    }
+    Ok(piece)
 }
 
 #[cfg(test)]
@@ -145,7 +147,7 @@ mod tests {
         let before = sorted(&document);
         let items = document.items();
         let pans: Vec<&Item> = items.iter().filter(|item| item.name.starts_with("pan_")).collect();
-        let (edits, group) = document.grouping(&pans).unwrap();
+        let (edits, group) = grouping(&document, &pans).unwrap();
         document.edit(&edits).unwrap();
         let close = |now: Vec<(underfoot::widget::WidgetId, underfoot::floor::Rect, String)>| {
             before.iter().zip(&now).all(|(a, b)| {
@@ -161,7 +163,7 @@ mod tests {
         let items = document.items();
         let group = items.iter().find(|item| item.record == group).unwrap();
         assert!(group.is_group && group.widgets.len() == 4);
-        let (edits, places) = document.ungrouping(&items, group).unwrap();
+        let (edits, places) = ungrouping(&document, &items, group).unwrap();
         document.edit(&edits).unwrap();
         assert_eq!(places.len(), 4);
         assert!(close(sorted(&document)) && !document.text().contains("Group"), "{}", document.text());
@@ -177,8 +179,8 @@ mod tests {
         );
         let items = document.items();
         let all: Vec<&Item> = items.iter().collect();
-        assert_eq!(document.grouping(&all), Err(Refusal::Apart));
-        let (edits, _) = document.grouping(&all[1..]).unwrap();
+        assert_eq!(grouping(&document, &all), Err(EditRefusal::Apart));
+        let (edits, _) = grouping(&document, &all[1..]).unwrap();
         document.edit(&edits).unwrap();
         let inner = "(id: \"a\", kind: \"button\", at: (0, 0), size: (0.6, 0.6)), // a";
         assert!(document.text().contains(inner), "{}", document.text());

@@ -2,7 +2,7 @@
 
 /// One step: an offset in the text, with the old and the new content.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Step {
+pub(super) struct UndoStep {
     at: usize,
     old: String,
     new: String,
@@ -10,7 +10,7 @@ pub(super) struct Step {
     pub(super) stroke: Option<u64>,
 }
 
-impl Step {
+impl UndoStep {
     /// The difference between two texts.
     pub(super) fn between(before: &str, after: &str, stroke: Option<u64>) -> Self {
         let same = |(a, b): &(u8, u8)| a == b;
@@ -47,19 +47,19 @@ impl Step {
 
 /// The steps of a text, both done and undone ones.
 #[derive(Clone, Debug, Default)]
-pub(super) struct History {
-    steps: Vec<Step>,
+pub(super) struct UndoHistory {
+    steps: Vec<UndoStep>,
     /// The number of steps that are done.
     done: usize,
 }
 
-impl History {
+impl UndoHistory {
     /// Records that `before` became `after`; clears the undone steps.
     pub(super) fn note(&mut self, before: &str, after: &str, stroke: Option<u64>) {
         let last = self.last().filter(|last| stroke.is_some() && last.stroke == stroke);
         let (keep, step) = match last {
-            Some(last) => (self.done - 1, Step::between(&last.undone(before), after, stroke)),
-            None => (self.done, Step::between(before, after, stroke)),
+            Some(last) => (self.done - 1, UndoStep::between(&last.undone(before), after, stroke)),
+            None => (self.done, UndoStep::between(before, after, stroke)),
         };
         if before == after {
             return;
@@ -70,12 +70,12 @@ impl History {
     }
 
     /// The next step to undo.
-    pub(super) fn last(&self) -> Option<&Step> {
+    pub(super) fn last(&self) -> Option<&UndoStep> {
         self.steps.get(self.done.checked_sub(1)?)
     }
 
     /// The next step to redo.
-    pub(super) fn next(&self) -> Option<&Step> {
+    pub(super) fn next(&self) -> Option<&UndoStep> {
         self.steps.get(self.done)
     }
 
@@ -95,15 +95,15 @@ mod tests {
     #[test]
     fn a_step_holds_what_differs_whole_characters_of_it() {
         for (before, after) in [("abc", "axc"), ("", "é"), ("aé", "aè"), ("aa", "aaa"), ("ab", "")] {
-            let step = Step::between(before, after, None);
+            let step = UndoStep::between(before, after, None);
             assert_eq!((step.redone(before).as_str(), step.undone(after).as_str()), (after, before));
         }
-        assert_eq!(Step::between("at: (1, 2)", "at: (1, 3)", None).new, "3");
+        assert_eq!(UndoStep::between("at: (1, 2)", "at: (1, 3)", None).new, "3");
     }
 
     #[test]
     fn one_stroke_is_one_step() {
-        let mut history = History::default();
+        let mut history = UndoHistory::default();
         for (before, after) in [("0", "1"), ("1", "2"), ("2", "3")] {
             history.note(before, after, Some(7));
         }

@@ -1,6 +1,6 @@
 //! Describes records: their fields with the present values and the origin of each.
 
-use super::address::{Address, List};
+use super::address::{Address, RecordList};
 use super::change::Edit;
 use super::document::Document;
 use super::item::Item;
@@ -14,7 +14,7 @@ use underfoot_scene::ergonomics::{Finding, Part};
 
 /// The origin of a field's value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Origin {
+pub enum FieldOrigin {
     /// It is written in the record.
     Written,
     /// The control's kind of this name defines it.
@@ -39,7 +39,7 @@ pub struct Property {
     /// Its present value, as it is or would be written; empty if absent.
     pub value: String,
     /// The origin of the value.
-    pub origin: Origin,
+    pub origin: FieldOrigin,
 }
 
 impl Property {
@@ -63,18 +63,18 @@ impl Property {
     /// Merges the description of another record's field into this one.
     fn meet(&mut self, other: &Self) {
         if self.value != other.value {
-            (self.value, self.origin) = (String::new(), Origin::Several);
-        } else if self.origin != other.origin && self.origin != Origin::Several {
+            (self.value, self.origin) = (String::new(), FieldOrigin::Several);
+        } else if self.origin != other.origin && self.origin != FieldOrigin::Several {
             // A field that is written in one of the records can be removed there.
-            let is_written = [&self.origin, &other.origin].contains(&&Origin::Written);
-            self.origin = if is_written { Origin::Written } else { Origin::Default };
+            let is_written = [&self.origin, &other.origin].contains(&&FieldOrigin::Written);
+            self.origin = if is_written { FieldOrigin::Written } else { FieldOrigin::Default };
         }
     }
 }
 
 /// A group of related fields.
 #[derive(Clone, Debug)]
-pub struct Section {
+pub struct FieldSection {
     /// Its subject.
     pub title: String,
     /// The fields.
@@ -87,7 +87,7 @@ const GOOD_M: f32 = 0.12;
 impl Document {
     /// All fields of `record`.
     #[must_use]
-    pub fn properties(&self, record: &Address, item: Option<&Item>) -> Vec<Section> {
+    pub fn properties(&self, record: &Address, item: Option<&Item>) -> Vec<FieldSection> {
         let text = |what: &str| FieldType::Text(what.into());
         let place = || FieldType::Words("two numbers in round brackets, in the layout's units");
         let id = ("id", "Its name for apps and addresses.", text("1 to 64 of a-z, 0-9 and _"));
@@ -96,18 +96,18 @@ impl Document {
         let cursor = FieldType::Names(vec!["Largest", "Working", "Each"]);
         let own: Vec<(&str, &str, FieldType)> = match record.list() {
             None => vec![("title", "Its title, as people read it.", text("at most 200 characters"))],
-            Some(List::Regions) => {
+            Some(RecordList::Regions) => {
                 vec![id, at, size, ("cursor", "Which contacts in it operate its controls.", cursor)]
             }
-            Some(List::Stances) => {
+            Some(RecordList::Stances) => {
                 vec![("label", "Text written on it.", text("at most 64 characters")), at, size]
             }
-            Some(List::Pages) => {
+            Some(RecordList::Pages) => {
                 vec![id, ("title", "Its title, as people read it.", text("at most 200 characters"))]
             }
-            Some(List::Grounds) => vec![at, size],
-            Some(List::Widgets) if item.is_some_and(|item| item.is_group) => vec![id, at],
-            Some(List::Widgets) => vec![
+            Some(RecordList::Grounds) => vec![at, size],
+            Some(RecordList::Widgets) if item.is_some_and(|item| item.is_group) => vec![id, at],
+            Some(RecordList::Widgets) => vec![
                 id,
                 ("kind", "Its kind: a built-in one or one of `kinds`.", FieldType::Names(Vec::new())),
                 ("label", "Text written on it.", text("at most 64 characters")),
@@ -120,28 +120,29 @@ impl Document {
             let field = FieldDescription { name, about: about.into(), shape, default: None };
             self.property(record, name.to_owned(), &field, None, &[])
         });
-        let mut sections = vec![Section { title: "Identity and place".into(), properties: own.collect() }];
+        let mut sections =
+            vec![FieldSection { title: "Identity and place".into(), properties: own.collect() }];
         let widget =
             item.filter(|item| !item.is_group).and_then(|item| self.layout().widgets.get(item.widgets.start));
-        if record.list() == Some(List::Widgets)
+        if record.list() == Some(RecordList::Widgets)
             && let Some(widget) = widget
         {
             sections.extend(self.control(record, widget));
         }
-        if record.list() == Some(List::Grounds) {
+        if record.list() == Some(RecordList::Grounds) {
             let name = record.find(self.root()).and_then(|record| record.name.clone()).unwrap_or_default();
             let described = underfoot::schema::ground_fields(&name);
             let properties =
                 described.iter().map(|field| self.property(record, field.name.to_owned(), field, None, &[]));
-            sections.push(Section { title: name, properties: properties.collect() });
+            sections.push(FieldSection { title: name, properties: properties.collect() });
         }
         sections
     }
 
     /// The common fields of several controls: the fields that all of them have, except their names and places. A
-    /// field with different values has [`Origin::Several`] and an empty value.
+    /// field with different values has [`FieldOrigin::Several`] and an empty value.
     #[must_use]
-    pub fn common(&self, controls: &[&Item]) -> Vec<Section> {
+    pub fn common(&self, controls: &[&Item]) -> Vec<FieldSection> {
         let mut all = controls.iter().map(|item| self.properties(&item.record, Some(item)));
         let mut common = all.next().unwrap_or_default();
         for part in &mut common {
@@ -168,11 +169,11 @@ impl Document {
     #[must_use]
     pub fn controls_in<'i>(&self, items: &'i [Item], record: &Address) -> Vec<&'i Item> {
         let controls =
-            items.iter().filter(|item| item.record.list() == Some(List::Widgets) && !item.is_group);
+            items.iter().filter(|item| item.record.list() == Some(RecordList::Widgets) && !item.is_group);
         controls.filter(|item| item.record.is_within(record)).collect()
     }
 
-    fn control(&self, record: &Address, widget: &Widget) -> Vec<Section> {
+    fn control(&self, record: &Address, widget: &Widget) -> Vec<FieldSection> {
         let behaviour = &widget.behaviour;
         let described = underfoot::widget::Behaviour::describe();
         let described = described.into_iter().find(|record| record.name == behaviour.variant());
@@ -185,7 +186,7 @@ impl Document {
             let properties = fields.iter().map(|field| {
                 self.property(record, format!("{prefix}{}", field.name), field, Some(&widget.kind), &entries)
             });
-            Section { title: title.into(), properties: properties.collect() }
+            FieldSection { title: title.into(), properties: properties.collect() }
         };
         vec![
             section(
@@ -220,9 +221,9 @@ impl Document {
     ) -> Property {
         let entry = entries.iter().find(|(entry, _)| *entry == field.name);
         let (value, origin) = match (self.written(record, &name), entry, kind) {
-            (Some(written), ..) => (written.to_owned(), Origin::Written),
-            (None, Some((_, text)), Some(kind)) => (text.inline(), Origin::Kind(kind.to_owned())),
-            _ => (field.default.clone().unwrap_or_default(), Origin::Default),
+            (Some(written), ..) => (written.to_owned(), FieldOrigin::Written),
+            (None, Some((_, text)), Some(kind)) => (text.inline(), FieldOrigin::Kind(kind.to_owned())),
+            _ => (field.default.clone().unwrap_or_default(), FieldOrigin::Default),
         };
         let told = field.shape.told(field.name);
         Property { name, about: field.about.clone(), told, shape: field.shape.clone(), value, origin }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec2;
 
-use super::address::{Address, List};
+use super::address::{Address, RecordList};
 use super::document::Document;
 use underfoot::floor::Rect;
 use underfoot_format::outline::Outline;
@@ -51,20 +51,25 @@ impl Document {
         let mut grounds = layout.grounds.iter();
         for (address, record) in &all {
             let area = match address.list() {
-                Some(List::Grounds) => grounds.next().map(|ground| ground.spec.area),
-                Some(List::Regions) => index(address).and_then(|at| layout.regions.get(at)).map(|it| it.area),
-                Some(List::Stances) => index(address).and_then(|at| layout.stances.get(at)).map(|it| it.area),
+                Some(RecordList::Grounds) => grounds.next().map(|ground| ground.spec.area),
+                Some(RecordList::Regions) => {
+                    index(address).and_then(|at| layout.regions.get(at)).map(|it| it.area)
+                }
+                Some(RecordList::Stances) => {
+                    index(address).and_then(|at| layout.stances.get(at)).map(|it| it.area)
+                }
                 _ => None,
             };
             if let Some(area) = area {
                 items.push(item(address, record, area, address.page(), 0..0));
             }
         }
-        items.sort_by_key(|item| item.record.list() != Some(List::Grounds));
+        items.sort_by_key(|item| item.record.list() != Some(RecordList::Grounds));
         let homes: Vec<Option<&Address>> = (0..layout.widgets.len())
             .map(|widget| home(&all, self.loaded().places.id_span(widget)))
             .collect();
-        for (address, record) in all.iter().filter(|(address, _)| address.list() == Some(List::Widgets)) {
+        for (address, record) in all.iter().filter(|(address, _)| address.list() == Some(RecordList::Widgets))
+        {
             let is_in = |home: &Option<&Address>| home.is_some_and(|home| home.is_within(address));
             let Some(first) = homes.iter().position(is_in) else { continue };
             let count = homes[first..].iter().take_while(|home| is_in(home)).count();
@@ -106,14 +111,14 @@ impl Document {
     #[must_use]
     pub fn item_at(&self, items: &[Item], page: usize, point: Vec2) -> Option<Address> {
         let rank = |item: &Item| match item.record.list() {
-            Some(List::Widgets) => 3,
-            Some(List::Stances) => 2,
-            Some(List::Regions) => 1,
+            Some(RecordList::Widgets) => 3,
+            Some(RecordList::Stances) => 2,
+            Some(RecordList::Regions) => 1,
             _ => 0,
         };
         let here = items.iter().enumerate().filter(|(_, item)| {
             let is_placed =
-                item.record.list() != Some(List::Grounds) || self.written(&item.record, "at").is_some();
+                item.record.list() != Some(RecordList::Grounds) || self.written(&item.record, "at").is_some();
             !item.is_group && is_placed && item.is_on(page) && item.area.contains(point)
         });
         here.max_by_key(|(at, item)| (rank(item), *at)).map(|(_, item)| item.record.clone())

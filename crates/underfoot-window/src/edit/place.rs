@@ -2,11 +2,11 @@
 
 use glam::Vec2;
 
-use super::address::{Address, List};
+use super::address::{Address, RecordList};
 use super::change::{Edit, NEIGHBOURS};
 use super::document::Document;
 use super::item::{Item, around};
-use super::refusal::Refusal;
+use super::refusal::EditRefusal;
 use underfoot::floor::Rect;
 use underfoot::widget::{Axis, Behaviour, Track};
 use underfoot_format::number::plain;
@@ -19,9 +19,9 @@ impl Document {
     /// The edits that give `items` these areas, in floor metres. A group or a grid only moves: it keeps its size.
     ///
     /// # Errors
-    /// [`Refusal::PlacedByGroup`] for a record relative to a neighbour within a group whose own place is relative
+    /// [`EditRefusal::PlacedByGroup`] for a record relative to a neighbour within a group whose own place is relative
     /// too.
-    pub fn placing(&self, moved: &[(&Item, Rect)]) -> Result<Vec<Edit>, Refusal> {
+    pub fn placing(&self, moved: &[(&Item, Rect)]) -> Result<Vec<Edit>, EditRefusal> {
         let mut edits = Vec::new();
         for (item, area) in moved {
             self.place(item, *area, &mut edits)?;
@@ -29,7 +29,7 @@ impl Document {
         Ok(edits)
     }
 
-    fn place(&self, item: &Item, area: Rect, edits: &mut Vec<Edit>) -> Result<(), Refusal> {
+    fn place(&self, item: &Item, area: Rect, edits: &mut Vec<Edit>) -> Result<(), EditRefusal> {
         let record = &item.record;
         let unit = self.unit_m();
         let written = self.pair(record, "at");
@@ -38,7 +38,7 @@ impl Document {
         let at = match written {
             // Add the displacement to the written place: the other digits in the file stay unchanged.
             Some(written) => written + corner(area.min - item.area.min),
-            None if item.is_group => return Err(Refusal::PlacedByGroup(record.clone())),
+            None if item.is_group => return Err(EditRefusal::PlacedByGroup(record.clone())),
             None => corner(area.min) - self.origin(record)?,
         };
         let old = corner(item.area.size());
@@ -70,9 +70,9 @@ impl Document {
     }
 
     /// The origin of the places in the list of `record`, in the layout's units.
-    pub(super) fn origin(&self, record: &Address) -> Result<glam::DVec2, Refusal> {
-        let Some((parent, List::Widgets, _)) = record.split() else { return Ok(glam::DVec2::ZERO) };
-        if parent.list() != Some(List::Widgets) {
+    pub(super) fn origin(&self, record: &Address) -> Result<glam::DVec2, EditRefusal> {
+        let Some((parent, RecordList::Widgets, _)) = record.split() else { return Ok(glam::DVec2::ZERO) };
+        if parent.list() != Some(RecordList::Widgets) {
             return Ok(glam::DVec2::ZERO);
         }
         // Any member of the group with a written place reveals the place of the group.
@@ -82,14 +82,14 @@ impl Document {
         let told = siblings
             .filter(|item| !item.is_group)
             .find_map(|item| Some(item.area.min.as_dvec2() / unit - self.pair(&item.record, "at")?));
-        told.ok_or_else(|| Refusal::PlacedByGroup(record.clone()))
+        told.ok_or_else(|| EditRefusal::PlacedByGroup(record.clone()))
     }
 
     /// The edits that turn `items` by a quarter: width and depth are exchanged, and an axis changes to the other one.
     ///
     /// # Errors
     /// As [`Document::placing`].
-    pub fn turning(&self, items: &[&Item]) -> Result<Vec<Edit>, Refusal> {
+    pub fn turning(&self, items: &[&Item]) -> Result<Vec<Edit>, EditRefusal> {
         let mut edits = Vec::new();
         for item in items.iter().filter(|item| !item.is_group && item.widgets.len() <= 1) {
             let (middle, size) = (item.area.centre(), item.area.size());

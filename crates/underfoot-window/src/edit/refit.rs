@@ -1,6 +1,6 @@
 //! Updates the values in a hand-written text from a generated one; the text between the values stays.
 
-use super::splice::{Lines, Splice, spliced};
+use super::splice::{Splice, TextLines, spliced};
 use underfoot_format::outline::{Element, Outline, OutlineShape};
 
 /// Maximum number of values to update one by one; a file with more differences is a different file.
@@ -15,7 +15,7 @@ pub fn refit(old: &str, new: &str) -> String {
     let mut text = old.to_owned();
     for _ in 0..MOST {
         let Some(root) = Outline::parse(&text) else { break };
-        match (Fit { lines: Lines(&text), new }).next(&root, &wanted) {
+        match (Fit { lines: TextLines(&text), new }).next(&root, &wanted) {
             Some(splices) => text = spliced(&text, splices),
             None => return text,
         }
@@ -24,7 +24,7 @@ pub fn refit(old: &str, new: &str) -> String {
 }
 
 struct Fit<'t> {
-    lines: Lines<'t>,
+    lines: TextLines<'t>,
     new: &'t str,
 }
 
@@ -56,7 +56,7 @@ impl Fit<'_> {
                 let (count, more) = (wanted.elements.len(), wanted.elements.get(old.elements.len()));
                 changed.or_else(|| match more {
                     Some(more) => {
-                        let piece = super::splice::Piece::new(text(&more.value));
+                        let piece = super::splice::RecordText::new(text(&more.value));
                         Some(self.lines.insert(old, old.elements.len(), &piece))
                     }
                     None => (old.elements.len() > count).then(|| self.lines.cut(old, count)),

@@ -7,7 +7,7 @@ use underfoot::schema::Diagnostics;
 
 /// The reason why an edit is refused; the layout is unchanged then.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum Refusal {
+pub enum EditRefusal {
     /// The resulting layout would be invalid.
     #[error("{0}")]
     Unreadable(Diagnostics),
@@ -28,7 +28,7 @@ pub enum Refusal {
     PlacedByGroup(Address),
 }
 
-impl Refusal {
+impl EditRefusal {
     /// The first error in one line: the problem and its remedy.
     #[must_use]
     pub fn short(&self) -> String {

@@ -9,7 +9,7 @@ pub const FINE_M: f32 = 0.05;
 
 /// The origin of a guide line; among the lines within reach, the first variant wins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Reason {
+pub enum SnapReason {
     /// An edge of a neighbour.
     Edge,
     /// The middle of a neighbour.
@@ -24,13 +24,13 @@ pub enum Reason {
 
 /// A line to which an area snapped.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Guide {
+pub struct SnapGuide {
     /// Whether it runs from south to north; otherwise from west to east.
     pub is_upright: bool,
     /// Its position, in metres from the west or south side of the floor.
     pub at_m: f32,
     /// Its origin.
-    pub reason: Reason,
+    pub reason: SnapReason,
 }
 
 /// The edges of a rectangle that are dragged; all of them if it moves as a whole.
@@ -75,7 +75,7 @@ impl Edges {
 
 /// The lines for snapping.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid<'a> {
+pub struct SnapGrid<'a> {
     /// The floor.
     pub geometry: &'a Geometry,
     /// Neighbours, in floor metres.
@@ -84,29 +84,29 @@ pub struct Grid<'a> {
     pub reach_m: f32,
 }
 
-impl Grid<'_> {
+impl SnapGrid<'_> {
     /// `area` snapped to the best lines in reach, and those lines: at most one upright and one level line.
     #[must_use]
-    pub fn snap(&self, area: Rect, edges: Edges) -> (Rect, Vec<Guide>) {
+    pub fn snap(&self, area: Rect, edges: Edges) -> (Rect, Vec<SnapGuide>) {
         let x = self.along(0, area, edges.west, edges.east);
         let y = self.along(1, area, edges.south, edges.north);
-        let by = |found: Option<(f32, Guide)>| found.map_or(0.0, |(by, _)| by);
+        let by = |found: Option<(f32, SnapGuide)>| found.map_or(0.0, |(by, _)| by);
         // This cannot make the area too small: lines are nearer than any target is wide.
         let moved = edges.moved(area, Vec2::new(by(x), by(y)), 0.0);
         (moved, [x, y].into_iter().flatten().map(|(_, guide)| guide).collect())
     }
 
     /// The displacement along one axis, and its guide line.
-    fn along(&self, axis: usize, area: Rect, low: bool, high: bool) -> Option<(f32, Guide)> {
+    fn along(&self, axis: usize, area: Rect, low: bool, high: bool) -> Option<(f32, SnapGuide)> {
         let (min, max) = (area.min[axis], area.max[axis]);
         let mut own = Vec::with_capacity(3);
         own.extend(low.then_some((min, false)));
         own.extend(high.then_some((max, false)));
         own.extend((low && high).then_some((0.5 * (min + max), true)));
-        let mut best: Option<(Reason, f32, f32)> = None;
-        let mut offer = |reason: Reason, from: f32, to: f32| {
+        let mut best: Option<(SnapReason, f32, f32)> = None;
+        let mut offer = |reason: SnapReason, from: f32, to: f32| {
             let by = to - from;
-            let is_better = |(other, far, _): (Reason, f32, f32)| {
+            let is_better = |(other, far, _): (SnapReason, f32, f32)| {
                 reason < other || (reason == other && by.abs() < far.abs() - 1e-6)
             };
             if by.abs() <= self.reach_m && best.is_none_or(is_better) {
@@ -118,19 +118,19 @@ impl Grid<'_> {
             for other in self.neighbours {
                 let (low, high) = (other.min[axis], other.max[axis]);
                 if is_middle {
-                    offer(Reason::Centre, at, 0.5 * (low + high));
+                    offer(SnapReason::Centre, at, 0.5 * (low + high));
                 } else {
-                    offer(Reason::Edge, at, low);
-                    offer(Reason::Edge, at, high);
+                    offer(SnapReason::Edge, at, low);
+                    offer(SnapReason::Edge, at, high);
                 }
             }
-            offer(Reason::Tile, at, (at / pitch).round() * pitch);
-            offer(Reason::HalfTile, at, (at / pitch * 2.0).round() * 0.5 * pitch);
+            offer(SnapReason::Tile, at, (at / pitch).round() * pitch);
+            offer(SnapReason::HalfTile, at, (at / pitch * 2.0).round() * 0.5 * pitch);
             if !is_middle {
-                offer(Reason::Fine, at, (at / FINE_M).round() * FINE_M);
+                offer(SnapReason::Fine, at, (at / FINE_M).round() * FINE_M);
             }
         }
-        best.map(|(reason, by, at_m)| (by, Guide { is_upright: axis == 0, at_m, reason }))
+        best.map(|(reason, by, at_m)| (by, SnapGuide { is_upright: axis == 0, at_m, reason }))
     }
 }
 
@@ -140,9 +140,9 @@ mod tests {
 
     const SIZE: Vec2 = Vec2::new(0.18, 0.16);
 
-    fn snap(at: Vec2, neighbours: &[Rect], reach_m: f32) -> (Vec2, Vec<Reason>) {
+    fn snap(at: Vec2, neighbours: &[Rect], reach_m: f32) -> (Vec2, Vec<SnapReason>) {
         let geometry = Geometry::default();
-        let grid = Grid { geometry: &geometry, neighbours, reach_m };
+        let grid = SnapGrid { geometry: &geometry, neighbours, reach_m };
         let (area, guides) = grid.snap(Rect::from_min_size(at, SIZE), Edges::ALL);
         assert!((area.size() - SIZE).abs().max_element() < 1e-6, "what is moved keeps its size");
         (area.min, guides.into_iter().map(|guide| guide.reason).collect())
@@ -153,11 +153,11 @@ mod tests {
         // 0.305 is 1 mm from the tile's edge and 5 mm from 0.30.
         let (at, reasons) = snap(Vec2::new(0.305, 0.402), &[], 0.01);
         assert!((at - Vec2::new(0.304, 0.4)).length() < 1e-6, "{at}");
-        assert_eq!(reasons, [Reason::Tile, Reason::Fine]);
+        assert_eq!(reasons, [SnapReason::Tile, SnapReason::Fine]);
         let neighbour = Rect::from_min_size(Vec2::new(0.311, 0.9), SIZE);
         let (at, reasons) = snap(Vec2::new(0.305, 0.402), &[neighbour], 0.01);
         assert!((at.x - 0.311).abs() < 1e-6);
-        assert_eq!(reasons[0], Reason::Edge);
+        assert_eq!(reasons[0], SnapReason::Edge);
     }
 
     #[test]
@@ -165,14 +165,14 @@ mod tests {
         let wide = Rect::from_centre_size(Vec2::new(0.68, 1.3), Vec2::new(0.5, 0.16));
         let (at, reasons) = snap(Vec2::new(0.592, 0.42), &[wide], 0.004);
         assert!((at.x + 0.5 * SIZE.x - 0.68).abs() < 1e-6, "{at}");
-        assert_eq!(reasons, [Reason::Centre]);
+        assert_eq!(reasons, [SnapReason::Centre]);
         assert_eq!(snap(Vec2::new(0.423, 0.433), &[], 0.001), (Vec2::new(0.423, 0.433), vec![]));
     }
 
     #[test]
     fn only_the_dragged_edge_moves() {
         let geometry = Geometry::default();
-        let grid = Grid { geometry: &geometry, neighbours: &[], reach_m: 0.01 };
+        let grid = SnapGrid { geometry: &geometry, neighbours: &[], reach_m: 0.01 };
         let east = Edges { east: true, west: false, south: false, north: false };
         let area = Rect::new(Vec2::new(0.31, 0.31), Vec2::new(0.603, 0.5));
         let (snapped, guides) = grid.snap(area, east);

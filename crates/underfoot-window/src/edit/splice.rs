@@ -43,7 +43,7 @@ pub(super) fn spliced(text: &str, mut splices: Vec<Splice>) -> String {
 
 /// An entry with its comments, for insertion elsewhere.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Piece {
+pub(super) struct RecordText {
     /// The comments on the lines above it, line by line.
     pub(super) above: Vec<String>,
     /// Its text; the further lines have the indentation of an entry at the margin.
@@ -52,7 +52,7 @@ pub(super) struct Piece {
     pub(super) comment: String,
 }
 
-impl Piece {
+impl RecordText {
     pub(super) fn new(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
     }
@@ -62,7 +62,7 @@ impl Piece {
         let list = format!("[\n{}\n]", text.trim());
         let root = Outline::parse(&list)?;
         let [element] = &root.elements[..] else { return None };
-        let mut piece = Lines(&list).piece(&root, 0)?;
+        let mut piece = TextLines(&list).piece(&root, 0)?;
         let before = list.get(2..element.start())?;
         let rest = list.get(element.end()..list.len() - 2)?;
         // All comments, including those with an empty line between them.
@@ -120,9 +120,9 @@ fn closed(comment: &str) -> String {
 
 /// A text, split into lines.
 #[derive(Clone, Copy)]
-pub(super) struct Lines<'t>(pub(super) &'t str);
+pub(super) struct TextLines<'t>(pub(super) &'t str);
 
-impl<'t> Lines<'t> {
+impl<'t> TextLines<'t> {
     fn start(self, at: usize) -> usize {
         self.0[..at].rfind('\n').map_or(0, |line_break| line_break + 1)
     }
@@ -166,7 +166,7 @@ impl<'t> Lines<'t> {
 
     /// The element number `index` of `parent` with its comments: those on the lines directly above it, and the one
     /// behind it. `None` if there is no such element.
-    pub(super) fn piece(self, parent: &Outline, index: usize) -> Option<Piece> {
+    pub(super) fn piece(self, parent: &Outline, index: usize) -> Option<RecordText> {
         let element = parent.elements.get(index)?;
         let indent = self.indent(element.start());
         let text = self.0.get(element.start()..element.value.span.end)?;
@@ -186,7 +186,7 @@ impl<'t> Lines<'t> {
         let line =
             |line: &str| line.strip_prefix(indent).unwrap_or_else(|| line.trim_start()).trim_end().to_owned();
         let above = above.lines().map(line).collect();
-        Some(Piece { above, text: dedented.replace("\r\n", "\n"), comment: behind.join(" ") })
+        Some(RecordText { above, text: dedented.replace("\r\n", "\n"), comment: behind.join(" ") })
     }
 
     /// The start of the comments that belong to the element number `index` of `parent`: those before it on its line,
@@ -226,7 +226,7 @@ impl<'t> Lines<'t> {
     }
 
     /// Inserts `piece` as the element number `index` of `parent`, a record or a list, in the style of its neighbours.
-    pub(super) fn insert(self, parent: &Outline, index: usize, piece: &Piece) -> Vec<Splice> {
+    pub(super) fn insert(self, parent: &Outline, index: usize, piece: &RecordText) -> Vec<Splice> {
         let own_line = |indent: &str| {
             let line_break = self.line_break();
             let above: String =
@@ -312,7 +312,7 @@ impl<'t> Lines<'t> {
         vec![Splice::new(start..element.end(), "")]
     }
 
-    /// Removes the element number `index` of `parent` as [`Lines::cut`] does, together with the comments above it,
+    /// Removes the element number `index` of `parent` as [`TextLines::cut`] does, together with the comments above it,
     /// which move with it.
     pub(super) fn take(self, parent: &Outline, index: usize) -> Vec<Splice> {
         let mut splices = self.cut(parent, index);
@@ -351,7 +351,7 @@ impl<'t> Lines<'t> {
             }
             None => {
                 let field = format!("{name}: {}", nested(rest, value));
-                self.insert(record, record.elements.len(), &Piece::new(field))
+                self.insert(record, record.elements.len(), &RecordText::new(field))
             }
         }
     }
@@ -400,9 +400,9 @@ fn nested(path: &[&str], value: &str) -> String {
 mod tests {
     use super::*;
 
-    fn changed(text: &str, change: impl Fn(Lines<'_>, &Outline) -> Vec<Splice>) -> String {
+    fn changed(text: &str, change: impl Fn(TextLines<'_>, &Outline) -> Vec<Splice>) -> String {
         let root = Outline::parse(text).unwrap();
-        spliced(text, change(Lines(text), &root))
+        spliced(text, change(TextLines(text), &root))
     }
 
     fn set(text: &str, path: &str, value: &str) -> String {
@@ -416,7 +416,9 @@ mod tests {
     }
 
     fn insert(text: &str, index: usize, entry: &str) -> String {
-        changed(text, |lines, root| lines.insert(&root.field("w").unwrap().value, index, &Piece::new(entry)))
+        changed(text, |lines, root| {
+            lines.insert(&root.field("w").unwrap().value, index, &RecordText::new(entry))
+        })
     }
 
     fn cut(text: &str, index: usize) -> String {

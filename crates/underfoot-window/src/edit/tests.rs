@@ -102,8 +102,10 @@ fn lines(text: &str, span: &Range<usize>) -> Range<usize> {
 /// Edits of one record, and the bytes of the text that they may change.
 fn random_edit(rng: &mut Pcg32, document: &Document) -> Option<(Vec<Edit>, Range<usize>)> {
     let items = document.items();
-    let controls: Vec<&Item> =
-        items.iter().filter(|item| item.record.list() == Some(List::Widgets) && !item.is_group).collect();
+    let controls: Vec<&Item> = items
+        .iter()
+        .filter(|item| item.record.list() == Some(RecordList::Widgets) && !item.is_group)
+        .collect();
     let item = *controls.get(rng.random_range(0..controls.len().max(1)))?;
     let record = &item.record;
     let own = lines(document.text(), &document.span(record)?);
@@ -162,7 +164,7 @@ fn every_layout_keeps_its_bytes_and_one_edit_changes_the_lines_of_its_record_onl
         let before = document.text().to_owned();
         let Some((edits, own)) = random_edit(&mut rng, &document) else { continue };
         if let Err(refusal) = document.edit(&edits) {
-            assert!(matches!(refusal, Refusal::Unreadable(_)), "{edits:?}: {refusal}\n{before}");
+            assert!(matches!(refusal, EditRefusal::Unreadable(_)), "{edits:?}: {refusal}\n{before}");
             assert_eq!(document.text(), before, "refused is not changed");
             refused += 1;
             continue;
@@ -250,11 +252,11 @@ fn what_could_not_be_used_is_refused_in_the_readers_words() {
     assert!(!document.can_undo());
     assert_eq!(
         document.edit(&[Edit::Delete { record: Address::LAYOUT }]),
-        Err(Refusal::Missing(Address::LAYOUT))
+        Err(EditRefusal::Missing(Address::LAYOUT))
     );
     let text = "5".to_owned();
-    let edit = Edit::Insert { at: Address::of(List::Widgets, 0), text };
-    assert_eq!(document.edit(&[edit]), Err(Refusal::NotARecord));
+    let edit = Edit::Insert { at: Address::of(RecordList::Widgets, 0), text };
+    assert_eq!(document.edit(&[edit]), Err(EditRefusal::NotARecord));
 }
 
 #[test]
@@ -264,8 +266,8 @@ fn an_id_is_renamed_where_neighbours_and_buttons_refer_to_it() {
         (id: \"b\", kind: \"button\", right_of: \"a\", gap: 0.2),
     ], pages: [(id: \"p\"), (id: \"q\")])";
     let mut document = open("it", text);
-    document.edit(&[Edit::Rename { record: Address::of(List::Widgets, 0), id: "z".into() }]).unwrap();
-    document.edit(&[Edit::Rename { record: Address::of(List::Pages, 0), id: "front".into() }]).unwrap();
+    document.edit(&[Edit::Rename { record: Address::of(RecordList::Widgets, 0), id: "z".into() }]).unwrap();
+    document.edit(&[Edit::Rename { record: Address::of(RecordList::Pages, 0), id: "front".into() }]).unwrap();
     let expected = text.replace("\"a\"", "\"z\"").replace("\"p\"", "\"front\"");
     assert_eq!(document.text(), expected);
 
@@ -290,15 +292,18 @@ fn copies_get_ids_of_their_own_and_stand_where_they_are_put() {
          look: (face: \"#efe4d2\", lit: \"#e3a857\", ink: \"#33260f\")),\n"
     );
     let by = Vec2::new(0.304, 0.0);
-    let (edits, places) = document.pasting(&text, &Address::LAYOUT, List::Widgets, by).unwrap();
+    let (edits, places) = document.pasting(&text, &Address::LAYOUT, RecordList::Widgets, by).unwrap();
     document.edit(&edits).unwrap();
-    assert_eq!(places, [Address::of(List::Widgets, 5)]);
+    assert_eq!(places, [Address::of(RecordList::Widgets, 5)]);
     let written = "        (id: \"capture_2\", kind: \"heavy_button\", at: (4.15, 2.9), size: (0.85, 0.5), \
                    label: \"Capture\",\n            look: (face:";
     assert!(document.text().contains(written), "{}", document.text());
     document.edit(&document.deleting(&places)).unwrap();
     assert_eq!(document.text(), builtin_layout("surgical").unwrap());
-    assert_eq!(document.pasting("5", &Address::LAYOUT, List::Widgets, by), Err(Refusal::NotARecord));
+    assert_eq!(
+        document.pasting("5", &Address::LAYOUT, RecordList::Widgets, by),
+        Err(EditRefusal::NotARecord)
+    );
 }
 
 #[test]

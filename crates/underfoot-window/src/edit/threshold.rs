@@ -2,7 +2,6 @@
 
 use super::address::Address;
 use super::change::Edit;
-use super::document::Document;
 use underfoot::units::Newtons;
 use underfoot::widget::Thresholds;
 use underfoot_format::number::plain;
@@ -11,26 +10,24 @@ use underfoot_format::number::plain;
 /// states.
 const RELEASE_MOST: f32 = 0.8;
 
-impl Document {
-    /// The edits that set the press threshold of `record`'s controls to `press` newtons; `now` holds the present
-    /// thresholds. Both become whole newtons; the release threshold keeps its ratio to the press threshold, at most
-    /// 0.8.
-    #[must_use]
-    pub fn pressing(record: &Address, now: Thresholds, press: Newtons) -> Vec<Edit> {
-        let press = press.0.round();
-        let share = (now.release.0 / now.press.0).min(RELEASE_MOST);
-        let release = (share * press).round().min((RELEASE_MOST * press).floor()).max(1.0);
-        let set = |field: &str, force: f32| Edit::set(record, field, plain(force.into()));
-        vec![set("press_n", press), set("release_n", release)]
-    }
+/// The edits that set the press threshold of `record`'s controls to `press` newtons; `now` holds the present
+/// thresholds. Both become whole newtons; the release threshold keeps its ratio to the press threshold, at most
+/// 0.8.
+#[must_use]
+pub fn pressing(record: &Address, now: Thresholds, press: Newtons) -> Vec<Edit> {
+    let press = press.0.round();
+    let share = (now.release.0 / now.press.0).min(RELEASE_MOST);
+    let release = (share * press).round().min((RELEASE_MOST * press).floor()).max(1.0);
+    let set = |field: &str, force: f32| Edit::set(record, field, plain(force.into()));
+    vec![set("press_n", press), set("release_n", release)]
+}
 
-    /// The edits that set the release threshold to `release` newtons; at most 0.8 of the press threshold, which
-    /// stays.
-    #[must_use]
-    pub fn releasing(record: &Address, now: Thresholds, release: Newtons) -> Vec<Edit> {
-        let most = (RELEASE_MOST * now.press.0).floor().max(1.0);
-        vec![Edit::set(record, "release_n", plain(release.0.round().clamp(1.0, most).into()))]
-    }
+/// The edits that set the release threshold to `release` newtons; at most 0.8 of the press threshold, which
+/// stays.
+#[must_use]
+pub fn releasing(record: &Address, now: Thresholds, release: Newtons) -> Vec<Edit> {
+    let most = (RELEASE_MOST * now.press.0).floor().max(1.0);
+    vec![Edit::set(record, "release_n", plain(release.0.round().clamp(1.0, most).into()))]
 }
 
 #[cfg(test)]
@@ -38,6 +35,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use crate::edit::Document;
     use underfoot::floor::Floor;
     use underfoot::schema::{Kinds, builtin_layout};
 
@@ -57,10 +55,10 @@ mod tests {
         let before = document.text().to_owned();
         let (home, now) = of(&document, "home");
         assert_eq!((now.press, now.release), (Newtons(60.0), Newtons(40.0)), "its kind's");
-        document.edit(&Document::pressing(&home, now, Newtons(90.3))).unwrap();
+        document.edit(&pressing(&home, now, Newtons(90.3))).unwrap();
         let (home, now) = of(&document, "home");
         assert_eq!((now.press, now.release), (Newtons(90.0), Newtons(60.0)));
-        document.edit(&Document::releasing(&home, now, Newtons(500.0))).unwrap();
+        document.edit(&releasing(&home, now, Newtons(500.0))).unwrap();
         let (_, now) = of(&document, "home");
         assert_eq!((now.press, now.release), (Newtons(90.0), Newtons(72.0)), "no nearer than 0.8");
         document.undo().unwrap();
@@ -72,8 +70,8 @@ mod tests {
     fn what_no_control_can_have_is_refused() {
         let mut document = map();
         let (home, now) = of(&document, "home");
-        assert!(document.edit(&Document::pressing(&home, now, Newtons(4.0))).is_err());
-        assert!(document.edit(&Document::pressing(&home, now, Newtons(f32::NAN))).is_err());
+        assert!(document.edit(&pressing(&home, now, Newtons(4.0))).is_err());
+        assert!(document.edit(&pressing(&home, now, Newtons(f32::NAN))).is_err());
         assert_eq!(document.text(), builtin_layout("map").unwrap());
     }
 }

@@ -7,7 +7,7 @@ use eframe::egui;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{Key, Modifiers, PopupCloseBehavior, Ui};
 
-use super::app::App;
+use super::messages::WindowMessages;
 use super::style;
 use super::style::quiet;
 use underfoot::layout::Colour;
@@ -135,16 +135,16 @@ impl Choice {
     }
 }
 
-impl App {
+impl Appearance {
     /// A menu of colours and sizes; it stays open after a click.
-    pub(super) fn appearance_menu(&mut self, ui: &mut Ui) {
-        let before = self.appearance.choice;
-        let mut choice = before;
+    pub(super) fn menu(&mut self, ui: &mut Ui, messages: &mut WindowMessages) {
+        let mut choice = self.choice;
+        let window = self.theme();
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         MenuButton::new("Look").config(config).ui(ui, |ui| {
             ui.set_width(190.0);
             for (part, theme) in [("Window", &mut choice.window), ("Projected", &mut choice.projected)] {
-                ui.label(quiet(&self.theme, part));
+                ui.label(quiet(&window, part));
                 for (name, one) in Theme::NAMED {
                     let radio = ui.radio_value(theme, one, name);
                     radio.widget_info(|| {
@@ -160,7 +160,7 @@ impl App {
                 ui.separator();
             }
             ui.label(quiet(
-                &self.theme,
+                &window,
                 format!("Text {} %: Ctrl +, Ctrl -, Ctrl 0", 10 * u32::from(choice.text)),
             ));
             ui.horizontal(|ui| {
@@ -174,12 +174,12 @@ impl App {
                 }
             });
         });
-        self.choose(ui.ctx(), choice);
+        self.choose(ui.ctx(), choice, messages);
     }
 
     /// Ctrl with plus, minus and zero sizes the text, during typing too.
-    pub(super) fn handle_text_keys(&mut self, ui: &Ui) {
-        let mut choice = self.appearance.choice;
+    pub(super) fn handle_keys(&mut self, ui: &Ui, messages: &mut WindowMessages) {
+        let mut choice = self.choice;
         let count = |key: Key| {
             let plain = ui.input_mut(|i| i.count_and_consume_key(Modifiers::COMMAND, key));
             u8::try_from(plain).unwrap_or(u8::MAX)
@@ -190,23 +190,22 @@ impl App {
         if count(Key::Num0) > 0 {
             choice.text = USUAL;
         }
-        self.choose(ui.ctx(), choice);
+        self.choose(ui.ctx(), choice, messages);
     }
 
-    fn choose(&mut self, ctx: &egui::Context, choice: Choice) {
-        if choice == self.appearance.choice {
+    fn choose(&mut self, ctx: &egui::Context, choice: Choice, messages: &mut WindowMessages) {
+        if choice == self.choice {
             return;
         }
-        self.appearance.choice = choice;
-        self.theme = choice.window;
-        style::apply(ctx, &self.theme);
+        self.choice = choice;
+        style::apply(ctx, &choice.window);
         ctx.request_repaint();
-        let kept = self.appearance.file.as_deref().map(|file| {
+        let kept = self.file.as_deref().map(|file| {
             file.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(|error| error.to_string())?;
             save_text(&choice.text(), file).map(drop).map_err(|error| error.to_string())
         });
         if let Some(Err(wrong)) = kept {
-            self.messages.note(format!("How the window looks is not remembered: {wrong}"));
+            messages.note(format!("How the window looks is not remembered: {wrong}"));
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use eframe::egui::{self, Context, Key, Modal, Modifiers, Ui, ViewportCommand};
 
-use super::app::App;
+use super::design::Designer;
 use super::style::pill;
+use underfoot_scene::scene::Theme;
 
 /// The state of closing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,18 +25,40 @@ pub(super) enum Closing {
 /// Frames after which the text of a field that has lost the focus is in the layout.
 const SETTLES: u8 = 3;
 
-impl App {
-    pub(super) fn is_closing(&self) -> bool {
-        self.closing == Closing::Granted
+/// The window's title: the program's name, behind that of the layout or the recording.
+pub(super) struct Title {
+    name: String,
+    /// The title that the window has.
+    pub(super) shown: Option<String>,
+}
+
+impl Title {
+    /// `name` is the program's name.
+    pub(super) fn new(name: &str) -> Self {
+        Self { name: name.to_owned(), shown: None }
+    }
+
+    /// Sets the window's title: `subject` and the program's name, or that name alone.
+    pub(super) fn show(&mut self, ctx: &Context, subject: Option<&str>) {
+        let title = subject.map_or_else(|| self.name.clone(), |subject| format!("{subject} - {}", self.name));
+        if self.shown.as_ref() != Some(&title) {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.shown = Some(title);
+        }
+    }
+}
+
+impl Closing {
+    pub(super) fn is_granted(self) -> bool {
+        self == Self::Granted
     }
 
     /// Lets the window close, unless edits would be lost. The request may come from the window manager, a key or a
     /// button, also while the window is covered and not drawn.
-    pub(super) fn handle_close(&mut self, ctx: &Context) {
-        if !ctx.input(|i| i.viewport().close_requested()) || self.closing == Closing::Granted {
+    pub(super) fn handle_request(&mut self, ctx: &Context, designer: &Designer) {
+        if !ctx.input(|i| i.viewport().close_requested()) || self.is_granted() {
             return;
         }
-        let Some(designer) = &self.designer else { return };
         let is_typing = ctx.text_edit_focused();
         if designer.is_saved() && !is_typing {
             return;
@@ -45,96 +68,73 @@ impl App {
             ctx.send_viewport_cmd(seen);
         }
         if is_typing {
-            designer.finish_typing(ctx);
+            finish_typing(ctx);
         }
-        if self.closing == Closing::No {
-            self.closing = Closing::Settling(SETTLES);
+        if *self == Self::No {
+            *self = Self::Settling(SETTLES);
         }
         ctx.request_repaint();
     }
 
-    /// Ctrl+Q closes the window, as its frame does; Ctrl+S saves, also in Try mode.
-    pub(super) fn handle_file_keys(&mut self, ui: &Ui) {
-        if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::Q)) {
-            ui.ctx().send_viewport_cmd(ViewportCommand::Close);
-        }
-        // In Design mode, `Designer::keys_anywhere` handles them, after the text fields.
-        if !self.is_designing()
-            && let Some(designer) = &mut self.designer
-        {
-            designer.keys_to_save(ui);
-        }
-    }
-
-    /// Shows the path dialogue in Try mode.
-    pub(super) fn ask_for_path(&mut self, ui: &mut Ui) {
-        let theme = self.theme;
-        if let Some(designer) = &mut self.designer {
-            designer.ask(ui, &theme);
-        }
-    }
-
-    /// Sets the window's title: the layout's file, with a dot while it is unsaved, or the recording.
-    pub(super) fn show_title(&mut self, ctx: &Context) {
-        let title = match (&self.designer, &self.time_line) {
-            (Some(designer), _) => format!("{} - {}", designer.title(), self.name),
-            (None, Some(_)) => format!("{} - {}", self.source, self.name),
-            (None, None) => self.name.clone(),
-        };
-        if self.titled.as_ref() != Some(&title) {
-            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
-            self.titled = Some(title);
-        }
-    }
-
-    /// Shows the layout's file with its dot, and the last message about it.
-    pub(super) fn file_name(&self, ui: &mut Ui) {
-        let Some(designer) = &self.designer else { return };
-        let theme = &self.theme;
-        let ink = if designer.is_saved() { theme.quiet } else { theme.ink };
-        let name = egui::RichText::new(designer.title()).color(underfoot_scene::egui_painter::color(ink));
-        let hint = if designer.is_saved() { "Saved" } else { "Not saved: Ctrl+S saves it" };
-        ui.add(egui::Label::new(name).truncate()).on_hover_text(hint);
-        if !self.is_designing()
-            && let Some((text, is_bad)) = designer.last_message()
-        {
-            pill(ui, if is_bad { theme.fault } else { theme.good }, theme, text);
-        }
-    }
-
     /// Advances the state of closing: asks about unsaved edits and carries out the answer.
-    pub(super) fn ask_before_closing(&mut self, ctx: &Context) {
-        let Some(designer) = &mut self.designer else { return };
-        self.closing = match self.closing {
-            Closing::Settling(0) if designer.is_saved() => Closing::Granted,
-            Closing::Settling(0) => {
+    pub(super) fn ask(&mut self, ctx: &Context, designer: &mut Designer) {
+        *self = match *self {
+            Self::Settling(0) if designer.is_saved() => Self::Granted,
+            Self::Settling(0) => {
                 // The buttons of the question get the keyboard focus.
-                designer.finish_typing(ctx);
-                Closing::Asks
+                finish_typing(ctx);
+                Self::Asks
             }
-            Closing::Settling(frames) => {
+            Self::Settling(frames) => {
                 ctx.request_repaint();
-                Closing::Settling(frames - 1)
+                Self::Settling(frames - 1)
             }
-            Closing::Saves if designer.is_saved() => Closing::Granted,
+            Self::Saves if designer.is_saved() => Self::Granted,
             // The screen shows the obstacle.
-            Closing::Saves if !designer.is_asking() => Closing::No,
+            Self::Saves if !designer.is_asking() => Self::No,
             other => other,
         };
-        if self.closing == Closing::Asks {
-            self.closing = ask(ctx, &designer.name());
-            match self.closing {
-                Closing::Saves => designer.save_or_ask(),
-                Closing::Granted => designer.discard(),
+        if *self == Self::Asks {
+            *self = ask(ctx, &designer.name());
+            match *self {
+                Self::Saves => designer.save_or_ask(),
+                Self::Granted => designer.discard(),
                 _ => {}
             }
-            if self.closing != Closing::Asks {
+            if *self != Self::Asks {
                 ctx.request_repaint();
             }
         }
-        if self.closing == Closing::Granted {
+        if self.is_granted() {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
+    }
+}
+
+/// Closes the window on Ctrl+Q, as its frame does.
+pub(super) fn handle_quit_key(ui: &Ui) {
+    if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::Q)) {
+        ui.ctx().send_viewport_cmd(ViewportCommand::Close);
+    }
+}
+
+/// Shows the layout's file with its dot; outside Design mode also the last message about it.
+pub(super) fn file_name(ui: &mut Ui, theme: &Theme, designer: &Designer) {
+    let ink = if designer.is_saved() { theme.quiet } else { theme.ink };
+    let name = egui::RichText::new(designer.title()).color(underfoot_scene::egui_painter::color(ink));
+    let hint = if designer.is_saved() { "Saved" } else { "Not saved: Ctrl+S saves it" };
+    ui.add(egui::Label::new(name).truncate()).on_hover_text(hint);
+    if !designer.is_open
+        && let Some((text, is_bad)) = designer.last_message()
+    {
+        pill(ui, if is_bad { theme.fault } else { theme.good }, theme, text);
+    }
+}
+
+/// Ends the typing in a field, so that its text is applied.
+fn finish_typing(ctx: &Context) {
+    if let Some(id) = ctx.memory(|memory| memory.focused()) {
+        ctx.memory_mut(|memory| memory.surrender_focus(id));
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::Vec2;
 
 use super::feed::{FootSink, PreviewFoot};
-use super::feet::{Hand, MouseFeet, Move};
+use super::feet::{HandInput, MouseFeet, Move};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::floor::Geometry;
@@ -127,12 +127,12 @@ impl Table {
             self.server.snapshot(&mut self.snapshot);
             self.most_contacts = self.most_contacts.max(self.snapshot.contacts.len());
         }
-        let hand = Hand {
+        let hand = HandInput {
             moves,
             pointer: Some(self.pointer),
             down: self.down,
             elapsed_s: self.frame_s,
-            ..Hand::default()
+            ..HandInput::default()
         };
         self.feet.step(&hand, &mut self.sink);
     }

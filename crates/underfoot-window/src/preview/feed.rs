@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender};
 
 use glam::Vec2;
 
@@ -40,12 +39,8 @@ pub struct PreviewInput {
     pub server: Option<ServerFeed>,
     /// The latest state, written by the sensing thread.
     pub snapshots: triple_buffer::Output<Snapshot>,
-    /// Every event, in order.
-    pub events: Receiver<EventNews>,
-    /// The results of changes to the layout file.
-    pub layouts: Receiver<LayoutNews>,
-    /// Messages for the user of the window, such as the reason why there is no sound.
-    pub notices: Receiver<String>,
+    /// The messages from the program, and the commands to it.
+    pub channels: WindowChannels,
     /// The signals of the actuators; `None` without rendering.
     pub scopes: Option<Box<dyn ScopeFeed>>,
     /// The latency from a packet to the actuator; `None` if it is not measured.
@@ -69,8 +64,6 @@ pub struct PreviewInput {
     pub packets: Option<TappedPackets>,
     /// The layout as text for Design mode; `None` where it cannot be edited.
     pub design: Option<DesignInput>,
-    /// The commands of the user.
-    pub commands: SyncSender<PreviewCommand>,
 }
 
 impl PreviewInput {
@@ -83,7 +76,6 @@ impl PreviewInput {
         snapshots: triple_buffer::Output<Snapshot>,
         channels: WindowChannels,
     ) -> Self {
-        let WindowChannels { events, layouts, notices, commands } = channels;
         Self {
             floor,
             layout,
@@ -91,9 +83,7 @@ impl PreviewInput {
             source: source.into(),
             server: None,
             snapshots,
-            events,
-            layouts,
-            notices,
+            channels,
             scopes: None,
             latency: None,
             feet: None,
@@ -105,7 +95,6 @@ impl PreviewInput {
             choices: Vec::new(),
             effects: Vec::new(),
             design: None,
-            commands,
         }
     }
 }

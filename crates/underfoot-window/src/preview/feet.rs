@@ -6,7 +6,7 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec2;
 
 use super::feed::{FootSink, PreviewFoot};
-use super::touches::{Fingers, Touch};
+use super::touches::{Fingers, FloorTouch};
 use underfoot::units::Newtons;
 
 /// Initial force of a working foot, until the wheel changes it: enough for every built-in control.
@@ -29,11 +29,11 @@ const STANDING_ROLL: f32 = 0.40;
 
 /// Input of one frame from mouse, fingers and pens.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Hand {
+pub(super) struct HandInput {
     /// Actions of the mouse since the last frame, in order.
     pub(super) moves: Vec<Move>,
     /// Actions of fingers and pens since the last frame, in order.
-    pub(super) touches: Vec<Touch>,
+    pub(super) touches: Vec<FloorTouch>,
     /// Position of the pointer over the floor, in floor metres; `None` elsewhere.
     pub(super) pointer: Option<Vec2>,
     /// Whether the button is still down.
@@ -114,7 +114,7 @@ impl MouseFeet {
     }
 
     /// Moves the feet by the input of one frame; the sink turns the paths into steps and slides.
-    pub(super) fn step(&mut self, hand: &Hand, sink: &mut dyn FootSink) {
+    pub(super) fn step(&mut self, hand: &HandInput, sink: &mut dyn FootSink) {
         match (&mut self.standing, hand.on_handle && !self.held) {
             (Some(standing), true) => {
                 standing.press(hand.wheel);
@@ -244,17 +244,22 @@ mod tests {
         }
     }
 
-    fn hand(x: f32, y: f32) -> Hand {
+    fn hand(x: f32, y: f32) -> HandInput {
         let at = Vec2::new(x, y);
-        Hand { moves: vec![Move::To(at)], pointer: Some(at), elapsed_s: 1.0 / 60.0, ..Hand::default() }
+        HandInput {
+            moves: vec![Move::To(at)],
+            pointer: Some(at),
+            elapsed_s: 1.0 / 60.0,
+            ..HandInput::default()
+        }
     }
 
-    fn pressing(x: f32, y: f32) -> Hand {
-        Hand { moves: vec![Move::Press(Vec2::new(x, y))], down: true, ..hand(x, y) }
+    fn pressing(x: f32, y: f32) -> HandInput {
+        HandInput { moves: vec![Move::Press(Vec2::new(x, y))], down: true, ..hand(x, y) }
     }
 
-    fn holding(x: f32, y: f32) -> Hand {
-        Hand { down: true, ..hand(x, y) }
+    fn holding(x: f32, y: f32) -> HandInput {
+        HandInput { down: true, ..hand(x, y) }
     }
 
     #[test]
@@ -264,7 +269,10 @@ mod tests {
         assert_eq!(given.working().force, Newtons::ZERO, "a foot in the air follows the mouse");
         feet.step(&pressing(0.5, 0.6), &mut given);
         assert_eq!(given.working().force, WORKING);
-        feet.step(&Hand { moves: vec![Move::Release(Vec2::new(0.5, 0.6))], ..hand(0.5, 0.6) }, &mut given);
+        feet.step(
+            &HandInput { moves: vec![Move::Release(Vec2::new(0.5, 0.6))], ..hand(0.5, 0.6) },
+            &mut given,
+        );
         assert_eq!(given.working().force, Newtons::ZERO);
     }
 
@@ -273,7 +281,7 @@ mod tests {
         let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         let [a, b, c] = [0.5, 0.6, 0.7].map(|x| Vec2::new(x, 0.6));
         let moves = vec![Move::To(a), Move::Press(a), Move::To(b), Move::Release(b), Move::To(c)];
-        feet.step(&Hand { moves, ..hand(0.7, 0.6) }, &mut given);
+        feet.step(&HandInput { moves, ..hand(0.7, 0.6) }, &mut given);
         let path: Vec<_> = given.0[0].iter().map(|foot| (acts_at(foot), foot.force.0)).collect();
         let expected = [(a, 0.0), (a, 150.0), (b, 150.0), (b, 150.0), (b, 0.0), (c, 0.0), (c, 0.0)];
         assert_eq!(path.len(), expected.len());
@@ -291,7 +299,7 @@ mod tests {
         let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.step(&pressing(0.5, 0.6), &mut given);
         for _ in 0..8 {
-            feet.step(&Hand { turn_rad: 0.9, ..holding(0.52, 0.61) }, &mut given);
+            feet.step(&HandInput { turn_rad: 0.9, ..holding(0.52, 0.61) }, &mut given);
             let centre = acts_at(&given.working());
             assert!(centre.distance(Vec2::new(0.52, 0.61)) < 1e-5, "{centre}");
         }
@@ -301,10 +309,10 @@ mod tests {
     #[test]
     fn the_wheel_presses_harder_within_what_a_person_can_do() {
         let (mut feet, mut given) = (MouseFeet::new(), Given::default());
-        feet.step(&Hand { wheel: 1.0, ..pressing(0.5, 0.6) }, &mut given);
+        feet.step(&HandInput { wheel: 1.0, ..pressing(0.5, 0.6) }, &mut given);
         assert!((given.working().force.0 - 168.0).abs() < 0.1);
         for (wheel, limit) in [(90.0, FORCES.1), (-90.0, FORCES.0)] {
-            feet.step(&Hand { wheel, ..holding(0.5, 0.6) }, &mut given);
+            feet.step(&HandInput { wheel, ..holding(0.5, 0.6) }, &mut given);
             assert_eq!(given.working().force.0, limit);
         }
     }
@@ -317,7 +325,7 @@ mod tests {
         assert_eq!(given.standing().position, Vec2::new(0.9, 0.3));
         assert_eq!(given.standing().force, STANDING);
         assert!(given.standing().left && !given.working().left, "the other foot works");
-        let drag = Hand { drag: Vec2::new(0.1, 0.0), on_handle: true, ..hand(0.9, 0.3) };
+        let drag = HandInput { drag: Vec2::new(0.1, 0.0), on_handle: true, ..hand(0.9, 0.3) };
         feet.step(&drag, &mut given);
         assert_eq!(feet.shoes().len(), 1, "the hand holds the standing foot");
         assert!(given.standing().position.distance(Vec2::new(1.0, 0.3)) < 1e-6);
@@ -331,7 +339,7 @@ mod tests {
     fn a_pointer_that_leaves_lifts_the_foot_where_it_was() {
         let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.step(&pressing(0.5, 0.6), &mut given);
-        feet.step(&Hand { pointer: None, down: true, ..Hand::default() }, &mut given);
+        feet.step(&HandInput { pointer: None, down: true, ..HandInput::default() }, &mut given);
         assert!(given.0[0].is_empty() && feet.shoes().is_empty(), "no foot, no ghost of one");
         feet.step(&holding(0.5, 0.6), &mut given);
         assert_eq!(given.working().force, Newtons::ZERO, "it stays lifted when the pointer comes back");

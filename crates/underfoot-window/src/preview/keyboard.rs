@@ -3,7 +3,7 @@
 use eframe::egui::{Key, Ui};
 use glam::Vec2;
 
-use super::feet::{Hand, Move};
+use super::feet::{HandInput, Move};
 use underfoot::layout::Layout;
 use underfoot::widget::Behaviour;
 
@@ -27,10 +27,10 @@ impl Keyboard {
 
     /// The input of the foot from the keyboard: Enter or Space presses the control with the focus while held, and the
     /// arrow keys slide the foot over it. `None` while the mouse moves the foot.
-    pub(super) fn hand(&mut self, ui: &Ui, layout: &Layout, elapsed_s: f32) -> Option<Hand> {
+    pub(super) fn hand(&mut self, ui: &Ui, layout: &Layout, elapsed_s: f32) -> Option<HandInput> {
         let widget = self.focused.and_then(|index| layout.widgets.get(index));
         let held = widget.is_some() && ui.input(|i| i.key_down(Key::Enter) || i.key_down(Key::Space));
-        let mut hand = Hand { down: held, elapsed_s, ..Hand::default() };
+        let mut hand = HandInput { down: held, elapsed_s, ..HandInput::default() };
         match (self.at, widget.filter(|_| held)) {
             (None, None) => return None,
             (None, Some(widget)) => {

@@ -39,9 +39,9 @@ const UNSEEN_PRESS: f32 = 0.01;
 pub(super) fn start(mut input: PreviewInput, ctx: &egui::Context) -> PreviewInput {
     let (mut passed, shown) = triple_buffer(input.snapshots.read());
     let mut snapshots = std::mem::replace(&mut input.snapshots, shown);
-    let mut events = Relay::before(&mut input.events);
-    let mut layouts = Relay::before(&mut input.layouts);
-    let mut notices = Relay::before(&mut input.notices);
+    let mut events = Relay::before(&mut input.channels.events);
+    let mut layouts = Relay::before(&mut input.channels.layouts);
+    let mut notices = Relay::before(&mut input.channels.notices);
     let ctx = ctx.clone();
     let mut pace = Pace::new(snapshots.read().clone(), Instant::now());
     let look = move || {

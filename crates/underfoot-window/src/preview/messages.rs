@@ -51,7 +51,7 @@ impl Happened {
 }
 
 /// The messages from other threads, sorted.
-pub(super) struct Messages {
+pub(super) struct WindowMessages {
     events: Receiver<EventNews>,
     layouts: Receiver<LayoutNews>,
     notices: Receiver<String>,
@@ -95,7 +95,7 @@ impl FileNote {
     }
 }
 
-impl Messages {
+impl WindowMessages {
     pub(super) fn new(
         layout: Arc<Layout>,
         events: Receiver<EventNews>,
@@ -256,7 +256,7 @@ mod tests {
         let text = underfoot::schema::builtin_layout("pond").unwrap();
         let (kinds, geometry) = (underfoot::schema::Kinds::builtin(), underfoot::floor::Geometry::default());
         let pond = underfoot::schema::parse_layout(text, "pond", &kinds, &geometry).unwrap().layout;
-        let mut messages = Messages::new(Arc::new(pond), channel().1, channel().1, channel().1);
+        let mut messages = WindowMessages::new(Arc::new(pond), channel().1, channel().1, channel().1);
         for (at_ms, events) in [(0, 0), (1000, 4), (1500, 6), (9000, 7)] {
             let mut snapshot = Snapshot { at: Instant::from_millis(at_ms), ..Snapshot::default() };
             snapshot.grounds = vec![Default::default()];
@@ -282,7 +282,7 @@ mod tests {
     #[test]
     fn a_layout_is_shown_once_snapshots_belong_to_it() {
         let (news, layouts) = channel();
-        let mut messages = Messages::new(named("old"), channel().1, layouts, channel().1);
+        let mut messages = WindowMessages::new(named("old"), channel().1, layouts, channel().1);
         for (title, revision) in [("newer", 2), ("newest", 3)] {
             news.send(loaded(title, revision)).unwrap();
         }
@@ -297,7 +297,7 @@ mod tests {
     #[test]
     fn a_bad_layout_leaves_the_good_one_until_a_good_one_comes() {
         let (news, layouts) = channel();
-        let mut messages = Messages::new(named("good"), channel().1, layouts, channel().1);
+        let mut messages = WindowMessages::new(named("good"), channel().1, layouts, channel().1);
         let diagnostics = "map.ron:3:9: unknown field".to_owned();
         news.send(LayoutNews::Refused { name: "map.ron".into(), diagnostics: diagnostics.clone() }).unwrap();
         messages.receive(1.0, 0);
@@ -312,7 +312,7 @@ mod tests {
     fn the_list_of_events_stays_short_and_the_same_notice_is_said_once() {
         let (event, events) = channel();
         let (say, notices) = channel();
-        let mut messages = Messages::new(named("it"), events, channel().1, notices);
+        let mut messages = WindowMessages::new(named("it"), events, channel().1, notices);
         for at in 0..2000 {
             event.send(EventNews::Event(crate::preview::tests::event(at, "home"))).unwrap();
             say.send("no sound card".into()).unwrap();
@@ -327,7 +327,7 @@ mod tests {
     #[test]
     fn every_line_of_the_list_is_counted_and_stands_in_the_order_of_time() {
         let (event, events) = channel();
-        let mut messages = Messages::new(named("it"), events, channel().1, channel().1);
+        let mut messages = WindowMessages::new(named("it"), events, channel().1, channel().1);
         for at in [100, 300] {
             event.send(EventNews::Event(crate::preview::tests::event(at, "home"))).unwrap();
         }
@@ -347,7 +347,7 @@ mod tests {
     #[test]
     fn a_slider_on_its_way_is_one_line() {
         let (event, events) = channel();
-        let mut messages = Messages::new(named("it"), events, channel().1, channel().1);
+        let mut messages = WindowMessages::new(named("it"), events, channel().1, channel().1);
         let moved = |at: u64, id| WidgetEvent {
             kind: EventKind::Changed(Value::Number(at as f32)),
             ..crate::preview::tests::event(at, id)

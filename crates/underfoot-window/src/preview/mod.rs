@@ -33,6 +33,7 @@ mod rehearsal;
 mod sample;
 mod scopes;
 mod selection;
+mod shown;
 mod status;
 mod style;
 #[cfg(test)]
@@ -122,7 +123,7 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
     let (title, options) = (options.title.clone(), options.clone());
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
         let app = app::App::new(lookout::start(input, &context.egui_ctx), &options);
-        style::apply(&context.egui_ctx, &app.theme);
+        style::apply(&context.egui_ctx, &app.appearance.theme());
         context.egui_ctx.set_fonts(underfoot_scene::letters::definitions());
         // Missing letters come from the fonts of this computer, as in pictures.
         context.egui_ctx.add_font_provider(std::sync::Arc::new(underfoot_scene::letters::Installed::new()));

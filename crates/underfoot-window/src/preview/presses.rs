@@ -15,7 +15,7 @@ const CONTACTS: usize = 64;
 
 /// One press of one control.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Press {
+pub(super) struct ControlPress {
     /// Time of its end.
     pub(super) at: Instant,
     pub(super) id: WidgetId,
@@ -29,7 +29,7 @@ pub(super) struct Press {
     pub(super) counts: bool,
 }
 
-impl Press {
+impl ControlPress {
     /// Whether the press was intended, judging from its end: any reason other than force or time indicates that the
     /// foot pressed for another purpose, or that its force was unknown.
     fn is_meant(why: Option<Ignored>) -> bool {
@@ -39,9 +39,9 @@ impl Press {
 
 /// The presses since the window opened.
 #[derive(Default)]
-pub(super) struct Presses {
+pub(super) struct PressLog {
     /// Oldest first.
-    all: VecDeque<Press>,
+    all: VecDeque<ControlPress>,
     /// Whether they come from a recording, which repeats them each time it shows an earlier moment.
     are_recorded: bool,
     /// The time of the last press that was dropped for a newer one, and per control the time up to which the presses
@@ -58,7 +58,7 @@ pub(super) struct Presses {
     pub(super) told: Option<(WidgetId, String)>,
 }
 
-impl Presses {
+impl PressLog {
     /// For a recording: counts each press once, however often its moment is shown.
     pub(super) fn recorded() -> Self {
         Self { are_recorded: true, ..Self::default() }
@@ -99,8 +99,8 @@ impl Presses {
 
     fn note(&mut self, at: Instant, id: &WidgetId, contact: ContactId, force: Newtons, why: Option<Ignored>) {
         let person = self.people.iter().find(|(other, _)| *other == contact).map(|(_, person)| *person);
-        let counts = Press::is_meant(why) && force.is_finite();
-        let press = Press { at, id: id.clone(), force, why, person, counts };
+        let counts = ControlPress::is_meant(why) && force.is_finite();
+        let press = ControlPress { at, id: id.clone(), force, why, person, counts };
         if self.are_recorded && self.is_noted(&press) {
             return;
         }
@@ -119,8 +119,9 @@ impl Presses {
         }
     }
 
-    fn is_noted(&self, press: &Press) -> bool {
-        let is_it = |other: &Press| (other.at, &other.id, other.why) == (press.at, &press.id, press.why);
+    fn is_noted(&self, press: &ControlPress) -> bool {
+        let is_it =
+            |other: &ControlPress| (other.at, &other.id, other.why) == (press.at, &press.id, press.why);
         self.dropped_at.is_some_and(|dropped| press.at <= dropped)
             || self.forgotten_at.get(&press.id).is_some_and(|forgotten| press.at <= *forgotten)
             || self.all.iter().any(is_it)
@@ -132,7 +133,7 @@ impl Presses {
     }
 
     /// The presses of one control, the latest first.
-    pub(super) fn of(&self, id: &WidgetId) -> impl Iterator<Item = &Press> {
+    pub(super) fn of(&self, id: &WidgetId) -> impl Iterator<Item = &ControlPress> {
         self.all.iter().rev().filter(move |press| press.id == *id)
     }
 
@@ -188,7 +189,7 @@ mod tests {
 
     #[test]
     fn each_press_is_noted_once_with_its_person_and_those_that_were_not_meant_do_not_count() {
-        let mut presses = Presses::default();
+        let mut presses = PressLog::default();
         let mut snapshot = Snapshot { feet: vec![foot(1, 5), foot(2, 6)], ..Snapshot::default() };
         presses.update(&snapshot);
         // The lists report the presses once the feet are gone.
@@ -217,7 +218,7 @@ mod tests {
 
     #[test]
     fn a_recorded_press_is_counted_once_however_often_it_is_shown() {
-        let mut presses = Presses::recorded();
+        let mut presses = PressLog::recorded();
         let early = || answered(100, 1, 120.0);
         let light = || ignored(150, 2, 40.0, Ignored::TooLight);
         let late = || answered(200, 3, 90.0);
@@ -235,7 +236,7 @@ mod tests {
 
     #[test]
     fn a_recorded_press_that_was_jumped_over_is_counted_when_it_is_shown() {
-        let mut presses = Presses::recorded();
+        let mut presses = PressLog::recorded();
         presses.update(&shown(900, vec![answered(800, 3, 90.0)], vec![]));
         presses.update(&shown(10, vec![], vec![]));
         presses.update(&shown(200, vec![answered(100, 1, 120.0)], vec![]));
@@ -245,7 +246,7 @@ mod tests {
 
     #[test]
     fn recorded_presses_that_were_forgotten_or_made_room_do_not_come_back() {
-        let mut presses = Presses::recorded();
+        let mut presses = PressLog::recorded();
         presses.update(&shown(200, vec![answered(100, 1, 120.0)], vec![]));
         presses.forget(&id("home"));
         presses.update(&shown(10, vec![], vec![]));
@@ -263,7 +264,7 @@ mod tests {
 
     #[test]
     fn a_press_is_left_out_and_taken_in_by_its_place_from_the_latest() {
-        let mut presses = Presses::default();
+        let mut presses = PressLog::default();
         let snapshot = Snapshot {
             answered: vec![answered(100, 1, 120.0), answered(200, 2, 15.0)],
             ..Snapshot::default()

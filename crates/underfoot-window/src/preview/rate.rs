@@ -2,7 +2,7 @@
 
 /// Measures a rate per second over the last half second.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Rate {
+pub(super) struct RateMeter {
     since_s: f64,
     count_then: u64,
     per_second: Option<f32>,
@@ -14,7 +14,7 @@ const WINDOW_S: f64 = 0.5;
 /// Pause after which the old count is discarded: a window without changes pauses for less.
 const LONGEST_S: f64 = 30.0;
 
-impl Rate {
+impl RateMeter {
     /// Takes the total `count` at `now_s`; a decrease restarts the measurement.
     pub(super) fn observe(&mut self, now_s: f64, count: u64) {
         let passed = now_s - self.since_s;
@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn counts_over_half_a_second_and_survives_a_restart() {
-        let mut rate = Rate::default();
+        let mut rate = RateMeter::default();
         // A window that opens late on its clock ignores the time before.
         rate.observe(100.0, 5000);
         assert_eq!(rate.per_second(), None);

@@ -11,14 +11,14 @@ pub(super) const SLOTS: usize = 3;
 const FALL: f32 = 1e-3;
 
 /// The signals of the actuators: a level for every tile, and waveforms for some.
-pub(super) struct Scopes {
+pub(super) struct ActuatorScopes {
     feed: Option<Box<dyn ScopeFeed>>,
     levels: Vec<f32>,
     /// The tiles with a waveform on display, each with the number of frames since a foot was on it.
     slots: [Option<(TileId, u32)>; SLOTS],
 }
 
-impl Scopes {
+impl ActuatorScopes {
     pub(super) fn new(feed: Option<Box<dyn ScopeFeed>>, floor: &Floor) -> Self {
         Self { feed, levels: vec![0.0; floor.geometry.tile_count()], slots: [None; SLOTS] }
     }
@@ -117,7 +117,7 @@ mod tests {
         let floor = Floor::default();
         let snapshot = at_rest(&map());
         let wave = vec![(0.0, 0.0), (-0.4, 0.2), (f32::NAN, f32::NAN)];
-        let mut scopes = Scopes::new(Some(Box::new(Wave(wave))), &floor);
+        let mut scopes = ActuatorScopes::new(Some(Box::new(Wave(wave))), &floor);
         scopes.update(&floor, &snapshot, TileId::new(1, 1), 0.016);
         assert_eq!(scopes.levels()[7], 0.4);
         assert_eq!(scopes.levels()[8], 0.0);
@@ -134,8 +134,9 @@ mod tests {
     #[test]
     fn waveforms_keep_their_places_while_feet_come_and_go() {
         let floor = Floor::default();
-        let mut scopes = Scopes::new(Some(Box::new(Wave(vec![]))), &floor);
-        let tiles = |scopes: &Scopes| scopes.slots.map(|slot| slot.map(|(tile, _)| (tile.column, tile.row)));
+        let mut scopes = ActuatorScopes::new(Some(Box::new(Wave(vec![]))), &floor);
+        let tiles =
+            |scopes: &ActuatorScopes| scopes.slots.map(|slot| slot.map(|(tile, _)| (tile.column, tile.row)));
         let empty = at_rest(&map());
         let selected = TileId::new(0, 0);
         scopes.update(&floor, &empty, selected, 0.016);

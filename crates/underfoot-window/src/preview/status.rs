@@ -4,13 +4,16 @@ use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Align, Label, Layout, Margin, Panel, RichText, Ui, WidgetInfo, vec2};
 
-use super::app::App;
 use super::feed::{ServerLink, ServerState};
 use super::panel::grouped;
+use super::rate::RateMeter;
+use super::shown::ShownFloor;
 use super::style::panel_frame;
+use underfoot::engine::Snapshot;
 use underfoot::layout::Colour;
 use underfoot::sink::{LatencyMeter, LatencyStages};
 use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
 /// Interval at which latencies are summarised, in seconds: slow enough to read.
 const EVERY_S: f64 = 0.5;
@@ -33,7 +36,7 @@ struct Figure {
 
 /// Latency from the foot to the result, as far as it is known.
 #[derive(Default)]
-pub(super) struct Latency {
+struct Latency {
     stages: Option<LatencyStages>,
     summed_s: Option<f64>,
     /// Latency of the event, of the samples for the device, and of the sound as the device reports it; medians in
@@ -44,12 +47,12 @@ pub(super) struct Latency {
 }
 
 impl Latency {
-    pub(super) fn new(stages: Option<LatencyStages>) -> Self {
+    fn new(stages: Option<LatencyStages>) -> Self {
         Self { stages, ..Self::default() }
     }
 
     /// Summarises the measurements at the interval of `EVERY_S`.
-    pub(super) fn update(&mut self, now_s: f64) {
+    fn update(&mut self, now_s: f64) {
         let Some(stages) = &self.stages else { return };
         if self.summed_s.is_some_and(|at| (0.0..EVERY_S).contains(&(now_s - at))) {
             return;
@@ -82,15 +85,42 @@ impl Latency {
     }
 }
 
-impl App {
-    /// Shows the bar; figures that do not fit are left out, from the right.
-    pub(super) fn status_bar(&mut self, ui: &mut Ui) {
-        self.latency.update(self.now_s);
-        let theme = self.theme;
-        let frame = panel_frame(&theme, Margin::symmetric(14, 3));
+/// The rates and latencies of the status bar.
+pub(super) struct StatusBar {
+    /// The number of frames of this window so far.
+    drawn: u64,
+    window_frames: RateMeter,
+    frames: RateMeter,
+    packets: RateMeter,
+    latency: Latency,
+}
+
+impl StatusBar {
+    pub(super) fn new(latency: Option<LatencyStages>) -> Self {
+        Self {
+            drawn: 0,
+            window_frames: RateMeter::default(),
+            frames: RateMeter::default(),
+            packets: RateMeter::default(),
+            latency: Latency::new(latency),
+        }
+    }
+
+    /// Counts one frame of the window, which shows `snapshot`.
+    pub(super) fn observe(&mut self, now_s: f64, snapshot: &Snapshot) {
+        self.drawn += 1;
+        self.window_frames.observe(now_s, self.drawn);
+        self.frames.observe(now_s, snapshot.counters.frames);
+        self.packets.observe(now_s, snapshot.counters.packets);
+    }
+
+    /// Shows the bar, with the name of the mode at its left; figures that do not fit are left out, from the right.
+    pub(super) fn show(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, mode: &str) {
+        self.latency.update(shown.now_s);
+        let frame = panel_frame(theme, Margin::symmetric(14, 3));
         let frame = frame.stroke(egui::Stroke::NONE);
         Panel::bottom("status bar").frame(frame).resizable(false).show(ui, |ui| {
-            let figures = self.figures();
+            let figures = self.figures(theme, shown);
             ui.horizontal(|ui| {
                 ui.set_height(18.0);
                 ui.spacing_mut().item_spacing.x = 14.0;
@@ -99,7 +129,7 @@ impl App {
                     ui,
                     &Figure {
                         width: MODE,
-                        text: self.mode().into(),
+                        text: mode.into(),
                         colour: theme.ink,
                         meaning: "F2 changes between trying and designing, F11 projects".into(),
                     },
@@ -116,7 +146,7 @@ impl App {
                 let source = vec2(room - MODE - gap - taken, 18.0);
                 ui.allocate_ui_with_layout(source, Layout::left_to_right(Align::Center), |ui| {
                     ui.set_min_size(source);
-                    let (said, colour) = self.said_source();
+                    let (said, colour) = said_source(theme, shown);
                     let text = RichText::new(&said).size(LETTERS).color(color(colour));
                     ui.add(Label::new(text).truncate()).on_hover_text(&said);
                 });
@@ -125,35 +155,8 @@ impl App {
         });
     }
 
-    /// The source of the floor, with any problem of it.
-    fn said_source(&self) -> (String, Colour) {
-        let theme = &self.theme;
-        let Some(ServerState { address, link, left_out, .. }) = &self.server else {
-            return (self.source.clone(), theme.quiet);
-        };
-        match link {
-            ServerLink::Lost(why) => (format!("lost {address}: {why}; trying again"), theme.fault),
-            ServerLink::Joined if *left_out > 0 => {
-                let left_out = grouped(*left_out);
-                (format!("joined {address}; {left_out} packets left out on the way"), theme.warning)
-            }
-            ServerLink::Joined => (format!("joined {address}"), theme.quiet),
-            ServerLink::Followed => (format!("follows {address}"), theme.quiet),
-            ServerLink::Ended(why) => (format!("{address} has ended: {why}"), theme.fault),
-        }
-    }
-
-    fn mode(&self) -> &'static str {
-        match (self.is_designing(), self.projection.is_open()) {
-            (true, _) => "Design",
-            (false, true) => "Try + floor",
-            (false, false) => "Try",
-        }
-    }
-
-    fn figures(&self) -> Vec<Figure> {
-        let theme = &self.theme;
-        let snapshot = self.snapshots.output_buffer();
+    fn figures(&self, theme: &Theme, shown: &ShownFloor) -> Vec<Figure> {
+        let snapshot = shown.snapshot();
         let (counters, plays) = (&snapshot.counters, snapshot.device.is_some());
         let rate =
             |rate: Option<f32>| rate.map_or_else(|| "–".to_owned(), |rate| grouped(rate.round() as u64));
@@ -172,7 +175,7 @@ impl App {
             theme.quiet,
             "Frames a second in this window, which draws when something changes",
         );
-        if self.server.as_ref().is_some_and(ServerState::tells_by_lines) {
+        if shown.is_told_by_lines() {
             let (missed, malformed) = (snapshot.unsent_events, counters.malformed);
             let refused = format!("{} missed, {} refused", grouped(missed), grouped(malformed));
             return vec![
@@ -212,6 +215,23 @@ impl App {
             },
             of_window,
         ]
+    }
+}
+
+/// The source of the floor, with any problem of it.
+fn said_source(theme: &Theme, shown: &ShownFloor) -> (String, Colour) {
+    let Some(ServerState { address, link, left_out, .. }) = &shown.server else {
+        return (shown.source.clone(), theme.quiet);
+    };
+    match link {
+        ServerLink::Lost(why) => (format!("lost {address}: {why}; trying again"), theme.fault),
+        ServerLink::Joined if *left_out > 0 => {
+            let left_out = grouped(*left_out);
+            (format!("joined {address}; {left_out} packets left out on the way"), theme.warning)
+        }
+        ServerLink::Joined => (format!("joined {address}"), theme.quiet),
+        ServerLink::Followed => (format!("follows {address}"), theme.quiet),
+        ServerLink::Ended(why) => (format!("{address} has ended: {why}"), theme.fault),
     }
 }
 

@@ -143,13 +143,13 @@ pub(super) fn is_entered(ui: &Ui, field: &egui::Response) -> bool {
 }
 
 /// One line of a table: texts at the given places (shares of the width), numbers right-aligned there.
-pub(super) struct Row<'a> {
+pub(super) struct TextRow<'a> {
     pub(super) ui: &'a Ui,
     pub(super) rect: egui::Rect,
     pub(super) size: f32,
 }
 
-impl Row<'_> {
+impl TextRow<'_> {
     /// Draws from `share` of the width to the right, at most up to `end` of it.
     pub(super) fn left(&self, share: f32, end: f32, text: &str, color: Color32) {
         let x = self.rect.left() + share * self.rect.width();
@@ -169,8 +169,8 @@ impl Row<'_> {
 }
 
 /// Allocates one line of a table over the full width, with `spoken` for screen readers.
-pub(super) fn row<'a>(ui: &'a mut Ui, height: f32, size: f32, spoken: &str) -> Row<'a> {
+pub(super) fn row<'a>(ui: &'a mut Ui, height: f32, size: f32, spoken: &str) -> TextRow<'a> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, spoken));
-    Row { ui, rect, size }
+    TextRow { ui, rect, size }
 }

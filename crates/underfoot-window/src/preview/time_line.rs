@@ -9,7 +9,6 @@ use eframe::egui::{
     RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::app::App;
 use super::playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 use super::style::{panel_frame, quiet, selectable};
 use underfoot::layout::Colour;
@@ -58,38 +57,34 @@ impl TimeLine {
     }
 }
 
-impl App {
-    /// Shows the bar with the time line, if there is a recording.
-    pub(super) fn time_line(&mut self, ui: &mut Ui) {
-        let Some(line) = &mut self.time_line else { return };
-        line.state = line.playback.state();
-        line.handle_keys(ui);
-        let theme = self.theme;
-        let frame = panel_frame(&theme, Margin::symmetric(14, 6));
+impl TimeLine {
+    /// Shows the bar with the time line.
+    pub(super) fn show(&mut self, ui: &mut Ui, theme: &Theme) {
+        self.state = self.playback.state();
+        self.handle_keys(ui);
+        let frame = panel_frame(theme, Margin::symmetric(14, 6));
         Panel::bottom("time line").frame(frame).resizable(false).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.set_min_height(28.0);
-                line.pause_button(ui);
-                line.clock(ui, &theme);
+                self.pause_button(ui);
+                self.clock(ui, theme);
                 // Lay out from the right first: the line takes the remaining width.
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    line.repeat_button(ui);
-                    line.speed_menu(ui);
-                    line.track(ui, &theme);
+                    self.repeat_button(ui);
+                    self.speed_menu(ui);
+                    self.track(ui, theme);
                 });
             });
-            if let Some(why) = &line.state.broken {
+            if let Some(why) = &self.state.broken {
                 let text = format!("The recording breaks off: {why}");
                 ui.label(RichText::new(text).size(12.5).color(color(theme.warning)));
             }
         });
-        if !line.state.is_paused || line.state.goes_to_s.is_some() {
+        if !self.state.is_paused || self.state.goes_to_s.is_some() {
             ui.ctx().request_repaint_after(PICTURE);
         }
     }
-}
 
-impl TimeLine {
     fn handle_keys(&mut self, ui: &Ui) {
         if ui.ctx().memory(|memory| memory.focused().is_some()) {
             return;

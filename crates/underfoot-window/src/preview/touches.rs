@@ -11,7 +11,7 @@ const MOST: usize = 8;
 
 /// An action of a finger or a pen, in floor metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Touch {
+pub(super) struct FloorTouch {
     /// The screen, and the finger on it.
     pub(super) finger: (u64, u64),
     /// The position.
@@ -33,7 +33,7 @@ pub(super) enum Phase {
     Up,
 }
 
-impl Touch {
+impl FloorTouch {
     /// The touch in `event`, if it is one. `floor` converts a point of the screen to floor metres; `is_floor` returns
     /// whether a point of the screen is the bare floor, where a foot may start.
     pub(super) fn of(
@@ -75,7 +75,7 @@ impl Fingers {
     /// maximum pressure.
     pub(super) fn step(
         &mut self,
-        touches: &[Touch],
+        touches: &[FloorTouch],
         foot: PreviewFoot,
         sink: &dyn FootSink,
     ) -> Vec<Vec<PreviewFoot>> {
@@ -159,8 +159,8 @@ mod tests {
         }
     }
 
-    fn touch(finger: u64, x: f32, pressure: Option<f32>, phase: Phase) -> Touch {
-        Touch { finger: (0, finger), at: Vec2::new(x, 0.6), pressure, phase }
+    fn touch(finger: u64, x: f32, pressure: Option<f32>, phase: Phase) -> FloorTouch {
+        FloorTouch { finger: (0, finger), at: Vec2::new(x, 0.6), pressure, phase }
     }
 
     /// The last position and force of each foot; `None` for an index without a foot.
@@ -201,7 +201,7 @@ mod tests {
     fn fingers_that_came_down_elsewhere_or_are_too_many_put_no_foot_down() {
         let mut fingers = Fingers::default();
         assert!(fingers.step(&[touch(3, 0.5, None, Phase::On)], usual(), &Floor).is_empty());
-        let many: Vec<Touch> = (0..20).map(|finger| touch(finger, 0.5, None, Phase::Down)).collect();
+        let many: Vec<FloorTouch> = (0..20).map(|finger| touch(finger, 0.5, None, Phase::Down)).collect();
         assert_eq!(fingers.step(&many, usual(), &Floor).len(), MOST);
         fingers.lift();
         assert!(!fingers.are_down());

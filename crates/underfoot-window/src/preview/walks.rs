@@ -7,12 +7,12 @@ use eframe::egui::{
 };
 use glam::Vec2;
 
-use super::app::App;
+use super::shown::ShownFloor;
 use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
 use underfoot::widget::WidgetId;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
-use underfoot_scene::scene::in_drawn_order;
+use underfoot_scene::scene::{Theme, in_drawn_order};
 use underfoot_sim::{ArrivalHandle, DrawnWalk, Script};
 
 /// Minimum distance of a new point of a line from the last one, in metres.
@@ -123,54 +123,48 @@ impl Walks {
     }
 }
 
-impl App {
-    /// W changes between foot and drawing, Escape returns to the foot; both only outside text fields.
-    pub(super) fn handle_walk_key(&mut self, ui: &Ui) {
-        let is_free = ui.ctx().memory(|memory| memory.focused().is_none()) && !self.is_designing();
-        let Some(walks) = &mut self.walks else { return };
+impl Walks {
+    /// W changes between foot and drawing, Escape returns to the foot; both only outside text fields and Design mode.
+    pub(super) fn handle_key(&mut self, ui: &Ui, is_designing: bool) {
+        let is_free = ui.ctx().memory(|memory| memory.focused().is_none()) && !is_designing;
         if is_free && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::W)) {
-            walks.are_drawn = !walks.are_drawn;
-        } else if is_free && walks.are_drawn && ui.input(|i| i.key_pressed(Key::Escape)) {
-            walks.are_drawn = false;
+            self.are_drawn = !self.are_drawn;
+        } else if is_free && self.are_drawn && ui.input(|i| i.key_pressed(Key::Escape)) {
+            self.are_drawn = false;
         }
-        if !walks.are_drawn {
-            walks.line.clear();
+        if !self.are_drawn {
+            self.line.clear();
         }
-    }
-
-    /// Whether the mouse draws walks now.
-    pub(super) fn draws_walks(&self) -> bool {
-        self.walks.as_ref().is_some_and(|walks| walks.are_drawn)
     }
 
     /// Records the line of the mouse, and sends a person on release.
-    pub(super) fn draw_walk(&mut self, ui: &Ui, canvas: &Response, map: ScreenFromFloor) {
-        let (page, now_s) = (self.snapshots.output_buffer().page, self.now_s);
-        let Some(walks) = self.walks.as_mut().filter(|walks| walks.are_drawn) else { return };
+    pub(super) fn draw(&mut self, ui: &Ui, canvas: &Response, map: ScreenFromFloor, shown: &ShownFloor) {
+        if !self.are_drawn {
+            return;
+        }
         let (pressed, released, shift) = ui.input(|i| {
             let pointer = &i.pointer;
             (pointer.primary_pressed(), pointer.button_released(PointerButton::Primary), i.modifiers.shift)
         });
         let pointer = ui.input(|i| i.pointer.interact_pos());
         let begins = pressed && !shift && canvas.contains_pointer();
-        if let Some(pointer) = pointer.filter(|_| begins || !walks.line.is_empty()) {
-            walks.draw_to(map.floor(pointer));
+        if let Some(pointer) = pointer.filter(|_| begins || !self.line.is_empty()) {
+            self.draw_to(map.floor(pointer));
         }
-        if released && !walks.line.is_empty() {
-            walks.send(now_s, page, &self.messages.layout, &self.floor.geometry);
+        if released && !self.line.is_empty() {
+            self.send(shown.now_s, shown.snapshot().page, shown.layout(), &shown.floor.geometry);
         }
     }
 
     /// Draws the walks over the floor.
-    pub(super) fn show_walks(&self, ui: &Ui, rect: Rect, map: ScreenFromFloor) {
-        let Some(walks) = &self.walks else { return };
-        let (painter, theme) = (ui.painter_at(rect), &self.theme);
+    pub(super) fn show(&self, ui: &Ui, rect: Rect, map: ScreenFromFloor, shown: &ShownFloor, theme: &Theme) {
+        let painter = ui.painter_at(rect);
         let ink = color(theme.accent);
-        for line in walks.lines(self.now_s) {
+        for line in self.lines(shown.now_s) {
             way(&painter, line, map, ink);
         }
-        let (layout, page) = (&self.messages.layout, self.snapshots.output_buffer().page);
-        let aimed = walks.aims_at(page, layout);
+        let (layout, page) = (shown.layout(), shown.snapshot().page);
+        let aimed = self.aims_at(page, layout);
         if let Some(widget) = layout.widgets.iter().find(|widget| Some(&widget.id) == aimed.as_ref()) {
             let area = map.rect(widget.area).expand(3.0);
             painter.rect_stroke(area, 7.0, Stroke::new(2.5, ink), eframe::egui::StrokeKind::Outside);

@@ -6,6 +6,7 @@ use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Margin, Panel, Ui, WidgetInfo};
 
+use super::edited::EditedLayout;
 use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
 use crate::preview::style::{is_entered, panel_colour, panel_frame, pill, quiet, toggle};
@@ -15,7 +16,7 @@ use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
 
 /// The action of a menu entry.
-type Action = fn(&mut Designer);
+type Action = fn(&mut EditedLayout);
 
 impl Designer {
     /// Shows files, undo, arrangement and the number of problems.
@@ -25,39 +26,39 @@ impl Designer {
             ui.horizontal_wrapped(|ui| {
                 self.files(ui, choices);
                 ui.separator();
-                let (can_undo, can_redo) = (self.document.can_undo(), self.document.can_redo());
+                let (can_undo, can_redo) = (self.edited.document.can_undo(), self.edited.document.can_redo());
                 let button = |ui: &mut Ui, on, name: &str, hint: &str| {
                     ui.add_enabled(on, egui::Button::new(name)).on_hover_text(hint).clicked()
                 };
                 if button(ui, can_undo, "Undo", "Ctrl+Z") {
-                    self.undo();
+                    self.edited.undo();
                 }
                 if button(ui, can_redo, "Redo", "Ctrl+Shift+Z") {
-                    self.redo();
+                    self.edited.redo();
                 }
                 ui.separator();
-                let any = !self.selected.is_empty();
+                let any = !self.edited.selected.is_empty();
                 if button(ui, any, "Duplicate", "Ctrl+D") {
-                    self.duplicate();
+                    self.edited.duplicate();
                 }
                 if button(ui, any, "Delete", "Delete") {
-                    self.delete();
+                    self.edited.delete();
                 }
                 if button(ui, any, "Turn", "R: a quarter turn") {
-                    self.turn();
+                    self.edited.turn();
                 }
                 self.arrange(ui);
                 ui.menu_button("Show", |ui| {
-                    ui.checkbox(&mut self.seen_to_scale.shoes, "Shoes in true size");
-                    ui.checkbox(&mut self.seen_to_scale.reach, "How far feet reach");
+                    ui.checkbox(&mut self.canvas.scale.shoes, "Shoes in true size");
+                    ui.checkbox(&mut self.canvas.scale.reach, "How far feet reach");
                 });
                 ui.separator();
                 if button(ui, true, "Fit", "See the whole floor; the wheel zooms, Space and drag moves") {
-                    self.fit();
+                    self.canvas.fit();
                 }
                 toggle(ui, &mut self.text.is_open, "Text", "The layout as text, beside the floor");
                 self.count(ui, theme);
-                if let Some(message) = self.message() {
+                if let Some(message) = self.edited.message() {
                     let colour = if message.is_bad { theme.fault } else { theme.good };
                     pill(ui, colour, theme, &message.text);
                 }
@@ -68,14 +69,14 @@ impl Designer {
     fn files(&mut self, ui: &mut Ui, choices: &[String]) {
         ui.menu_button("File", |ui| {
             ui.menu_button("New", |ui| {
-                let geometry = self.document.floor().geometry;
+                let geometry = self.edited.document.floor().geometry;
                 ui.label(format!("for a floor of {} x {} tiles", geometry.columns(), geometry.rows()))
                     .on_hover_text(
                         "The window's floor; underfoot preview --grid 8x4 opens it with another one",
                     );
                 for template in Template::ALL {
                     if ui.button(template.name()).clicked() {
-                        let text = template.text(&self.document.floor().geometry);
+                        let text = template.text(&self.edited.document.floor().geometry);
                         self.begin_untitled("untitled.ron", &text);
                         ui.close();
                     }
@@ -90,7 +91,7 @@ impl Designer {
                     }
                 }
             });
-            let recent = shelf::recent(&self.state);
+            let recent = shelf::recent(&self.storage.state);
             ui.add_enabled_ui(!recent.is_empty(), |ui| {
                 ui.menu_button("Open recent", |ui| {
                     for path in &recent {
@@ -111,14 +112,14 @@ impl Designer {
                 }
             }
         });
-        let can_save = !self.is_saved() || self.file.path().is_none() || self.file.is_new();
+        let can_save = !self.is_saved() || self.storage.file.path().is_none() || self.storage.file.is_new();
         if ui.add_enabled(can_save, egui::Button::new("Save")).on_hover_text("Ctrl+S").clicked() {
             self.save();
         }
     }
 
     fn arrange(&mut self, ui: &mut Ui) {
-        let items = self.selected_items();
+        let items = self.edited.selected_items();
         let areas: Vec<Rect> = items.iter().map(|item| item.area).collect();
         let (mut wanted, mut does) = (None, None);
         let is_group = matches!(items[..], [item] if item.is_group);
@@ -126,15 +127,15 @@ impl Designer {
         ui.add_enabled_ui(count > 0, |ui| {
             ui.menu_button("Arrange", |ui| {
                 let entries: [(bool, &str, &str, Action); 6] = [
-                    (count > 0, "Group", "Ctrl+G", Self::group),
-                    (is_group, "Ungroup", "Ctrl+Shift+G", Self::ungroup),
-                    (count == 1, "To the front", "Ctrl+]", |designer| designer.reorder(false)),
-                    (count == 1, "To the back", "Ctrl+[", |designer| designer.reorder(true)),
-                    (true, "Lock or unlock", "Ctrl+L", |designer| {
-                        designer.turn_lock(&designer.selected.clone());
+                    (count > 0, "Group", "Ctrl+G", EditedLayout::group),
+                    (is_group, "Ungroup", "Ctrl+Shift+G", EditedLayout::ungroup),
+                    (count == 1, "To the front", "Ctrl+]", |edited| edited.reorder(false)),
+                    (count == 1, "To the back", "Ctrl+[", |edited| edited.reorder(true)),
+                    (true, "Lock or unlock", "Ctrl+L", |edited| {
+                        edited.turn_lock(&edited.selected.clone());
                     }),
-                    (true, "Hide or show", "Ctrl+H", |designer| {
-                        designer.turn_hidden(&designer.selected.clone());
+                    (true, "Hide or show", "Ctrl+H", |edited| {
+                        edited.turn_hidden(&edited.selected.clone());
                     }),
                 ];
                 for (is_on, name, keys, action) in entries {
@@ -165,22 +166,23 @@ impl Designer {
             });
         });
         if let Some(does) = does {
-            does(self);
+            does(&mut self.edited);
         }
         if let Some(areas) = wanted {
-            self.move_to(&areas);
+            self.edited.move_to(&areas);
         }
     }
 
     /// Shows the number of problems; a click selects the next one.
     fn count(&mut self, ui: &mut Ui, theme: &Theme) {
         let all: Vec<Address> = self
+            .edited
             .findings
             .iter()
-            .filter_map(|finding| self.document.found_in(finding))
-            .chain(self.told().filter_map(|problem| self.document.told_of(problem)))
+            .filter_map(|finding| self.edited.document.found_in(finding))
+            .chain(self.edited.told().filter_map(|problem| self.edited.document.told_of(problem)))
             .collect();
-        let count = self.findings.len() + self.told().count();
+        let count = self.edited.findings.len() + self.edited.told().count();
         if count == 0 {
             ui.label(quiet(theme, "no warnings"));
             return;
@@ -188,10 +190,11 @@ impl Designer {
         let noun = if count == 1 { "warning" } else { "warnings" };
         let text = egui::RichText::new(format!("{count} {noun}")).color(color(theme.warning));
         if ui.button(text).on_hover_text("Select the next control that has one").clicked() {
-            let at = self.selected.first().and_then(|record| all.iter().rposition(|other| other == record));
+            let at =
+                self.edited.selected.first().and_then(|record| all.iter().rposition(|other| other == record));
             let next = at.map_or(0, |at| at + 1);
             if let Some(record) = all.get(next).or(all.first()).cloned() {
-                self.select_only(record);
+                self.edited.select_only(record);
             }
         }
     }
@@ -200,25 +203,25 @@ impl Designer {
     pub(super) fn questions(&mut self, ui: &mut Ui, theme: &Theme) {
         let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
         let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
-        if let Some(draft) = self.left_over.clone() {
+        if let Some(draft) = self.storage.left_over.clone() {
             Panel::top("left over").frame(frame).resizable(false).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
-                    let name = self.file.name();
+                    let name = self.storage.file.name();
                     ui.label(format!("{name} was being edited when a window ended without saving."));
                     if ui.button("Recover the draft").clicked() {
-                        match self.document.write(&draft, None) {
-                            Ok(()) => self.left_over = None,
-                            Err(problems) => self.complain(problems.to_string()),
+                        match self.edited.document.write(&draft, None) {
+                            Ok(()) => self.storage.left_over = None,
+                            Err(problems) => self.edited.complain(problems.to_string()),
                         }
                     }
                     if ui.button("Drop it").clicked() {
-                        self.file.drop_draft();
-                        self.left_over = None;
+                        self.storage.file.drop_draft();
+                        self.storage.left_over = None;
                     }
                 });
             });
         }
-        if let Some((theirs, records)) = self.conflict.clone() {
+        if let Some((theirs, records)) = self.storage.conflict.clone() {
             Panel::top("conflict").frame(frame).resizable(false).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     let what = if records.is_empty() { "the same lines".into() } else { records.join(", ") };
@@ -228,14 +231,14 @@ impl Designer {
                         .on_hover_text("Saving then replaces theirs, which stays as a backup")
                         .clicked()
                     {
-                        self.file.know(theirs.clone());
-                        self.conflict = None;
+                        self.storage.file.know(theirs.clone());
+                        self.storage.conflict = None;
                     }
                     if ui.button("Take theirs").on_hover_text("Undo brings mine back").clicked() {
-                        self.conflict = None;
-                        self.file.know(theirs.clone());
-                        if let Err(problems) = self.document.write(&theirs, None) {
-                            self.complain(problems.to_string());
+                        self.storage.conflict = None;
+                        self.storage.file.know(theirs.clone());
+                        if let Err(problems) = self.edited.document.write(&theirs, None) {
+                            self.edited.complain(problems.to_string());
                         }
                     }
                 });
@@ -247,7 +250,7 @@ impl Designer {
     pub(in crate::preview) fn ask(&mut self, ui: &mut Ui, theme: &Theme) {
         let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
         let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
-        let Some(mut asking) = self.asking.take() else { return };
+        let Some(mut asking) = self.storage.asking.take() else { return };
         let mut goes_on = true;
         Panel::top("path").frame(frame).resizable(false).show(ui, |ui| {
             ui.horizontal(|ui| {
@@ -269,7 +272,7 @@ impl Designer {
             });
         });
         if goes_on {
-            self.asking = Some(asking);
+            self.storage.asking = Some(asking);
         }
     }
 
@@ -279,17 +282,17 @@ impl Designer {
         match asking.to {
             Ask::Open => self.open(&path),
             Ask::SaveAs => {
-                let text = self.document.file_text();
-                match self.file.save_as(&text, &path) {
+                let text = self.edited.document.file_text();
+                match self.storage.file.save_as(&text, &path) {
                     Ok(()) => {
-                        self.document.rename(&path.display().to_string());
-                        self.slot = None;
-                        shelf::note_recent(&self.state, &path);
-                        self.say(format!("Saved in {}", path.display()));
+                        self.edited.document.rename(&path.display().to_string());
+                        self.storage.slot = None;
+                        shelf::note_recent(&self.storage.state, &path);
+                        self.edited.say(format!("Saved in {}", path.display()));
                         true
                     }
                     Err(error) => {
-                        self.complain(error.to_string());
+                        self.edited.complain(error.to_string());
                         false
                     }
                 }

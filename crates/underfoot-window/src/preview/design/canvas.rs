@@ -6,41 +6,67 @@ use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Sense, Ui, WidgetInfo};
 
-use super::Designer;
-use crate::edit::{Address, Item, List};
+use super::edited::EditedLayout;
+use super::gestures::PointerGesture;
+use super::marks::marks;
+use super::palette::PaletteThing;
+use crate::edit::{Address, Item, RecordList};
+use crate::preview::zoom::Zoom;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor};
-use underfoot_scene::scene::{self, Show, Theme, View};
+use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
-impl Designer {
+/// The drawing board, and the gesture of the pointer on it.
+#[derive(Default)]
+pub(super) struct Canvas {
+    pub(super) view: Zoom,
+    scene: Scene,
+    pub(super) scale: DrawnToScale,
+    pub(super) gesture: PointerGesture,
+    /// The thing that the next click puts down.
+    pub(super) placing: Option<PaletteThing>,
+}
+
+/// The optional marks that are drawn to scale.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DrawnToScale {
+    pub(super) shoes: bool,
+    pub(super) reach: bool,
+}
+
+impl Canvas {
     /// Shows the floor in the remaining part of the window.
-    pub(super) fn canvas(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette) {
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        palette: &mut Palette,
+        edited: &mut EditedLayout,
+    ) {
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::click_and_drag());
         canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Drawing board"));
-        let geometry = self.document.floor().geometry;
+        let geometry = edited.document.floor().geometry;
         let show = Show { sensors: false, contacts: false, ..Show::WINDOW };
         let bounds = scene::extent(&geometry, show);
         let screen = rect.shrink(14.0);
         self.zoom(ui, &canvas, bounds, screen);
         let map = self.view.map(bounds, screen);
-        let trial = self.gestures(ui, &canvas, map, screen);
-        let shown = trial.layout.as_ref().unwrap_or_else(|| self.document.layout());
-        let shown = self.without_hidden(shown);
-        let snapshot = Snapshot { page: self.page, ..Snapshot::default() };
+        let trial = self.gestures(ui, &canvas, map, screen, edited);
+        let shown = trial.layout.as_ref().unwrap_or_else(|| edited.document.layout());
+        let shown = without_hidden(edited, shown);
+        let snapshot = Snapshot { page: edited.page, ..Snapshot::default() };
         let pointer = canvas.hover_pos().map(|at| map.floor(at));
-        let shoes = self.shoes(pointer);
+        let shoes = self.scale.shoes(edited.layout(), pointer);
         let view = View { show, shoes: &shoes, ..View::new(&geometry, &shown, &snapshot, theme) };
-        let mut scene = std::mem::take(&mut self.scene);
-        scene::draw(&mut scene, &view);
+        scene::draw(&mut self.scene, &view);
         let painter = ui.painter_at(rect);
-        egui_painter::paint(&painter, palette, &scene, map);
-        self.scene = scene;
-        self.reach(&painter, map, theme);
-        self.marks(ui, rect, map, theme, &trial);
-        self.names(ui, map);
+        egui_painter::paint(&painter, palette, &self.scene, map);
+        self.scale.reach(&painter, map, theme, edited.layout());
+        marks(edited, ui, rect, map, theme, &trial);
+        names(edited, ui, map);
     }
 
     fn zoom(&mut self, ui: &Ui, canvas: &egui::Response, bounds: Rect, screen: egui::Rect) {
@@ -56,50 +82,45 @@ impl Designer {
 
     /// Shows the whole floor again.
     pub(super) fn fit(&mut self) {
-        self.view = crate::preview::zoom::Zoom::default();
+        self.view = Zoom::default();
     }
+}
 
-    /// `layout` without the hidden records.
-    fn without_hidden<'l>(&self, layout: &'l Layout) -> Cow<'l, Layout> {
-        if self.hidden.is_empty() {
-            return Cow::Borrowed(layout);
-        }
-        let hidden: Vec<&Item> = self.items.iter().filter(|item| self.is_hidden(&item.record)).collect();
-        let is_left = |list: List, index: usize| {
-            !hidden.iter().any(|item| match list {
-                List::Widgets => item.widgets.contains(&index),
-                _ => item.record == Address::of(list, index),
-            })
-        };
-        let mut layout = layout.clone();
-        keep(&mut layout.widgets, |index| is_left(List::Widgets, index));
-        keep(&mut layout.stances, |index| is_left(List::Stances, index));
-        let grounds: Vec<bool> = self
-            .items
-            .iter()
-            .filter(|item| item.record.list() == Some(List::Grounds))
-            .map(|item| !self.is_hidden(&item.record))
-            .collect();
-        keep(&mut layout.grounds, |index| grounds.get(index).copied().unwrap_or(true));
-        Cow::Owned(layout)
+/// `layout` without the hidden records.
+fn without_hidden<'l>(edited: &EditedLayout, layout: &'l Layout) -> Cow<'l, Layout> {
+    if edited.hidden.is_empty() {
+        return Cow::Borrowed(layout);
     }
+    let hidden: Vec<&Item> = edited.items.iter().filter(|item| edited.is_hidden(&item.record)).collect();
+    let is_left = |list: RecordList, index: usize| {
+        !hidden.iter().any(|item| match list {
+            RecordList::Widgets => item.widgets.contains(&index),
+            _ => item.record == Address::of(list, index),
+        })
+    };
+    let mut layout = layout.clone();
+    keep(&mut layout.widgets, |index| is_left(RecordList::Widgets, index));
+    keep(&mut layout.stances, |index| is_left(RecordList::Stances, index));
+    let grounds: Vec<bool> = edited
+        .items
+        .iter()
+        .filter(|item| item.record.list() == Some(RecordList::Grounds))
+        .map(|item| !edited.is_hidden(&item.record))
+        .collect();
+    keep(&mut layout.grounds, |index| grounds.get(index).copied().unwrap_or(true));
+    Cow::Owned(layout)
+}
 
-    /// Gives screen readers and tests the name and place of each record.
-    fn names(&self, ui: &Ui, map: ScreenFromFloor) {
-        let is_seen = |item: &&Item| item.is_on(self.page) && !item.is_group && !self.is_hidden(&item.record);
-        for item in self.items.iter().filter(is_seen) {
-            let id = ui.scope_id().with(("record", item.record.to_string()));
-            let node = ui.interact(map.rect(item.area), id, Sense::hover());
-            let is_selected = self.selected.contains(&item.record);
-            node.widget_info(|| {
-                WidgetInfo::selected(
-                    Role::ListItem,
-                    true,
-                    is_selected,
-                    format!("On the floor: {}", item.name),
-                )
-            });
-        }
+/// Gives screen readers and tests the name and place of each record.
+fn names(edited: &EditedLayout, ui: &Ui, map: ScreenFromFloor) {
+    let is_seen = |item: &&Item| item.is_on(edited.page) && !item.is_group && !edited.is_hidden(&item.record);
+    for item in edited.items.iter().filter(is_seen) {
+        let id = ui.scope_id().with(("record", item.record.to_string()));
+        let node = ui.interact(map.rect(item.area), id, Sense::hover());
+        let is_selected = edited.selected.contains(&item.record);
+        node.widget_info(|| {
+            WidgetInfo::selected(Role::ListItem, true, is_selected, format!("On the floor: {}", item.name))
+        });
     }
 }
 

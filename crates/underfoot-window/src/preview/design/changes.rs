@@ -3,11 +3,11 @@
 use eframe::egui;
 use glam::Vec2;
 
-use super::Designer;
-use crate::edit::{Address, Edit, Item, Refusal};
+use super::edited::EditedLayout;
+use crate::edit::{Address, Edit, EditRefusal, Item, grouping, ungrouping};
 use underfoot::floor::Rect;
 
-impl Designer {
+impl EditedLayout {
     /// Moves and sizes the selection to new areas.
     pub(super) fn move_to(&mut self, areas: &[Rect]) {
         if self.holds_locked() {
@@ -60,7 +60,7 @@ impl Designer {
     /// Puts copies beside the selection, on the first side with enough room.
     pub(super) fn duplicate(&mut self) {
         let Some(bounds) = self.document.bounds_of(&self.items, &self.selected) else { return };
-        let text = |designer: &Self, by: Vec2| designer.document.duplicating(&designer.selected, by);
+        let text = |edited: &Self, by: Vec2| edited.document.duplicating(&edited.selected, by);
         self.put_beside(bounds.size(), text);
     }
 
@@ -70,7 +70,7 @@ impl Designer {
         if let Err(refusal) = self.document.pasting_on(pasted, page, Vec2::ZERO) {
             return self.complain(format!("Nothing is pasted: {}", refusal.short()));
         }
-        self.put_beside(Vec2::splat(0.16), |designer, by| designer.document.pasting_on(pasted, page, by));
+        self.put_beside(Vec2::splat(0.16), |edited, by| edited.document.pasting_on(pasted, page, by));
     }
 
     /// Copies the selection; with an empty selection, the clipboard stays unchanged.
@@ -98,7 +98,7 @@ impl Designer {
     pub(super) fn put_beside(
         &mut self,
         size: Vec2,
-        edits: impl Fn(&Self, Vec2) -> Result<(Vec<Edit>, Vec<Address>), Refusal>,
+        edits: impl Fn(&Self, Vec2) -> Result<(Vec<Edit>, Vec<Address>), EditRefusal>,
     ) {
         /// Half a shoe, so that a foot on one control does not reach the other (rule U102).
         const GAP_M: f32 = 0.06;
@@ -136,7 +136,7 @@ impl Designer {
     }
 
     pub(super) fn group(&mut self) {
-        match self.document.grouping(&self.selected_items()) {
+        match grouping(&self.document, &self.selected_items()) {
             Ok((edits, at)) => {
                 if self.edit(&edits) {
                     self.selected = vec![at];
@@ -148,7 +148,7 @@ impl Designer {
 
     pub(super) fn ungroup(&mut self) {
         let Some(group) = self.selected_items().first().copied().cloned() else { return };
-        match self.document.ungrouping(&self.items, &group) {
+        match ungrouping(&self.document, &self.items, &group) {
             Ok((edits, places)) => {
                 if self.edit(&edits) {
                     self.selected = places;
@@ -167,6 +167,14 @@ impl Designer {
         let to = if first { 0 } else { count.saturating_sub(1) };
         if self.edit(&[Edit::Reorder { record: record.clone(), to }]) {
             self.selected = vec![parent.entry(list, to)];
+        }
+    }
+
+    /// Adds the record to the selection, or removes it from there.
+    pub(super) fn toggle(&mut self, record: Address) {
+        match self.selected.iter().position(|other| *other == record) {
+            Some(at) => drop(self.selected.remove(at)),
+            None => self.selected.push(record),
         }
     }
 }

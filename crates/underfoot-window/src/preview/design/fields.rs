@@ -6,9 +6,9 @@ use eframe::egui::text_selection::CCursorRange;
 use eframe::egui::{ComboBox, DragValue, Key, Response, TextEdit, Ui, WidgetInfo};
 use glam::Vec2;
 
-use super::Designer;
-use super::inspector::ROW_PX;
-use crate::edit::{Address, Edit, Origin, Property};
+use super::edited::EditedLayout;
+use super::inspector::{Inspector, ROW_PX, effect_name, felt, unit_name};
+use crate::edit::{Address, Edit, FieldOrigin, Property};
 use underfoot::floor::Rect;
 use underfoot_format::describe::FieldType;
 use underfoot_format::number::plain;
@@ -17,25 +17,26 @@ use underfoot_format::words::unit;
 /// Width of a text field, in points.
 const TYPED_PX: f32 = 122.0;
 
-impl Designer {
+impl Inspector {
     /// Shows the value of a field for editing; returns the edit, if any.
     pub(super) fn value(
         &mut self,
         ui: &mut Ui,
+        edited: &mut EditedLayout,
         record: &Address,
         property: &Property,
     ) -> (Option<Edit>, Response) {
         let set = |value: String| Some(Edit::set(record, &property.name, value));
         let (short, value) = (property.short(), property.value.as_str());
         if property.is_place()
-            && let Some(pair) = self.place_of(record, property)
+            && let Some(pair) = place_of(edited, record, property)
         {
-            return self.place(ui, record, property, pair);
+            return self.place(ui, edited, record, property, pair);
         }
-        if let Some(choices) = self.choices(property) {
-            let shown = self.felt(record, property).map_or_else(
+        if let Some(choices) = choices(edited, property) {
+            let shown = felt(edited, record, property).map_or_else(
                 || value.trim_matches('"').to_owned(),
-                |effect| self.effect_name(&effect).unwrap_or("its own").to_owned(),
+                |effect| effect_name(&edited.document, &effect).unwrap_or("its own").to_owned(),
             );
             let (chosen, response) = choice(ui, short, &shown, &choices);
             return (chosen.and_then(set), response);
@@ -58,7 +59,7 @@ impl Designer {
                 let drag = ui.add(drag);
                 drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, short));
                 let changed = drag.changed().then(|| set(plain(number))).flatten();
-                (self.dragged(&drag, changed), drag)
+                (self.dragged(edited, &drag, changed), drag)
             }
             shape => {
                 let is_text = matches!(shape, FieldType::Text(_)) && property.value != "None";
@@ -69,43 +70,30 @@ impl Designer {
     }
 
     /// Applies the edits of one drag as one undo step; returns an edit that was typed to the caller.
-    fn dragged(&mut self, drag: &Response, edit: Option<Edit>) -> Option<Edit> {
+    fn dragged(&self, edited: &mut EditedLayout, drag: &Response, edit: Option<Edit>) -> Option<Edit> {
         if drag.drag_started() {
-            self.stroke += 1;
+            edited.stroke += 1;
         }
         if !drag.dragged() {
             return edit;
         }
         if let Some(edit) = edit {
-            self.edit_shared(edit, Some(self.stroke));
+            self.edit_shared(edited, edit, Some(edited.stroke));
         }
         None
-    }
-
-    /// The two numbers of a place or a size, in the layout's unit; the resolved area if the place depends on a
-    /// neighbour.
-    fn place_of(&self, record: &Address, property: &Property) -> Option<[f64; 2]> {
-        if property.origin == Origin::Written {
-            let (one, other) = property.value.trim_matches(['(', ')']).split_once(',')?;
-            let number = |text: &str| text.trim().trim_end_matches(',').trim().parse::<f64>().ok();
-            return Some([number(one)?, number(other)?]);
-        }
-        let area = self.item(record).filter(|item| !item.is_group)?.area;
-        let metres = if property.name == "at" { area.min } else { area.size() };
-        let unit = self.document.unit_m();
-        Some([metres.x, metres.y].map(|metres| (f64::from(metres) / unit * 1e4).round() / 1e4))
     }
 
     fn place(
         &mut self,
         ui: &mut Ui,
+        edited: &mut EditedLayout,
         record: &Address,
         property: &Property,
         before: [f64; 2],
     ) -> (Option<Edit>, Response) {
         let is_at = property.name == "at";
         let names = if is_at { ["east", "north"] } else { ["width", "depth"] };
-        let unit = self.document.unit_m();
+        let unit = edited.document.unit_m();
         let mut now = before;
         let drags = [0, 1].map(|side| {
             let drag = DragValue::new(&mut now[side])
@@ -116,59 +104,43 @@ impl Designer {
             let drag = ui.add_sized([66.0, ROW_PX], drag);
             let name = format!("{} {}", property.name, names[side]);
             drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &name));
-            drag.on_hover_text(format!("{}: in {}, or with cm or m behind it", names[side], self.unit_name()))
+            drag.on_hover_text(format!(
+                "{}: in {}, or with cm or m behind it",
+                names[side],
+                unit_name(&edited.document)
+            ))
         });
         let value = format!("({}, {})", plain(now[0]), plain(now[1]));
         let wanted = (now != before).then(|| Edit::set(record, &property.name, value));
         let [first, second] = drags;
-        let wanted = self.dragged(&first, wanted);
-        let wanted = self.dragged(&second, wanted);
+        let wanted = self.dragged(edited, &first, wanted);
+        let wanted = self.dragged(edited, &second, wanted);
         let Some(edit) = wanted else { return (None, first) };
-        if property.origin == Origin::Written {
+        if property.origin == FieldOrigin::Written {
             return (Some(edit), first);
         }
         // A control that stood beside a neighbour gets a place of its own.
-        if let Some(item) = self.item(record).cloned() {
+        if let Some(item) = edited.item(record).cloned() {
             let metres = Vec2::new((now[0] * unit) as f32, (now[1] * unit) as f32);
             let area = match is_at {
                 true => Rect::from_min_size(metres, item.area.size()),
                 false => Rect::from_min_size(item.area.min, metres),
             };
-            match self.document.placing(&[(&item, area)]) {
-                Ok(edits) => drop(self.edit(&edits)),
-                Err(refusal) => self.complain(refusal.short()),
+            match edited.document.placing(&[(&item, area)]) {
+                Ok(edits) => drop(edited.edit(&edits)),
+                Err(refusal) => edited.complain(refusal.short()),
             }
         }
         (None, first)
     }
 
-    /// The choices for a field, as the file writes them; `None` for a field that is typed.
-    fn choices(&self, property: &Property) -> Option<Vec<String>> {
-        let quoted = |names: Vec<String>| names.into_iter().map(|name| format!("\"{name}\"")).collect();
-        match (&property.shape, property.name.as_str()) {
-            (FieldType::Names(names), "kind") if names.is_empty() => {
-                Some(quoted(self.document.kinds().iter().map(|kind| kind.name.clone()).collect()))
-            }
-            (FieldType::Names(names), _) => Some(names.iter().map(|name| (*name).to_owned()).collect()),
-            (_, "goto") if !self.layout().pages.is_empty() => {
-                Some(quoted(self.layout().pages.iter().map(|page| page.id.to_string()).collect()))
-            }
-            (FieldType::Optional(_), name) if name.starts_with("feel.") => {
-                let names = self.document.kinds().effects().iter().map(|named| named.name.clone()).collect();
-                let names: Vec<String> = quoted(names);
-                Some(std::iter::once("None".to_owned()).chain(names).collect())
-            }
-            _ => None,
-        }
-    }
-
     /// A text field; returns its text once the user has finished.
     fn typed(&mut self, ui: &mut Ui, property: &Property, is_text: bool) -> (Option<String>, Response) {
         // A default is shown as a hint, not as editable text: it may be words.
-        let is_default = property.origin == Origin::Default;
+        let is_default = property.origin == FieldOrigin::Default;
         let shown = if is_text { property.value.trim_matches('"') } else { &property.value };
         let (shown, hint) = if is_default { ("", shown) } else { (shown, "") };
-        let typed = self.inspector.typed.entry(property.name.clone()).or_insert_with(|| shown.to_owned());
+        let typed = self.typed.entry(property.name.clone()).or_insert_with(|| shown.to_owned());
         let field = ui.add(TextEdit::singleline(typed).hint_text(hint).desired_width(TYPED_PX));
         field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &property.name));
         if field.gained_focus()
@@ -180,9 +152,43 @@ impl Designer {
             state.store(ui.ctx(), field.id);
         }
         let done = field.lost_focus() && typed != shown;
-        let typed = if done { self.inspector.typed.remove(&property.name) } else { None };
+        let typed = if done { self.typed.remove(&property.name) } else { None };
         let typed = typed.filter(|_| !ui.input(|i| i.key_pressed(Key::Escape)));
         (typed.map(|typed| if is_text { crate::edit::quoted(&typed) } else { typed }), field)
+    }
+}
+
+/// The two numbers of a place or a size, in the layout's unit; the resolved area if the place depends on a
+/// neighbour.
+fn place_of(edited: &EditedLayout, record: &Address, property: &Property) -> Option<[f64; 2]> {
+    if property.origin == FieldOrigin::Written {
+        let (one, other) = property.value.trim_matches(['(', ')']).split_once(',')?;
+        let number = |text: &str| text.trim().trim_end_matches(',').trim().parse::<f64>().ok();
+        return Some([number(one)?, number(other)?]);
+    }
+    let area = edited.item(record).filter(|item| !item.is_group)?.area;
+    let metres = if property.name == "at" { area.min } else { area.size() };
+    let unit = edited.document.unit_m();
+    Some([metres.x, metres.y].map(|metres| (f64::from(metres) / unit * 1e4).round() / 1e4))
+}
+
+/// The choices for a field, as the file writes them; `None` for a field that is typed.
+fn choices(edited: &EditedLayout, property: &Property) -> Option<Vec<String>> {
+    let quoted = |names: Vec<String>| names.into_iter().map(|name| format!("\"{name}\"")).collect();
+    match (&property.shape, property.name.as_str()) {
+        (FieldType::Names(names), "kind") if names.is_empty() => {
+            Some(quoted(edited.document.kinds().iter().map(|kind| kind.name.clone()).collect()))
+        }
+        (FieldType::Names(names), _) => Some(names.iter().map(|name| (*name).to_owned()).collect()),
+        (_, "goto") if !edited.layout().pages.is_empty() => {
+            Some(quoted(edited.layout().pages.iter().map(|page| page.id.to_string()).collect()))
+        }
+        (FieldType::Optional(_), name) if name.starts_with("feel.") => {
+            let names = edited.document.kinds().effects().iter().map(|named| named.name.clone()).collect();
+            let names: Vec<String> = quoted(names);
+            Some(std::iter::once("None".to_owned()).chain(names).collect())
+        }
+        _ => None,
     }
 }
 

@@ -8,23 +8,26 @@ use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Document, LayoutFile, Saving, Template};
 use underfoot::floor::Floor;
 
+/// The mark before the name of an unsaved layout.
+const UNSAVED: &str = "•";
+
 /// Interval between drafts, in seconds.
 const DRAFT_S: f64 = 2.0;
 
 impl Designer {
     pub(super) fn save(&mut self) {
-        let Some(path) = self.file.path().map(Path::to_path_buf) else {
+        let Some(path) = self.storage.file.path().map(Path::to_path_buf) else {
             return self.ask_for(Ask::SaveAs);
         };
-        let text = self.document.file_text();
-        match self.file.save(&text) {
-            Ok(Saving::Saved) => self.say(format!("Saved in {}", path.display())),
+        let text = self.edited.document.file_text();
+        match self.storage.file.save(&text) {
+            Ok(Saving::Saved) => self.edited.say(format!("Saved in {}", path.display())),
             Ok(other) => {
                 if self.take_in(other) {
                     self.save();
                 }
             }
-            Err(error) => self.complain(error.to_string()),
+            Err(error) => self.edited.complain(error.to_string()),
         }
     }
 
@@ -32,19 +35,22 @@ impl Designer {
     pub(super) fn take_in(&mut self, saving: Saving) -> bool {
         match saving {
             Saving::Saved => false,
-            Saving::Merged(text) => match self.document.write(&text, None) {
+            Saving::Merged(text) => match self.edited.document.write(&text, None) {
                 Ok(()) => {
-                    self.say(format!("{} was changed outside: both changes are here", self.file.name()));
+                    self.edited.say(format!(
+                        "{} was changed outside: both changes are here",
+                        self.storage.file.name()
+                    ));
                     true
                 }
                 Err(_) => {
-                    let theirs = self.file.outside().ok().flatten().unwrap_or(text);
-                    self.conflict = Some((theirs, Vec::new()));
+                    let theirs = self.storage.file.outside().ok().flatten().unwrap_or(text);
+                    self.storage.conflict = Some((theirs, Vec::new()));
                     false
                 }
             },
             Saving::Conflict { theirs, records } => {
-                self.conflict = Some((theirs, records));
+                self.storage.conflict = Some((theirs, records));
                 false
             }
         }
@@ -56,27 +62,33 @@ impl Designer {
     /// Returns the problems of a file that cannot be read, in the program's output format; the layout is unchanged
     /// then.
     pub(super) fn reload(&mut self) -> Result<(), String> {
-        let kinds = (self.kinds_of)(self.file.path()).map_err(|problems| problems.to_string())?;
-        self.document.make_of(&kinds).map_err(|problems| problems.to_string())?;
-        let Some(theirs) = self.file.outside().map_err(|error| error.to_string())? else { return Ok(()) };
+        let kinds =
+            (self.storage.kinds_of)(self.storage.file.path()).map_err(|problems| problems.to_string())?;
+        self.edited.document.make_of(&kinds).map_err(|problems| problems.to_string())?;
+        let Some(theirs) = self.storage.file.outside().map_err(|error| error.to_string())? else {
+            return Ok(());
+        };
         // Only a readable text can be merged with the edits made here.
-        let document = &self.document;
+        let document = &self.edited.document;
         Document::read(document.name(), &theirs, document.kinds(), document.floor())
             .map_err(|problems| problems.to_string())?;
-        let (mine, known) = (self.document.file_text(), self.file.known().to_owned());
-        match self.file.take_in(&mine, theirs) {
+        let (mine, known) = (self.edited.document.file_text(), self.storage.file.known().to_owned());
+        match self.storage.file.take_in(&mine, theirs) {
             Saving::Merged(text) => {
-                self.document.write(&text, None).map_err(|problems| {
+                self.edited.document.write(&text, None).map_err(|problems| {
                     // The change stays new until it can be read.
-                    self.file.know(known.clone());
+                    self.storage.file.know(known.clone());
                     problems.to_string()
                 })?;
                 if mine != known {
-                    self.say(format!("{} was changed outside: both changes are here", self.file.name()));
+                    self.edited.say(format!(
+                        "{} was changed outside: both changes are here",
+                        self.storage.file.name()
+                    ));
                 }
-                self.conflict = None;
+                self.storage.conflict = None;
             }
-            Saving::Conflict { theirs, records } => self.conflict = Some((theirs, records)),
+            Saving::Conflict { theirs, records } => self.storage.conflict = Some((theirs, records)),
             Saving::Saved => {}
         }
         Ok(())
@@ -84,27 +96,27 @@ impl Designer {
 
     /// Saves a draft at the interval of `DRAFT_S`.
     pub(super) fn keep(&mut self, now_s: f64) {
-        if now_s - self.drafted_s >= DRAFT_S && self.left_over.is_none() {
-            self.drafted_s = now_s;
-            let text = self.document.file_text();
-            if let Err(error) = self.file.keep_draft(&text) {
-                self.complain(format!("no draft is kept: {error}"));
+        if now_s - self.storage.drafted_s >= DRAFT_S && self.storage.left_over.is_none() {
+            self.storage.drafted_s = now_s;
+            let text = self.edited.document.file_text();
+            if let Err(error) = self.storage.file.keep_draft(&text) {
+                self.edited.complain(format!("no draft is kept: {error}"));
             }
         }
     }
 
     /// Opens a file; returns whether that succeeded.
     pub(super) fn open(&mut self, path: &Path) -> bool {
-        match opened(path, self.document.floor(), false) {
+        match opened(path, self.edited.document.floor(), false) {
             Ok((file, text)) => {
                 let is_open = self.begin(&path.display().to_string(), &text, file, None);
                 if is_open {
-                    shelf::note_recent(&self.state, path);
+                    shelf::note_recent(&self.storage.state, path);
                 }
                 is_open
             }
             Err(error) => {
-                self.complain(format!("{} can't be opened: {error}", path.display()));
+                self.edited.complain(format!("{} can't be opened: {error}", path.display()));
                 false
             }
         }
@@ -112,7 +124,7 @@ impl Designer {
 
     /// Starts with a text that has no file yet.
     pub(super) fn begin_untitled(&mut self, name: &str, text: &str) -> bool {
-        let (file, slot) = untitled(&self.state, text, false);
+        let (file, slot) = untitled(&self.storage.state, text, false);
         self.begin(name, text, file, slot)
     }
 
@@ -124,49 +136,79 @@ impl Designer {
         file: LayoutFile,
         slot: Option<shelf::Slot>,
     ) -> bool {
-        let floor = Arc::clone(self.document.floor());
-        let read = (self.kinds_of)(file.path());
+        let floor = Arc::clone(self.edited.document.floor());
+        let read = (self.storage.kinds_of)(file.path());
         match read.and_then(|kinds| Document::read(name, text, &kinds, &floor)) {
             Ok(document) => {
-                self.message = None;
+                self.edited.message = None;
                 let mut kept = None;
-                if !self.is_saved() && self.left_over.is_none() {
-                    match self.file.keep_draft(&self.document.file_text()) {
+                if !self.is_saved() && self.storage.left_over.is_none() {
+                    match self.storage.file.keep_draft(&self.edited.document.file_text()) {
                         Ok(()) => {
-                            let name = self.file.name();
+                            let name = self.storage.file.name();
                             kept = Some(format!(
                                 "{name} was not saved: its draft is kept and will be offered again"
                             ));
                         }
                         Err(error) => {
-                            self.complain(format!("{} is not saved, and {error}", self.file.name()));
+                            self.edited
+                                .complain(format!("{} is not saved, and {error}", self.storage.file.name()));
                             return false;
                         }
                     }
                 }
-                let revision = self.document.revision() + 1;
-                self.document = document;
-                self.document.begin_at(revision);
+                let revision = self.edited.document.revision() + 1;
+                self.edited.document = document;
+                self.edited.document.begin_at(revision);
                 if let Some(kept) = kept {
-                    self.say(kept);
+                    self.edited.say(kept);
                 }
-                self.left_over = file.left_over().ok().flatten();
-                (self.file, self.slot, self.seen, self.conflict) = (file, slot, None, None);
-                self.selected.clear();
-                self.locked.clear();
-                self.hidden.clear();
+                self.storage.left_over = file.left_over().ok().flatten();
+                (self.storage.file, self.storage.slot, self.edited.seen, self.storage.conflict) =
+                    (file, slot, None, None);
+                self.edited.selected.clear();
+                self.edited.locked.clear();
+                self.edited.hidden.clear();
                 true
             }
             Err(problems) => {
-                self.complain(problems.to_string());
+                self.edited.complain(problems.to_string());
                 false
             }
         }
     }
 
     pub(super) fn ask_for(&mut self, to: Ask) {
-        let path = self.file.path().map(|path| path.display().to_string());
-        self.asking = Some(Asking { to, path: path.unwrap_or_else(|| self.file.name()) });
+        let path = self.storage.file.path().map(|path| path.display().to_string());
+        self.storage.asking = Some(Asking { to, path: path.unwrap_or_else(|| self.storage.file.name()) });
+    }
+
+    /// The layout's name for titles, behind a dot while the file lacks edits.
+    pub(in crate::preview) fn title(&self) -> String {
+        let name = self.name();
+        if self.is_saved() { name } else { format!("{UNSAVED} {name}") }
+    }
+
+    /// The last message about the file, and whether it reports a failure.
+    pub(in crate::preview) fn last_message(&self) -> Option<(&str, bool)> {
+        self.edited.message().map(|message| (message.text.as_str(), message.is_bad))
+    }
+
+    /// Saves, or asks for a path.
+    pub(in crate::preview) fn save_or_ask(&mut self) {
+        if self.storage.file.path().is_some() { self.save() } else { self.ask_for(Ask::SaveAs) }
+    }
+
+    /// Whether a question to the user blocks saving.
+    pub(in crate::preview) fn is_asking(&self) -> bool {
+        self.storage.asking.is_some() || self.storage.conflict.is_some()
+    }
+
+    /// Discards unsaved edits; a draft of an earlier window that waits for a decision stays.
+    pub(in crate::preview) fn discard(&mut self) {
+        if self.storage.left_over.is_none() {
+            self.storage.file.drop_draft();
+        }
     }
 }
 

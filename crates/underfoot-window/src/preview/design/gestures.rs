@@ -4,8 +4,9 @@ use eframe::egui;
 use eframe::egui::{CursorIcon, Key, PointerButton, Pos2, Ui, pos2};
 use glam::Vec2;
 
-use super::Designer;
-use crate::edit::{Address, Edges, Grid, Guide, Item, List};
+use super::canvas::Canvas;
+use super::edited::EditedLayout;
+use crate::edit::{Address, Edges, Item, RecordList, SnapGrid, SnapGuide};
 use crate::preview::pointer::way_while_down;
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
@@ -26,7 +27,7 @@ const LEAST_M: f32 = 0.03;
 
 /// The current gesture of the pointer.
 #[derive(Clone, Debug, Default)]
-pub(super) enum Gesture {
+pub(super) enum PointerGesture {
     #[default]
     None,
     /// Pressed on a record, which moves once the pointer goes further.
@@ -39,7 +40,7 @@ pub(super) enum Gesture {
     Panning,
 }
 
-impl Designer {
+impl Canvas {
     /// Follows the pointer; returns the result that a release would have now.
     pub(super) fn gestures(
         &mut self,
@@ -47,7 +48,8 @@ impl Designer {
         canvas: &egui::Response,
         map: ScreenFromFloor,
         screen: egui::Rect,
-    ) -> Trial {
+        edited: &mut EditedLayout,
+    ) -> GestureResult {
         let (pointer, pressed, released, space, shift, alt) = ui.input(|i| {
             (
                 i.pointer.interact_pos().or(i.pointer.hover_pos()),
@@ -58,11 +60,11 @@ impl Designer {
                 i.modifiers.alt,
             )
         });
-        let Some(pointer) = pointer else { return Trial::default() };
+        let Some(pointer) = pointer else { return GestureResult::default() };
         let inside = canvas.contains_pointer() || canvas.rect.contains(pointer) && self.placing.is_some();
         let at = map.floor(pointer);
         let button = match self.gesture {
-            Gesture::Panning => Some(PointerButton::Primary),
+            PointerGesture::Panning => Some(PointerButton::Primary),
             _ => Some(PointerButton::Middle).filter(|_| inside),
         };
         let panned = button.map_or(egui::Vec2::ZERO, |button| ui.input(|i| way_while_down(i, button)));
@@ -73,92 +75,109 @@ impl Designer {
         if let Some(thing) = self.placing.clone() {
             // For a drag onto the canvas, the press began elsewhere.
             let dropped = released && !canvas.clicked() && !canvas.drag_stopped();
-            return self.put_down(&thing, at, inside, pressed, dropped, map, alt);
+            return self.put_down(edited, &thing, at, inside, pressed, dropped, map, alt);
         }
         if pressed && inside {
             canvas.request_focus();
             ui.ctx().memory_mut(|memory| memory.surrender_focus(canvas.id));
-            self.stroke += 1;
-            self.begin_gesture(pointer, at, map, space, shift);
+            edited.stroke += 1;
+            self.begin_gesture(edited, (pointer, at), map, space, shift);
         }
-        if let Gesture::Pressed { at: from, record } = self.gesture.clone()
+        if let PointerGesture::Pressed { at: from, record } = self.gesture.clone()
             && from.distance(pointer) > SLACK
         {
-            if !self.selected.contains(&record) {
-                self.select_only(record);
+            if !edited.selected.contains(&record) {
+                edited.select_only(record);
             }
-            self.gesture = Gesture::Moving { from: map.floor(from), edges: Edges::ALL };
+            self.gesture = PointerGesture::Moving { from: map.floor(from), edges: Edges::ALL };
         }
         let trial = match &self.gesture {
-            Gesture::Moving { from, edges } => self.moving(at - *from, *edges, map, alt),
-            Gesture::Lasso { from } => Trial { lasso: Some(around(*from, at)), ..Trial::default() },
-            _ => Trial::default(),
+            PointerGesture::Moving { from, edges } => moving(edited, at - *from, *edges, map, alt),
+            PointerGesture::Lasso { from } => {
+                GestureResult { lasso: Some(around(*from, at)), ..GestureResult::default() }
+            }
+            _ => GestureResult::default(),
         };
-        if inside && matches!(self.gesture, Gesture::None) {
-            self.hover(ui, pointer, map);
+        if inside && matches!(self.gesture, PointerGesture::None) {
+            hover(edited, ui, pointer, map);
         }
         if released {
-            self.end_gesture(&trial, shift, map);
+            self.end_gesture(edited, &trial, shift, map);
         }
         trial
     }
 
-    fn begin_gesture(&mut self, pointer: Pos2, at: Vec2, map: ScreenFromFloor, space: bool, shift: bool) {
+    fn begin_gesture(
+        &mut self,
+        edited: &mut EditedLayout,
+        (pointer, at): (Pos2, Vec2),
+        map: ScreenFromFloor,
+        space: bool,
+        shift: bool,
+    ) {
         if space {
-            self.gesture = Gesture::Panning;
+            self.gesture = PointerGesture::Panning;
             return;
         }
-        if let Some(edges) = self.handle_under(pointer, map) {
-            self.gesture = Gesture::Moving { from: at, edges };
+        if let Some(edges) = handle_under(edited, pointer, map) {
+            self.gesture = PointerGesture::Moving { from: at, edges };
             return;
         }
-        match self.touched(at) {
+        match touched(edited, at) {
             // A region is behind everything: a drag across it selects with a rectangle, a click selects the region.
-            Some(record) if record.list() == Some(List::Regions) && !self.selected.contains(&record) => {
-                self.gesture = Gesture::Lasso { from: at };
+            Some(record)
+                if record.list() == Some(RecordList::Regions) && !edited.selected.contains(&record) =>
+            {
+                self.gesture = PointerGesture::Lasso { from: at };
             }
-            Some(record) if shift => self.toggle(record),
-            Some(record) => self.gesture = Gesture::Pressed { at: pointer, record },
+            Some(record) if shift => edited.toggle(record),
+            Some(record) => self.gesture = PointerGesture::Pressed { at: pointer, record },
             // Locked records are selected in the list.
-            None => self.gesture = Gesture::Lasso { from: at },
+            None => self.gesture = PointerGesture::Lasso { from: at },
         }
     }
 
-    fn end_gesture(&mut self, trial: &Trial, shift: bool, map: ScreenFromFloor) {
+    fn end_gesture(
+        &mut self,
+        edited: &mut EditedLayout,
+        trial: &GestureResult,
+        shift: bool,
+        map: ScreenFromFloor,
+    ) {
         match std::mem::take(&mut self.gesture) {
             // A second click on a group selects the member under the pointer.
-            Gesture::Pressed { record, at } if self.selected == [record.clone()] => {
-                let inner = self.document.item_at(&self.items, self.page, map.floor(at));
-                self.select_only(inner.filter(|inner| inner.is_within(&record)).unwrap_or(record));
+            PointerGesture::Pressed { record, at } if edited.selected == [record.clone()] => {
+                let inner = edited.document.item_at(&edited.items, edited.page, map.floor(at));
+                edited.select_only(inner.filter(|inner| inner.is_within(&record)).unwrap_or(record));
             }
-            Gesture::Pressed { record, .. } => self.select_only(record),
-            Gesture::Moving { .. } if !trial.areas.is_empty() => {
+            PointerGesture::Pressed { record, .. } => edited.select_only(record),
+            PointerGesture::Moving { .. } if !trial.areas.is_empty() => {
                 let areas = trial.areas.clone();
-                self.move_to(&areas);
+                edited.move_to(&areas);
             }
-            Gesture::Lasso { from } => {
+            PointerGesture::Lasso { from } => {
                 let Some(area) = trial.lasso else { return };
                 if !shift {
-                    self.selected.clear();
+                    edited.selected.clear();
                 }
                 if area.size().max_element() < 0.01 {
-                    let record = self.touched(from);
-                    self.selected.extend(record);
+                    let record = touched(edited, from);
+                    edited.selected.extend(record);
                     return;
                 }
-                let page = self.page;
-                let inside = self.items.iter().filter(|item| {
-                    item.record.list() == Some(List::Widgets)
+                let page = edited.page;
+                let inside = edited.items.iter().filter(|item| {
+                    item.record.list() == Some(RecordList::Widgets)
                         && !item.is_group
                         && item.is_on(page)
                         && item.area.overlaps(area)
-                        && !self.is_locked(&item.record)
-                        && !self.is_hidden(&item.record)
+                        && !edited.is_locked(&item.record)
+                        && !edited.is_hidden(&item.record)
                 });
                 let found: Vec<Address> = inside.map(|item| group_of(&item.record)).collect();
                 for record in found {
-                    if !self.selected.contains(&record) {
-                        self.selected.push(record);
+                    if !edited.selected.contains(&record) {
+                        edited.selected.push(record);
                     }
                 }
             }
@@ -166,122 +185,122 @@ impl Designer {
         }
     }
 
-    /// The record to grab at `point`: the whole outermost group, unless a member of it is selected. Ignores locked
-    /// and hidden records.
-    fn touched(&self, point: Vec2) -> Option<Address> {
-        let free = |item: &&Item| !self.is_locked(&item.record) && !self.is_hidden(&item.record);
-        let free: Vec<Item> = self.items.iter().filter(free).cloned().collect();
-        let record = self.document.item_at(&free, self.page, point)?;
-        let group = group_of(&record);
-        let is_entered = self.selected.iter().any(|one| *one != group && one.is_within(&group));
-        Some(if is_entered { record } else { group })
-    }
-
-    pub(super) fn toggle(&mut self, record: Address) {
-        match self.selected.iter().position(|other| *other == record) {
-            Some(at) => drop(self.selected.remove(at)),
-            None => self.selected.push(record),
-        }
-    }
-
-    /// The edges that the handle under the pointer drags, for a single selected record.
-    fn handle_under(&self, pointer: Pos2, map: ScreenFromFloor) -> Option<Edges> {
-        let [item] = self.selected_items()[..] else { return None };
-        if !can_be_sized(item) || self.is_locked(&item.record) {
-            return None;
-        }
-        let near = handles(map.rect(item.area)).into_iter().find(|(at, _)| at.distance(pointer) <= NEAR);
-        near.map(|(_, edges)| edges)
-    }
-
-    fn hover(&self, ui: &Ui, pointer: Pos2, map: ScreenFromFloor) {
-        let icon = match self.handle_under(pointer, map) {
-            Some(Edges { north: false, south: false, .. }) => CursorIcon::ResizeHorizontal,
-            Some(Edges { east: false, west: false, .. }) => CursorIcon::ResizeVertical,
-            Some(edges) if edges.north == edges.east => CursorIcon::ResizeNeSw,
-            Some(_) => CursorIcon::ResizeNwSe,
-            None if ui.input(|i| i.key_down(Key::Space)) => CursorIcon::Grab,
-            None => CursorIcon::Default,
-        };
-        ui.ctx().set_cursor_icon(icon);
-    }
-
-    /// The result of moving the given edges of the selection by `by`.
-    fn moving(&self, by: Vec2, edges: Edges, map: ScreenFromFloor, alt: bool) -> Trial {
-        let items = self.selected_items();
-        let Some(all) = crate::edit::around(items.iter().map(|item| item.area)) else {
-            return Trial::default();
-        };
-        let moved = edges.moved(all, by, LEAST_M);
-        let (snapped, guides) = self.snapped(moved, edges, map, alt);
-        let shift = snapped.min - all.min;
-        let areas: Vec<Rect> = match items[..] {
-            [_] => vec![snapped],
-            _ => items.iter().map(|item| Rect::new(item.area.min + shift, item.area.max + shift)).collect(),
-        };
-        let pairs: Vec<(&Item, Rect)> = items.iter().copied().zip(areas.iter().copied()).collect();
-        let tried = self.document.placing(&pairs).and_then(|edits| self.document.trial(&edits));
-        let (layout, refused) = match tried {
-            Ok(layout) => (Some(layout), None),
-            Err(refusal) => (None, Some(refusal.short())),
-        };
-        Trial { layout, refused, areas, guides, lasso: None }
-    }
-
-    fn snapped(&self, area: Rect, edges: Edges, map: ScreenFromFloor, alt: bool) -> (Rect, Vec<Guide>) {
-        if alt {
-            return (area, Vec::new());
-        }
-        let others = self.items.iter().filter(|item| {
-            matches!(item.record.list(), Some(List::Widgets | List::Regions | List::Stances))
-                && item.is_on(self.page)
-                && !item.is_group
-                && !self.selected.iter().any(|selected| item.record.is_within(selected))
-        });
-        let neighbours: Vec<Rect> = others.map(|item| item.area).collect();
-        let geometry = &self.document.floor().geometry;
-        let grid = Grid { geometry, neighbours: &neighbours, reach_m: PULL / map.scale() };
-        grid.snap(area, edges)
-    }
-
     #[expect(clippy::too_many_arguments, reason = "what the pointer does in one frame")]
     fn put_down(
         &mut self,
-        thing: &super::palette::Thing,
+        edited: &mut EditedLayout,
+        thing: &super::palette::PaletteThing,
         at: Vec2,
         inside: bool,
         pressed: bool,
         dropped: bool,
         map: ScreenFromFloor,
         alt: bool,
-    ) -> Trial {
+    ) -> GestureResult {
         if !inside {
-            return Trial::default();
+            return GestureResult::default();
         }
-        let size = thing.size(&self.document.floor().geometry);
+        let size = thing.size(&edited.document.floor().geometry);
         let area = Rect::from_centre_size(at, size);
-        let (area, guides) = self.snapped(area, Edges::ALL, map, alt);
+        let (area, guides) = snapped(edited, area, Edges::ALL, map, alt);
         // After a drag onto the canvas, the thing is put down on release; after a click, on the press.
         if pressed || dropped {
-            if self.put(thing, area) || dropped {
+            if edited.put(thing, area) || dropped {
                 self.placing = None;
             }
-            return Trial::default();
+            return GestureResult::default();
         }
-        Trial { areas: vec![area], guides, ..Trial::default() }
+        GestureResult { areas: vec![area], guides, ..GestureResult::default() }
     }
+}
+
+/// The record to grab at `point`: the whole outermost group, unless a member of it is selected. Ignores locked
+/// and hidden records.
+fn touched(edited: &EditedLayout, point: Vec2) -> Option<Address> {
+    let free = |item: &&Item| !edited.is_locked(&item.record) && !edited.is_hidden(&item.record);
+    let free: Vec<Item> = edited.items.iter().filter(free).cloned().collect();
+    let record = edited.document.item_at(&free, edited.page, point)?;
+    let group = group_of(&record);
+    let is_entered = edited.selected.iter().any(|one| *one != group && one.is_within(&group));
+    Some(if is_entered { record } else { group })
+}
+
+/// The edges that the handle under the pointer drags, for a single selected record.
+fn handle_under(edited: &EditedLayout, pointer: Pos2, map: ScreenFromFloor) -> Option<Edges> {
+    let [item] = edited.selected_items()[..] else { return None };
+    if !can_be_sized(item) || edited.is_locked(&item.record) {
+        return None;
+    }
+    let near = handles(map.rect(item.area)).into_iter().find(|(at, _)| at.distance(pointer) <= NEAR);
+    near.map(|(_, edges)| edges)
+}
+
+fn hover(edited: &EditedLayout, ui: &Ui, pointer: Pos2, map: ScreenFromFloor) {
+    let icon = match handle_under(edited, pointer, map) {
+        Some(Edges { north: false, south: false, .. }) => CursorIcon::ResizeHorizontal,
+        Some(Edges { east: false, west: false, .. }) => CursorIcon::ResizeVertical,
+        Some(edges) if edges.north == edges.east => CursorIcon::ResizeNeSw,
+        Some(_) => CursorIcon::ResizeNwSe,
+        None if ui.input(|i| i.key_down(Key::Space)) => CursorIcon::Grab,
+        None => CursorIcon::Default,
+    };
+    ui.ctx().set_cursor_icon(icon);
+}
+
+/// The result of moving the given edges of the selection by `by`.
+fn moving(edited: &EditedLayout, by: Vec2, edges: Edges, map: ScreenFromFloor, alt: bool) -> GestureResult {
+    let items = edited.selected_items();
+    let Some(all) = crate::edit::around(items.iter().map(|item| item.area)) else {
+        return GestureResult::default();
+    };
+    let moved = edges.moved(all, by, LEAST_M);
+    let (snapped, guides) = snapped(edited, moved, edges, map, alt);
+    let shift = snapped.min - all.min;
+    let areas: Vec<Rect> = match items[..] {
+        [_] => vec![snapped],
+        _ => items.iter().map(|item| Rect::new(item.area.min + shift, item.area.max + shift)).collect(),
+    };
+    let pairs: Vec<(&Item, Rect)> = items.iter().copied().zip(areas.iter().copied()).collect();
+    let tried = edited.document.placing(&pairs).and_then(|edits| edited.document.trial(&edits));
+    let (layout, refused) = match tried {
+        Ok(layout) => (Some(layout), None),
+        Err(refusal) => (None, Some(refusal.short())),
+    };
+    GestureResult { layout, refused, areas, guides, lasso: None }
+}
+
+fn snapped(
+    edited: &EditedLayout,
+    area: Rect,
+    edges: Edges,
+    map: ScreenFromFloor,
+    alt: bool,
+) -> (Rect, Vec<SnapGuide>) {
+    if alt {
+        return (area, Vec::new());
+    }
+    let others = edited.items.iter().filter(|item| {
+        matches!(item.record.list(), Some(RecordList::Widgets | RecordList::Regions | RecordList::Stances))
+            && item.is_on(edited.page)
+            && !item.is_group
+            && !edited.selected.iter().any(|selected| item.record.is_within(selected))
+    });
+    let neighbours: Vec<Rect> = others.map(|item| item.area).collect();
+    let geometry = &edited.document.floor().geometry;
+    let grid = SnapGrid { geometry, neighbours: &neighbours, reach_m: PULL / map.scale() };
+    grid.snap(area, edges)
 }
 
 /// The result that a gesture would have if it ended now.
 #[derive(Default)]
-pub(super) struct Trial {
+pub(super) struct GestureResult {
     /// The layout; `None` where it is refused or unchanged.
     pub(super) layout: Option<Layout>,
     /// The reason for a refusal.
     pub(super) refused: Option<String>,
     /// The areas of the selection, or of the thing that is put down.
     pub(super) areas: Vec<Rect>,
-    pub(super) guides: Vec<Guide>,
+    pub(super) guides: Vec<SnapGuide>,
     pub(super) lasso: Option<Rect>,
 }
 
@@ -289,7 +308,7 @@ pub(super) struct Trial {
 fn group_of(record: &Address) -> Address {
     let mut outermost = record.clone();
     while let Some((parent, ..)) =
-        outermost.split().filter(|(parent, ..)| parent.list() == Some(List::Widgets))
+        outermost.split().filter(|(parent, ..)| parent.list() == Some(RecordList::Widgets))
     {
         outermost = parent;
     }

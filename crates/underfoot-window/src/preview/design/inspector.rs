@@ -7,8 +7,9 @@ use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo};
 
-use super::{Designer, Pane};
-use crate::edit::{Address, Edit, Item, Origin, Property, Section};
+use super::edited::EditedLayout;
+use super::{Pane, Panes};
+use crate::edit::{Address, Document, Edit, FieldOrigin, FieldSection, Item, Property};
 use crate::preview::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet, section};
 use underfoot::feel::{Effect, Feel, Gesture};
@@ -27,12 +28,14 @@ pub(super) struct Inspector {
     common: Shown,
     /// The records to which an edit of the first one applies, while common fields are on display.
     shared: Vec<Address>,
+    /// The command that waits to be sent to the floor.
+    pub(super) wish: Option<PreviewCommand>,
 }
 
 /// The fields on display, with their records and revision.
 #[derive(Default)]
 struct Shown {
-    sections: Vec<Section>,
+    sections: Vec<FieldSection>,
     of: Option<(Vec<Address>, u64)>,
 }
 
@@ -48,35 +51,35 @@ pub(super) const ROW_PX: f32 = 24.0;
 /// Fields that every record must keep.
 const KEPT: [&str; 3] = ["id", "kind", "at"];
 
-impl Designer {
+impl Inspector {
     /// Shows the inspector.
-    pub(super) fn side_panel(&mut self, ui: &mut Ui, theme: &Theme) {
+    pub(super) fn panel(&mut self, ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes: &mut Panes) {
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         // A fixed width, whatever the content: the floor beside the panel must not move under the pointer.
         let panel = Panel::right("inspector").frame(frame).resizable(false);
         panel.exact_size(INSPECTOR_PX).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_width(ui.available_width() - 8.0);
-                self.inspector(ui, theme);
+                self.show(ui, theme, edited, panes);
             });
         });
     }
 
-    fn inspector(&mut self, ui: &mut Ui, theme: &Theme) {
+    fn show(&mut self, ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes: &mut Panes) {
         // The cached fields belong to a revision, and so must the records of which they are made.
-        self.refresh();
-        let is_led = self.leads_to(Pane::Fields);
-        let record = match &self.selected[..] {
+        edited.refresh();
+        let is_led = panes.leads_to(Pane::Fields);
+        let record = match &edited.selected[..] {
             [] => Address::LAYOUT,
             [record] => record.clone(),
             several => {
                 section(ui, theme, &format!("{} selected", several.len()), |_| {});
                 ui.label(quiet(theme, "Arrange, move, duplicate or delete them together."));
                 let several = several.to_vec();
-                return self.common_fields(ui, theme, &several, is_led);
+                return self.common_fields(ui, theme, edited, &several, is_led);
             }
         };
-        let item = self.item(&record).cloned();
+        let item = edited.item(&record).cloned();
         let title = match (&item, record.split()) {
             (Some(item), _) if item.is_group => format!("Group {}", item.name),
             (Some(item), _) if !item.name.is_empty() => in_drawn_order(&item.name).into(),
@@ -89,27 +92,27 @@ impl Designer {
             let text = format!("{:.1} x {:.1} cm, {:.3} m east, {:.3} m north", size.x, size.y, at.x, at.y);
             ui.label(quiet(theme, text));
         }
-        self.problems_of(ui, theme, &record);
-        let key = (vec![record.clone()], self.document.revision());
-        if self.inspector.own.of.as_ref() != Some(&key) {
-            let sections = self.document.properties(&record, item.as_ref());
-            self.inspector.own = Shown { sections, of: Some(key) };
-            self.inspector.typed.clear();
+        problems_of(ui, theme, edited, &record);
+        let key = (vec![record.clone()], edited.document.revision());
+        if self.own.of.as_ref() != Some(&key) {
+            let sections = edited.document.properties(&record, item.as_ref());
+            self.own = Shown { sections, of: Some(key) };
+            self.typed.clear();
         }
-        let shown = std::mem::take(&mut self.inspector.own.sections);
-        let wanted = self.sections(ui, theme, &record, &shown, is_led);
-        self.inspector.own.sections = shown;
+        let shown = std::mem::take(&mut self.own.sections);
+        let wanted = self.sections(ui, theme, edited, &record, &shown, is_led);
+        self.own.sections = shown;
         if let Some(edit) = wanted {
-            self.edit_in(&[edit], None);
+            edited.edit_in(&[edit], None);
         } else if item.is_some_and(|item| item.is_group) {
-            self.members(ui, theme, &record);
+            self.members(ui, theme, edited, &record);
         }
     }
 
     /// Lists the members of a group and the common fields of its controls.
-    fn members(&mut self, ui: &mut Ui, theme: &Theme, group: &Address) {
+    fn members(&mut self, ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, group: &Address) {
         let is_member = |item: &&Item| item.record.split().is_some_and(|(parent, ..)| parent == *group);
-        let members: Vec<Item> = self.items.iter().filter(is_member).cloned().collect();
+        let members: Vec<Item> = edited.items.iter().filter(is_member).cloned().collect();
         let count = members.len();
         section(ui, theme, &if count == 1 { "1 member".into() } else { format!("{count} members") }, |_| {});
         let mut chosen = None;
@@ -123,41 +126,48 @@ impl Designer {
             }
         }
         section(ui, theme, "In common", |_| {});
-        self.common_fields(ui, theme, std::slice::from_ref(group), false);
+        self.common_fields(ui, theme, edited, std::slice::from_ref(group), false);
         if let Some(record) = chosen {
-            self.select_only(record);
+            edited.select_only(record);
         }
     }
 
     /// The fields that all controls of `records` share, those in groups included; an edit applies to all of them.
-    fn common_fields(&mut self, ui: &mut Ui, theme: &Theme, records: &[Address], is_led: bool) {
+    fn common_fields(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        edited: &mut EditedLayout,
+        records: &[Address],
+        is_led: bool,
+    ) {
         let mut controls: Vec<&Item> =
-            records.iter().flat_map(|record| self.document.controls_in(&self.items, record)).collect();
+            records.iter().flat_map(|record| edited.document.controls_in(&edited.items, record)).collect();
         controls.dedup();
         let all: Vec<Address> = controls.iter().map(|item| item.record.clone()).collect();
         let Some(first) = all.first().cloned() else {
             ui.label(quiet(theme, "Nothing: none of these is a control."));
             return;
         };
-        let key = (all.clone(), self.document.revision());
-        if self.inspector.common.of.as_ref() != Some(&key) {
-            let sections = self.document.common(&controls);
-            self.inspector.common = Shown { sections, of: Some(key) };
-            self.inspector.typed.clear();
+        let key = (all.clone(), edited.document.revision());
+        if self.common.of.as_ref() != Some(&key) {
+            let sections = edited.document.common(&controls);
+            self.common = Shown { sections, of: Some(key) };
+            self.typed.clear();
         }
-        let shown = std::mem::take(&mut self.inspector.common.sections);
-        self.inspector.shared = all;
-        let wanted = self.sections(ui, theme, &first, &shown, is_led);
+        let shown = std::mem::take(&mut self.common.sections);
+        self.shared = all;
+        let wanted = self.sections(ui, theme, edited, &first, &shown, is_led);
         if let Some(edit) = wanted {
-            self.edit_shared(edit, None);
+            self.edit_shared(edited, edit, None);
         }
-        self.inspector.shared.clear();
-        self.inspector.common.sections = shown;
+        self.shared.clear();
+        self.common.sections = shown;
     }
 
     /// Applies an edit of a field on display to each record that the field represents.
-    pub(super) fn edit_shared(&mut self, edit: Edit, stroke: Option<u64>) {
-        let shared = &self.inspector.shared;
+    pub(super) fn edit_shared(&self, edited: &mut EditedLayout, edit: Edit, stroke: Option<u64>) {
+        let shared = &self.shared;
         let edits: Vec<Edit> = match &edit {
             Edit::Set { field, value, .. } if !shared.is_empty() => {
                 shared.iter().map(|record| Edit::set(record, field, value.clone())).collect()
@@ -167,7 +177,7 @@ impl Designer {
             }
             _ => vec![edit],
         };
-        self.edit_in(&edits, stroke);
+        edited.edit_in(&edits, stroke);
     }
 
     /// Shows sections of fields; returns the edit of one, if any.
@@ -175,11 +185,12 @@ impl Designer {
         &mut self,
         ui: &mut Ui,
         theme: &Theme,
+        edited: &mut EditedLayout,
         record: &Address,
-        shown: &[Section],
+        shown: &[FieldSection],
         mut is_led: bool,
     ) -> Option<Edit> {
-        let is_common = !self.inspector.shared.is_empty();
+        let is_common = !self.shared.is_empty();
         let mut wanted = None;
         for (number, part) in shown.iter().enumerate() {
             let heading = RichText::new(&part.title).strong().color(color(theme.ink));
@@ -190,7 +201,7 @@ impl Designer {
                     // The row with the keyboard focus keeps it when a warning appears or disappears above.
                     let id = egui::Id::unique(("field", record.to_string(), &property.name, is_common));
                     let row = ui.scope_builder(egui::UiBuilder::new().scope_id(id), |ui| {
-                        self.property(ui, theme, record, property, is_led)
+                        self.property(ui, theme, edited, record, property, is_led)
                     });
                     wanted = row.inner.or(wanted.take());
                 }
@@ -199,57 +210,31 @@ impl Designer {
         wanted
     }
 
-    /// The findings about the record, in centimetres, with a button for each repair.
-    fn problems_of(&mut self, ui: &mut Ui, theme: &Theme, record: &Address) {
-        let mut mend = None;
-        let own =
-            self.findings.iter().filter(|finding| self.document.found_in(finding).as_ref() == Some(record));
-        for finding in own {
-            let colour = if finding.severity == Severity::Error { theme.fault } else { theme.warning };
-            let text = format!("{}: {}; {}", finding.rule.code, finding.message, finding.expected);
-            ui.add(egui::Label::new(RichText::new(text).color(color(colour))).wrap())
-                .on_hover_text(finding.rule.source);
-            if let Some(help) = &finding.help {
-                ui.add(egui::Label::new(quiet(theme, help)).wrap());
-            }
-            if let Some((name, edits)) = self.document.mend(finding, &self.items)
-                && ui.button(format!("{name}: do it")).clicked()
-            {
-                mend = Some(edits);
-            }
-        }
-        for problem in self.told() {
-            if self.document.told_of(problem).as_ref() == Some(record) {
-                let text = format!("{}: {}", problem.message, problem.expected);
-                ui.add(egui::Label::new(RichText::new(text).color(color(theme.warning))).wrap());
-            }
-        }
-        if let Some(edits) = mend {
-            self.edit(&edits);
-        }
-    }
-
     /// Shows one field; returns its edit, if any.
     fn property(
         &mut self,
         ui: &mut Ui,
         theme: &Theme,
+        edited: &mut EditedLayout,
         record: &Address,
         property: &Property,
         is_led: bool,
     ) -> Option<Edit> {
         let mut wanted = None;
         let short = property.short();
-        let is_written = property.origin == Origin::Written;
+        let is_written = property.origin == FieldOrigin::Written;
         ui.horizontal(|ui| {
             let source = match &property.origin {
-                Origin::Written => "written here".to_owned(),
-                Origin::Kind(kind) => format!("from the kind \"{kind}\""),
-                Origin::Default => "not written".to_owned(),
-                Origin::Several => "not the same in all of them".to_owned(),
+                FieldOrigin::Written => "written here".to_owned(),
+                FieldOrigin::Kind(kind) => format!("from the kind \"{kind}\""),
+                FieldOrigin::Default => "not written".to_owned(),
+                FieldOrigin::Several => "not the same in all of them".to_owned(),
             };
-            let name =
-                if property.is_place() { format!("{short} ({})", self.unit_name()) } else { short.into() };
+            let name = if property.is_place() {
+                format!("{short} ({})", unit_name(&edited.document))
+            } else {
+                short.into()
+            };
             let name = RichText::new(name).color(color(if is_written { theme.ink } else { theme.quiet }));
             ui.allocate_ui_with_layout(
                 egui::vec2(NAME_PX, ROW_PX),
@@ -260,7 +245,7 @@ impl Designer {
                         .on_hover_text(format!("{}\n{}\n{source}", property.about, property.told));
                 },
             );
-            let (edit, editor) = self.value(ui, record, property);
+            let (edit, editor) = self.value(ui, edited, record, property);
             wanted = edit;
             if is_led {
                 editor.request_focus();
@@ -268,9 +253,9 @@ impl Designer {
             if editor.gained_focus() {
                 editor.scroll_to_me(None);
             }
-            self.hear(ui, record, property);
+            self.hear(ui, edited, record, property);
             match &property.origin {
-                Origin::Written if !KEPT.contains(&property.name.as_str()) => {
+                FieldOrigin::Written if !KEPT.contains(&property.name.as_str()) => {
                     let reset = ui.small_button("x");
                     reset.widget_info(|| {
                         WidgetInfo::labeled(Role::Button, true, format!("Leave out {short}"))
@@ -279,14 +264,14 @@ impl Designer {
                         wanted = Some(Edit::unset(record, &property.name));
                     }
                 }
-                Origin::Kind(kind) => {
+                FieldOrigin::Kind(kind) => {
                     let text = quiet(theme, format!("from {kind}")).size(11.5);
                     ui.add(egui::Label::new(text).truncate()).on_hover_text(source);
                 }
-                Origin::Default if !property.value.is_empty() => {
+                FieldOrigin::Default if !property.value.is_empty() => {
                     ui.label(quiet(theme, "default").size(11.5));
                 }
-                Origin::Several => {
+                FieldOrigin::Several => {
                     ui.label(quiet(theme, "differs").size(11.5)).on_hover_text(source);
                 }
                 _ => {}
@@ -300,52 +285,82 @@ impl Designer {
         wanted
     }
 
-    pub(super) fn unit_name(&self) -> &'static str {
-        if self.document.unit_m() == 1.0 { "m" } else { "tiles" }
-    }
-
     /// A button that plays the effect of the field on the tile under the control.
-    fn hear(&mut self, ui: &mut Ui, record: &Address, property: &Property) {
-        let Some(effect) = self.felt(record, property) else { return };
+    fn hear(&mut self, ui: &mut Ui, edited: &EditedLayout, record: &Address, property: &Property) {
+        let Some(effect) = felt(edited, record, property) else { return };
         let button = ui.small_button("Hear");
         button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Hear {}", property.short())));
         if button.on_hover_text("Play it on the tile under the control").clicked() {
-            let geometry = self.document.floor().geometry;
-            let centre = self.item(record).map_or(geometry.bounds().centre(), |item| item.area.centre());
+            let geometry = edited.document.floor().geometry;
+            let centre = edited.item(record).map_or(geometry.bounds().centre(), |item| item.area.centre());
             let tile = geometry.tile_under(centre).and_then(|tile| geometry.index(tile)).unwrap_or_default();
             let gesture = Gesture::usual(&effect);
             self.wish = Some(PreviewCommand::Feel { effect, gesture, tile });
         }
     }
+}
 
-    pub(super) fn effect_name(&self, effect: &Effect) -> Option<&str> {
-        let mut all = self.document.kinds().effects().iter();
-        all.find(|named| *named.effect == *effect).map(|named| named.name.as_str())
-    }
+pub(super) fn unit_name(document: &Document) -> &'static str {
+    if document.unit_m() == 1.0 { "m" } else { "tiles" }
+}
 
-    fn widget_of(&self, record: &Address) -> Option<&Widget> {
-        let item = self.item(record).filter(|item| !item.is_group)?;
-        self.layout().widgets.get(item.widgets.start)
+/// The findings about the record, in centimetres, with a button for each repair.
+fn problems_of(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, record: &Address) {
+    let mut mend = None;
+    let own =
+        edited.findings.iter().filter(|finding| edited.document.found_in(finding).as_ref() == Some(record));
+    for finding in own {
+        let colour = if finding.severity == Severity::Error { theme.fault } else { theme.warning };
+        let text = format!("{}: {}; {}", finding.rule.code, finding.message, finding.expected);
+        ui.add(egui::Label::new(RichText::new(text).color(color(colour))).wrap())
+            .on_hover_text(finding.rule.source);
+        if let Some(help) = &finding.help {
+            ui.add(egui::Label::new(quiet(theme, help)).wrap());
+        }
+        if let Some((name, edits)) = edited.document.mend(finding, &edited.items)
+            && ui.button(format!("{name}: do it")).clicked()
+        {
+            mend = Some(edits);
+        }
     }
+    for problem in edited.told() {
+        if edited.document.told_of(problem).as_ref() == Some(record) {
+            let text = format!("{}: {}", problem.message, problem.expected);
+            ui.add(egui::Label::new(RichText::new(text).color(color(theme.warning))).wrap());
+        }
+    }
+    if let Some(edits) = mend {
+        edited.edit(&edits);
+    }
+}
 
-    /// The effect of a field of the feel, from this record or from its kind.
-    pub(super) fn felt(&self, record: &Address, property: &Property) -> Option<Arc<Effect>> {
-        let part = property.name.strip_prefix("feel.")?;
-        let Feel { press, release, step, end, stage, arm, warn, on, off, hold, drag, sound: _ } =
-            &self.widget_of(record)?.feel;
-        let parts = [
-            ("press", press),
-            ("release", release),
-            ("step", step),
-            ("end", end),
-            ("stage", stage),
-            ("arm", arm),
-            ("warn", warn),
-            ("on", on),
-            ("off", off),
-            ("hold", hold),
-            ("drag", drag),
-        ];
-        parts.into_iter().find(|(name, _)| *name == part)?.1.clone()
-    }
+pub(super) fn effect_name<'d>(document: &'d Document, effect: &Effect) -> Option<&'d str> {
+    let mut all = document.kinds().effects().iter();
+    all.find(|named| *named.effect == *effect).map(|named| named.name.as_str())
+}
+
+fn widget_of<'e>(edited: &'e EditedLayout, record: &Address) -> Option<&'e Widget> {
+    let item = edited.item(record).filter(|item| !item.is_group)?;
+    edited.layout().widgets.get(item.widgets.start)
+}
+
+/// The effect of a field of the feel, from this record or from its kind.
+pub(super) fn felt(edited: &EditedLayout, record: &Address, property: &Property) -> Option<Arc<Effect>> {
+    let part = property.name.strip_prefix("feel.")?;
+    let Feel { press, release, step, end, stage, arm, warn, on, off, hold, drag, sound: _ } =
+        &widget_of(edited, record)?.feel;
+    let parts = [
+        ("press", press),
+        ("release", release),
+        ("step", step),
+        ("end", end),
+        ("stage", stage),
+        ("arm", arm),
+        ("warn", warn),
+        ("on", on),
+        ("off", off),
+        ("hold", hold),
+        ("drag", drag),
+    ];
+    parts.into_iter().find(|(name, _)| *name == part)?.1.clone()
 }

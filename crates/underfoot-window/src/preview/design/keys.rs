@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, Modifiers, Ui};
 use glam::Vec2;
 
 use super::{Ask, Designer, Pane, gestures};
-use crate::edit::{List, Template};
+use crate::edit::{RecordList, Template};
 
 /// Distance that an arrow key moves, in metres; with Shift, and with Alt.
 const NUDGE_M: [f32; 3] = [0.01, 0.05, 0.001];
@@ -19,11 +19,11 @@ impl Designer {
             let mut panes = vec![Pane::Things, Pane::Floor, Pane::Fields];
             panes.extend(self.text.is_open.then_some(Pane::Text));
             let count = panes.len();
-            let at = self.pane.and_then(|pane| panes.iter().position(|other| *other == pane));
+            let at = self.panes.pane.and_then(|pane| panes.iter().position(|other| *other == pane));
             // Start before the first pane, or behind the last.
             let at = at.unwrap_or(if back > 0 { count } else { count - 1 });
-            self.pane = panes.get((at + on + back * (count - 1)) % count).copied();
-            self.focus = self.pane;
+            self.panes.pane = panes.get((at + on + back * (count - 1)) % count).copied();
+            self.panes.focus = self.panes.pane;
         }
         self.keys_to_save(ui);
     }
@@ -39,11 +39,11 @@ impl Designer {
             {
                 ui.memory_mut(|memory| memory.surrender_focus(id));
             }
-            self.saves_in = if is_typing { 3 } else { 1 };
+            self.delays.saves_in = if is_typing { 3 } else { 1 };
         }
-        if self.saves_in > 0 {
-            self.saves_in -= 1;
-            if self.saves_in == 0 { self.save() } else { ui.ctx().request_repaint() }
+        if self.delays.saves_in > 0 {
+            self.delays.saves_in -= 1;
+            if self.delays.saves_in == 0 { self.save() } else { ui.ctx().request_repaint() }
         }
     }
 
@@ -56,60 +56,61 @@ impl Designer {
         }
         let command = |key: Key| ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, key));
         if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z)) || command(Key::Y) {
-            self.redo();
+            self.edited.redo();
         }
         if command(Key::Z) {
-            self.undo();
+            self.edited.undo();
         }
         if command(Key::O) {
             self.ask_for(Ask::Open);
         }
         if command(Key::N) {
-            let text = Template::Empty.text(&self.document.floor().geometry);
+            let text = Template::Empty.text(&self.edited.document.floor().geometry);
             self.begin_untitled("untitled.ron", &text);
         }
         if command(Key::D) {
-            self.duplicate();
+            self.edited.duplicate();
         }
         if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::G)) {
-            self.ungroup();
+            self.edited.ungroup();
         }
         if command(Key::G) {
-            self.group();
+            self.edited.group();
         }
-        let selected = self.selected.clone();
+        let selected = self.edited.selected.clone();
         if command(Key::L) {
-            self.turn_lock(&selected);
+            self.edited.turn_lock(&selected);
         }
         if command(Key::H) {
-            self.turn_hidden(&selected);
+            self.edited.turn_hidden(&selected);
         }
         if command(Key::OpenBracket) {
-            self.reorder(true);
+            self.edited.reorder(true);
         }
         if command(Key::CloseBracket) {
-            self.reorder(false);
+            self.edited.reorder(false);
         }
         if command(Key::A) {
-            let page = self.page;
+            let page = self.edited.page;
             let all = self
+                .edited
                 .items
                 .iter()
-                .filter(|item| item.record.list() == Some(List::Widgets) && item.is_on(page))
-                .filter(|item| !self.is_locked(&item.record) && !self.is_hidden(&item.record));
-            self.selected = all.map(|item| item.record.clone()).collect();
+                .filter(|item| item.record.list() == Some(RecordList::Widgets) && item.is_on(page))
+                .filter(|item| !self.edited.is_locked(&item.record) && !self.edited.is_hidden(&item.record));
+            self.edited.selected = all.map(|item| item.record.clone()).collect();
         }
         let pressed = |key: Key| ui.input(|i| i.key_pressed(key) && !i.modifiers.command);
         if pressed(Key::Delete) || pressed(Key::Backspace) {
-            self.delete();
+            self.edited.delete();
         }
         if pressed(Key::R) {
-            self.turn();
+            self.edited.turn();
         }
         if pressed(Key::Escape) {
-            self.placing = None;
-            self.gesture = gestures::Gesture::None;
-            self.selected.clear();
+            self.canvas.placing = None;
+            self.canvas.gesture = gestures::PointerGesture::None;
+            self.edited.selected.clear();
         }
         let step = ui.input(|i| match (i.modifiers.shift, i.modifiers.alt) {
             (true, _) => NUDGE_M[1],
@@ -128,16 +129,16 @@ impl Designer {
                 if !ui.input(|i| {
                     i.events.iter().any(|event| matches!(event, egui::Event::Key { repeat: true, .. }))
                 }) {
-                    self.stroke += 1;
+                    self.edited.stroke += 1;
                 }
-                self.nudge(way * step);
+                self.edited.nudge(way * step);
             }
         }
         for event in ui.input(|i| i.events.clone()) {
             match event {
-                egui::Event::Copy => drop(self.copy(ui.ctx())),
-                egui::Event::Cut => self.cut(ui.ctx()),
-                egui::Event::Paste(text) => self.paste(&text),
+                egui::Event::Copy => drop(self.edited.copy(ui.ctx())),
+                egui::Event::Cut => self.edited.cut(ui.ctx()),
+                egui::Event::Paste(text) => self.edited.paste(&text),
                 _ => {}
             }
         }

@@ -6,90 +6,89 @@ use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Sense, Ui, WidgetInfo, vec2};
 
+use super::edited::EditedLayout;
 use super::palette::go_on;
-use super::{Designer, Pane};
-use crate::edit::{Address, List};
+use super::{Pane, Panes};
+use crate::edit::{Address, RecordList};
 use crate::preview::style::quiet;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::{Theme, in_drawn_order};
 
-impl Designer {
-    /// Lists the records of the page on display, to be selected by name.
-    pub(super) fn list(&mut self, ui: &mut Ui, theme: &Theme) {
-        if self.layout().pages.len() > 1 {
-            let names: Vec<String> = self.layout().pages.iter().map(|page| page.id.to_string()).collect();
-            for (number, name) in names.iter().enumerate() {
-                if ui.selectable_label(self.page == number, format!("Page {name}")).clicked() {
-                    self.page = number;
-                    self.selected = vec![Address::of(List::Pages, number)];
-                }
+/// Lists the records of the page on display, to be selected by name.
+pub(super) fn list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes: &mut Panes) {
+    if edited.layout().pages.len() > 1 {
+        let names: Vec<String> = edited.layout().pages.iter().map(|page| page.id.to_string()).collect();
+        for (number, name) in names.iter().enumerate() {
+            if ui.selectable_label(edited.page == number, format!("Page {name}")).clicked() {
+                edited.page = number;
+                edited.selected = vec![Address::of(RecordList::Pages, number)];
             }
         }
-        let mut chosen = None;
-        let (mut locks, mut hides) = (None, None);
-        let mut rows = Vec::new();
-        let mut is_led = self.leads_to(Pane::Floor);
-        for item in self.items.iter().filter(|item| item.is_on(self.page)) {
-            let what = match item.record.list() {
-                Some(List::Regions) => "Region",
-                Some(List::Stances) => "Stance",
-                Some(List::Grounds) => "Ground",
-                _ if item.is_group => "Group",
-                _ => "Control",
-            };
-            let is_selected = self.selected.contains(&item.record);
-            let name = if item.name.is_empty() { item.record.to_string() } else { item.name.clone() };
-            let is_inner = item.record.split().is_some_and(|(of, ..)| of.list() == Some(List::Widgets));
-            let (is_locked, is_hidden) = (self.is_locked(&item.record), self.is_hidden(&item.record));
-            ui.horizontal(|ui| {
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    ui.spacing_mut().item_spacing.x = 2.0;
-                    for (sign, is_on, wish) in
-                        [(Sign::Hide, is_hidden, &mut hides), (Sign::Lock, is_locked, &mut locks)]
-                    {
-                        let button = sign.button(ui, theme, is_on);
-                        let does = if sign == Sign::Hide { "Hide" } else { "Lock" };
-                        button.widget_info(|| {
-                            WidgetInfo::selected(Role::Button, true, is_on, format!("{does}: {name}"))
-                        });
-                        if button.on_hover_text(does).clicked() {
-                            *wish = Some(item.record.clone());
-                        }
-                    }
-                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                        ui.add_space(if is_inner { 12.0 } else { 0.0 });
-                        let text = format!("{what} {}", in_drawn_order(&name));
-                        let row = ui.add(egui::Button::selectable(is_selected, text).truncate());
-                        row.widget_info(|| {
-                            WidgetInfo::selected(Role::Button, true, is_selected, format!("{what} {name}"))
-                        });
-                        if take(&mut is_led) {
-                            row.request_focus();
-                        }
-                        if row.gained_focus() {
-                            row.scroll_to_me(None);
-                        }
-                        if row.clicked() {
-                            chosen = Some(item.record.clone());
-                        }
-                        rows.push(row);
+    }
+    let mut chosen = None;
+    let (mut locks, mut hides) = (None, None);
+    let mut rows = Vec::new();
+    let mut is_led = panes.leads_to(Pane::Floor);
+    for item in edited.items.iter().filter(|item| item.is_on(edited.page)) {
+        let what = match item.record.list() {
+            Some(RecordList::Regions) => "Region",
+            Some(RecordList::Stances) => "Stance",
+            Some(RecordList::Grounds) => "Ground",
+            _ if item.is_group => "Group",
+            _ => "Control",
+        };
+        let is_selected = edited.selected.contains(&item.record);
+        let name = if item.name.is_empty() { item.record.to_string() } else { item.name.clone() };
+        let is_inner = item.record.split().is_some_and(|(of, ..)| of.list() == Some(RecordList::Widgets));
+        let (is_locked, is_hidden) = (edited.is_locked(&item.record), edited.is_hidden(&item.record));
+        ui.horizontal(|ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = 2.0;
+                for (sign, is_on, wish) in
+                    [(Sign::Hide, is_hidden, &mut hides), (Sign::Lock, is_locked, &mut locks)]
+                {
+                    let button = sign.button(ui, theme, is_on);
+                    let does = if sign == Sign::Hide { "Hide" } else { "Lock" };
+                    button.widget_info(|| {
+                        WidgetInfo::selected(Role::Button, true, is_on, format!("{does}: {name}"))
                     });
+                    if button.on_hover_text(does).clicked() {
+                        *wish = Some(item.record.clone());
+                    }
+                }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    ui.add_space(if is_inner { 12.0 } else { 0.0 });
+                    let text = format!("{what} {}", in_drawn_order(&name));
+                    let row = ui.add(egui::Button::selectable(is_selected, text).truncate());
+                    row.widget_info(|| {
+                        WidgetInfo::selected(Role::Button, true, is_selected, format!("{what} {name}"))
+                    });
+                    if take(&mut is_led) {
+                        row.request_focus();
+                    }
+                    if row.gained_focus() {
+                        row.scroll_to_me(None);
+                    }
+                    if row.clicked() {
+                        chosen = Some(item.record.clone());
+                    }
+                    rows.push(row);
                 });
             });
-        }
-        go_on(ui, &rows);
-        if let Some(record) = locks {
-            self.turn_lock(&[record]);
-        }
-        if let Some(record) = hides {
-            self.turn_hidden(&[record]);
-        }
-        if let Some(record) = chosen {
-            if ui.input(|i| i.modifiers.shift) { self.toggle(record) } else { self.select_only(record) }
-        }
-        if self.items.is_empty() {
-            ui.label(quiet(theme, "Nothing yet"));
-        }
+        });
+    }
+    go_on(ui, &rows);
+    if let Some(record) = locks {
+        edited.turn_lock(&[record]);
+    }
+    if let Some(record) = hides {
+        edited.turn_hidden(&[record]);
+    }
+    if let Some(record) = chosen {
+        if ui.input(|i| i.modifiers.shift) { edited.toggle(record) } else { edited.select_only(record) }
+    }
+    if edited.items.is_empty() {
+        ui.label(quiet(theme, "Nothing yet"));
     }
 }
 

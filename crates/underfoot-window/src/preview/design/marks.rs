@@ -4,104 +4,94 @@ use eframe::egui;
 use eframe::egui::{Pos2, Stroke, StrokeKind, Ui, pos2, vec2};
 use glam::Vec2;
 
-use super::Designer;
-use super::gestures::{HANDLE, Trial, can_be_sized, handles};
+use super::canvas::DrawnToScale;
+use super::edited::EditedLayout;
+use super::gestures::{GestureResult, HANDLE, can_be_sized, handles};
 use super::labels::{Labels, label};
 use underfoot::floor::Rect;
+use underfoot::layout::Layout;
 use underfoot::units::Newtons;
 use underfoot_format::diagnostic::Severity;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
 use underfoot_scene::ergonomics::{REACH_M, STEP_AWAY_M, footing};
 use underfoot_scene::scene::{Shoe, Theme};
 
-impl Designer {
-    /// Draws the selection, its guide lines and the findings.
-    pub(super) fn marks(
-        &self,
-        ui: &Ui,
-        rect: egui::Rect,
-        map: ScreenFromFloor,
-        theme: &Theme,
-        trial: &Trial,
-    ) {
-        let painter = ui.painter_at(rect);
-        let accent = color(theme.accent);
-        let mut labels = Labels::within(rect);
-        for finding in &self.findings {
-            let Some(widget) = self.layout().widgets.get(finding.widget) else { continue };
-            let is_hidden = || self.document.found_in(finding).is_none_or(|record| self.is_hidden(&record));
-            if widget.page.is_some_and(|page| page != self.page) || trial.layout.is_some() || is_hidden() {
-                continue;
-            }
-            let colour = color(match finding.severity {
-                Severity::Error => theme.fault,
-                Severity::Warning => theme.warning,
-            });
-            let shown = map.rect(widget.area);
-            painter.rect_stroke(shown.expand(2.0), 4, Stroke::new(1.5, colour), StrokeKind::Outside);
-            let code = finding.rule.code;
-            labels.put(&painter, shown, &[&format!("{code} {}", finding.expected), code], colour, theme);
+/// Draws the selection, its guide lines and the findings.
+pub(super) fn marks(
+    edited: &EditedLayout,
+    ui: &Ui,
+    rect: egui::Rect,
+    map: ScreenFromFloor,
+    theme: &Theme,
+    trial: &GestureResult,
+) {
+    let painter = ui.painter_at(rect);
+    let accent = color(theme.accent);
+    let mut labels = Labels::within(rect);
+    for finding in &edited.findings {
+        let Some(widget) = edited.layout().widgets.get(finding.widget) else { continue };
+        let is_hidden = || edited.document.found_in(finding).is_none_or(|record| edited.is_hidden(&record));
+        if widget.page.is_some_and(|page| page != edited.page) || trial.layout.is_some() || is_hidden() {
+            continue;
         }
-        let is_moving = !trial.areas.is_empty();
-        for item in self.selected_items() {
-            let shown = map.rect(item.area);
-            let colour = if is_moving { accent.gamma_multiply(0.4) } else { accent };
-            painter.rect_stroke(shown, 2, Stroke::new(2.0, colour), StrokeKind::Outside);
-        }
-        if let ([item], false) = (&self.selected_items()[..], is_moving)
-            && can_be_sized(item)
-        {
-            for (at, _) in handles(map.rect(item.area)) {
-                let square = egui::Rect::from_center_size(at, vec2(2.0 * HANDLE, 2.0 * HANDLE));
-                painter.rect(square, 2, color(theme.plate), Stroke::new(1.5, accent), StrokeKind::Inside);
-            }
-        }
-        let bad = color(theme.fault);
-        for area in &trial.areas {
-            let shown = map.rect(*area);
-            let colour = if trial.refused.is_some() { bad } else { accent };
-            painter.rect(
-                shown,
-                2,
-                colour.gamma_multiply(0.12),
-                Stroke::new(2.0, colour),
-                StrokeKind::Outside,
-            );
-            let size = area.size() * 100.0;
-            let text = format!("{:.1} x {:.1} cm", size.x, size.y);
-            label(&painter, pos2(shown.left(), shown.top() - 20.0), &text, colour, theme);
-        }
-        if let (Some(refused), Some(area)) = (&trial.refused, trial.areas.first()) {
-            label(
-                &painter,
-                pos2(map.rect(*area).left(), map.rect(*area).bottom() + 4.0),
-                refused,
-                bad,
-                theme,
-            );
-        }
-        for guide in &trial.guides {
-            let at = map.point(Vec2::splat(guide.at_m));
-            let line = if guide.is_upright {
-                [pos2(at.x, rect.top()), pos2(at.x, rect.bottom())]
-            } else {
-                [pos2(rect.left(), at.y), pos2(rect.right(), at.y)]
-            };
-            painter.line_segment(line, Stroke::new(1.0, accent));
-        }
-        if let Some(lasso) = trial.lasso {
-            let shown = map.rect(lasso);
-            painter.rect(shown, 0, accent.gamma_multiply(0.1), Stroke::new(1.0, accent), StrokeKind::Inside);
+        let colour = color(match finding.severity {
+            Severity::Error => theme.fault,
+            Severity::Warning => theme.warning,
+        });
+        let shown = map.rect(widget.area);
+        painter.rect_stroke(shown.expand(2.0), 4, Stroke::new(1.5, colour), StrokeKind::Outside);
+        let code = finding.rule.code;
+        labels.put(&painter, shown, &[&format!("{code} {}", finding.expected), code], colour, theme);
+    }
+    let is_moving = !trial.areas.is_empty();
+    for item in edited.selected_items() {
+        let shown = map.rect(item.area);
+        let colour = if is_moving { accent.gamma_multiply(0.4) } else { accent };
+        painter.rect_stroke(shown, 2, Stroke::new(2.0, colour), StrokeKind::Outside);
+    }
+    if let ([item], false) = (&edited.selected_items()[..], is_moving)
+        && can_be_sized(item)
+    {
+        for (at, _) in handles(map.rect(item.area)) {
+            let square = egui::Rect::from_center_size(at, vec2(2.0 * HANDLE, 2.0 * HANDLE));
+            painter.rect(square, 2, color(theme.plate), Stroke::new(1.5, accent), StrokeKind::Inside);
         }
     }
+    let bad = color(theme.fault);
+    for area in &trial.areas {
+        let shown = map.rect(*area);
+        let colour = if trial.refused.is_some() { bad } else { accent };
+        painter.rect(shown, 2, colour.gamma_multiply(0.12), Stroke::new(2.0, colour), StrokeKind::Outside);
+        let size = area.size() * 100.0;
+        let text = format!("{:.1} x {:.1} cm", size.x, size.y);
+        label(&painter, pos2(shown.left(), shown.top() - 20.0), &text, colour, theme);
+    }
+    if let (Some(refused), Some(area)) = (&trial.refused, trial.areas.first()) {
+        label(&painter, pos2(map.rect(*area).left(), map.rect(*area).bottom() + 4.0), refused, bad, theme);
+    }
+    for guide in &trial.guides {
+        let at = map.point(Vec2::splat(guide.at_m));
+        let line = if guide.is_upright {
+            [pos2(at.x, rect.top()), pos2(at.x, rect.bottom())]
+        } else {
+            [pos2(rect.left(), at.y), pos2(rect.right(), at.y)]
+        };
+        painter.line_segment(line, Stroke::new(1.0, accent));
+    }
+    if let Some(lasso) = trial.lasso {
+        let shown = map.rect(lasso);
+        painter.rect(shown, 0, accent.gamma_multiply(0.1), Stroke::new(1.0, accent), StrokeKind::Inside);
+    }
+}
 
+impl DrawnToScale {
     /// Two shoes on each place to stand and one under the pointer, if they are switched on.
-    pub(super) fn shoes(&self, pointer: Option<Vec2>) -> Vec<Shoe> {
+    pub(super) fn shoes(self, layout: &Layout, pointer: Option<Vec2>) -> Vec<Shoe> {
         /// Length of a sole that is long enough for 95 of 100 people.
         const LENGTH_M: f32 = 0.30;
         /// Distance between the middles of the two soles.
         const APART_M: f32 = 0.20;
-        if !self.seen_to_scale.shoes {
+        if !self.shoes {
             return Vec::new();
         }
         let shoe = |position: Vec2, left: bool| Shoe {
@@ -112,7 +102,7 @@ impl Designer {
             roll: 0.5,
             left,
         };
-        let stances = self.layout().stances.iter().map(|stance| stance.area.centre());
+        let stances = layout.stances.iter().map(|stance| stance.area.centre());
         let pairs = stances.flat_map(|at| {
             let half = Vec2::new(0.5 * APART_M, 0.0);
             [shoe(at - half, true), shoe(at + half, false)]
@@ -121,12 +111,12 @@ impl Designer {
     }
 
     /// Draws how far feet reach from each place to stand, without a step and with one, if that is switched on.
-    pub(super) fn reach(&self, painter: &egui::Painter, map: ScreenFromFloor, theme: &Theme) {
-        if !self.seen_to_scale.reach {
+    pub(super) fn reach(self, painter: &egui::Painter, map: ScreenFromFloor, theme: &Theme, layout: &Layout) {
+        if !self.reach {
             return;
         }
         let colour = color(theme.accent).gamma_multiply(0.8);
-        for stance in &self.layout().stances {
+        for stance in &layout.stances {
             for (far, text) in [(REACH_M, "reach"), (STEP_AWAY_M, "one step")] {
                 let line: Vec<Pos2> =
                     rounded(footing(stance), far).into_iter().map(|at| map.point(at)).collect();

@@ -5,163 +5,163 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Key, Ui};
 
-use crate::preview::app::App;
+use super::Designer;
+use super::palette::palette_panel;
+use crate::preview::bars::problems;
 use crate::preview::feed::{LayoutCause, PreviewCommand, Warnings};
+use crate::preview::floor_view::FloorFeet;
 use crate::preview::messages::FileNote;
+use crate::preview::shown::ShownFloor;
 use underfoot::schema;
+use underfoot_scene::egui_painter::Palette;
+use underfoot_scene::scene::Theme;
 
-impl App {
+impl Designer {
     /// Changes between Design and Try; the floor then gets the edited layout, with the text that was just being
     /// typed.
-    pub(in crate::preview) fn turn_mode(&mut self, ctx: &egui::Context) {
-        let Some(designer) = &mut self.designer else { return };
-        if designer.is_open {
+    fn turn_mode(&mut self, ctx: &egui::Context, feet: &mut FloorFeet) {
+        if self.is_open {
             if let Some(id) = ctx.memory(|memory| memory.focused()) {
                 ctx.memory_mut(|memory| memory.surrender_focus(id));
             }
-            designer.leaves_in = 2;
+            self.delays.leaves_in = 2;
             return ctx.request_repaint();
         }
-        designer.is_open = true;
+        self.is_open = true;
         // No simulated foot stands on the canvas in Design mode.
-        if let Some((feet, sink)) = &mut self.feet {
-            feet.lift_working();
-            feet.lift_standing();
-            sink.lead(0.0, &[]);
-        }
+        feet.lift();
     }
 
     /// Leaves Design mode once the typed text is in the layout, and in the file if a save is pending.
-    fn leave(&mut self, ctx: &egui::Context) {
-        let Some(designer) = self.designer.as_mut().filter(|designer| designer.leaves_in > 0) else { return };
-        if designer.saves_in == 0 {
-            designer.leaves_in -= 1;
-        }
-        if designer.leaves_in > 0 {
-            return ctx.request_repaint();
-        }
-        designer.is_open = false;
-        self.try_layout(LayoutCause::Designed);
-    }
-
-    /// Changes the mode on F2; in any mode, reads files that are dropped on the window or saved outside.
-    pub(in crate::preview) fn handle_mode_key(&mut self, ui: &Ui) {
-        // A check of the floor excludes editing.
-        if self.is_checking() {
+    fn leave(&mut self, ctx: &egui::Context, shown: &ShownFloor) {
+        if self.delays.leaves_in == 0 {
             return;
         }
+        if self.delays.saves_in == 0 {
+            self.delays.leaves_in -= 1;
+        }
+        if self.delays.leaves_in > 0 {
+            return ctx.request_repaint();
+        }
+        self.is_open = false;
+        self.try_layout(shown, LayoutCause::Designed);
+    }
+
+    /// Changes the mode on F2; in any mode, reads files that are dropped on the window or saved outside, and keeps a
+    /// draft unless the window is closing.
+    pub(in crate::preview) fn follow(
+        &mut self,
+        ui: &Ui,
+        shown: &mut ShownFloor,
+        feet: &mut FloorFeet,
+        is_closing: bool,
+    ) {
         if ui.input(|i| i.key_pressed(Key::F2)) {
-            self.turn_mode(ui.ctx());
+            self.turn_mode(ui.ctx(), feet);
         }
         let dropped = ui.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        let Some(designer) = &mut self.designer else { return };
         if let Some(path) = dropped {
-            if designer.open(&path) {
-                self.try_layout(LayoutCause::Opened);
-            } else if let Some(message) = &designer.message {
-                self.messages.note(message.text.clone());
+            if self.open(&path) {
+                self.try_layout(shown, LayoutCause::Opened);
+            } else if let Some(message) = &self.edited.message {
+                shown.messages.note(message.text.clone());
             }
         }
-        if std::mem::take(&mut self.messages.files_changed) {
-            self.take_in_files();
+        if std::mem::take(&mut shown.messages.files_changed) {
+            self.take_in_files(shown);
         }
-        let is_closing = self.is_closing();
-        let Some(designer) = &mut self.designer else { return };
         if !is_closing {
-            designer.keep(self.now_s);
+            self.keep(shown.now_s);
         }
-        let path = designer.file.path().map(Path::to_path_buf);
-        if path != designer.watched {
-            designer.watched.clone_from(&path);
-            self.command(PreviewCommand::Watch(path));
+        let path = self.storage.file.path().map(Path::to_path_buf);
+        if path != self.storage.watched {
+            self.storage.watched.clone_from(&path);
+            shown.command(PreviewCommand::Watch(path));
         }
     }
 
     /// Reads the files that were saved outside and puts the layout on the floor.
-    fn take_in_files(&mut self) {
-        let Some(designer) = &mut self.designer else { return };
-        let before = designer.document.revision();
-        let name = designer.file.name();
-        let reloaded = designer.reload();
-        let is_changed = designer.document.revision() != before;
-        if designer.conflict.is_some() && !designer.is_open {
-            self.messages.note(format!("{name} was changed here and outside: F2 asks which to keep"));
+    fn take_in_files(&mut self, shown: &mut ShownFloor) {
+        let before = self.edited.document.revision();
+        let name = self.storage.file.name();
+        let reloaded = self.reload();
+        let is_changed = self.edited.document.revision() != before;
+        if self.storage.conflict.is_some() && !self.is_open {
+            shown.messages.note(format!("{name} was changed here and outside: F2 asks which to keep"));
         }
-        let had_problems = self.messages.file.as_ref().is_some_and(|file| file.diagnostics.is_some());
+        let had_problems = shown.messages.file.as_ref().is_some_and(|file| file.diagnostics.is_some());
         match reloaded {
-            Ok(()) if is_changed || had_problems => self.try_layout(LayoutCause::Saved),
+            Ok(()) if is_changed || had_problems => self.try_layout(shown, LayoutCause::Saved),
             Ok(()) => {}
             Err(diagnostics) => {
                 let diagnostics = Some(diagnostics);
-                self.messages.file = Some(FileNote { name, at_s: self.now_s, diagnostics, cause: None });
+                shown.messages.file = Some(FileNote { name, at_s: shown.now_s, diagnostics, cause: None });
             }
         }
     }
 
-    /// The button that changes the mode, as F2 does.
-    pub(in crate::preview) fn mode_button(&mut self, ui: &mut Ui) {
-        let Some(designer) = &self.designer else { return };
-        let button = egui::Button::selectable(designer.is_open, "Design").frame_when_inactive(true);
+    /// The button that changes the mode, as F2 does; disabled during a check of the floor.
+    pub(in crate::preview) fn mode_button(&mut self, ui: &mut Ui, is_checking: bool, feet: &mut FloorFeet) {
+        let button = egui::Button::selectable(self.is_open, "Design").frame_when_inactive(true);
         if ui
-            .add_enabled(!self.is_checking(), button)
+            .add_enabled(!is_checking, button)
             .on_hover_text("Design the layout, or try it with feet; F2 does the same")
             .clicked()
         {
-            self.turn_mode(ui.ctx());
+            self.turn_mode(ui.ctx(), feet);
         }
     }
 
-    /// Opens the layout in Design mode too when the user puts another one on the floor by name.
-    pub(in crate::preview) fn design_choice(&mut self, choice: usize) {
-        let (Some(designer), Some(name)) = (&mut self.designer, self.choices.get(choice)) else { return };
-        let name = name.clone();
-        match schema::builtin_layout(&name).filter(|_| !Path::new(&name).exists()) {
-            Some(text) => drop(designer.begin_untitled(&name, text)),
-            None => drop(designer.open(Path::new(&name))),
+    /// Opens the layout called `name`, which the user has put on the floor: a built-in one, or a file.
+    pub(in crate::preview) fn open_choice(&mut self, name: &str) {
+        match schema::builtin_layout(name).filter(|_| !Path::new(name).exists()) {
+            Some(text) => drop(self.begin_untitled(name, text)),
+            None => drop(self.open(Path::new(name))),
         }
     }
 
     /// Puts the layout on the screen on the floor.
-    pub(super) fn try_layout(&self, cause: LayoutCause) {
-        let Some(designer) = &self.designer else { return };
-        let layout = Arc::new(designer.layout().clone());
-        let name = designer.file.name();
-        let warnings = Warnings::from(&designer.review());
-        self.command(PreviewCommand::Try { layout, name, warnings, cause });
+    pub(super) fn try_layout(&self, shown: &ShownFloor, cause: LayoutCause) {
+        let layout = Arc::new(self.layout().clone());
+        let name = self.storage.file.name();
+        let warnings = Warnings::from(&self.edited.review());
+        shown.command(PreviewCommand::Try { layout, name, warnings, cause });
     }
 
     /// Draws the window in Design mode.
-    pub(in crate::preview) fn design(&mut self, ui: &mut Ui) {
-        let Some(mut designer) = self.designer.take() else { return };
-        designer.refresh();
-        designer.refresh_undrawn(ui.ctx());
-        let before = designer.document.revision();
-        let theme = self.theme;
-        designer.keys(ui);
-        designer.bar(ui, &theme, &self.choices);
-        designer.questions(ui, &theme);
-        designer.ask(ui, &theme);
+    pub(in crate::preview) fn show(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        shown: &ShownFloor,
+        palette: &mut Palette,
+        choices: &[String],
+    ) {
+        self.edited.refresh();
+        self.edited.refresh_undrawn(ui.ctx());
+        let before = self.edited.document.revision();
+        self.keys(ui);
+        self.bar(ui, theme, choices);
+        self.questions(ui, theme);
+        self.ask(ui, theme);
         // This frame shows the edits so far: records may have changed places.
-        designer.refresh();
-        designer.palette_panel(ui, &theme, &mut self.palette);
-        self.problems(ui);
-        designer.side_panel(ui, &theme);
-        designer.text_panel(ui, &theme);
+        self.edited.refresh();
+        palette_panel(ui, theme, palette, &mut self.edited, &mut self.canvas.placing, &mut self.panes);
+        problems(ui, theme, &shown.messages);
+        self.inspector.panel(ui, theme, &mut self.edited, &mut self.panes);
+        self.text.panel(ui, theme, &mut self.edited, &mut self.panes);
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
-            designer.canvas(ui, &theme, &mut self.palette);
+            self.canvas.show(ui, theme, palette, &mut self.edited);
         });
-        designer.focus = None;
-        let is_changed = designer.document.revision() != before;
-        let wish = designer.wish.take();
-        self.designer = Some(designer);
+        self.panes.focus = None;
         // The floor of a server gets the edits only when the user tries them.
-        if is_changed && self.server.is_none() {
-            self.try_layout(LayoutCause::Designed);
+        if self.edited.document.revision() != before && shown.server.is_none() {
+            self.try_layout(shown, LayoutCause::Designed);
         }
-        if let Some(wish) = wish {
-            self.command(wish);
+        if let Some(wish) = self.inspector.wish.take() {
+            shown.command(wish);
         }
-        self.leave(ui.ctx());
+        self.leave(ui.ctx(), shown);
     }
 }

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use super::Designer;
+use super::edited::EditedLayout;
 use crate::edit::Address;
 
-impl Designer {
+impl EditedLayout {
     /// The key of a record while others are added and removed: its id, or its place in the text.
     pub(super) fn key_of(&self, record: &Address) -> String {
         self.document.id_of(record).map_or_else(|| record.to_string(), str::to_owned)

@@ -8,7 +8,8 @@ use eframe::egui::text::CCursor;
 use eframe::egui::text_selection::CCursorRange;
 use eframe::egui::{Margin, Panel, ScrollArea, TextEdit, Ui, WidgetInfo};
 
-use super::{Designer, Pane};
+use super::edited::EditedLayout;
+use super::{Pane, Panes};
 use crate::edit::Address;
 use crate::preview::style::{panel_frame, quiet};
 use underfoot_scene::egui_painter::color;
@@ -31,16 +32,16 @@ pub(super) struct Editor {
 /// The first stroke number of typing, above those of drags, which count from 0.
 const TYPING: u64 = 1 << 32;
 
-impl Designer {
+impl Editor {
     /// Shows the text, if it is open.
-    pub(super) fn text_panel(&mut self, ui: &mut Ui, theme: &Theme) {
-        if !self.text.is_open {
+    pub(super) fn panel(&mut self, ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes: &mut Panes) {
+        if !self.is_open {
             return;
         }
         let frame = panel_frame(theme, Margin { left: 10, right: 4, top: 6, bottom: 6 });
         let panel = Panel::right("layout text").frame(frame).resizable(true);
         panel.default_size(430.0).size_range(240.0..=900.0).show(ui, |ui| {
-            if let Some(problems) = self.text.problems.clone() {
+            if let Some(problems) = self.problems.clone() {
                 let frame = egui::Frame::new().fill(color(theme.fault).gamma_multiply(0.08));
                 Panel::bottom("text problems").frame(frame.inner_margin(6)).show(ui, |ui| {
                     ui.label(quiet(theme, "The floor keeps the last text that could be read."));
@@ -50,36 +51,36 @@ impl Designer {
                     });
                 });
             }
-            ScrollArea::both().auto_shrink(false).show(ui, |ui| self.editor(ui, theme));
+            ScrollArea::both().auto_shrink(false).show(ui, |ui| self.show(ui, theme, edited, panes));
         });
     }
 
-    fn editor(&mut self, ui: &mut Ui, theme: &Theme) {
-        if self.text.revision != Some(self.document.revision()) {
-            self.text.text = self.document.text().to_owned();
-            self.text.revision = Some(self.document.revision());
-            self.text.problems = None;
-            self.text.stroke += 1;
+    fn show(&mut self, ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes: &mut Panes) {
+        if self.revision != Some(edited.document.revision()) {
+            self.text = edited.document.text().to_owned();
+            self.revision = Some(edited.document.revision());
+            self.problems = None;
+            self.stroke += 1;
         }
         let id = egui::Id::unique("layout text");
-        let edit = TextEdit::multiline(&mut self.text.text).id(id).code_editor().desired_width(f32::INFINITY);
+        let edit = TextEdit::multiline(&mut self.text).id(id).code_editor().desired_width(f32::INFINITY);
         let shown = edit.frame(egui::Frame::new()).show(ui);
         let response = &shown.response.response;
-        if self.leads_to(Pane::Text) {
+        if panes.leads_to(Pane::Text) {
             response.request_focus();
         }
         response.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, "Text of the layout"));
         if response.changed() {
-            let text = self.text.text.clone();
-            match self.document.write(&text, Some(TYPING + self.text.stroke)) {
+            let text = self.text.clone();
+            match edited.document.write(&text, Some(TYPING + self.stroke)) {
                 Ok(()) => {
-                    self.text.revision = Some(self.document.revision());
-                    self.text.problems = None;
+                    self.revision = Some(edited.document.revision());
+                    self.problems = None;
                 }
-                Err(problems) => self.text.problems = Some(problems.to_string()),
+                Err(problems) => self.problems = Some(problems.to_string()),
             }
         }
-        let is_same = self.text.problems.is_none() && self.text.text == self.document.text();
+        let is_same = self.problems.is_none() && self.text == edited.document.text();
         if !is_same {
             return;
         }
@@ -87,20 +88,20 @@ impl Designer {
         if response.has_focus()
             && let Some(cursor) = shown.cursor_range
         {
-            let at = bytes(&self.text.text, cursor.primary.index.0);
-            if let Some(record) = self.document.record_at(at)
-                && self.selected.first() != Some(&record)
+            let at = bytes(&self.text, cursor.primary.index.0);
+            if let Some(record) = edited.document.record_at(at)
+                && edited.selected.first() != Some(&record)
             {
-                self.select_only(record);
+                edited.select_only(record);
             }
-            self.text.selected = self.selected.first().cloned();
+            self.selected = edited.selected.first().cloned();
         }
-        let Some(record) = self.selected.first() else {
-            self.text.selected = None;
+        let Some(record) = edited.selected.first() else {
+            self.selected = None;
             return;
         };
-        let Some(span) = self.document.span(record) else { return };
-        let chars = characters(&self.text.text, &span);
+        let Some(span) = edited.document.span(record) else { return };
+        let chars = characters(&self.text, &span);
         let at = |index: usize| shown.galley.pos_from_cursor(CCursor::new(index));
         let (first, last) = (at(chars.start), at(chars.end));
         let mark = egui::Rect::from_min_max(
@@ -108,8 +109,8 @@ impl Designer {
             egui::pos2(ui.min_rect().right(), shown.galley_pos.y + last.bottom()),
         );
         ui.painter().rect_filled(mark, 2, color(theme.accent).gamma_multiply(0.14));
-        if self.text.selected.as_ref() != Some(record) {
-            self.text.selected = Some(record.clone());
+        if self.selected.as_ref() != Some(record) {
+            self.selected = Some(record.clone());
             let mut state = shown.state;
             let range = CCursorRange::one(CCursor::new(chars.start));
             state.cursor.set_char_range(Some(range));

@@ -1,9 +1,10 @@
 //! Sets thresholds from recorded presses, in any mode.
 
 use super::Designer;
-use crate::edit::{Document, Edit};
-use crate::preview::app::App;
+use crate::edit::{Document, Edit, pressing, releasing};
 use crate::preview::feed::LayoutCause;
+use crate::preview::shown::ShownFloor;
+use underfoot::layout::Layout;
 use underfoot::units::Newtons;
 use underfoot::widget::{Thresholds, WidgetId};
 
@@ -26,68 +27,65 @@ impl Threshold {
     }
 }
 
-impl Designer {
-    /// The edits that set a threshold of the control called `id`, its present thresholds, and the number of other
-    /// controls from the same record, such as a grid.
-    fn thresholding(
-        &self,
-        id: &WidgetId,
-        which: Threshold,
-        force: Newtons,
-    ) -> Option<(Vec<Edit>, Thresholds, usize)> {
-        let layout = self.layout();
-        let index = layout.widget_index(id.as_str())?;
-        let now = layout.widgets.get(index)?.behaviour.thresholds();
-        let record = self.document.record_of(index)?;
-        let made = (0..layout.widgets.len())
-            .filter(|widget| *widget != index && self.document.record_of(*widget).as_ref() == Some(&record));
-        let edits = match which {
-            Threshold::Press => Document::pressing(&record, now, force),
-            Threshold::Release => Document::releasing(&record, now, force),
-        };
-        Some((edits, now, made.count()))
-    }
-
-    fn thresholds_of(&self, id: &WidgetId) -> Option<Thresholds> {
-        let index = self.layout().widget_index(id.as_str())?;
-        Some(self.layout().widgets.get(index)?.behaviour.thresholds())
-    }
+/// The edits that set a threshold of the control called `id`, its present thresholds, and the number of other
+/// controls from the same record, such as a grid.
+fn thresholding(
+    document: &Document,
+    id: &WidgetId,
+    which: Threshold,
+    force: Newtons,
+) -> Option<(Vec<Edit>, Thresholds, usize)> {
+    let layout = document.layout();
+    let index = layout.widget_index(id.as_str())?;
+    let now = layout.widgets.get(index)?.behaviour.thresholds();
+    let record = document.record_of(index)?;
+    let made = (0..layout.widgets.len())
+        .filter(|widget| *widget != index && document.record_of(*widget).as_ref() == Some(&record));
+    let edits = match which {
+        Threshold::Press => pressing(&record, now, force),
+        Threshold::Release => releasing(&record, now, force),
+    };
+    Some((edits, now, made.count()))
 }
 
-impl App {
-    /// Sets a threshold of the control called `id` in the layout's text as one undo step, and tries it on the floor;
-    /// returns a message about the change.
-    pub(in crate::preview) fn set_threshold(
-        &mut self,
-        id: &WidgetId,
-        which: Threshold,
-        force: Newtons,
-    ) -> String {
-        let Some(designer) = &mut self.designer else {
-            return "This layout can't be changed here.".into();
-        };
-        let Some((edits, before, others)) = designer.thresholding(id, which, force) else {
-            return format!("{id} is not in the layout that is being designed.");
-        };
-        if let Err(refusal) = designer.document.edit(&edits) {
-            return refusal.short();
-        }
-        let after = designer.thresholds_of(id).unwrap_or(before);
-        self.try_layout(LayoutCause::Designed);
-        told(id, before, after, others)
-    }
+fn thresholds_of(layout: &Layout, id: &WidgetId) -> Option<Thresholds> {
+    let index = layout.widget_index(id.as_str())?;
+    Some(layout.widgets.get(index)?.behaviour.thresholds())
+}
 
-    /// Undoes the last step of the layout and tries the result on the floor; returns whether anything changed.
-    pub(in crate::preview) fn undo_design(&mut self) -> bool {
-        let Some(designer) = &mut self.designer else { return false };
-        let before = designer.document.revision();
-        designer.undo();
-        let is_changed = designer.document.revision() != before;
-        if is_changed {
-            self.try_layout(LayoutCause::Designed);
-        }
-        is_changed
+/// Sets a threshold of the control called `id` in the layout's text as one undo step, and tries it on the floor;
+/// returns a message about the change. Without a designer, nothing changes.
+pub(in crate::preview) fn set_threshold(
+    designer: Option<&mut Designer>,
+    shown: &ShownFloor,
+    id: &WidgetId,
+    which: Threshold,
+    force: Newtons,
+) -> String {
+    let Some(designer) = designer else {
+        return "This layout can't be changed here.".into();
+    };
+    let document = &mut designer.edited.document;
+    let Some((edits, before, others)) = thresholding(document, id, which, force) else {
+        return format!("{id} is not in the layout that is being designed.");
+    };
+    if let Err(refusal) = document.edit(&edits) {
+        return refusal.short();
     }
+    let after = thresholds_of(document.layout(), id).unwrap_or(before);
+    designer.try_layout(shown, LayoutCause::Designed);
+    told(id, before, after, others)
+}
+
+/// Undoes the last step of the layout and tries the result on the floor; returns whether anything changed.
+pub(in crate::preview) fn undo_design(designer: &mut Designer, shown: &ShownFloor) -> bool {
+    let before = designer.edited.document.revision();
+    designer.edited.undo();
+    let is_changed = designer.edited.document.revision() != before;
+    if is_changed {
+        designer.try_layout(shown, LayoutCause::Designed);
+    }
+    is_changed
 }
 
 /// The message about a change.

@@ -3,25 +3,34 @@
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
-use super::super::app::App;
-use super::{TileMark, Walk};
-use underfoot::floor::Corner;
+use super::{FloorCheck, TileMark, Walk};
+use underfoot::floor::{Corner, Floor};
 use underfoot::serve::SensorVerdict;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
+use underfoot_scene::scene::Theme;
 
-impl App {
-    /// Covers the floor with the state of its tiles.
-    pub(in crate::preview) fn show_check(&self, ui: &Ui, rect: Rect, map: ScreenFromFloor) {
-        let Some(check) = self.floor_check.as_ref().filter(|check| check.walk.is_some()) else { return };
-        let (painter, theme) = (ui.painter_at(rect), &self.theme);
-        let geometry = &self.floor.geometry;
+impl FloorCheck {
+    /// Covers the floor with the state of its tiles, during a check.
+    pub(in crate::preview) fn show_marks(
+        &self,
+        ui: &Ui,
+        rect: Rect,
+        map: ScreenFromFloor,
+        theme: &Theme,
+        floor: &Floor,
+    ) {
+        if !self.is_running() {
+            return;
+        }
+        let painter = ui.painter_at(rect);
+        let geometry = &floor.geometry;
         // The controls are off, and remain faintly visible.
         let veil = color(theme.canvas).gamma_multiply(0.72);
         painter.rect_filled(map.rect(geometry.bounds()), 0.0, veil);
         for index in 0..geometry.tile_count() {
             let tile = geometry.tile_at_index(index);
             let area = map.rect(geometry.plate(tile)).shrink(2.0);
-            let mark = check.mark(&self.floor, index);
+            let mark = self.mark(floor, index);
             let (ink, weight, edge) = match mark {
                 TileMark::Open => (theme.quiet, 0.10, 1.0),
                 TileMark::Begun => (theme.good, 0.12, 1.0),
@@ -56,10 +65,10 @@ impl App {
                     painter.text(middle, Align2::CENTER_CENTER, place, font, color(theme.quiet));
                 }
             }
-            if let Some(Walk::Test(walk)) = &check.walk
+            if let Some(Walk::Test(walk)) = &self.walk
                 && let Some(sensors) = walk.tile(index)
             {
-                self.show_sensors(&painter, area, sensors);
+                show_sensors(&painter, theme, area, sensors);
             }
             let node = ui.interact(area, ui.scope_id().with(("checked tile", index)), Sense::hover());
             node.widget_info(|| {
@@ -67,31 +76,30 @@ impl App {
             });
         }
     }
+}
 
-    /// Draws a dot in each corner: grey, green, or a red square.
-    fn show_sensors(&self, painter: &eframe::egui::Painter, area: Rect, sensors: [SensorVerdict; 4]) {
-        let theme = &self.theme;
-        let inset = 0.14 * area.width();
-        let inner = area.shrink(inset);
-        for (corner, verdict) in Corner::ALL.into_iter().zip(sensors) {
-            let at = match corner {
-                Corner::SouthWest => inner.left_bottom(),
-                Corner::SouthEast => inner.right_bottom(),
-                Corner::NorthWest => inner.left_top(),
-                Corner::NorthEast => inner.right_top(),
-            };
-            let radius = (0.05 * area.width()).clamp(2.0, 6.0);
-            match verdict {
-                SensorVerdict::Untried => {
-                    painter.circle_stroke(at, radius, Stroke::new(1.5, color(theme.quiet)));
-                }
-                SensorVerdict::Answers => {
-                    painter.circle_filled(at, radius, color(theme.good));
-                }
-                SensorVerdict::NoReading | SensorVerdict::Still | SensorVerdict::Weak => {
-                    let square = Rect::from_center_size(at, vec2(2.4, 2.4) * radius);
-                    painter.rect_filled(square, 1.0, color(theme.fault));
-                }
+/// Draws a dot in each corner: grey, green, or a red square.
+fn show_sensors(painter: &eframe::egui::Painter, theme: &Theme, area: Rect, sensors: [SensorVerdict; 4]) {
+    let inset = 0.14 * area.width();
+    let inner = area.shrink(inset);
+    for (corner, verdict) in Corner::ALL.into_iter().zip(sensors) {
+        let at = match corner {
+            Corner::SouthWest => inner.left_bottom(),
+            Corner::SouthEast => inner.right_bottom(),
+            Corner::NorthWest => inner.left_top(),
+            Corner::NorthEast => inner.right_top(),
+        };
+        let radius = (0.05 * area.width()).clamp(2.0, 6.0);
+        match verdict {
+            SensorVerdict::Untried => {
+                painter.circle_stroke(at, radius, Stroke::new(1.5, color(theme.quiet)));
+            }
+            SensorVerdict::Answers => {
+                painter.circle_filled(at, radius, color(theme.good));
+            }
+            SensorVerdict::NoReading | SensorVerdict::Still | SensorVerdict::Weak => {
+                let square = Rect::from_center_size(at, vec2(2.4, 2.4) * radius);
+                painter.rect_filled(square, 1.0, color(theme.fault));
             }
         }
     }

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 use eframe::egui::{Key, Ui};
 
-use super::app::App;
 use super::feed::PreviewCommand;
+use super::shown::ShownFloor;
 use underfoot::floor::{Floor, TileId};
 use underfoot::recording::TappedPackets;
 use underfoot::serve::{FeltLoad, SensorVerdict, WalkTest, Wiring, WiringTask, WiringWalk};
@@ -84,10 +84,47 @@ impl FloorCheck {
         }
     }
 
-    fn begin(&mut self, walk: Option<Walk>) {
+    /// Whether a check is running: the floor's controls are off, and Design mode is unavailable.
+    pub(super) fn is_running(&self) -> bool {
+        self.walk.is_some()
+    }
+
+    /// Passes the packets to the current walk and stores its result; Escape ends the walk.
+    pub(super) fn follow(&mut self, ui: &Ui, shown: &ShownFloor) {
+        self.receive();
+        if let Some(Walk::Wiring(walk)) = &self.walk
+            && self.found.is_none()
+            && let Some(Ok(found)) = walk.outcome(&shown.floor)
+        {
+            self.found = (!found.moved.is_empty()).then_some(found);
+        }
+        if ui.input(|i| i.key_pressed(Key::Escape)) && self.is_running() {
+            return self.begin(None, shown);
+        }
+        if self.is_running() {
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
+        }
+    }
+
+    /// Begins or ends a walk; the controls are off during a walk.
+    fn begin(&mut self, walk: Option<Walk>, shown: &ShownFloor) {
+        let was = self.is_running();
+        self.found = None;
         self.packets.want(walk.is_some());
         self.packets.take(|_| {});
         self.walk = walk;
+        let is = self.is_running();
+        if is != was {
+            shown.command(PreviewCommand::TurnControlsOff(is));
+        }
+    }
+
+    /// Saves the floor with the boards as the walk found them.
+    fn save(&self, shown: &ShownFloor) {
+        if let Some(found) = &self.found {
+            let path = PathBuf::from(self.path.trim());
+            shown.command(PreviewCommand::SaveFloor { floor: Box::new(found.floor.clone()), path });
+        }
     }
 
     /// The mark of the tile with this index.
@@ -130,50 +167,4 @@ fn test_mark(sensors: [SensorVerdict; 4]) -> TileMark {
 /// The load on the floor now, in words.
 fn felt_words(felt: FeltLoad) -> String {
     format!("Board {} feels {:.0} N, by the floor file on tile {}.", felt.board, felt.force_n, felt.tile)
-}
-
-impl App {
-    /// Whether a check is running: the floor's controls are off, and Design mode is unavailable.
-    pub(super) fn is_checking(&self) -> bool {
-        self.floor_check.as_ref().is_some_and(|check| check.walk.is_some())
-    }
-
-    /// Passes the packets to the current walk and stores its result.
-    pub(super) fn follow_check(&mut self, ui: &Ui) {
-        let Some(check) = &mut self.floor_check else { return };
-        check.receive();
-        if let Some(Walk::Wiring(walk)) = &check.walk
-            && check.found.is_none()
-            && let Some(Ok(found)) = walk.outcome(&self.floor)
-        {
-            check.found = (!found.moved.is_empty()).then_some(found);
-        }
-        if ui.input(|i| i.key_pressed(Key::Escape)) && check.walk.is_some() {
-            return self.begin_check(None);
-        }
-        if check.walk.is_some() {
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
-        }
-    }
-
-    /// Begins or ends a walk; the controls are off during a walk.
-    fn begin_check(&mut self, walk: Option<Walk>) {
-        let was = self.is_checking();
-        let Some(check) = &mut self.floor_check else { return };
-        check.found = None;
-        check.begin(walk);
-        let is = self.is_checking();
-        if is != was {
-            self.command(PreviewCommand::TurnControlsOff(is));
-        }
-    }
-
-    /// Saves the floor with the boards as the walk found them.
-    fn save_checked(&self) {
-        let Some(check) = &self.floor_check else { return };
-        if let Some(found) = &check.found {
-            let path = PathBuf::from(check.path.trim());
-            self.command(PreviewCommand::SaveFloor { floor: Box::new(found.floor.clone()), path });
-        }
-    }
 }

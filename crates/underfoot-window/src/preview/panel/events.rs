@@ -5,9 +5,8 @@ use std::collections::VecDeque;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 
-use super::super::app::App;
-use super::super::messages::Happened;
-use super::super::style::{Row, quiet, section};
+use super::super::messages::{Happened, WindowMessages};
+use super::super::style::{TextRow, quiet, section};
 use underfoot::engine::IgnoredPress;
 use underfoot::outgoing::json::{IgnoredRecord, event_line};
 use underfoot::units::Instant;
@@ -18,55 +17,56 @@ use underfoot_scene::scene::Theme;
 /// Height of one line, in points.
 const LINE: f32 = 18.0;
 
-impl App {
-    /// Shows the events, newest first, in `height` points with its heading.
-    pub(super) fn events_part(&mut self, ui: &mut Ui, height: f32) {
-        let theme = &self.theme;
-        let top = ui.cursor().top();
-        section(ui, theme, "Events", |ui| {
-            ui.label(quiet(theme, format!("{} so far", self.messages.event_count)).size(12.0));
-        });
-        self.search_events(ui);
-        let theme = &self.theme;
-        let left = height - (ui.cursor().top() - top) - 8.0;
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let wanted = self.wanted_events.to_lowercase();
-        let recent: Vec<&Happened> =
-            self.messages.recent.iter().filter(|happened| is_wanted(happened, &wanted)).collect();
-        let area = ScrollArea::vertical().id_salt("events").max_height(left).min_scrolled_height(left);
-        area.auto_shrink(false).show_rows(ui, LINE, recent.len().max(1), |ui, lines| {
-            if recent.is_empty() {
-                ui.label(quiet(theme, if wanted.is_empty() { "nothing yet" } else { "nothing with that" }));
-            }
-            for happened in lines.filter_map(|line| recent.get(line)) {
-                match happened {
-                    Happened::Event(event) => show(ui, theme, event),
-                    Happened::Ignored(press) => show_ignored(ui, theme, press),
-                    Happened::GroundEvent { material, count, at, .. } => {
-                        gave_way(ui, theme, material, *count, *at);
-                    }
+/// Shows the events, newest first, in `height` points with its heading; `search` holds the text that its
+/// lines must contain, empty for all.
+pub(super) fn events_part(
+    ui: &mut Ui,
+    theme: &Theme,
+    messages: &WindowMessages,
+    search: &mut String,
+    height: f32,
+) {
+    let top = ui.cursor().top();
+    section(ui, theme, "Events", |ui| {
+        ui.label(quiet(theme, format!("{} so far", messages.event_count)).size(12.0));
+    });
+    search_events(ui, messages, search);
+    let left = height - (ui.cursor().top() - top) - 8.0;
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let wanted = search.to_lowercase();
+    let recent: Vec<&Happened> =
+        messages.recent.iter().filter(|happened| is_wanted(happened, &wanted)).collect();
+    let area = ScrollArea::vertical().id_salt("events").max_height(left).min_scrolled_height(left);
+    area.auto_shrink(false).show_rows(ui, LINE, recent.len().max(1), |ui, lines| {
+        if recent.is_empty() {
+            ui.label(quiet(theme, if wanted.is_empty() { "nothing yet" } else { "nothing with that" }));
+        }
+        for happened in lines.filter_map(|line| recent.get(line)) {
+            match happened {
+                Happened::Event(event) => show(ui, theme, event),
+                Happened::Ignored(press) => show_ignored(ui, theme, press),
+                Happened::GroundEvent { material, count, at, .. } => {
+                    gave_way(ui, theme, material, *count, *at);
                 }
             }
-        });
-        ui.spacing_mut().item_spacing.y = 5.0;
-    }
+        }
+    });
+    ui.spacing_mut().item_spacing.y = 5.0;
 }
 
-impl App {
-    /// A search field for the list, and a button that copies the listed events.
-    fn search_events(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            let room = (ui.available_width() - 70.0).max(60.0);
-            let field = TextEdit::singleline(&mut self.wanted_events).hint_text("Search").desired_width(room);
-            let field = ui.add(field);
-            field.widget_info(|| WidgetInfo::labeled(Role::SearchInput, true, "Search events"));
-            let copy = ui.button("Copy").on_hover_text("The listed events as JSON lines, oldest first");
-            copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Copy events"));
-            if copy.clicked() {
-                ui.ctx().copy_text(exported(&self.messages.recent, &self.wanted_events));
-            }
-        });
-    }
+/// A search field for the list, and a button that copies the listed events.
+fn search_events(ui: &mut Ui, messages: &WindowMessages, search: &mut String) {
+    ui.horizontal(|ui| {
+        let room = (ui.available_width() - 70.0).max(60.0);
+        let field = TextEdit::singleline(search).hint_text("Search").desired_width(room);
+        let field = ui.add(field);
+        field.widget_info(|| WidgetInfo::labeled(Role::SearchInput, true, "Search events"));
+        let copy = ui.button("Copy").on_hover_text("The listed events as JSON lines, oldest first");
+        copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Copy events"));
+        if copy.clicked() {
+            ui.ctx().copy_text(exported(&messages.recent, search));
+        }
+    });
 }
 
 /// Whether a line contains all words of `wanted`, which is in lower case: in its control, its event, the reason for
@@ -101,7 +101,7 @@ fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
     let spoken = format!("{} ignored {:.0} N: {}", press.id, press.force.0, press.why);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
-    let line = Row { ui, rect, size: 12.5 };
+    let line = TextRow { ui, rect, size: 12.5 };
     line.right(0.19, &format!("{:.3}", press.at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, press.id.as_str(), color(theme.ink));
     line.left(0.58, 0.86, &press.why.to_string(), color(theme.warning));
@@ -114,7 +114,7 @@ fn gave_way(ui: &mut Ui, theme: &Theme, material: &str, count: u64, at: Instant)
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
     let spoken = format!("{material} gave way {count}");
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
-    let line = Row { ui, rect, size: 12.5 };
+    let line = TextRow { ui, rect, size: 12.5 };
     line.right(0.19, &format!("{:.3}", at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, material, color(theme.ink));
     line.left(0.58, 0.82, "gave way", color(theme.haptic));
@@ -126,7 +126,7 @@ fn show(ui: &mut Ui, theme: &Theme, event: &WidgetEvent) {
     let value = value(event.kind);
     let spoken = format!("{} {} {value}", event.id, event.kind.name());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken.trim_end()));
-    let line = Row { ui, rect, size: 12.5 };
+    let line = TextRow { ui, rect, size: 12.5 };
     line.right(0.19, &format!("{:.3}", event.at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, event.id.as_str(), color(theme.ink));
     let colour = match event.kind {

@@ -4,7 +4,6 @@ use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{CollapsingHeader, DragValue, RichText, Ui, WidgetInfo};
 
-use super::super::app::App;
 use super::super::rehearsal::{PacketFaults, Rehearsal};
 use super::super::style::quiet;
 use underfoot::floor::{Corner, SensorId, TileId};
@@ -25,26 +24,22 @@ const SENSOR_FAULTS: [(Option<SensorFault>, &str); 5] = [
     (Some(SensorFault::Offset(PINCHED)), "pinched"),
 ];
 
-impl App {
-    /// Shows the switches for faults, if the floor is simulated.
-    pub(super) fn faults_part(&mut self, ui: &mut Ui) {
-        let Some(rehearsal) = &mut self.rehearsal else { return };
-        let (theme, tile) = (self.theme, self.selection.tile());
-        ui.add_space(2.0);
-        let title = match rehearsal.count() {
-            0 => RichText::new("Rehearse faults").color(color(theme.ink)),
-            1 => RichText::new("Rehearse faults: 1 on").color(color(theme.warning)),
-            count => RichText::new(format!("Rehearse faults: {count} on")).color(color(theme.warning)),
-        };
-        CollapsingHeader::new(title).id_salt("faults").show_unindented(ui, |ui| {
-            packets(ui, &theme, rehearsal);
-            sensors(ui, &theme, rehearsal, tile);
-            let some = rehearsal.count() > 0;
-            if ui.add_enabled(some, egui::Button::new("Mend everything")).clicked() {
-                rehearsal.mend();
-            }
-        });
-    }
+/// Shows the switches for faults of packets and of the sensors of `tile`.
+pub(super) fn faults_part(ui: &mut Ui, theme: &Theme, rehearsal: &mut Rehearsal, tile: TileId) {
+    ui.add_space(2.0);
+    let title = match rehearsal.count() {
+        0 => RichText::new("Rehearse faults").color(color(theme.ink)),
+        1 => RichText::new("Rehearse faults: 1 on").color(color(theme.warning)),
+        count => RichText::new(format!("Rehearse faults: {count} on")).color(color(theme.warning)),
+    };
+    CollapsingHeader::new(title).id_salt("faults").show_unindented(ui, |ui| {
+        packets(ui, theme, rehearsal);
+        sensors(ui, theme, rehearsal, tile);
+        let some = rehearsal.count() > 0;
+        if ui.add_enabled(some, egui::Button::new("Mend everything")).clicked() {
+            rehearsal.mend();
+        }
+    });
 }
 
 fn packets(ui: &mut Ui, theme: &Theme, rehearsal: &mut Rehearsal) {

@@ -3,32 +3,28 @@
 use eframe::egui;
 use eframe::egui::{CollapsingHeader, Ui};
 
-use super::super::app::App;
 use super::link::{figure, grouped};
+use underfoot::engine::Snapshot;
 use underfoot::ground::{GroundState, Material};
+use underfoot::layout::Layout;
 use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
 
-impl App {
-    /// Shows the events of each ground on the page: one line, until the user opens it.
-    pub(super) fn grounds_part(&mut self, ui: &mut Ui) {
-        let theme = &self.theme;
-        let snapshot = self.snapshots.output_buffer();
-        for (number, (ground, state)) in
-            self.messages.layout.grounds.iter().zip(&snapshot.grounds).enumerate()
-        {
-            if !ground.spec.is_on(snapshot.page) {
-                continue;
-            }
-            ui.add_space(2.0);
-            let title = egui::RichText::new(headline(&ground.spec.material, state)).color(color(theme.ink));
-            CollapsingHeader::new(title).id_salt(("ground", number)).show_unindented(ui, |ui| {
-                ui.spacing_mut().item_spacing.y = 1.0;
-                for (name, count) in lines(&ground.spec.material, state) {
-                    figure(ui, theme, name, count, false);
-                }
-                ui.spacing_mut().item_spacing.y = 5.0;
-            });
+/// Shows the events of each ground on the page: one line, until the user opens it.
+pub(super) fn grounds_part(ui: &mut Ui, theme: &Theme, layout: &Layout, snapshot: &Snapshot) {
+    for (number, (ground, state)) in layout.grounds.iter().zip(&snapshot.grounds).enumerate() {
+        if !ground.spec.is_on(snapshot.page) {
+            continue;
         }
+        ui.add_space(2.0);
+        let title = egui::RichText::new(headline(&ground.spec.material, state)).color(color(theme.ink));
+        CollapsingHeader::new(title).id_salt(("ground", number)).show_unindented(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            for (name, count) in lines(&ground.spec.material, state) {
+                figure(ui, theme, name, count, false);
+            }
+            ui.spacing_mut().item_spacing.y = 5.0;
+        });
     }
 }
 

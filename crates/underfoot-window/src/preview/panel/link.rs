@@ -3,83 +3,76 @@
 use eframe::egui;
 use eframe::egui::{CollapsingHeader, Ui};
 
-use super::super::app::App;
 use super::super::style::{quiet, row};
+use underfoot::engine::Snapshot;
 use underfoot::feel::DeviceState;
 use underfoot::sense::Quality;
 use underfoot::wire::{LinkCounters, LinkState};
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
 
-impl App {
-    /// Shows the state of the sensors, and lists those with faults.
-    pub(super) fn health_part(&mut self, ui: &mut Ui) {
-        let theme = &self.theme;
-        let snapshot = self.snapshots.output_buffer();
-        if snapshot.link == LinkState::Waiting {
-            return;
-        }
-        let health = &snapshot.health;
-        if snapshot.link == LinkState::Lost {
-            ui.add_space(2.0);
-            let text = "Sensors: none heard, the link is lost";
-            ui.label(egui::RichText::new(text).color(color(theme.fault)));
-            return;
-        }
-        let colour = match health {
-            health if health.count(Quality::Faulty) > 0 => theme.fault,
-            health if health.is_well() => theme.ink,
-            _ => theme.warning,
-        };
-        ui.add_space(2.0);
-        let title = egui::RichText::new(format!("Sensors: {health}")).color(color(colour));
-        CollapsingHeader::new(title).id_salt("health").show_unindented(ui, |ui| {
-            for (sensor, trouble) in &health.troubles {
-                let line = row(ui, 17.0, 12.5, &format!("{sensor}: {trouble}"));
-                line.left(0.04, 0.3, &sensor.to_string(), color(theme.ink));
-                line.right(1.0, &trouble.to_string(), color(theme.warning));
-            }
-            if health.uncalibrated > 0 {
-                ui.label(quiet(theme, format!("{} never calibrated: nominal parts", health.uncalibrated)));
-            }
-            if health.foreign {
-                ui.label(quiet(theme, "the floor file seems to be another floor's"));
-            }
-            if health.is_well() {
-                ui.label(quiet(theme, "every one answers as its plate demands"));
-            }
-        });
+/// Shows the state of the sensors, and lists those with faults.
+pub(super) fn health_part(ui: &mut Ui, theme: &Theme, snapshot: &Snapshot) {
+    if snapshot.link == LinkState::Waiting {
+        return;
     }
+    let health = &snapshot.health;
+    if snapshot.link == LinkState::Lost {
+        ui.add_space(2.0);
+        let text = "Sensors: none heard, the link is lost";
+        ui.label(egui::RichText::new(text).color(color(theme.fault)));
+        return;
+    }
+    let colour = match health {
+        health if health.count(Quality::Faulty) > 0 => theme.fault,
+        health if health.is_well() => theme.ink,
+        _ => theme.warning,
+    };
+    ui.add_space(2.0);
+    let title = egui::RichText::new(format!("Sensors: {health}")).color(color(colour));
+    CollapsingHeader::new(title).id_salt("health").show_unindented(ui, |ui| {
+        for (sensor, trouble) in &health.troubles {
+            let line = row(ui, 17.0, 12.5, &format!("{sensor}: {trouble}"));
+            line.left(0.04, 0.3, &sensor.to_string(), color(theme.ink));
+            line.right(1.0, &trouble.to_string(), color(theme.warning));
+        }
+        if health.uncalibrated > 0 {
+            ui.label(quiet(theme, format!("{} never calibrated: nominal parts", health.uncalibrated)));
+        }
+        if health.foreign {
+            ui.label(quiet(theme, "the floor file seems to be another floor's"));
+        }
+        if health.is_well() {
+            ui.label(quiet(theme, "every one answers as its plate demands"));
+        }
+    });
+}
 
-    /// Shows the state of the device that drives the actuators, if there is one.
-    pub(super) fn device_part(&mut self, ui: &mut Ui) {
-        let theme = &self.theme;
-        let Some(status) = &self.snapshots.output_buffer().device else { return };
-        let colour = match status.state {
-            DeviceState::Playing if status.is_well() => theme.ink,
-            DeviceState::Playing => theme.warning,
-            DeviceState::Lost | DeviceState::Faulty | DeviceState::Unfit => theme.fault,
-        };
-        ui.add_space(2.0);
-        let muted = if self.snapshots.output_buffer().muted.all { ", muted" } else { "" };
-        ui.label(egui::RichText::new(format!("Actuators: {status}{muted}")).color(color(colour)));
-    }
+/// Shows the state of the device that drives the actuators, if there is one.
+pub(super) fn device_part(ui: &mut Ui, theme: &Theme, snapshot: &Snapshot) {
+    let Some(status) = &snapshot.device else { return };
+    let colour = match status.state {
+        DeviceState::Playing if status.is_well() => theme.ink,
+        DeviceState::Playing => theme.warning,
+        DeviceState::Lost | DeviceState::Faulty | DeviceState::Unfit => theme.fault,
+    };
+    ui.add_space(2.0);
+    let muted = if snapshot.muted.all { ", muted" } else { "" };
+    ui.label(egui::RichText::new(format!("Actuators: {status}{muted}")).color(color(colour)));
+}
 
-    /// Shows the numbers of received packets, and of refused ones by reason.
-    pub(super) fn link_part(&mut self, ui: &mut Ui) {
-        let theme = &self.theme;
-        let snapshot = self.snapshots.output_buffer();
-        let counters = snapshot.counters;
-        ui.add_space(2.0);
-        if let Some(cause) = &snapshot.link_cause {
-            ui.label(egui::RichText::new(cause.to_string()).color(color(theme.fault)));
-        }
-        let headline = headline(&counters);
-        let bad = counters.refused() + counters.lost + counters.overflowed + counters.bad_readings > 0;
-        let colour = color(if bad { theme.warning } else { theme.ink });
-        let title = egui::RichText::new(headline).color(colour);
-        CollapsingHeader::new(title).id_salt("link").show_unindented(ui, |ui| details(ui, theme, &counters));
+/// Shows the numbers of received packets, and of refused ones by reason.
+pub(super) fn link_part(ui: &mut Ui, theme: &Theme, snapshot: &Snapshot) {
+    let counters = snapshot.counters;
+    ui.add_space(2.0);
+    if let Some(cause) = &snapshot.link_cause {
+        ui.label(egui::RichText::new(cause.to_string()).color(color(theme.fault)));
     }
+    let headline = headline(&counters);
+    let bad = counters.refused() + counters.lost + counters.overflowed + counters.bad_readings > 0;
+    let colour = color(if bad { theme.warning } else { theme.ink });
+    let title = egui::RichText::new(headline).color(colour);
+    CollapsingHeader::new(title).id_salt("link").show_unindented(ui, |ui| details(ui, theme, &counters));
 }
 
 /// A summary in one line of nearly constant length.

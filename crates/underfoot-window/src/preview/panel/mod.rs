@@ -14,29 +14,52 @@ mod tile;
 mod tuner;
 
 pub(in crate::preview) use link::grouped;
+pub(in crate::preview) use presses::handle_undo_key;
 pub(in crate::preview) use tuner::Tuner;
 
 use eframe::egui::{Margin, Panel, ScrollArea, Ui};
 
 use super::app::App;
-use super::feed::ServerState;
-use super::style::panel_frame;
+use super::style::{panel_frame, selectable};
 
 /// Minimum height of the list of events, in points.
 const EVENTS: f32 = 150.0;
 
-impl App {
+/// The state of the side panel.
+#[derive(Default)]
+pub(super) struct SidePanel {
+    /// Whether the user has opened or closed it; `None` while the window's width decides.
+    wanted: Option<bool>,
+    /// The text that lines of the list of events must contain; empty for all.
+    search: String,
+    /// Height of its parts other than the list of events at the last frame, in points.
+    other_parts: f32,
+}
+
+impl SidePanel {
     /// Whether a window of this width, in points, shows the panel: a window too narrow for panel and floor shows it
     /// only on request.
-    pub(in crate::preview) fn shows_panel(&self, width: f32) -> bool {
-        self.panel_wanted.unwrap_or(width >= 2.2 * 304.0)
+    fn is_shown(&self, width: f32) -> bool {
+        self.wanted.unwrap_or(width >= 2.2 * 304.0)
     }
 
-    pub(super) fn side_panel(&mut self, ui: &mut Ui) {
-        if !self.shows_panel(ui.ctx().content_rect().width()) {
+    /// A button that opens or closes the panel.
+    pub(super) fn button(&mut self, ui: &mut Ui) {
+        let shown = self.is_shown(ui.ctx().content_rect().width());
+        if selectable(ui, shown, "Panel", "Figures, events and actuators at the side") {
+            self.wanted = Some(!shown);
+        }
+    }
+}
+
+impl App {
+    /// Shows the side panel, unless it is closed.
+    pub(super) fn show_side_panel(&mut self, ui: &mut Ui) {
+        if !self.panel.is_shown(ui.ctx().content_rect().width()) {
             return;
         }
-        let frame = panel_frame(&self.theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
+        let theme = self.appearance.theme();
+        let frame = panel_frame(&theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         let panel = Panel::right("side panel").frame(frame).resizable(true);
         panel.default_size(304.0).size_range(264.0..=440.0).show(ui, |ui| {
             let height = ui.available_height();
@@ -45,29 +68,53 @@ impl App {
                 ui.set_width(ui.available_width() - 8.0);
                 let top = ui.cursor().top();
                 // Lines carry neither forces nor sensors, and accept no requests.
-                let is_told = self.server.as_ref().is_some_and(ServerState::tells_by_lines);
-                self.areas_part(ui);
+                let is_told = self.shown.is_told_by_lines();
+                let server = self.shown.server.as_ref();
+                areas::areas_part(ui, &theme, server.map_or(&[], |server| &server.areas));
                 if !is_told {
-                    self.tile_part(ui);
-                    self.presses_part(ui);
-                    self.people_part(ui);
+                    self.show_foot_parts(ui);
                 }
-                self.contacts_part(ui);
+                contacts::contacts_part(ui, &theme, self.shown.snapshot());
                 // The list gets the height that the other parts left free in the last frame.
-                let events = (height - self.other_parts).max(EVENTS);
-                self.events_part(ui, events);
-                self.scopes_part(ui);
+                let events = (height - self.panel.other_parts).max(EVENTS);
+                events::events_part(ui, &theme, &self.shown.messages, &mut self.panel.search, events);
+                scopes::scopes_part(ui, &theme, &mut self.shown);
                 if !is_told {
-                    self.controls_part(ui);
-                    self.faults_part(ui);
-                    self.grounds_part(ui);
-                    self.health_part(ui);
-                    self.check_button(ui);
-                    self.device_part(ui);
-                    self.link_part(ui);
+                    self.show_floor_parts(ui);
                 }
-                self.other_parts = ui.cursor().top() - top - events;
+                self.panel.other_parts = ui.cursor().top() - top - events;
             });
         });
+    }
+
+    /// The parts about the tile, the presses of the control, and the walks.
+    fn show_foot_parts(&mut self, ui: &mut Ui) {
+        let (theme, shown, selection) = (self.appearance.theme(), &self.shown, &mut self.selection);
+        tile::tile_part(ui, &theme, shown, selection, &mut self.plots);
+        let designer = self.designer.as_mut();
+        presses::presses_part(ui, &theme, shown, selection, &mut self.presses, &mut self.plots, designer);
+        if let Some(walks) = &mut self.walks {
+            people::people_part(ui, &theme, walks, &shown.layout().title);
+        }
+    }
+
+    /// The parts about controls, faults, grounds, sensors, sound card and link.
+    fn show_floor_parts(&mut self, ui: &mut Ui) {
+        let (theme, shown) = (self.appearance.theme(), &self.shown);
+        // A recording cannot change.
+        if self.time_line.is_none() {
+            controls::controls_part(ui, &theme, shown);
+        }
+        if let Some(rehearsal) = &mut self.rehearsal {
+            faults::faults_part(ui, &theme, rehearsal, self.selection.tile());
+        }
+        let snapshot = shown.snapshot();
+        grounds::grounds_part(ui, &theme, shown.layout(), snapshot);
+        link::health_part(ui, &theme, snapshot);
+        if let Some(check) = &mut self.floor_check {
+            check.button(ui, shown);
+        }
+        link::device_part(ui, &theme, snapshot);
+        link::link_part(ui, &theme, snapshot);
     }
 }

@@ -6,9 +6,11 @@ use eframe::egui::{
     Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::super::app::App;
-use super::super::design::Threshold;
-use super::super::presses::Press;
+use super::super::design::{Designer, Threshold, set_threshold, undo_design};
+use super::super::plots::Plots;
+use super::super::presses::{ControlPress, PressLog};
+use super::super::selection::Selection;
+use super::super::shown::ShownFloor;
 use super::super::style::{panel_colour, plot_button, quiet, row, section};
 use underfoot::units::Newtons;
 use underfoot::widget::{Thresholds, WidgetId};
@@ -42,109 +44,123 @@ enum Wish {
     Undo,
 }
 
-impl App {
-    /// The presses of the selected control.
-    pub(super) fn presses_part(&mut self, ui: &mut Ui) {
-        let theme = self.theme;
-        let layout = &self.messages.layout;
-        let Some(widget) = self.selection.control_of(layout) else { return };
-        let (id, thresholds) = (widget.id.clone(), widget.behaviour.thresholds());
-        let title =
-            if widget.label.is_empty() { id.to_string() } else { in_drawn_order(&widget.label).into() };
-        let mut is_plotted = false;
-        section(ui, &theme, &format!("Control {title}"), |ui| {
-            is_plotted = plot_button(ui, id.as_str());
-        });
-        if is_plotted {
-            self.plot_control(&id);
-        }
-        let (forces, people) = self.presses.counted(&id);
-        let spread = PressSpread::of(&forces);
-        let all: Vec<&Press> = self.presses.of(&id).collect();
-        strip(ui, &theme, &all, spread.as_ref(), thresholds);
-        for line in lines(spread.as_ref(), people) {
-            ui.add(Label::new(quiet(&theme, line).size(12.5)).truncate()).on_hover_text(PEOPLE);
-        }
-        let can_set = self.designer.is_some();
-        let proposal = propose_press(&forces);
-        let mut wish = None;
-        ui.horizontal(|ui| {
-            let force = proposal.map(|proposal| proposal.press);
-            let text =
-                force.map_or("Use this press".into(), |force| format!("Use this press: {:.0} N", force.0));
-            let button = ui.add_enabled(can_set && force.is_some(), Button::new(text));
-            button.widget_info(|| WidgetInfo::labeled(Role::Button, force.is_some(), "Use this press"));
-            let hint = "Half of the lightest press that counts, no less than the 35 N of a foot at rest";
-            if button.on_hover_text(hint).clicked() {
-                wish = force.map(Wish::Use);
-            }
-            let forget = ui.add_enabled(!all.is_empty(), Button::new("Forget"));
-            forget.widget_info(|| WidgetInfo::labeled(Role::Button, !all.is_empty(), "Forget presses"));
-            if forget.on_hover_text("Forget the presses of this control").clicked() {
-                wish = Some(Wish::Forget);
-            }
-            if self.presses.told.as_ref().is_some_and(|(told, _)| *told == id)
-                && ui.button("Undo").on_hover_text("Take the threshold back; Ctrl+Z does the same").clicked()
-            {
-                wish = Some(Wish::Undo);
-            }
-        });
-        let told = self.presses.told.as_ref().filter(|(told, _)| *told == id);
-        let words = match (told, proposal) {
-            (Some((_, told)), _) => told.clone(),
-            (None, None) => {
-                "shown is the control pressed last, or pinned by Shift-click; press it as people will".into()
-            }
-            (None, Some(proposal)) if proposal.missed > 0 => {
-                format!("{} of these no heavier than a foot at rest", proposal.missed)
-            }
-            (None, Some(proposal)) if proposal.is_resting_force => "what a foot at rest bears, 35 N".into(),
-            (None, Some(_)) => "half of the lightest".into(),
-        };
-        ui.allocate_ui(vec2(ui.available_width(), WORDS), |ui| {
-            ui.set_min_height(WORDS);
-            let ink = if told.is_some() { theme.ink } else { theme.quiet };
-            ui.add(Label::new(RichText::new(words).size(12.5).color(color(ink))).wrap());
-        });
-        CollapsingHeader::new("Press by press").id_salt("presses").show_unindented(ui, |ui| {
-            if all.is_empty() {
-                ui.label(quiet(&theme, "none yet"));
-            }
-            for (number, press) in all.iter().take(LISTED).enumerate() {
-                if let Some(counts) = listed(ui, &theme, press) {
-                    wish = Some(Wish::Count(number, counts));
-                }
-            }
-        });
-        if let Some(wish) = wish {
-            self.grant(&id, wish);
-        }
+/// The presses of the selected control; `designer` sets its threshold.
+pub(super) fn presses_part(
+    ui: &mut Ui,
+    theme: &Theme,
+    shown: &ShownFloor,
+    selection: &Selection,
+    presses: &mut PressLog,
+    plots: &mut Plots,
+    designer: Option<&mut Designer>,
+) {
+    let layout = shown.layout();
+    let Some(widget) = selection.control_of(layout) else { return };
+    let (id, thresholds) = (widget.id.clone(), widget.behaviour.thresholds());
+    let title = if widget.label.is_empty() { id.to_string() } else { in_drawn_order(&widget.label).into() };
+    let mut is_plotted = false;
+    section(ui, theme, &format!("Control {title}"), |ui| {
+        is_plotted = plot_button(ui, id.as_str());
+    });
+    if is_plotted {
+        plots.add_control(layout, &id);
     }
-
-    fn grant(&mut self, id: &WidgetId, wish: Wish) {
-        match wish {
-            Wish::Use(force) => {
-                let told = self.set_threshold(id, Threshold::Press, force);
-                self.presses.told = Some((id.clone(), told));
+    let (forces, people) = presses.counted(&id);
+    let spread = PressSpread::of(&forces);
+    let all: Vec<&ControlPress> = presses.of(&id).collect();
+    strip(ui, theme, &all, spread.as_ref(), thresholds);
+    for line in lines(spread.as_ref(), people) {
+        ui.add(Label::new(quiet(theme, line).size(12.5)).truncate()).on_hover_text(PEOPLE);
+    }
+    let can_set = designer.is_some();
+    let proposal = propose_press(&forces);
+    let mut wish = None;
+    ui.horizontal(|ui| {
+        let force = proposal.map(|proposal| proposal.press);
+        let text = force.map_or("Use this press".into(), |force| format!("Use this press: {:.0} N", force.0));
+        let button = ui.add_enabled(can_set && force.is_some(), Button::new(text));
+        button.widget_info(|| WidgetInfo::labeled(Role::Button, force.is_some(), "Use this press"));
+        let hint = "Half of the lightest press that counts, no less than the 35 N of a foot at rest";
+        if button.on_hover_text(hint).clicked() {
+            wish = force.map(Wish::Use);
+        }
+        let forget = ui.add_enabled(!all.is_empty(), Button::new("Forget"));
+        forget.widget_info(|| WidgetInfo::labeled(Role::Button, !all.is_empty(), "Forget presses"));
+        if forget.on_hover_text("Forget the presses of this control").clicked() {
+            wish = Some(Wish::Forget);
+        }
+        if presses.told.as_ref().is_some_and(|(told, _)| *told == id)
+            && ui.button("Undo").on_hover_text("Take the threshold back; Ctrl+Z does the same").clicked()
+        {
+            wish = Some(Wish::Undo);
+        }
+    });
+    let told = presses.told.as_ref().filter(|(told, _)| *told == id);
+    let words = match (told, proposal) {
+        (Some((_, told)), _) => told.clone(),
+        (None, None) => {
+            "shown is the control pressed last, or pinned by Shift-click; press it as people will".into()
+        }
+        (None, Some(proposal)) if proposal.missed > 0 => {
+            format!("{} of these no heavier than a foot at rest", proposal.missed)
+        }
+        (None, Some(proposal)) if proposal.is_resting_force => "what a foot at rest bears, 35 N".into(),
+        (None, Some(_)) => "half of the lightest".into(),
+    };
+    ui.allocate_ui(vec2(ui.available_width(), WORDS), |ui| {
+        ui.set_min_height(WORDS);
+        let ink = if told.is_some() { theme.ink } else { theme.quiet };
+        ui.add(Label::new(RichText::new(words).size(12.5).color(color(ink))).wrap());
+    });
+    CollapsingHeader::new("Press by press").id_salt("presses").show_unindented(ui, |ui| {
+        if all.is_empty() {
+            ui.label(quiet(theme, "none yet"));
+        }
+        for (number, press) in all.iter().take(LISTED).enumerate() {
+            if let Some(counts) = listed(ui, theme, press) {
+                wish = Some(Wish::Count(number, counts));
             }
-            Wish::Forget => self.presses.forget(id),
-            Wish::Count(number, counts) => self.presses.let_count(id, number, counts),
-            Wish::Undo => self.undo_here(),
         }
+    });
+    if let Some(wish) = wish {
+        grant(&id, wish, shown, presses, designer);
     }
+}
 
-    fn undo_here(&mut self) {
-        if self.undo_design() {
-            self.presses.told = None;
+fn grant(
+    id: &WidgetId,
+    wish: Wish,
+    shown: &ShownFloor,
+    presses: &mut PressLog,
+    designer: Option<&mut Designer>,
+) {
+    match wish {
+        Wish::Use(force) => {
+            let told = set_threshold(designer, shown, id, Threshold::Press, force);
+            presses.told = Some((id.clone(), told));
         }
+        Wish::Forget => presses.forget(id),
+        Wish::Count(number, counts) => presses.let_count(id, number, counts),
+        Wish::Undo => undo_here(shown, presses, designer),
     }
+}
 
-    /// Ctrl+Z undoes the last threshold that was set here, in Try mode and outside text fields.
-    pub(in crate::preview) fn handle_undo_key(&mut self, ui: &Ui) {
-        let is_free = !self.is_designing() && !ui.ctx().text_edit_focused();
-        if is_free && ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::Z)) {
-            self.undo_here();
-        }
+fn undo_here(shown: &ShownFloor, presses: &mut PressLog, designer: Option<&mut Designer>) {
+    if designer.is_some_and(|designer| undo_design(designer, shown)) {
+        presses.told = None;
+    }
+}
+
+/// Ctrl+Z undoes the last threshold that was set here, in Try mode and outside text fields.
+pub(in crate::preview) fn handle_undo_key(
+    ui: &Ui,
+    shown: &ShownFloor,
+    presses: &mut PressLog,
+    designer: Option<&mut Designer>,
+) {
+    let is_free = designer.as_ref().is_none_or(|designer| !designer.is_open) && !ui.ctx().text_edit_focused();
+    if is_free && ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::Z)) {
+        undo_here(shown, presses, designer);
     }
 }
 
@@ -167,7 +183,13 @@ fn lines(spread: Option<&PressSpread>, people: usize) -> [String; 2] {
 }
 
 /// Draws presses along an axis in newtons, with the thresholds.
-fn strip(ui: &mut Ui, theme: &Theme, all: &[&Press], spread: Option<&PressSpread>, thresholds: Thresholds) {
+fn strip(
+    ui: &mut Ui,
+    theme: &Theme,
+    all: &[&ControlPress],
+    spread: Option<&PressSpread>,
+    thresholds: Thresholds,
+) {
     let Thresholds { press, release, .. } = thresholds;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), STRIP), Sense::hover());
     let spoken = format!("takes {:.0} newtons, lets go below {:.0}", press.0, release.0);
@@ -218,7 +240,7 @@ fn strip(ui: &mut Ui, theme: &Theme, all: &[&Press], spread: Option<&PressSpread
 }
 
 /// Shows one press with a check box; returns whether it counts, after a change.
-fn listed(ui: &mut Ui, theme: &Theme, press: &Press) -> Option<bool> {
+fn listed(ui: &mut Ui, theme: &Theme, press: &ControlPress) -> Option<bool> {
     let why = press.why.map_or("pressed".to_owned(), |why| why.to_string());
     let person = press.person.map_or(String::new(), |person| format!("person {person}"));
     let mut counts = press.counts;

@@ -4,8 +4,8 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::epaint::PathShape;
 use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::super::app::App;
 use super::super::scopes::peak;
+use super::super::shown::ShownFloor;
 use super::super::style::{quiet, section};
 use underfoot::floor::Floor;
 use underfoot::floor::TileId;
@@ -21,19 +21,16 @@ const RANGE: f32 = 0.5;
 /// Peak below which a wave is drawn as a straight line, in full scales: a tenth of a pixel.
 const STILL: f32 = 3e-3;
 
-impl App {
-    /// Waveforms of the actuators under the feet.
-    pub(super) fn scopes_part(&mut self, ui: &mut Ui) {
-        if !self.scopes.is_fed() {
-            return;
-        }
-        let theme = self.theme;
-        section(ui, &theme, "Actuators", |ui| {
-            ui.label(quiet(&theme, "last 100 ms").size(12.0));
-        });
-        let floor = std::sync::Arc::clone(&self.floor);
-        self.scopes.for_each(&floor, |tile, wave| scope(ui, &theme, &floor, tile, wave));
+/// Waveforms of the actuators under the feet.
+pub(super) fn scopes_part(ui: &mut Ui, theme: &Theme, shown: &mut ShownFloor) {
+    let ShownFloor { scopes, floor, .. } = shown;
+    if !scopes.is_fed() {
+        return;
     }
+    section(ui, theme, "Actuators", |ui| {
+        ui.label(quiet(theme, "last 100 ms").size(12.0));
+    });
+    scopes.for_each(floor, |tile, wave| scope(ui, theme, floor, tile, wave));
 }
 
 fn scope(ui: &mut Ui, theme: &Theme, floor: &Floor, tile: Option<TileId>, wave: &[(f32, f32)]) {

@@ -4,12 +4,13 @@ use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use super::super::app::App;
 use super::super::feed::PreviewCommand;
-use super::super::plots::Series;
+use super::super::plots::{Plots, Series};
+use super::super::selection::Selection;
+use super::super::shown::ShownFloor;
 use super::super::style::{panel_colour, plot_button, quiet, section};
 use underfoot::engine::TileState;
-use underfoot::floor::{Corner, TileId};
+use underfoot::floor::{Corner, Floor, TileId};
 use underfoot::layout::Colour;
 use underfoot::sense::Quality;
 use underfoot_scene::egui_painter::color;
@@ -18,65 +19,68 @@ use underfoot_scene::scene::Theme;
 /// Force of a full bar: the end of the nominal sensor's range, in newtons.
 const FULL: f32 = 400.0;
 
-impl App {
-    /// Shows the four sensors of the selected tile in their corners.
-    pub(super) fn tile_part(&mut self, ui: &mut Ui) {
-        let theme = self.theme;
-        let tile = self.selection.tile();
-        let pinned = self.selection.pinned().is_some();
-        let muted = self.snapshots.output_buffer().muted.tiles.contains(&tile);
-        let is_moved = self.scopes.is_fed() && self.is_moved(tile);
-        let (mut unpin, mut mute, mut plot) = (false, false, false);
-        section(ui, &theme, &format!("Tile {}, {}", tile.column, tile.row), |ui| {
-            if pinned {
-                unpin = ui.small_button("Follow the foot").clicked();
-            } else {
-                let label = ui.label(quiet(&theme, "underfoot").size(12.0));
-                label.on_hover_text("The tile under the foot that presses most; Shift-click pins another");
+/// Shows the four sensors of the selected tile in their corners.
+pub(super) fn tile_part(
+    ui: &mut Ui,
+    theme: &Theme,
+    shown: &ShownFloor,
+    selection: &mut Selection,
+    plots: &mut Plots,
+) {
+    let tile = selection.tile();
+    let pinned = selection.pinned().is_some();
+    let muted = shown.snapshot().muted.tiles.contains(&tile);
+    let is_moved = shown.scopes.is_fed() && is_moved(&shown.floor, tile);
+    let (mut unpin, mut mute, mut plot) = (false, false, false);
+    section(ui, theme, &format!("Tile {}, {}", tile.column, tile.row), |ui| {
+        if pinned {
+            unpin = ui.small_button("Follow the foot").clicked();
+        } else {
+            let label = ui.label(quiet(theme, "underfoot").size(12.0));
+            label.on_hover_text("The tile under the foot that presses most; Shift-click pins another");
+        }
+        if is_moved {
+            let button = egui::Button::selectable(muted, "Mute tile").small().frame_when_inactive(true);
+            let hint = "Let this tile's actuator not be felt";
+            mute = ui.add(button).on_hover_text(hint).clicked();
+        }
+        plot = plot_button(ui, &format!("tile {}, {}", tile.column, tile.row));
+    });
+    if plot {
+        plots.add([Series::Tile(tile)]);
+    }
+    if mute {
+        shown.command(PreviewCommand::MuteTile { tile, on: !muted });
+    }
+    if unpin {
+        selection.unpin();
+    }
+    let state = shown
+        .floor
+        .geometry
+        .index(tile)
+        .and_then(|index| shown.snapshot().tiles.get(index).copied())
+        .unwrap_or_default();
+    let cell = vec2(0.5 * (ui.available_width() - 14.0), 38.0);
+    for row in [[Corner::NorthWest, Corner::NorthEast], [Corner::SouthWest, Corner::SouthEast]] {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 14.0;
+            for corner in row {
+                sensor(ui, theme, cell, corner, &state);
             }
-            if is_moved {
-                let button = egui::Button::selectable(muted, "Mute tile").small().frame_when_inactive(true);
-                let hint = "Let this tile's actuator not be felt";
-                mute = ui.add(button).on_hover_text(hint).clicked();
-            }
-            plot = plot_button(ui, &format!("tile {}, {}", tile.column, tile.row));
         });
-        if plot {
-            self.plots.add([Series::Tile(tile)]);
-        }
-        if mute {
-            self.command(PreviewCommand::MuteTile { tile, on: !muted });
-        }
-        if unpin {
-            self.selection.unpin();
-        }
-        let state = self
-            .floor
-            .geometry
-            .index(tile)
-            .and_then(|index| self.snapshots.output_buffer().tiles.get(index).copied())
-            .unwrap_or_default();
-        let cell = vec2(0.5 * (ui.available_width() - 14.0), 38.0);
-        for row in [[Corner::NorthWest, Corner::NorthEast], [Corner::SouthWest, Corner::SouthEast]] {
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = 14.0;
-                for corner in row {
-                    sensor(ui, &theme, cell, corner, &state);
-                }
-            });
-        }
-        let place = state.centroid.map_or_else(
-            || "too light to say where".to_owned(),
-            |at| format!("acts at {:.3}, {:.3} m", at.x, at.y),
-        );
-        ui.label(quiet(&theme, format!("{:.1} N in all, {place}", clean(state.force.0))));
     }
+    let place = state.centroid.map_or_else(
+        || "too light to say where".to_owned(),
+        |at| format!("acts at {:.3}, {:.3} m", at.x, at.y),
+    );
+    ui.label(quiet(theme, format!("{:.1} N in all, {place}", clean(state.force.0))));
+}
 
-    /// Whether an actuator moves this tile.
-    fn is_moved(&self, tile: TileId) -> bool {
-        let index = self.floor.geometry.index(tile);
-        index.and_then(|index| self.floor.actuators.get(index)).is_some_and(Option::is_some)
-    }
+/// Whether an actuator moves this tile.
+fn is_moved(floor: &Floor, tile: TileId) -> bool {
+    let index = floor.geometry.index(tile);
+    index.and_then(|index| floor.actuators.get(index)).is_some_and(Option::is_some)
 }
 
 /// Shows one sensor: its corner, newtons, a bar, and a word if it is unreliable.

@@ -8,11 +8,12 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
-use super::super::app::App;
 use super::super::feed::PreviewCommand;
+use super::super::shown::ShownFloor;
 use super::super::style::{is_entered, panel_frame, quiet, section};
 use super::super::trace::Trace;
 use underfoot::feel::{Effect, EffectKind, Gesture, Knob};
+use underfoot::floor::TileId;
 use underfoot::schema::{NamedEffect, write_named_effect};
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -263,55 +264,56 @@ fn short(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-impl App {
-    /// The tuner at the window's left edge, if it is open.
-    pub(in crate::preview) fn tuner_panel(&mut self, ui: &mut Ui) {
-        let Some(mut tuner) = self.tuner.take_if(|tuner| tuner.is_open) else { return };
-        let (theme, now_s) = (self.theme, self.now_s);
-        let frame = panel_frame(&theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
+impl Tuner {
+    /// The tuner at the window's left edge, if it is open; it plays effects on `tile`.
+    pub(in crate::preview) fn panel(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, tile: TileId) {
+        if !self.is_open {
+            return;
+        }
+        let now_s = shown.now_s;
+        let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         let panel = Panel::left("tuner").frame(frame).resizable(true);
-        let index = self.floor.geometry.index(self.selection.tile()).unwrap_or(0);
-        let actuator = self.floor.actuators.get(index).copied().flatten();
+        let index = shown.floor.geometry.index(tile).unwrap_or(0);
+        let actuator = shown.floor.actuators.get(index).copied().flatten();
         let place = Place {
-            name: format!("{}, {}", self.selection.tile().column, self.selection.tile().row),
+            name: format!("{}, {}", tile.column, tile.row),
             full_scale: actuator.map_or(f32::INFINITY, |actuator| actuator.full_scale.0),
         };
         let wishes = panel
             .default_size(332.0)
             .size_range(290.0..=520.0)
-            .show(ui, |ui| tuner.show(ui, &theme, now_s, &place))
+            .show(ui, |ui| self.show(ui, theme, now_s, &place))
             .inner;
         if let Some(index) = wishes.choose {
-            tuner.choose(index);
+            self.choose(index);
         }
         if wishes.changed || wishes.choose.is_some() {
-            tuner.changed_s = Some(now_s);
+            self.changed_s = Some(now_s);
         }
-        let rested = tuner.changed_s.is_some_and(|changed| now_s - changed >= RESTS_S) && tuner.by_itself;
+        let rested = self.changed_s.is_some_and(|changed| now_s - changed >= RESTS_S) && self.by_itself;
         if wishes.play || rested {
-            tuner.changed_s = None;
-            tuner.played_s = Some(now_s);
-            let (effect, gesture) = (Arc::clone(&tuner.effect), Gesture::usual(&tuner.effect));
-            self.command(PreviewCommand::Feel { effect, gesture, tile: index });
+            self.changed_s = None;
+            self.played_s = Some(now_s);
+            let (effect, gesture) = (Arc::clone(&self.effect), Gesture::usual(&self.effect));
+            shown.command(PreviewCommand::Feel { effect, gesture, tile: index });
         }
         if wishes.save {
-            let about = tuner.about().to_owned();
-            let named = NamedEffect { name: tuner.name.clone(), about, effect: Arc::clone(&tuner.effect) };
+            let about = self.about().to_owned();
+            let named = NamedEffect { name: self.name.clone(), about, effect: Arc::clone(&self.effect) };
             let text = write_named_effect(&named);
-            self.command(PreviewCommand::SaveEffect { name: named.name.clone(), text });
+            shown.command(PreviewCommand::SaveEffect { name: named.name.clone(), text });
             // From now on, the list contains it.
-            match tuner.effects.iter().position(|known| known.name == named.name) {
+            match self.effects.iter().position(|known| known.name == named.name) {
                 Some(index) => {
-                    tuner.effects[index] = named;
-                    tuner.chosen = index;
+                    self.effects[index] = named;
+                    self.chosen = index;
                 }
                 None => {
-                    let index = tuner.effects.partition_point(|known| known.name < named.name);
-                    tuner.effects.insert(index, named);
-                    tuner.chosen = index;
+                    let index = self.effects.partition_point(|known| known.name < named.name);
+                    self.effects.insert(index, named);
+                    self.chosen = index;
                 }
             }
         }
-        self.tuner = Some(tuner);
     }
 }

@@ -20,14 +20,14 @@ const GRIP: f32 = 11.0;
 const KEY_N: f32 = 1.0;
 
 /// One line.
-pub(super) struct Trace {
+pub(super) struct PlotLine {
     pub(super) name: String,
     pub(super) colour: Color32,
     pub(super) points: Vec<[f64; 2]>,
 }
 
 /// Both thresholds of a control, each with its force.
-pub(super) type Lines = [(Threshold, Newtons); 2];
+pub(super) type ThresholdPair = [(Threshold, Newtons); 2];
 
 /// The content of a plot.
 pub(super) struct Chart<'a> {
@@ -35,16 +35,16 @@ pub(super) struct Chart<'a> {
     pub(super) unit: Unit,
     pub(super) span_s: f64,
     pub(super) height: f32,
-    pub(super) traces: Vec<Trace>,
+    pub(super) traces: Vec<PlotLine>,
     /// The control with its thresholds and their forces, and whether they can be set.
-    pub(super) thresholds: Option<(&'a WidgetId, Lines, bool)>,
+    pub(super) thresholds: Option<(&'a WidgetId, ThresholdPair, bool)>,
     /// The thresholds without the present drag: an axis that followed the drag would move away from the pointer.
     pub(super) at_rest: Option<[Newtons; 2]>,
 }
 
 /// The drag of a threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Drag {
+pub(super) enum ThresholdDrag {
     /// In progress.
     To(Threshold, Newtons),
     /// Released there.
@@ -53,7 +53,7 @@ pub(super) enum Drag {
 
 impl Chart<'_> {
     /// Draws the plot; returns the drag of a threshold, if any.
-    pub(super) fn show(self, ui: &mut Ui) -> Option<Drag> {
+    pub(super) fn show(self, ui: &mut Ui) -> Option<ThresholdDrag> {
         let Self { theme, unit, span_s, height, traces, thresholds, at_rest } = self;
         let lines = at_rest.into_iter().flatten().map(|force| f64::from(force.0));
         let (low, high) = bounds(unit, traces.iter().flat_map(|trace| &trace.points).map(|it| it[1]), lines);
@@ -148,7 +148,7 @@ impl Grip<'_> {
         frame: Rect,
         y: f32,
         force_at: impl Fn(f32) -> Newtons,
-    ) -> Option<Drag> {
+    ) -> Option<ThresholdDrag> {
         let Self { id, which, force, can_set } = self;
         let area = Rect::from_x_y_ranges(frame.x_range(), (y - 0.5 * GRIP)..=(y + 0.5 * GRIP));
         let sense = if can_set { Sense::drag() } else { Sense::hover() };
@@ -177,10 +177,10 @@ impl Grip<'_> {
             ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
         }
         if let Some(pointer) = pointer.filter(|_| node.dragged()) {
-            return Some(Drag::To(which, force_at(pointer.y)));
+            return Some(ThresholdDrag::To(which, force_at(pointer.y)));
         }
         if node.drag_stopped() {
-            return Some(Drag::Done(which, force));
+            return Some(ThresholdDrag::Done(which, force));
         }
         if !node.has_focus() {
             return None;
@@ -190,12 +190,12 @@ impl Grip<'_> {
         let by = if ui.input(|i| i.modifiers.shift) { 10.0 * KEY_N } else { KEY_N };
         let pressed = |key| if ui.input(|i| i.key_pressed(key)) { by } else { 0.0 };
         let by = pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
-        (by != 0.0).then(|| Drag::Done(which, Newtons((force.0 + by).clamp(which.least(), 1000.0))))
+        (by != 0.0).then(|| ThresholdDrag::Done(which, Newtons((force.0 + by).clamp(which.least(), 1000.0))))
     }
 }
 
 /// The text for a screen reader: the name of a line and its latest figure.
-fn told(trace: &Trace, unit: Unit) -> String {
+fn told(trace: &PlotLine, unit: Unit) -> String {
     match trace.points.last() {
         Some([_, figure]) if figure.is_finite() => format!("{} {}", trace.name, unit.figure(*figure)),
         _ => format!("{}, nothing", trace.name),

@@ -19,14 +19,14 @@ const MOST: usize = 1900;
 
 /// The state of the floor in one frame of the window.
 #[derive(Clone, Debug)]
-pub(super) struct Moment {
+pub(super) struct PlotMoment {
     pub(super) at: Instant,
     layout: Arc<Layout>,
     /// In tile-index order.
     pub(super) tiles: Vec<Tile>,
-    pub(super) feet: Vec<Foot>,
+    pub(super) feet: Vec<PlotFoot>,
     /// In the layout's order.
-    controls: Vec<Control>,
+    controls: Vec<PlotControl>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,7 +36,7 @@ pub(super) struct Tile {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Foot {
+pub(super) struct PlotFoot {
     pub(super) contact: ContactId,
     pub(super) force: f32,
     pub(super) at: Vec2,
@@ -44,7 +44,7 @@ pub(super) struct Foot {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Control {
+pub(super) struct PlotControl {
     /// Force of the heaviest foot on it, in newtons.
     pub(super) force: f32,
     pub(super) values: [Option<f32>; 2],
@@ -52,11 +52,11 @@ pub(super) struct Control {
 
 /// The index of a control in the layout: looked up once for all moments with the same layout.
 #[derive(Debug, Default)]
-pub(super) struct Place(Option<(Arc<Layout>, Option<usize>)>);
+pub(super) struct ControlIndex(Option<(Arc<Layout>, Option<usize>)>);
 
-impl Place {
+impl ControlIndex {
     /// The control called `id` in a moment; every call must use the same id.
-    pub(super) fn control<'m>(&mut self, moment: &'m Moment, id: &WidgetId) -> Option<&'m Control> {
+    pub(super) fn control<'m>(&mut self, moment: &'m PlotMoment, id: &WidgetId) -> Option<&'m PlotControl> {
         let known = self.0.as_ref().filter(|(layout, _)| Arc::ptr_eq(layout, &moment.layout));
         let index = known.map_or_else(|| moment.layout.widget_index(id.as_str()), |(_, index)| *index);
         if known.is_none() {
@@ -66,7 +66,7 @@ impl Place {
     }
 }
 
-impl Moment {
+impl PlotMoment {
     fn fill(&mut self, snapshot: &Snapshot, layout: &Arc<Layout>) {
         self.at = snapshot.at;
         self.layout = Arc::clone(layout);
@@ -74,14 +74,14 @@ impl Moment {
         self.tiles
             .extend(snapshot.tiles.iter().map(|tile| Tile { force: tile.force.0, sensors: tile.forces }));
         self.feet.clear();
-        self.feet.extend(snapshot.contacts.iter().map(|contact| Foot {
+        self.feet.extend(snapshot.contacts.iter().map(|contact| PlotFoot {
             contact: contact.id,
             force: contact.force.0,
             at: contact.centroid,
             leads: snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == contact.id),
         }));
         self.controls.clear();
-        self.controls.extend(snapshot.widgets.iter().map(|state| Control {
+        self.controls.extend(snapshot.widgets.iter().map(|state| PlotControl {
             force: 0.0,
             values: match state.value {
                 None => [None; 2],
@@ -102,11 +102,11 @@ impl Moment {
 
 /// The latest moments, oldest first.
 #[derive(Default)]
-pub(super) struct History {
-    moments: VecDeque<Moment>,
+pub(super) struct PlotHistory {
+    moments: VecDeque<PlotMoment>,
 }
 
-impl History {
+impl PlotHistory {
     /// Records a frame's state. Skips a frame with the same time as the last; an earlier one, as from a repeated
     /// recording, clears the history.
     pub(super) fn note(&mut self, snapshot: &Snapshot, layout: &Arc<Layout>) {
@@ -115,12 +115,12 @@ impl History {
             Some(last) if last.at > snapshot.at => self.moments.clear(),
             _ => {}
         }
-        let is_old = |moment: &Moment| snapshot.at.since(moment.at).as_secs_f64() > LONGEST_S;
+        let is_old = |moment: &PlotMoment| snapshot.at.since(moment.at).as_secs_f64() > LONGEST_S;
         let mut spare = None;
         while self.moments.len() >= MOST || self.moments.front().is_some_and(is_old) {
             spare = self.moments.pop_front();
         }
-        let mut moment = spare.unwrap_or_else(|| Moment {
+        let mut moment = spare.unwrap_or_else(|| PlotMoment {
             at: snapshot.at,
             layout: Arc::clone(layout),
             tiles: Vec::new(),
@@ -137,7 +137,7 @@ impl History {
     }
 
     /// The moments of the last `span_s` seconds, and the one before them, oldest first.
-    pub(super) fn last(&self, span_s: f64) -> impl Iterator<Item = &Moment> {
+    pub(super) fn last(&self, span_s: f64) -> impl Iterator<Item = &PlotMoment> {
         let end = self.end().unwrap_or_default();
         let from = self.moments.partition_point(|moment| end.since(moment.at).as_secs_f64() > span_s);
         self.moments.range(from.saturating_sub(1)..)

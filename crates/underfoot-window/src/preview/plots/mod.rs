@@ -12,7 +12,7 @@ pub(in crate::preview) use series::Series;
 
 use std::sync::Arc;
 
-use history::{History, Place};
+use history::{ControlIndex, PlotHistory};
 use series::Unit;
 
 use super::design::Threshold;
@@ -42,7 +42,7 @@ pub(in crate::preview) struct Plots {
     span_s: f64,
     /// Whether the display is frozen.
     is_held: bool,
-    history: History,
+    history: PlotHistory,
     /// Time of the last new moment, on the window's clock.
     fed_s: f64,
     /// The search text of the list of everything.
@@ -60,7 +60,7 @@ impl Default for Plots {
             chosen: vec![Series::Selected],
             span_s: 10.0,
             is_held: false,
-            history: History::default(),
+            history: PlotHistory::default(),
             fed_s: f64::NEG_INFINITY,
             wanted: String::new(),
             dragged: None,
@@ -108,7 +108,7 @@ impl Plots {
     /// The points of a line, in seconds relative to the latest moment; gaps are `NaN`.
     fn points(&self, series: &Series, geometry: &Geometry, selected: Option<&WidgetId>) -> Vec<[f64; 2]> {
         let Some(end) = self.history.end() else { return Vec::new() };
-        let (mut points, mut place) = (Vec::<[f64; 2]>::new(), Place::default());
+        let (mut points, mut place) = (Vec::<[f64; 2]>::new(), ControlIndex::default());
         for moment in self.history.last(self.span_s) {
             let at_s = -end.since(moment.at).as_secs_f64();
             let figure = series.at(moment, geometry, selected, &mut place).unwrap_or(f64::NAN);
@@ -133,7 +133,7 @@ impl Plots {
             && now_s - self.fed_s < SILENCE_S
             && !self.is_held
             && self.chosen.iter().any(|series| {
-                let mut place = Place::default();
+                let mut place = ControlIndex::default();
                 let moments = self.history.last(self.span_s);
                 let figures = moments.map(|moment| series.at(moment, geometry, selected, &mut place));
                 differ(figures, series.unit())
@@ -188,7 +188,7 @@ mod tests {
         let rounded: Vec<_> = points.iter().map(|[at, y]| ((at * 1e3).round(), y.round())).collect();
         assert_eq!(rounded, [(-2032.0, 0.0), (-2016.0, 90.0), (-2000.0, 0.0), (-50.0, 0.0), (0.0, 50.0)]);
         assert_eq!(plots.points(&Series::Selected, &geometry, Some(&home())), points);
-        let foot = plots.points(&Series::Foot(None, series::Part::East), &geometry, None);
+        let foot = plots.points(&Series::Foot(None, series::FootQuantity::East), &geometry, None);
         assert!(foot[0][1].is_nan() && foot[1][1].is_finite(), "{foot:?}");
         assert_eq!(
             plots

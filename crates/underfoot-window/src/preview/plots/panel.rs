@@ -1,7 +1,5 @@
 //! The plots under the floor, and the list from which their lines are chosen.
 
-use std::sync::Arc;
-
 use eframe::egui::accesskit::Role;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
@@ -9,11 +7,12 @@ use eframe::egui::{
     Sense, TextEdit, Ui, WidgetInfo, vec2,
 };
 
-use super::chart::{Chart, Drag, Lines, Trace};
+use super::chart::{Chart, PlotLine, ThresholdDrag, ThresholdPair};
 use super::series::{Series, Unit};
-use super::{MOST, SPANS};
-use crate::preview::app::App;
-use crate::preview::design::Threshold;
+use super::{MOST, Plots, SPANS};
+use crate::preview::design::{Designer, Threshold, set_threshold};
+use crate::preview::selection::Selection;
+use crate::preview::shown::ShownFloor;
 use crate::preview::style::{panel_frame, quiet, toggle};
 use underfoot::units::Newtons;
 use underfoot::widget::WidgetId;
@@ -29,44 +28,51 @@ enum Wish {
     Close,
 }
 
-impl App {
-    /// Shows the plots, if they are open.
-    pub(in crate::preview) fn plots_panel(&mut self, ui: &mut Ui) {
-        if !self.plots.is_open {
+impl Plots {
+    /// Shows the plots, if they are open. A threshold that the user drags in them is set by `designer`.
+    pub(in crate::preview) fn show(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        shown: &ShownFloor,
+        selection: &Selection,
+        designer: Option<&mut Designer>,
+    ) {
+        if !self.is_open {
             return;
         }
-        let theme = self.theme;
-        let frame = panel_frame(&theme, Margin { left: 14, right: 14, top: 6, bottom: 6 });
+        let selected = selection.control_of(shown.layout()).map(|widget| widget.id.clone());
+        let frame = panel_frame(theme, Margin { left: 14, right: 14, top: 6, bottom: 6 });
         let most = (0.6 * ui.available_height()).max(121.0);
         let panel = Panel::bottom("plots").frame(frame).resizable(true);
         panel.default_size(210.0).size_range(120.0..=most).show(ui, |ui| {
-            self.plots_strip(ui, &theme);
-            self.charts(ui, &theme);
+            self.strip(ui, theme, shown, selected.as_ref());
+            self.charts(ui, theme, shown, selected, designer);
         });
     }
 
     /// Opens or closes the plots on P, unless a text field has the focus.
-    pub(in crate::preview) fn handle_plots_key(&mut self, ui: &Ui) {
-        let is_free = !self.is_designing() && ui.ctx().memory(|memory| memory.focused().is_none());
+    pub(in crate::preview) fn handle_key(&mut self, ui: &Ui) {
+        let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
         if is_free && ui.input(|i| i.key_pressed(Key::P) && i.modifiers.is_none()) {
-            self.plots.is_open = !self.plots.is_open;
+            self.is_open = !self.is_open;
         }
     }
 
     /// Shows the chosen lines and the time span.
-    fn plots_strip(&mut self, ui: &mut Ui, theme: &Theme) {
+    fn strip(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, selected: Option<&WidgetId>) {
         let mut wish = None;
         ui.horizontal(|ui| {
             ui.set_min_height(24.0);
-            wish = self.everything(ui, theme);
+            wish = self.everything(ui, theme, shown, selected);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let close = ui.small_button("x");
                 close.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Close plots"));
                 if close.on_hover_text("Close the plots; P does the same").clicked() {
                     wish = Some(Wish::Close);
                 }
-                toggle(ui, &mut self.plots.is_held, "Freeze", "Let what is seen stay");
-                let span = &mut self.plots.span_s;
+                toggle(ui, &mut self.is_held, "Freeze", "Let what is seen stay");
+                let span = &mut self.span_s;
                 let text = |span: f64| format!("{span:.0} s");
                 let menu = ComboBox::from_id_salt("span").selected_text(text(*span)).width(56.0);
                 let menu = menu.show_ui(ui, |ui| {
@@ -77,40 +83,43 @@ impl App {
                 menu.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Seconds plotted"));
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     // Text that does not fit is cut off, so that buttons keep their places.
-                    let selected = self.selection.control_of(&self.messages.layout).map(|widget| &widget.id);
-                    for (series, colour) in self.plots.chosen.iter().zip(colours(theme)) {
+                    for (series, colour) in self.chosen.iter().zip(colours(theme)) {
                         if chip(ui, theme, &series.name(selected), colour) {
                             wish = Some(Wish::Turn(series.clone()));
                         }
                     }
-                    if let Some(told) = &self.plots.told {
+                    if let Some(told) = &self.told {
                         ui.add(Label::new(quiet(theme, told)).truncate());
                     }
                 });
             });
         });
         match wish {
-            Some(Wish::Turn(series)) => self.plots.turn(series),
-            Some(Wish::Close) => self.plots.is_open = false,
+            Some(Wish::Turn(series)) => self.turn(series),
+            Some(Wish::Close) => self.is_open = false,
             None => {}
         }
     }
 
     /// A menu of everything that can be plotted, with a search field; it stays open after a choice.
-    fn everything(&mut self, ui: &mut Ui, theme: &Theme) -> Option<Wish> {
+    fn everything(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        shown: &ShownFloor,
+        selected: Option<&WidgetId>,
+    ) -> Option<Wish> {
         let mut wish = None;
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         MenuButton::new("Plot ...").config(config).ui(ui, |ui| {
             ui.set_width(250.0);
-            let field = TextEdit::singleline(&mut self.plots.wanted)
-                .hint_text("Search: tile 2, 3")
-                .desired_width(240.0);
+            let field =
+                TextEdit::singleline(&mut self.wanted).hint_text("Search: tile 2, 3").desired_width(240.0);
             let field = ui.add(field);
             field.widget_info(|| WidgetInfo::labeled(Role::SearchInput, true, "Search what to plot"));
-            let contacts = self.plots.history.contacts();
-            let all = Series::all(&self.messages.layout, &self.floor, &contacts);
-            let selected = self.selection.control_of(&self.messages.layout).map(|widget| &widget.id);
-            let wanted = self.plots.wanted.to_lowercase();
+            let contacts = self.history.contacts();
+            let all = Series::all(shown.layout(), &shown.floor, &contacts);
+            let wanted = self.wanted.to_lowercase();
             let found: Vec<(Series, String)> = all
                 .into_iter()
                 .map(|series| (series.name(selected), series))
@@ -124,87 +133,93 @@ impl App {
                     ui.label(quiet(theme, "nothing with that"));
                 }
                 for (series, name) in lines.filter_map(|line| found.get(line)) {
-                    let is_chosen = self.plots.chosen.contains(series);
+                    let is_chosen = self.chosen.contains(series);
                     if ui.selectable_label(is_chosen, name).clicked() {
                         wish = Some(Wish::Turn(series.clone()));
                     }
                 }
             });
-            ui.label(quiet(theme, format!("{} of {MOST} at once", self.plots.chosen.len())).size(12.0));
+            ui.label(quiet(theme, format!("{} of {MOST} at once", self.chosen.len())).size(12.0));
         });
         wish
     }
 
-    fn charts(&mut self, ui: &mut Ui, theme: &Theme) {
-        let selected = self.selection.control_of(&self.messages.layout).map(|widget| widget.id.clone());
-        let units: Vec<Unit> = Unit::ALL
-            .into_iter()
-            .filter(|unit| self.plots.chosen.iter().any(|one| one.unit() == *unit))
-            .collect();
+    fn charts(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        shown: &ShownFloor,
+        selected: Option<WidgetId>,
+        designer: Option<&mut Designer>,
+    ) {
+        let units: Vec<Unit> =
+            Unit::ALL.into_iter().filter(|unit| self.chosen.iter().any(|one| one.unit() == *unit)).collect();
         if units.is_empty() {
             ui.centered_and_justified(|ui| ui.label(quiet(theme, "Choose what to plot.")));
             return;
         }
         ui.spacing_mut().item_spacing.y = 4.0;
         let height = (ui.available_height() - 4.0 * (units.len() - 1) as f32) / units.len() as f32;
-        let thresholds = selected.as_ref().and_then(|id| self.thresholds_at(id));
+        let thresholds = selected.as_ref().and_then(|id| thresholds_at(shown.layout(), id));
         let mut drag = None;
         for unit in units {
-            let of = self.plots.chosen.iter().zip(colours(theme)).filter(|(series, _)| series.unit() == unit);
-            let traces = of.map(|(series, colour)| Trace {
+            let of = self.chosen.iter().zip(colours(theme)).filter(|(series, _)| series.unit() == unit);
+            let traces = of.map(|(series, colour)| PlotLine {
                 name: series.name(selected.as_ref()),
                 colour,
-                points: self.plots.points(series, &self.floor.geometry, selected.as_ref()),
+                points: self.points(series, &shown.floor.geometry, selected.as_ref()),
             });
             let traces = traces.collect();
             let lines = thresholds.filter(|_| unit == Unit::Newtons);
             let at_rest = lines.map(|lines| lines.map(|(_, force)| force));
-            let can_set = self.designer.is_some();
+            let can_set = designer.is_some();
             let lines = selected.as_ref().zip(lines).map(|(id, lines)| (id, self.dragged(lines), can_set));
-            let span_s = self.plots.span_s;
+            let span_s = self.span_s;
             let chart = Chart { theme, unit, span_s, height, traces, thresholds: lines, at_rest };
             drag = chart.show(ui).or(drag);
         }
         if let (Some(drag), Some(id)) = (drag, selected) {
-            self.drag_threshold(&id, drag);
+            self.drag_threshold(&id, drag, shown, designer);
         }
-    }
-
-    /// The thresholds of a control.
-    fn thresholds_at(&self, id: &WidgetId) -> Option<Lines> {
-        let layout = &self.messages.layout;
-        let now = layout.widgets.get(layout.widget_index(id.as_str())?)?.behaviour.thresholds();
-        Some([(Threshold::Press, now.press), (Threshold::Release, now.release)])
     }
 
     /// The thresholds, with the dragged one at its present force.
     fn dragged(&self, lines: [(Threshold, Newtons); 2]) -> [(Threshold, Newtons); 2] {
-        lines.map(|(which, force)| match self.plots.dragged {
+        lines.map(|(which, force)| match self.dragged {
             Some((dragged, to)) if dragged == which => (which, to),
             _ => (which, force),
         })
     }
 
     /// Sets the threshold at the end of the drag, so that a drag is one undo step.
-    fn drag_threshold(&mut self, id: &WidgetId, drag: Drag) {
+    fn drag_threshold(
+        &mut self,
+        id: &WidgetId,
+        drag: ThresholdDrag,
+        shown: &ShownFloor,
+        designer: Option<&mut Designer>,
+    ) {
         match drag {
-            Drag::To(which, force) => self.plots.dragged = Some((which, force)),
-            Drag::Done(which, force) => {
-                self.plots.dragged = None;
-                let told = self.set_threshold(id, which, force);
-                self.plots.told = Some(told);
+            ThresholdDrag::To(which, force) => self.dragged = Some((which, force)),
+            ThresholdDrag::Done(which, force) => {
+                self.dragged = None;
+                self.told = Some(set_threshold(designer, shown, id, which, force));
             }
         }
     }
 
-    /// Plots the force on a control, and its value.
-    pub(in crate::preview) fn plot_control(&mut self, id: &WidgetId) {
-        let layout = Arc::clone(&self.messages.layout);
+    /// Plots the force on a control of `layout`, and its value.
+    pub(in crate::preview) fn add_control(&mut self, layout: &underfoot::layout::Layout, id: &WidgetId) {
         let widget = layout.widget_index(id.as_str()).and_then(|index| layout.widgets.get(index));
         let holds = widget.is_some_and(|widget| widget.behaviour.initial().is_some());
-        self.plots
-            .add([Series::Force(id.clone())].into_iter().chain(holds.then(|| Series::Value(id.clone()))));
+        self.add([Series::Force(id.clone())].into_iter().chain(holds.then(|| Series::Value(id.clone()))));
     }
+}
+
+/// The thresholds of a control of `layout`.
+fn thresholds_at(layout: &underfoot::layout::Layout, id: &WidgetId) -> Option<ThresholdPair> {
+    let now = layout.widgets.get(layout.widget_index(id.as_str())?)?.behaviour.thresholds();
+    Some([(Threshold::Press, now.press), (Threshold::Release, now.release)])
 }
 
 /// Shows a line's name with its colour; returns whether to remove the line.

@@ -1,6 +1,6 @@
 //! The quantities that can be plotted: names, units, and the figure at one moment.
 
-use super::history::{Moment, Place};
+use super::history::{ControlIndex, PlotMoment};
 use underfoot::floor::{Corner, Floor, Geometry, TileId};
 use underfoot::layout::Layout;
 use underfoot::sense::ContactId;
@@ -22,12 +22,12 @@ pub(in crate::preview) enum Series {
     /// One of its sensors.
     Sensor(TileId, Corner),
     /// A foot: that contact; for `None` the working foot, or the heaviest one if none works.
-    Foot(Option<ContactId>, Part),
+    Foot(Option<ContactId>, FootQuantity),
 }
 
 /// The quantity of a foot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::preview) enum Part {
+pub(in crate::preview) enum FootQuantity {
     Force,
     East,
     North,
@@ -72,7 +72,7 @@ impl Unit {
     }
 }
 
-impl Part {
+impl FootQuantity {
     const ALL: [Self; 3] = [Self::Force, Self::East, Self::North];
 
     fn name(self) -> &'static str {
@@ -88,7 +88,7 @@ impl Series {
     pub(super) fn unit(&self) -> Unit {
         match self {
             Self::Value(_) | Self::SecondValue(_) => Unit::Value,
-            Self::Foot(_, Part::East | Part::North) => Unit::Metres,
+            Self::Foot(_, FootQuantity::East | FootQuantity::North) => Unit::Metres,
             _ => Unit::Newtons,
         }
     }
@@ -116,10 +116,10 @@ impl Series {
     /// line alone.
     pub(super) fn at(
         &self,
-        moment: &Moment,
+        moment: &PlotMoment,
         geometry: &Geometry,
         selected: Option<&WidgetId>,
-        place: &mut Place,
+        place: &mut ControlIndex,
     ) -> Option<f64> {
         let figure = match self {
             Self::Selected => place.control(moment, selected?)?.force,
@@ -138,10 +138,10 @@ impl Series {
                 };
                 match (part, foot) {
                     // Without a foot, the force is zero and the place is undefined.
-                    (Part::Force, None) => 0.0,
-                    (Part::Force, Some(foot)) => foot.force,
-                    (Part::East, foot) => foot?.at.x,
-                    (Part::North, foot) => foot?.at.y,
+                    (FootQuantity::Force, None) => 0.0,
+                    (FootQuantity::Force, Some(foot)) => foot.force,
+                    (FootQuantity::East, foot) => foot?.at.x,
+                    (FootQuantity::North, foot) => foot?.at.y,
                 }
             }
         };
@@ -152,7 +152,7 @@ impl Series {
     pub(super) fn all(layout: &Layout, floor: &Floor, contacts: &[ContactId]) -> Vec<Self> {
         let mut all = vec![Self::Selected];
         let feet = std::iter::once(None).chain(contacts.iter().copied().map(Some));
-        all.extend(feet.flat_map(|foot| Part::ALL.map(|part| Self::Foot(foot, part))));
+        all.extend(feet.flat_map(|foot| FootQuantity::ALL.map(|part| Self::Foot(foot, part))));
         for widget in &layout.widgets {
             all.push(Self::Force(widget.id.clone()));
             if widget.behaviour.initial().is_some() {

@@ -20,7 +20,9 @@ use glam::{DVec2, Vec2};
 
 use self::awake::Awake;
 use self::placement::{Placement, usual_file};
-use super::app::App;
+use super::appearance::Appearance;
+use super::messages::WindowMessages;
+use super::shown::ShownFloor;
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
 use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
@@ -259,75 +261,75 @@ fn help(ui: &Ui, picture: Rect) {
     }
 }
 
-impl App {
+impl Projection {
     /// Shows the projector's window while it is open; F11 opens and closes it.
-    pub(super) fn projection_window(&mut self, ui: &Ui) {
+    pub(super) fn show(&mut self, ui: &Ui, shown: &mut ShownFloor, appearance: &Appearance) {
         if ui.input(|i| i.key_pressed(Key::F11)) {
-            self.projection.toggle();
+            self.toggle();
             ui.ctx().request_repaint();
             // On systems without several windows, the same key event would close it again.
             return;
         }
-        self.stay_awake();
-        if !self.projection.is_open {
+        self.stay_awake(&mut shown.messages);
+        if !self.is_open {
             return;
         }
         let ctx = ui.ctx().clone();
-        let window = self.projection.window();
-        ctx.show_viewport_immediate(ViewportId::from_hash_of("projection"), window, |ui, _| self.project(ui));
+        let window = self.window();
+        ctx.show_viewport_immediate(ViewportId::from_hash_of("projection"), window, |ui, _| {
+            self.project(ui, shown, &appearance.projected());
+        });
         // On a computer with one screen, the projection covers the window that draws it.
         ctx.send_viewport_cmd_to(ViewportId::ROOT, ViewportCommand::RequestPaintWhileHidden);
     }
 
-    fn project(&mut self, ui: &mut Ui) {
+    fn project(&mut self, ui: &mut Ui, shown: &mut ShownFloor, theme: &Theme) {
         if ui.input(|i| i.viewport().close_requested()) {
-            self.projection.toggle();
+            self.toggle();
             return;
         }
         let picture = ui.available_rect_before_wrap();
         let node = ui.interact(picture, ui.scope_id().with("projected floor"), Sense::hover());
         node.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Projected floor"));
         let size = Vec2::new(picture.width(), picture.height()).max(Vec2::ONE);
-        let floor = self.floor.geometry.bounds();
+        let floor = shown.floor.geometry.bounds();
         let shape = floor.size().x / floor.size().y;
         let fit = Placement::fit(shape, size.x / size.y);
-        if !self.projection.is_set {
-            self.projection.placement = Some(fit);
+        if !self.is_set {
+            self.placement = Some(fit);
         }
-        let changed = self.projection.handle_keys(ui, size, shape);
-        let theme = self.appearance.projected();
+        let changed = self.handle_keys(ui, size, shape);
         ui.painter().rect_filled(picture, 0.0, color(theme.canvas));
-        self.draw_projected(ui, &theme, picture, size);
-        let moved = self.projection.adjust(ui, &theme, picture, size);
-        self.projection.is_set = self.projection.placement != Some(fit);
-        if self.projection.adjusting.is_none() {
+        self.draw(ui, theme, shown, picture, size);
+        let moved = self.adjust(ui, theme, picture, size);
+        self.is_set = self.placement != Some(fit);
+        if self.adjusting.is_none() {
             ui.ctx().set_cursor_icon(CursorIcon::None);
         }
         if changed || moved {
-            self.keep_placement();
+            self.keep_placement(&mut shown.messages);
         }
     }
 
-    fn draw_projected(&mut self, ui: &Ui, theme: &Theme, picture: Rect, size: Vec2) {
-        let floor = self.floor.geometry.bounds();
-        let homography =
-            self.projection.placement.and_then(|placement| placement.floor_to_picture(floor, size));
+    fn draw(&mut self, ui: &Ui, theme: &Theme, shown: &ShownFloor, picture: Rect, size: Vec2) {
+        let floor = shown.floor.geometry.bounds();
+        let homography = self.placement.and_then(|placement| placement.floor_to_picture(floor, size));
         let Some(homography) = homography else { return };
         let view = View {
             show: Show::PROJECTOR,
-            ..View::new(&self.floor.geometry, &self.messages.layout, self.snapshots.output_buffer(), theme)
+            ..View::new(&shown.floor.geometry, shown.layout(), shown.snapshot(), theme)
         };
-        scene::draw(&mut self.projection.scene, &view);
+        scene::draw(&mut self.scene, &view);
         let map = ScreenFromFloor::fit(floor, picture);
         let onto = |at: Pos2| {
             let place = homography.map(map.floor(at).as_dvec2());
             picture.min + vec2(place.x as f32, place.y as f32)
         };
-        let Projection { palette, scene, .. } = &mut self.projection;
+        let Self { palette, scene, .. } = self;
         egui_painter::paint_warped(&ui.painter_at(picture), palette, scene, map, onto);
         // For tests and screen readers: the place of each control on the picture.
-        let snapshot = self.snapshots.output_buffer();
-        for (index, widget) in self.messages.layout.widgets.iter().enumerate() {
+        let snapshot = shown.snapshot();
+        for (index, widget) in shown.layout().widgets.iter().enumerate() {
             if snapshot.widgets.get(index).is_some_and(|state| state.hidden) {
                 continue;
             }
@@ -348,25 +350,23 @@ impl App {
     }
 
     /// While feet use a projected floor, keys and mouse are idle, so the screen would go dark.
-    fn stay_awake(&mut self) {
-        let wanted = self.projection.is_open && self.projection.keeps_awake;
-        let awake = &mut self.projection.awake;
+    fn stay_awake(&mut self, messages: &mut WindowMessages) {
+        let wanted = self.is_open && self.keeps_awake;
+        let awake = &mut self.awake;
         match awake {
             None if wanted => *awake = Some(Awake::begin()),
             Some(_) if !wanted => *awake = None,
             _ => {}
         }
         if let Some(why) = awake.as_ref().and_then(Awake::failure) {
-            self.messages.note(format!("The screen may go dark while the floor is projected: {why}"));
+            messages.note(format!("The screen may go dark while the floor is projected: {why}"));
         }
     }
 
-    fn keep_placement(&mut self) {
-        let (Some(placement), Some(file)) = (self.projection.placement, &self.projection.file) else {
-            return;
-        };
+    fn keep_placement(&self, messages: &mut WindowMessages) {
+        let (Some(placement), Some(file)) = (self.placement, &self.file) else { return };
         if let Err(wrong) = placement.save(file) {
-            self.messages.note(format!("The corners are not remembered: {wrong}"));
+            messages.note(format!("The corners are not remembered: {wrong}"));
         }
     }
 }

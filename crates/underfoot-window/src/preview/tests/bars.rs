@@ -112,10 +112,10 @@ fn layers_are_chosen_in_a_menu_that_stays_open() {
     room.run(3);
     room.window.get_by_role_and_label(Role::CheckBox, "Uncertainty").click();
     room.run(3);
-    assert!(room.window.state().show.uncertainty);
+    assert!(room.window.state().view.show.uncertainty);
     room.window.get_by_label("All").click();
     room.run(3);
-    let mut show = room.window.state().show;
+    let mut show = room.window.state().view.show;
     assert!(Show::LAYERS.iter().all(|(_, layer)| *layer(&mut show)), "{show:?}");
     for (name, _) in Show::LAYERS {
         let tick = room.window.get_by_role_and_label(Role::CheckBox, name);
@@ -123,7 +123,7 @@ fn layers_are_chosen_in_a_menu_that_stays_open() {
     }
     room.window.get_by_label("Usual").click();
     room.run(3);
-    assert_eq!(room.window.state().show, Show::WINDOW);
+    assert_eq!(room.window.state().view.show, Show::WINDOW);
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn colours_and_the_side_panel_are_changed_by_buttons() {
     for (name, theme) in Theme::NAMED {
         room.window.get_by_label(&format!("Window: {name}")).click();
         room.run(3);
-        assert_eq!(room.window.state().theme, theme, "{name}");
+        assert_eq!(room.window.state().appearance.theme(), theme, "{name}");
     }
     room.window.get_by_label("Projected: High contrast").click();
     room.run(3);

@@ -95,7 +95,7 @@ impl Room {
     fn recorded(playback: Box<dyn Playback>) -> Self {
         let mut room = Self::of(false, 1280.0, 800.0);
         room.window.state_mut().time_line = Some(TimeLine::new(playback));
-        room.window.state_mut().presses = super::presses::Presses::recorded();
+        room.window.state_mut().presses = super::presses::PressLog::recorded();
         room.run(2);
         room
     }

@@ -8,7 +8,7 @@ use crate::preview::sample::step_on;
 
 /// A press of 90 N on `home` for a tenth of a second, at 60 frames a second, starting at `at_ms`.
 fn press_home(room: &mut Room, at_ms: u64) {
-    let layout = Arc::clone(&room.window.state().messages.layout);
+    let layout = Arc::clone(&room.window.state().shown.messages.layout);
     let home = layout.widgets[layout.widget_index("home").unwrap()].area.centre();
     for frame in 0..12_u64 {
         let mut snapshot = at_rest(&layout);
@@ -47,11 +47,11 @@ fn plots_are_opened_by_button_and_key_and_show_what_just_happened() {
     room.run(3);
     // The press was before the plot was opened.
     assert!(room.says("Plot in N: selected: home 0.0 N"));
-    let geometry = room.window.state().floor.geometry;
+    let geometry = room.window.state().shown.floor.geometry;
     let selected = WidgetId::new("home");
     let moves = |room: &Room| {
         let app = room.window.state();
-        app.plots.are_moving(app.now_s, &geometry, Some(&selected))
+        app.plots.are_moving(app.shown.now_s, &geometry, Some(&selected))
     };
     assert!(moves(&room));
     room.window.key_press(Key::P);

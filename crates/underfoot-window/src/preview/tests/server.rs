@@ -15,7 +15,7 @@ fn room() -> (Room, Arc<Mutex<ServerState>>) {
     let state = Arc::new(Mutex::new(state));
     let mut room = Room::of(false, 1280.0, 800.0);
     let told = Arc::clone(&state);
-    room.window.state_mut().server_feed = Some(Box::new(move || told.lock().unwrap().clone()));
+    room.window.state_mut().shown.server_feed = Some(Box::new(move || told.lock().unwrap().clone()));
     room.run(2);
     (room, state)
 }

@@ -25,7 +25,7 @@ fn the_inspector_of_a_group_shows_its_name_place_and_members() {
     keyboard::fill(&mut desk, "pans");
     assert!(desk.text().contains("Group(id: \"pans\""), "{}", desk.text());
     desk.click("Member: Control pan_west");
-    assert_eq!(desk.designer().document.id_of(&desk.designer().selected[0]), Some("pan_west"));
+    assert_eq!(desk.designer().edited.document.id_of(&desk.designer().edited.selected[0]), Some("pan_west"));
 }
 
 #[test]

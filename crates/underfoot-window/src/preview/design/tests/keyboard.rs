@@ -64,7 +64,7 @@ fn the_shipped_map_is_built_from_an_empty_file_by_keyboard() {
         ("slider", "zoom", "Zoom", "4.5", "2.2", "1.35", "0.6"),
     ];
     for (kind, id, label, east, north, width, depth) in controls {
-        desk.designer_mut().pane = None;
+        desk.designer_mut().panes.pane = None;
         desk.key(Key::F6);
         // The arrow keys reach the whole list, scrolled-out entries included.
         let number = Kinds::builtin().iter().position(|one| one.name.replace('_', " ") == kind).unwrap();
@@ -91,7 +91,7 @@ fn the_key_f6_leads_from_part_to_part_and_a_feel_can_be_heard() {
     desk.key(Key::F6);
     desk.key(Key::F6);
     desk.key(Key::Enter);
-    assert_eq!(desk.designer().selected.len(), 1, "the first thing on the floor");
+    assert_eq!(desk.designer().edited.selected.len(), 1, "the first thing on the floor");
     let home = desk.place("home");
     desk.drag(home, home);
     desk.click("Feel");

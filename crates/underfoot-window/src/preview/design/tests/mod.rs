@@ -9,6 +9,7 @@ mod saving;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender};
 
+use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
@@ -18,7 +19,7 @@ use tempfile::TempDir;
 use super::*;
 use crate::edit::Template;
 use crate::preview::app::App;
-use crate::preview::{LayoutNews, PreviewInput, PreviewOptions, ProgramChannels, channels};
+use crate::preview::{LayoutNews, PreviewCommand, PreviewInput, PreviewOptions, ProgramChannels, channels};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
 use underfoot::schema::{builtin_layout, parse_layout};
@@ -93,7 +94,7 @@ impl Desk {
     }
 
     fn text(&self) -> String {
-        self.designer().document.text().to_owned()
+        self.designer().edited.document.text().to_owned()
     }
 
     fn key(&mut self, key: Key) {
@@ -191,7 +192,7 @@ fn the_lasso_selects_and_delete_takes_out() {
     let mut desk = Desk::map();
     let (north, south) = (desk.place("pan_north"), desk.place("pan_south"));
     desk.drag(north + vec2(-130.0, -60.0), south + vec2(130.0, 40.0));
-    assert_eq!(desk.designer().selected.len(), 4, "{:?}", desk.designer().selected);
+    assert_eq!(desk.designer().edited.selected.len(), 4, "{:?}", desk.designer().edited.selected);
     desk.key(Key::Delete);
     assert_eq!(desk.designer().layout().widgets.len(), 3);
     assert!(desk.text().contains("// Panning: four buttons"));
@@ -203,7 +204,7 @@ fn the_text_beside_the_floor_is_read_as_it_is_typed() {
     desk.click("Text");
     let home = desk.place("home");
     desk.drag(home, home);
-    assert_eq!(desk.designer().selected.len(), 1);
+    assert_eq!(desk.designer().edited.selected.len(), 1);
     let text = desk.window.get_by_label("Text of the layout");
     text.focus();
     desk.window.run_steps(2);
@@ -225,14 +226,14 @@ fn the_inspector_says_where_a_value_comes_from_and_warnings_can_be_mended() {
     desk.click("Make it 12 cm: do it");
     assert!((desk.area("home").size().x - 0.12).abs() < 1e-4, "{:?}", desk.area("home"));
     assert!(desk.window.query_all_by_label_contains("U101").next().is_none());
-    let sections = desk
-        .designer()
-        .document
-        .properties(&desk.designer().selected[0], desk.designer().selected_items().first().copied());
+    let sections = desk.designer().edited.document.properties(
+        &desk.designer().edited.selected[0],
+        desk.designer().edited.selected_items().first().copied(),
+    );
     let press = sections.iter().flat_map(|part| &part.properties).find(|one| one.name == "press_n").unwrap();
     assert_eq!(
         (press.value.as_str(), &press.origin),
-        ("60", &crate::edit::Origin::Kind("round_button".into()))
+        ("60", &crate::edit::FieldOrigin::Kind("round_button".into()))
     );
 }
 
@@ -242,7 +243,7 @@ fn letters_that_no_font_has_are_a_warning_at_their_control() {
     let text = builtin_layout("map").unwrap().replace("\"Home\"", "\"首页\"");
     let mut desk = Desk::on(&text, None);
     desk.click("1 warning");
-    assert_eq!(desk.designer().document.id_of(&desk.designer().selected[0]), Some("home"));
+    assert_eq!(desk.designer().edited.document.id_of(&desk.designer().edited.selected[0]), Some("home"));
     assert!(desk.says("no font has 首 (U+9996) and 页 (U+9875)"));
     let home = builtin_layout("map").unwrap().replace("\"Home\"", "\"Дом\"");
     assert!(Desk::on(&home, None).says("no warnings"));
@@ -284,7 +285,7 @@ fn what_is_selected_is_arranged_from_the_menu_and_each_step_is_undone() {
     desk.window.event(Event::ModifiersChanged(Modifiers::SHIFT));
     desk.drag(north, north);
     desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
-    assert_eq!(desk.designer().selected.len(), 2);
+    assert_eq!(desk.designer().edited.selected.len(), 2);
     desk.click("Arrange");
     desk.click("Align north edges");
     assert!((desk.area("home").max.y - desk.area("pan_north").max.y).abs() < 1e-4);
@@ -323,12 +324,16 @@ fn regions_grounds_places_to_stand_and_pages_are_put_down_too() {
 #[test]
 fn shoes_and_reach_are_seen_to_scale_on_request() {
     let mut desk = Desk::map();
-    assert!(!desk.designer().seen_to_scale.shoes && !desk.designer().seen_to_scale.reach);
+    assert!(!desk.designer().canvas.scale.shoes && !desk.designer().canvas.scale.reach);
     for name in ["Shoes in true size", "How far feet reach"] {
         desk.click("Show");
         desk.click(name);
         desk.key(Key::Escape);
     }
-    assert!(desk.designer().seen_to_scale.shoes && desk.designer().seen_to_scale.reach);
-    assert_eq!(desk.designer().shoes(None).len(), 2, "a pair on the place to stand");
+    assert!(desk.designer().canvas.scale.shoes && desk.designer().canvas.scale.reach);
+    assert_eq!(
+        desk.designer().canvas.scale.shoes(desk.designer().layout(), None).len(),
+        2,
+        "a pair on the place to stand"
+    );
 }

@@ -21,7 +21,7 @@ impl Desk {
     }
 
     fn title(&self) -> &str {
-        self.window.state().titled.as_deref().unwrap_or_default()
+        self.window.state().window.title.shown.as_deref().unwrap_or_default()
     }
 
     /// Requests a close, as the cross, Alt+F4 and Ctrl+Q do; returns whether the window closes.

@@ -1,0 +1,102 @@
+//! The help bar: how to use the floor now.
+
+use eframe::egui::{Margin, Panel, RichText, Ui};
+
+use super::TWO_LINES;
+use crate::preview::style::panel_frame;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
+
+/// Height of the window below which the help bar is hidden, in points.
+const HELP: f32 = 560.0;
+
+/// The use of the window by its user.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::preview) enum HelpTopic {
+    Designing,
+    Checking,
+    DrawingWalks,
+    /// The mouse is a foot.
+    Stepping,
+    /// A recording is on display.
+    Replaying,
+    /// A floor is on display only.
+    Watching {
+        /// Whether it is rendered: without rendering there is nothing to mute.
+        is_rendered: bool,
+    },
+}
+
+impl HelpTopic {
+    /// Keys and gestures, each with its action.
+    const fn steps(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Designing => &[
+                ("Drag", "move"),
+                ("Corners", "size"),
+                ("Arrows", "nudge"),
+                ("Alt", "no snapping"),
+                ("Shift-click", "select more"),
+                ("Ctrl-D, Delete", "double, remove"),
+                ("Ctrl-Z", "undo"),
+                ("Wheel", "zoom"),
+                ("F2", "try it"),
+            ],
+            Self::Checking => &[("Step", "where the floor is marked"), ("Escape", "end the check")],
+            Self::DrawingWalks => &[
+                ("Drag", "a way over the floor: somebody walks it"),
+                ("End on a control", "they use it"),
+                ("Ctrl-wheel", "zoom"),
+                ("W, Escape", "be a foot again"),
+            ],
+            Self::Stepping => &[
+                ("Hold", "press"),
+                ("Drag", "slide"),
+                ("Wheel, R, F", "harder, softer"),
+                ("Ctrl-wheel", "zoom"),
+                ("Right-drag, Q, E", "turn"),
+                ("Space", "stance foot here"),
+                ("Shift-click", "look at a tile"),
+                ("Tab, Enter", "press by keyboard"),
+                ("W", "draw a walk"),
+                ("F11", "project"),
+                ("P", "plots"),
+                ("M", "mute"),
+            ],
+            Self::Replaying => &[
+                ("Space", "pause"),
+                ("Comma, Period", "a step back, on"),
+                ("Shift-drag", "repeat a part"),
+                ("Click", "look at a tile"),
+                ("Ctrl-wheel", "zoom"),
+            ],
+            Self::Watching { is_rendered: true } => {
+                &[("Click", "look at a tile"), ("Arrows", "the next one"), ("M", "mute")]
+            }
+            Self::Watching { is_rendered: false } => {
+                &[("Click", "look at a tile"), ("Arrows", "the next one")]
+            }
+        }
+    }
+}
+
+/// Shows how to use the floor, if the window is tall enough.
+pub(in crate::preview) fn help_bar(ui: &mut Ui, theme: &Theme, activity: HelpTopic) {
+    if ui.ctx().content_rect().height() < HELP {
+        return;
+    }
+    let frame = panel_frame(theme, Margin::symmetric(14, 5));
+    Panel::bottom("help bar").frame(frame).resizable(false).show(ui, |ui| {
+        let steps = activity.steps();
+        // A narrow window shows the first ones only; the documentation lists the rest.
+        let told = if ui.available_width() < TWO_LINES { 4 } else { steps.len() };
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 5.0;
+            for (key, does) in steps.iter().take(told) {
+                ui.label(RichText::new(*key).size(12.0).color(color(theme.ink)));
+                ui.label(RichText::new(*does).size(12.0).color(color(theme.quiet)));
+                ui.add_space(9.0);
+            }
+        });
+    });
+}

@@ -1,0 +1,259 @@
+//! The floor in the middle of the window, and the mouse on it.
+
+mod feet;
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{
+    Align2, CursorIcon, EventFilter, FontId, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo,
+    vec2,
+};
+
+pub(super) use feet::FloorFeet;
+
+use super::floor_check::FloorCheck;
+use super::off_hint::why_off;
+use super::pointer::way_while_down;
+use super::selection::Selection;
+use super::shown::ShownFloor;
+use super::trails::Trails;
+use super::walks::Walks;
+use super::watch::{Banner, Weight};
+use super::zoom::Zoom;
+use underfoot::floor::{Geometry, TileId};
+use underfoot::widget::{Behaviour, Value};
+use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
+use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
+
+/// The view of the floor.
+pub(super) struct FloorView {
+    zoom: Zoom,
+    scene: Scene,
+    pub(super) palette: Palette,
+    /// The layers over the floor.
+    pub(super) show: Show,
+    pub(super) trails: Trails,
+}
+
+/// The parts of the window that act on the floor by the mouse.
+pub(super) struct OnFloor<'a> {
+    pub(super) feet: &'a mut FloorFeet,
+    pub(super) selection: &'a mut Selection,
+    pub(super) walks: Option<&'a mut Walks>,
+    pub(super) check: Option<&'a FloorCheck>,
+}
+
+impl Default for FloorView {
+    fn default() -> Self {
+        Self {
+            zoom: Zoom::default(),
+            scene: Scene::new(),
+            palette: Palette::default(),
+            show: Show::WINDOW,
+            trails: Trails::default(),
+        }
+    }
+}
+
+impl FloorView {
+    /// Fills the remaining part of the window with the floor.
+    pub(super) fn show(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, on_floor: OnFloor<'_>) {
+        let OnFloor { feet, selection, mut walks, check } = on_floor;
+        let rect = ui.available_rect_before_wrap();
+        let canvas = ui.allocate_rect(rect, Sense::drag());
+        canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Floor"));
+        self.zoom_by_wheel(ui, &canvas, &shown.floor.geometry);
+        let map = self.zoom.map(scene::extent(&shown.floor.geometry, self.show), rect.shrink(6.0));
+        look_at_tiles(ui, &canvas, map, shown, selection, feet.are_led());
+        if let Some(walks) = &mut walks {
+            walks.draw(ui, &canvas, map, shown);
+        }
+        let draws_walks = walks.as_ref().is_some_and(|walks| walks.are_drawn);
+        let on_handle = feet.follow(ui, &canvas, map, shown, draws_walks);
+        feet.update_shoes();
+        self.draw(ui, rect, map, theme, shown, (feet.shoes(), selection.pinned()));
+        if let Some(walks) = &walks {
+            walks.show(ui, rect, map, shown, theme);
+        }
+        if let Some(check) = check {
+            check.show_marks(ui, rect, map, theme, &shown.floor);
+        }
+        feet.focus(name_controls(ui, map, theme, shown));
+        if self.zoom.is_closer() {
+            self.zoom_out_button(ui, rect);
+        }
+        feet.draw_handle(ui, rect, theme);
+        if feet.are_led() && canvas.contains_pointer() {
+            ui.ctx().set_cursor_icon(if on_handle { CursorIcon::Grab } else { CursorIcon::Crosshair });
+            if !draws_walks {
+                feet.read_out(ui, rect, theme, on_handle);
+            }
+        }
+        if let Some(banner) = shown.banner() {
+            show_banner(ui, rect, theme, &banner);
+        }
+    }
+
+    fn draw(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        map: ScreenFromFloor,
+        theme: &Theme,
+        shown: &ShownFloor,
+        (shoes, chosen): (&[Shoe], Option<TileId>),
+    ) {
+        let view = View {
+            show: self.show,
+            shoes,
+            levels: shown.scopes.levels(),
+            trails: self.trails.all(),
+            chosen,
+            ..View::new(&shown.floor.geometry, shown.layout(), shown.snapshot(), theme)
+        };
+        scene::draw(&mut self.scene, &view);
+        let painter = ui.painter_at(rect);
+        egui_painter::paint(&painter, &mut self.palette, &self.scene, map);
+    }
+
+    /// Ctrl with the wheel, and a pinch, zoom about the pointer; the middle button pans.
+    fn zoom_by_wheel(&mut self, ui: &Ui, canvas: &Response, geometry: &Geometry) {
+        let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|_| canvas.contains_pointer()) else {
+            return;
+        };
+        let (by, panned) = ui.input(|i| {
+            // Fingers on the floor are feet, even two of them.
+            let zoomed = if i.any_touches() { 1.0 } else { i.zoom_delta() };
+            (zoomed, way_while_down(i, PointerButton::Middle))
+        });
+        let screen = canvas.rect.shrink(6.0);
+        let extent = scene::extent(geometry, self.show);
+        if by != 1.0 {
+            self.zoom.about(pointer, by, extent, screen);
+        }
+        if panned != egui::Vec2::ZERO {
+            self.zoom.pan(panned, screen);
+        }
+    }
+
+    fn zoom_out_button(&mut self, ui: &mut Ui, rect: Rect) {
+        let area = Rect::from_min_size(rect.left_top() + vec2(10.0, 10.0), vec2(84.0, 26.0));
+        let button = ui.put(area, egui::Button::new(format!("{:.0} % · fit", 100.0 * self.zoom.by())));
+        if button.on_hover_text("Show the whole floor").clicked() {
+            self.zoom = Zoom::default();
+        }
+    }
+}
+
+/// Selects the tile and the control for the side panel, by a click or by arrow keys. With `needs_shift`, a click
+/// without Shift is a step.
+fn look_at_tiles(
+    ui: &Ui,
+    canvas: &Response,
+    map: ScreenFromFloor,
+    shown: &ShownFloor,
+    selection: &mut Selection,
+    needs_shift: bool,
+) {
+    let (pressed, shift, pointer) =
+        ui.input(|i| (i.pointer.primary_pressed(), i.modifiers.shift, i.pointer.interact_pos()));
+    if let (true, Some(pointer)) = (pressed && canvas.contains_pointer(), pointer)
+        && (shift || !needs_shift)
+        && let Some(tile) = shown.floor.geometry.tile_under(map.floor(pointer))
+    {
+        selection.pin(tile);
+        let (at, page) = (map.floor(pointer), shown.snapshot().page);
+        let layout = shown.layout();
+        if let Some(widget) = layout.widget_at(page, at).and_then(|index| layout.widgets.get(index)) {
+            selection.pin_control(widget.id.clone());
+        }
+    }
+    if ui.ctx().memory(|memory| memory.focused().is_none()) {
+        for (key, east, north) in
+            [(Key::ArrowLeft, -1, 0), (Key::ArrowRight, 1, 0), (Key::ArrowDown, 0, -1), (Key::ArrowUp, 0, 1)]
+        {
+            if ui.input(|i| i.key_pressed(key)) {
+                let tile = selection.tile();
+                let moved = TileId::new(
+                    tile.column.saturating_add_signed(east),
+                    tile.row.saturating_add_signed(north),
+                );
+                if shown.floor.geometry.index(moved).is_some() {
+                    selection.pin(moved);
+                }
+            }
+        }
+    }
+}
+
+/// Gives screen readers and tests the name and state of each control on the floor; returns the index of
+/// the control with the keyboard focus.
+fn name_controls(ui: &Ui, map: ScreenFromFloor, theme: &Theme, shown: &ShownFloor) -> Option<usize> {
+    let mut focused = None;
+    let snapshot = shown.snapshot();
+    for (index, widget) in shown.layout().widgets.iter().enumerate() {
+        let state = snapshot.widgets.get(index).copied().unwrap_or_default();
+        if state.hidden {
+            continue;
+        }
+        let id = ui.scope_id().with(("floor control", index));
+        let node = ui.interact(map.rect(widget.area), id, Sense::focusable_noninteractive());
+        let off = why_off(snapshot, index);
+        if node.has_focus() {
+            focused = Some(index);
+            // Arrow keys slide the foot; they must not move the focus.
+            let filter =
+                EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+            ui.memory_mut(|memory| memory.set_focus_lock_filter(node.id, filter));
+            let edge = egui::Stroke::new(3.0, color(theme.cursor));
+            ui.painter().rect_stroke(node.rect.expand(4.0), 8.0, edge, egui::StrokeKind::Outside);
+        }
+        node.widget_info(|| {
+            let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
+            let enabled = !state.disabled && off.is_none();
+            match (&widget.behaviour, state.value) {
+                (Behaviour::Switch(_) | Behaviour::Hold(_), Some(Value::Switch(on))) => {
+                    WidgetInfo::selected(Role::Switch, enabled, on, name)
+                }
+                (_, Some(Value::Number(value))) => WidgetInfo::slider(enabled, f64::from(value), name),
+                _ => WidgetInfo::selected(Role::Button, enabled, state.pressed, name),
+            }
+        });
+        if let Some(why) = off {
+            node.on_hover_text_at_pointer(why);
+        }
+    }
+    focused
+}
+
+/// Draws a prominent strip across the floor; a narrow one at its top if the floor still works.
+fn show_banner(ui: &Ui, rect: Rect, theme: &Theme, banner: &Banner) {
+    let colour = match banner.weight {
+        Weight::Hint => theme.warning,
+        Weight::Pause => theme.quiet,
+        Weight::Fault => theme.fault,
+    };
+    let strip = match banner.weight {
+        Weight::Hint => Rect::from_min_size(rect.min, vec2(rect.width(), 28.0)),
+        Weight::Pause | Weight::Fault => Rect::from_center_size(rect.center(), vec2(rect.width(), 92.0)),
+    };
+    let strip = strip.intersect(rect);
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(strip, 0, color(colour).gamma_multiply(0.94));
+    let ink = color(if theme.is_dark() { theme.seam } else { theme.plate });
+    let write = |at: Pos2, size: f32, text: &str| {
+        painter.text(at, Align2::CENTER_CENTER, text, FontId::proportional(size), ink);
+    };
+    let spoken = format!("{}. {}", banner.headline, banner.detail);
+    let middle = strip.center();
+    if banner.weight == Weight::Hint {
+        write(middle, 13.5, &spoken);
+    } else {
+        // A narrow view gets smaller letters instead of clipped ones.
+        let size = (rect.width() / 26.0).clamp(13.0, 24.0);
+        write(middle - vec2(0.0, 14.0), size, &banner.headline);
+        write(middle + vec2(0.0, 18.0), (0.62 * size).max(12.0), &banner.detail);
+    }
+    let node = ui.interact(strip, ui.scope_id().with("banner"), Sense::hover());
+    node.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
+}
