@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::address::{Address, List, list_of};
-use super::change::Edit;
+use super::change::{Edit, quoted};
 use super::document::Document;
 use super::item::Item;
 use super::place::{RELATIVE, pair};
@@ -29,9 +29,9 @@ impl Document {
         let places: Vec<DVec2> = items.iter().map(|item| self.place_of(item)).collect::<Result<_, _>>()?;
         let corner = places.iter().copied().reduce(DVec2::min).unwrap_or_default();
         let mut text = format!(
-            "Group(id: \"{}\", at: {}, widgets: [\n",
-            self.free_id("group_1", &[]),
-            pair(corner.x, corner.y)
+            "Group(id: {}, at: {}, widgets: [\n",
+            quoted(&self.free_id("group_1", &[])),
+            pair(corner).inline()
         );
         for (item, place) in items.iter().zip(&places) {
             text.push_str(&self.placed_piece(item, *place - corner)?.listed("    "));
@@ -113,10 +113,10 @@ impl Document {
         }
         let size = item.area.size().as_dvec2() / self.unit_m();
         let needs_size = !had_at && !item.is_group && self.written(&item.record, "size").is_none();
-        let size = needs_size.then(|| ("size", pair(size.x, size.y)));
-        for (field, value) in [("at", pair(at.x, at.y))].into_iter().chain(size) {
+        let size = needs_size.then(|| ("size", pair(size)));
+        for (field, value) in [("at", pair(at))].into_iter().chain(size) {
             let root = Outline::parse(&piece.text).ok_or_else(missing)?;
-            piece.text = spliced(&piece.text, Lines(&piece.text).set(&root, &[field], &value));
+            piece.text = spliced(&piece.text, Lines(&piece.text).set(&root, &[field], &value.inline()));
         }
         Ok(piece)
     }

@@ -11,7 +11,7 @@ use super::inspector::ROW_PX;
 use crate::edit::{Address, Edit, Origin, Property};
 use underfoot::floor::Rect;
 use underfoot_format::describe::FieldType;
-use underfoot_format::number::plain;
+use underfoot_format::text::Text;
 use underfoot_format::words::unit;
 
 /// Width of a text field, in points.
@@ -45,7 +45,7 @@ impl Designer {
                 let mut on = value == "true";
                 let tick = ui.checkbox(&mut on, "");
                 tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, on, short));
-                (tick.changed().then(|| set(on.to_string())).flatten(), tick)
+                (tick.changed().then(|| set(Text::Flag(on).inline())).flatten(), tick)
             }
             FieldType::Number { range: (low, high), whole } if value.parse::<f64>().is_ok() => {
                 let mut number: f64 = value.parse().unwrap_or_default();
@@ -57,7 +57,7 @@ impl Designer {
                     .update_while_editing(false);
                 let drag = ui.add(drag);
                 drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, short));
-                let changed = drag.changed().then(|| set(plain(number))).flatten();
+                let changed = drag.changed().then(|| set(Text::rounded(number).inline())).flatten();
                 (self.dragged(&drag, changed), drag)
             }
             shape => {
@@ -118,7 +118,7 @@ impl Designer {
             drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &name));
             drag.on_hover_text(format!("{}: in {}, or with cm or m behind it", names[side], self.unit_name()))
         });
-        let value = format!("({}, {})", plain(now[0]), plain(now[1]));
+        let value = Text::Tuple(now.map(Text::rounded).into()).inline();
         let wanted = (now != before).then(|| Edit::set(record, &property.name, value));
         let [first, second] = drags;
         let wanted = self.dragged(&first, wanted);
@@ -144,7 +144,7 @@ impl Designer {
 
     /// The choices for a field, as the file writes them; `None` for a field that is typed.
     fn choices(&self, property: &Property) -> Option<Vec<String>> {
-        let quoted = |names: Vec<String>| names.into_iter().map(|name| format!("\"{name}\"")).collect();
+        let quoted = |names: Vec<String>| names.iter().map(|name| crate::edit::quoted(name)).collect();
         match (&property.shape, property.name.as_str()) {
             (FieldType::Names(names), "kind") if names.is_empty() => {
                 Some(quoted(self.document.kinds().iter().map(|kind| kind.name.clone()).collect()))
