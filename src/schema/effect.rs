@@ -158,7 +158,7 @@ pub(super) const OWN_EFFECTS: By<()> = By {
 /// Writes the file that describes `effect`; [`parse_effect`] reads the same effect from it.
 #[must_use]
 pub fn write_named_effect(effect: &NamedEffect) -> String {
-    let mut text = String::from("Effect(\n");
+    let mut text = format!("{}(\n", NamedEffect::NAME);
     let mut entries = Vec::new();
     effect.write_fields(&mut entries);
     for (name, value) in entries {

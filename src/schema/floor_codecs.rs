@@ -68,7 +68,7 @@ impl Codec<Geometry> for Measures {
     fn write(&self, geometry: &Geometry) -> Text {
         let mut entries = Vec::new();
         self.write_field(geometry, "", None, &mut entries);
-        Text::Fields("", entries)
+        Text::Record(MeasuresRecord::NAME, entries)
     }
 
     fn shape(&self) -> FieldType {
@@ -175,9 +175,13 @@ pub(super) const TILE: By<TileId> = By {
         let [column, row] = node.tuple("(column, row)")?;
         node.reader.known::<Grid>().tile(column, row)
     },
-    write: |tile| Text::Plain(tile.to_string()),
+    write: |tile| Text::Tuple(whole([tile.column, tile.row])),
     stand_in: TileId::default,
 };
+
+fn whole(numbers: [u16; 2]) -> Vec<Text> {
+    numbers.into_iter().map(|number| Text::Whole(number.into())).collect()
+}
 
 /// Width and depth in tiles, as `(columns, rows)`.
 pub(super) const TILES: By<[u16; 2]> = By {
@@ -187,7 +191,7 @@ pub(super) const TILES: By<[u16; 2]> = By {
         let [columns, rows] = sides.map(|side| side.whole(1..=Geometry::MAX_SIDE.into()));
         Some([columns? as u16, rows? as u16])
     },
-    write: |[columns, rows]| Text::Plain(format!("({columns}, {rows})")),
+    write: |sides| Text::Tuple(whole(*sides)),
     stand_in: || [1, 1],
 };
 
@@ -204,9 +208,11 @@ pub(super) const CHANNEL: By<Option<SensorId>> = By {
         Some(Some(SensorId { tile: tile?, corner: corner? }))
     },
     write: |sensor| {
-        Text::Plain(sensor.map_or("None".to_owned(), |SensorId { tile, corner }| {
-            format!("({}, {}, {})", tile.column, tile.row, Name.write(&corner).inline())
-        }))
+        sensor.map_or(Text::Nothing, |SensorId { tile, corner }| {
+            let mut values = whole([tile.column, tile.row]);
+            values.push(Name.write(&corner));
+            Text::Tuple(values)
+        })
     },
     stand_in: || None,
 };
@@ -222,7 +228,8 @@ impl<const ROWS: usize, const COLUMNS: usize> Codec<[[f32; COLUMNS]; ROWS]> for 
     }
 
     fn write(&self, table: &[[f32; COLUMNS]; ROWS]) -> Text {
-        Text::Plain(format!("{table:?}"))
+        let row = |row: &[f32; COLUMNS]| Text::List(row.iter().copied().map(Text::Single).collect());
+        Text::List(table.iter().map(row).collect())
     }
 
     fn shape(&self) -> FieldType {
@@ -282,7 +289,8 @@ impl Codec<Vec<(f32, f32)>> for Points {
     }
 
     fn write(&self, points: &Vec<(f32, f32)>) -> Text {
-        Text::Plain(format!("{points:?}"))
+        let point = |&(hz, gain): &(f32, f32)| Text::Tuple(vec![Text::Single(hz), Text::Single(gain)]);
+        Text::List(points.iter().map(point).collect())
     }
 
     fn shape(&self) -> FieldType {

@@ -46,6 +46,9 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 12] = [
     ("loudspeakers", &["Loudspeakers, by where they stand, in metres from the south-west corner."], None),
 ];
 
+/// Lists that stand on one line.
+const ON_ONE_LINE: [&str; 2] = ["allow", "response_db"];
+
 /// Writes the file that describes `floor`, with comments; [`super::parse_floor`] reads the same floor from it.
 ///
 /// Fields as on [`Floor::of`] its geometry are omitted. A list of more than about 40,000 sensors, or 4,000 mapped
@@ -76,7 +79,7 @@ pub fn write_floor(floor: &Floor) -> String {
             text.push_str(meaning(kind));
         }
         let value = match value {
-            Text::List(values) if name != "allow" => {
+            Text::List(values) if !ON_ONE_LINE.contains(&name) => {
                 let lines = values.iter().map(|value| format!("        {},\n", value.inline()));
                 format!("[\n{}    ]", lines.collect::<String>())
             }

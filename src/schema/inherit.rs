@@ -165,15 +165,30 @@ pub(super) fn read_files<P: AsRef<Path>>(
     }
 }
 
+/// Reads the kind in `text`, which diagnostics call `name`, on top of those `below`, and returns warnings.
+///
+/// # Errors
+/// Every problem of the text.
+pub(super) fn read_one(text: &str, name: &str, below: &Kinds) -> Result<(Kind, Diagnostics), Diagnostics> {
+    let source = Source::new(name, text)?;
+    let reader = reader_of(&source, below)?;
+    let kind = reader.root("kind").and_then(|node| layer(&[node], below).pop().flatten());
+    reader.conclude(kind)
+}
+
+/// Returns the reader of a kind made of those `below`.
+fn reader_of<'t>(source: &'t Source<'t>, below: &Kinds) -> Result<Reader<'t>, Diagnostics> {
+    let reader = Reader::new(source, Kind::NAME, Limits::LAYOUT);
+    reader.know(Arc::clone(below.effects()));
+    version::newer(&reader, Kind::NAME).map_or(Ok(reader), Err)
+}
+
 /// Reads the kinds in `texts`, which come with their names in diagnostics, on top of those `below`, and returns
 /// warnings.
 ///
 /// # Errors
 /// Every problem of any of the texts.
-pub(super) fn read_texts(
-    texts: &[(&str, &str)],
-    below: &Kinds,
-) -> Result<(Vec<Kind>, Diagnostics), Diagnostics> {
+fn read_texts(texts: &[(&str, &str)], below: &Kinds) -> Result<(Vec<Kind>, Diagnostics), Diagnostics> {
     let mut problems = Diagnostics::default();
     let mut sources = Vec::new();
     for (name, text) in texts {
@@ -184,11 +199,9 @@ pub(super) fn read_texts(
     }
     let mut readers = Vec::new();
     for source in &sources {
-        let reader = Reader::new(source, "Kind", Limits::LAYOUT);
-        reader.know(Arc::clone(below.effects()));
-        match version::newer(&reader, "Kind") {
-            Some(newer) => problems.append(newer),
-            None => readers.push(reader),
+        match reader_of(source, below) {
+            Ok(reader) => readers.push(reader),
+            Err(newer) => problems.append(newer),
         }
     }
     let roots: Vec<Option<Node<'_>>> = readers.iter().map(|reader| reader.root("kind")).collect();

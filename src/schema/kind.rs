@@ -84,8 +84,8 @@ impl Kinds {
     /// # Errors
     /// Every problem of the text; these kinds are then unchanged.
     pub fn add(&mut self, text: &str, name: &str) -> Result<Diagnostics, Diagnostics> {
-        let (kinds, warnings) = inherit::read_texts(&[(name, text)], self)?;
-        kinds.into_iter().for_each(|kind| self.insert(kind));
+        let (kind, warnings) = inherit::read_one(text, name, self)?;
+        self.insert(kind);
         Ok(warnings)
     }
 

@@ -7,6 +7,20 @@
 //! bytes -format-> tree with spans, fields in range
 //!   -page, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
 //! ```
+//!
+//! Apps may also read values that can be read alone, and write all of them, by the crate `ron`; what such a value
+//! names comes from the kinds and effects that come with underfoot:
+//!
+//! ```
+//! use underfoot::schema::Kind;
+//!
+//! let text = r#"Kind(name: "bell", from: "button", press_n: 80, feel: (press: "soft_click"))"#;
+//! let kind: Kind = ron::from_str(text)?;
+//! assert_eq!(kind.look.face.to_string(), "#d8e4f0");
+//! let written = ron::ser::to_string_pretty(&kind, ron::ser::PrettyConfig::new())?;
+//! assert_eq!(ron::from_str::<Kind>(&written)?, kind);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod ahap;
 mod area;
@@ -41,6 +55,7 @@ mod state;
 mod tests;
 mod undrawn;
 mod units;
+mod values;
 mod version;
 mod write;
 

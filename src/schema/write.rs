@@ -1,5 +1,7 @@
 //! Writing of layouts made in code.
 
+use super::page::LayoutRecord;
+use super::units::Units;
 use super::version::FORMAT_VERSION;
 use crate::floor::Rect;
 use crate::ground::Material;
@@ -14,29 +16,34 @@ use underfoot_format::{Codec, Name, Rec, Record, Variants};
 /// group in its order here.
 #[must_use]
 pub fn write_layout(layout: &Layout) -> String {
+    format!("{}\n", Text::Variant(LayoutRecord::NAME, written(layout)).lay_out(0, 0))
+}
+
+/// Returns the fields of the file that describes `layout`.
+pub(super) fn written(layout: &Layout) -> Vec<Entry> {
     let mut kinds: Vec<(String, &Widget)> = Vec::new();
     let names: Vec<String> = layout.widgets.iter().map(|widget| kind_of(widget, &mut kinds)).collect();
     let kinds = kinds.iter().map(|(name, widget)| {
-        let mut entries = vec![("name", quoted(name)), ("behaviour", bare(widget.behaviour.variant()))];
+        let mut entries = vec![("name", quoted(name)), ("behaviour", Text::Name(widget.behaviour.variant()))];
         widget.behaviour.write_fields(&mut entries);
         entries.push(("feel", Rec.write(&widget.feel)));
         entries.push(("look", Rec.write(&widget.look)));
-        Text::Fields("", entries)
+        Text::Record("Kind", entries)
     });
     let regions = layout.regions.iter().map(|region| {
         let mut entries = vec![("id", quoted(&region.id))];
         place(region.area, &mut entries);
         entries.push(("cursor", Name.write(&region.cursor)));
-        Text::Fields("", entries)
+        Text::Record("Region", entries)
     });
     let stances = layout.stances.iter().map(|stance| {
         let mut entries = vec![("label", quoted(&stance.label))];
         place(stance.area, &mut entries);
-        Text::Fields("", entries)
+        Text::Record("Stance", entries)
     });
     let mut entries = vec![
-        ("version", bare(&FORMAT_VERSION.to_string())),
-        ("units", bare("Metres")),
+        ("version", Text::Whole(FORMAT_VERSION.into())),
+        ("units", Name.write(&Units::Metres)),
         ("title", quoted(&layout.title)),
         ("regions", Text::List(regions.collect())),
         ("stances", Text::List(stances.collect())),
@@ -46,11 +53,11 @@ pub fn write_layout(layout: &Layout) -> String {
     let pages = layout.pages.iter().enumerate().map(|(number, page)| {
         let mut entries = vec![("id", quoted(page.id.as_str())), ("title", quoted(&page.title))];
         of_page(layout, &names, Some(number), &mut entries);
-        Text::Fields("", entries)
+        Text::Record("Page", entries)
     });
     entries.push(("pages", Text::List(pages.collect())));
     entries.retain(|(_, value)| *value != Text::List(Vec::new()));
-    format!("{}\n", Text::Fields("Layout", entries).lay_out(0, 0))
+    entries
 }
 
 /// Returns the name of the kind of `widget` in `kinds`; adds the kind if there is none.
@@ -80,7 +87,7 @@ fn of_page(layout: &Layout, kinds: &[String], page: Option<usize>, entries: &mut
         if let Some(page) = widget.goto.and_then(|goto| layout.pages.get(goto)) {
             entries.push(("goto", quoted(page.id.as_str())));
         }
-        Text::Fields("", entries)
+        Text::Record("Widget", entries)
     });
     entries.push(("widgets", Text::List(widgets.collect())));
     let grounds = layout.grounds.iter().filter(|ground| ground.spec.page == page).map(ground);
@@ -90,7 +97,7 @@ fn of_page(layout: &Layout, kinds: &[String], page: Option<usize>, entries: &mut
 fn ground(ground: &Ground) -> Text {
     let mut entries = Vec::new();
     place(ground.spec.area, &mut entries);
-    entries.push(("seed", bare(&ground.spec.seed.to_string())));
+    entries.push(("seed", Text::Whole(ground.spec.seed.into())));
     entries.push(("surface", HEX.write(&ground.surface)));
     entries.push(("deep", HEX.write(&ground.deep)));
     match &ground.spec.material {
@@ -98,23 +105,19 @@ fn ground(ground: &Ground) -> Text {
         Material::Grain(spec) => spec.write_fields(&mut entries),
         Material::Wood(spec) => spec.write_fields(&mut entries),
     }
-    Text::Fields(ground.spec.material.name(), entries)
+    Text::Variant(ground.spec.material.name(), entries)
 }
 
 fn place(area: Rect, entries: &mut Vec<Entry>) {
     let rounded = |metres: f64| (metres * 1e7).round() / 1e7;
     let [min, max] = [area.min, area.max].map(|corner| corner.as_dvec2());
-    let pair = |x: f64, y: f64| Text::Plain(format!("({}, {})", rounded(x), rounded(y)));
+    let pair = |x: f64, y: f64| Text::pair([rounded(x), rounded(y)]);
     entries.push(("at", pair(min.x, min.y)));
     entries.push(("size", pair(max.x - min.x, max.y - min.y)));
 }
 
 fn quoted(text: &str) -> Text {
-    Text::Plain(format!("{text:?}"))
-}
-
-fn bare(text: &str) -> Text {
-    Text::Plain(text.to_owned())
+    Text::quoted(text)
 }
 
 #[cfg(test)]

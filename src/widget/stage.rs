@@ -32,7 +32,7 @@ impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for
     }
 
     fn write(&self, value: &Option<T>) -> Text {
-        value.map_or(Text::Plain("None".to_owned()), |value| self.press.write(&value.into()[0]))
+        value.map_or(Text::Nothing, |value| self.press.write(&value.into()[0]))
     }
 
     fn shape(&self) -> FieldType {

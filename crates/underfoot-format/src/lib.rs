@@ -14,7 +14,8 @@
 //!
 //! Serde's derive cannot do this: it stops at the first problem, has neither places nor ranges, and cannot read over
 //! a base. With schemars, every record would need a second struct for the file format and a conversion of the units;
-//! here the record is the type that the program uses.
+//! here the record is the type that the program uses. Towards apps the records are values like any other
+//! ([`filed`]): `ron` writes them through [`serde::Serialize`] and reads them through [`serde::Deserialize`].
 
 pub mod codec;
 mod complaint;
@@ -24,6 +25,7 @@ mod excerpt;
 pub mod fault;
 pub mod fields;
 pub mod file;
+pub mod filed;
 pub mod hand;
 pub mod label;
 pub mod node;
@@ -49,3 +51,6 @@ pub use record::{Record, Variants};
 
 // Public signatures contain types of this crate.
 pub use ron2;
+
+#[doc(hidden)]
+pub use serde;

@@ -30,7 +30,7 @@ record! {
 /// An effect that is written out.
 const WRITTEN_OUT: By<Arc<Effect>> = By {
     shape: || FieldType::Variants(EffectKind::describe),
-    read: |node| effect_at(node, None, Use::Once).map(Arc::new),
+    read: |node| Effect::read(node).map(Arc::new),
     write: |effect| effect.to_ron(),
     stand_in: || Arc::new(Click::default().into()),
 };
@@ -185,12 +185,17 @@ fn a(name: &str) -> String {
 }
 
 impl Effect {
+    /// The effect that is written out at `node`.
+    pub(crate) fn read(node: Node<'_>) -> Option<Self> {
+        effect_at(node, None, Use::Once)
+    }
+
     /// Its text at the place of use.
     pub(crate) fn to_ron(&self) -> Text {
         let mut entries: Vec<Entry> = Vec::new();
         self.kind.write_fields(&mut entries);
         self.manner.write_fields(&mut entries);
-        Text::Fields(self.kind.name(), entries)
+        Text::Variant(self.kind.name(), entries)
     }
 }
 

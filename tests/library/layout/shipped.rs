@@ -1,7 +1,7 @@
 //! The shipped layouts and kinds, and all possible errors of a file.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -17,20 +17,14 @@ use underfoot::units::Newtons;
 use underfoot::widget::{Behaviour, Track};
 use underfoot_scene::ergonomics;
 
+use super::ron_files;
+
 fn parse(text: &str, name: &str) -> Result<Loaded, Diagnostics> {
     parse_layout(text, name, &Kinds::builtin(), &Geometry::default())
 }
 
 fn shipped(name: &str) -> Layout {
     parse(builtin_layout(name).unwrap(), name).unwrap_or_else(|problems| panic!("{problems}")).layout
-}
-
-fn ron_files(folder: &str) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let mut files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "ron"));
-    files.sort();
-    files
 }
 
 /// Another program's reader of RON can read shipped and written files.

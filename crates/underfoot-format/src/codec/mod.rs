@@ -93,7 +93,7 @@ impl Codec<bool> for Flag {
     }
 
     fn write(&self, value: &bool) -> RonText {
-        RonText::Plain(value.to_string())
+        RonText::Flag(*value)
     }
 
     fn shape(&self) -> FieldType {
@@ -114,7 +114,7 @@ impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Text {
     }
 
     fn write(&self, value: &T) -> RonText {
-        RonText::Plain(format!("{:?}", value.as_ref()))
+        RonText::quoted(value.as_ref())
     }
 
     fn shape(&self) -> FieldType {
@@ -162,8 +162,8 @@ impl<T: Named> Codec<T> for Name {
     }
 
     fn write(&self, value: &T) -> RonText {
-        let name = T::ALL.iter().find(|(_, one)| one == value).map_or("", |(name, _)| name);
-        RonText::Plain(name.to_owned())
+        // `ALL` holds every value.
+        T::ALL.iter().find(|(_, one)| one == value).map_or(RonText::Nothing, |&(name, _)| RonText::Name(name))
     }
 
     fn shape(&self) -> FieldType {
@@ -187,7 +187,7 @@ impl<T, C: Codec<T>> Codec<Option<T>> for Opt<C> {
     }
 
     fn write(&self, value: &Option<T>) -> RonText {
-        value.as_ref().map_or(RonText::Plain("None".to_owned()), |value| self.0.write(value))
+        value.as_ref().map_or(RonText::Nothing, |value| self.0.write(value))
     }
 
     fn shape(&self) -> FieldType {
@@ -223,8 +223,7 @@ impl<T: Copy + From<[f32; 2]> + Into<[f32; 2]>> Codec<T> for Pair {
     }
 
     fn write(&self, value: &T) -> RonText {
-        let [first, second] = (*value).into().map(|value| value.to_ron(self.each.scale));
-        RonText::Plain(format!("({first}, {second})"))
+        RonText::Tuple((*value).into().map(|value| value.to_ron(self.each.scale)).into())
     }
 
     fn shape(&self) -> FieldType {
@@ -309,7 +308,7 @@ impl<T: Clone> Codec<T> for Own<T> {
     }
 
     fn write(&self, _: &T) -> RonText {
-        RonText::Plain(String::new())
+        RonText::Nothing
     }
 
     fn shape(&self) -> FieldType {

@@ -19,7 +19,7 @@ impl<T: Record> Codec<T> for Rec {
     fn write(&self, value: &T) -> RonText {
         let mut entries = Vec::new();
         value.write_fields(&mut entries);
-        RonText::Fields("", entries)
+        RonText::Record(T::NAME, entries)
     }
 
     fn shape(&self) -> FieldType {
@@ -129,7 +129,7 @@ impl<T: Variants> Codec<T> for Beside {
 
     fn write_field(&self, value: &T, name: &'static str, default: Option<T>, entries: &mut Vec<Entry>) {
         if default.is_none_or(|default| default.variant() != value.variant()) {
-            entries.push((name, RonText::Plain(value.variant().to_owned())));
+            entries.push((name, RonText::Name(value.variant())));
         }
         value.write_fields(entries);
     }
@@ -163,8 +163,8 @@ impl<T: Variants> Codec<T> for OneOf {
         let mut entries = Vec::new();
         value.write_fields(&mut entries);
         match entries.as_slice() {
-            [] => RonText::Plain(value.variant().to_owned()),
-            _ => RonText::Fields(value.variant(), entries),
+            [] => RonText::Name(value.variant()),
+            _ => RonText::Variant(value.variant(), entries),
         }
     }
 

@@ -73,7 +73,7 @@ pub trait Scalar: Copy + PartialEq {
     fn of(written: Number, scale: f64) -> Self;
 
     /// Returns the number that reads back as the same value.
-    fn to_ron(self, scale: f64) -> String;
+    fn to_ron(self, scale: f64) -> RonText;
 
     /// Returns the value as a tuner shows it.
     fn shown(self) -> f32;
@@ -87,7 +87,7 @@ impl Scalar for f32 {
         written.single / scale as Self
     }
 
-    fn to_ron(self, scale: f64) -> String {
+    fn to_ron(self, scale: f64) -> RonText {
         number(self, scale)
     }
 
@@ -106,9 +106,8 @@ impl Scalar for Duration {
         Self::from_micros((written.value / scale * 1e6).round() as u64)
     }
 
-    fn to_ron(self, scale: f64) -> String {
-        let text = format!("{:.6}", self.as_secs_f64() * scale);
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    fn to_ron(self, scale: f64) -> RonText {
+        RonText::double((self.as_secs_f64() * scale * 1e6).round() / 1e6)
     }
 
     fn shown(self) -> f32 {
@@ -130,8 +129,8 @@ macro_rules! whole {
                 written.value as Self
             }
 
-            fn to_ron(self, _: f64) -> String {
-                self.to_string()
+            fn to_ron(self, _: f64) -> RonText {
+                RonText::Whole(self as i64)
             }
 
             fn shown(self) -> f32 {
@@ -159,7 +158,7 @@ impl<T: Scalar> Codec<T> for Num {
     }
 
     fn write(&self, value: &T) -> RonText {
-        RonText::Plain(value.to_ron(self.scale))
+        value.to_ron(self.scale)
     }
 
     fn shape(&self) -> FieldType {

@@ -113,7 +113,7 @@ impl<T: Clone + Display> Codec<T> for Spelled<T> {
     }
 
     fn write(&self, value: &T) -> RonText {
-        RonText::Plain(format!("{:?}", value.to_string()))
+        RonText::quoted(value.to_string())
     }
 
     fn shape(&self) -> FieldType {

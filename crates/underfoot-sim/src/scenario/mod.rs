@@ -19,13 +19,15 @@ use underfoot::layout::{Layout, Widget};
 use underfoot::units::Newtons;
 use underfoot_format::describe::Description;
 use underfoot_format::diagnostic::Diagnostics;
+use underfoot_format::filed::Filed;
 use underfoot_format::node::Node;
 use underfoot_format::pairs::Limits;
 use underfoot_format::problem::Problem;
 use underfoot_format::reader::Reader;
 use underfoot_format::source::{Source, read_text};
 use underfoot_format::suggest::did_you_mean;
-use underfoot_format::{Record, Variants};
+use underfoot_format::text::Text;
+use underfoot_format::{Codec, Rec, Record, Variants, filed};
 
 /// A scenario file, parsed and with its numbers checked, not yet resolved against a layout.
 ///
@@ -153,6 +155,19 @@ impl Scenario {
         let script = performances.into_iter().collect::<Option<_>>();
         let (script, _) = reader.conclude(script.map(|all| Script::new(all, stage.bounds)))?;
         Ok(script)
+    }
+}
+
+filed!(Scenario);
+
+/// A scenario file. Messages of a scenario that an app has read by serde call its file `Scenario`.
+impl Filed for Scenario {
+    fn written(&self) -> Text {
+        Rec.write(&self.written)
+    }
+
+    fn read(text: &str) -> Result<Self, Diagnostics> {
+        Self::parse(ScenarioRecord::NAME, text)
     }
 }
 

@@ -69,6 +69,23 @@ fn documented() -> String {
 }
 
 #[test]
+fn every_scenario_is_the_same_by_ron() {
+    let texts = [Scenario::CROSSING, Scenario::SESSION, Scenario::STROLL, &documented()];
+    for text in texts {
+        let read: Scenario = ron::from_str(text).unwrap_or_else(|error| panic!("{error}"));
+        let parsed = Scenario::parse("scenario.ron", text).unwrap();
+        assert_eq!(read.written, parsed.written);
+        for written in [
+            ron::to_string(&read).unwrap(),
+            ron::ser::to_string_pretty(&read, ron::ser::PrettyConfig::new().struct_names(true)).unwrap(),
+        ] {
+            assert_eq!(ron::from_str::<Scenario>(&written).unwrap().written, parsed.written, "{written}");
+            assert_eq!(Scenario::parse("written.ron", &written).unwrap().written, parsed.written);
+        }
+    }
+}
+
+#[test]
 fn the_documented_scenario_plays() {
     let scenario = Scenario::parse("documentation", &documented()).unwrap();
     assert_eq!(scenario.title(), "Zoom in, then wander off");

@@ -4,6 +4,7 @@ use super::address::{Address, RecordList, list_of};
 use super::refusal::EditRefusal;
 use super::splice::{RecordText, Splice, TextLines, spliced};
 use underfoot_format::outline::{Outline, OutlineShape};
+use underfoot_format::text::Text;
 
 /// One change of a layout. In a sequence, each edit addresses the records as the edits before it left them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -174,7 +175,7 @@ fn rename(root: &Outline, record: &Address, id: &str) -> Result<Vec<Splice>, Edi
 /// `text` in quotes, with the escapes of the file format.
 #[must_use]
 pub fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
+    Text::quoted(text).inline()
 }
 
 /// Whether `outline` is one record, which a list can hold.

@@ -1,10 +1,11 @@
 //! Records as RON text: copied, pasted, duplicated.
 
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 
 use super::address::{Address, RecordList, list_of};
-use super::change::Edit;
+use super::change::{Edit, quoted};
 use super::document::Document;
+use super::place::pair;
 use super::refusal::EditRefusal;
 use super::splice::{RecordText, TextLines, spliced};
 use underfoot_format::outline::Outline;
@@ -106,7 +107,7 @@ impl Document {
             let new =
                 if old.contains('{') { old.replacen('{', "copy_{", 1) } else { self.free_id(&old, taken) };
             taken.push(new.clone());
-            let splices = TextLines(text).set(record, &["id"], &format!("\"{new}\""));
+            let splices = TextLines(text).set(record, &["id"], &quoted(&new));
             *text = spliced(text, splices);
         }
         let root = Outline::parse(text)?;
@@ -116,8 +117,7 @@ impl Document {
         });
         if let Some([east, north]) = numbers.as_deref() {
             let by = by.as_dvec2() / self.unit_m();
-            let moved = [east + by.x, north + by.y].map(|value| (value * 1e4).round() / 1e4);
-            let value = format!("({}, {})", moved[0], moved[1]);
+            let value = pair(DVec2::new(*east, *north) + by).inline();
             *text = spliced(text, TextLines(text).set(&root, &["at"], &value));
         }
         Some(())

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::address::{Address, RecordList, list_of};
-use super::change::Edit;
+use super::change::{Edit, quoted};
 use super::document::Document;
 use super::item::Item;
 use super::place::{RELATIVE, pair};
@@ -28,9 +28,9 @@ pub fn grouping(document: &Document, items: &[&Item]) -> Result<(Vec<Edit>, Addr
     let places: Vec<DVec2> = items.iter().map(|item| place_of(document, item)).collect::<Result<_, _>>()?;
     let corner = places.iter().copied().reduce(DVec2::min).unwrap_or_default();
     let mut text = format!(
-        "Group(id: \"{}\", at: {}, widgets: [\n",
-        document.free_id("group_1", &[]),
-        pair(corner.x, corner.y)
+        "Group(id: {}, at: {}, widgets: [\n",
+        quoted(&document.free_id("group_1", &[])),
+        pair(corner).inline()
     );
     for (item, place) in items.iter().zip(&places) {
         text.push_str(&placed_piece(document, item, *place - corner)?.listed("    "));
@@ -116,10 +116,10 @@ fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Result<RecordTex
     }
     let size = item.area.size().as_dvec2() / document.unit_m();
     let needs_size = !had_at && !item.is_group && document.written(&item.record, "size").is_none();
-    let size = needs_size.then(|| ("size", pair(size.x, size.y)));
-    for (field, value) in [("at", pair(at.x, at.y))].into_iter().chain(size) {
+    let size = needs_size.then(|| ("size", pair(size)));
+    for (field, value) in [("at", pair(at))].into_iter().chain(size) {
         let root = Outline::parse(&piece.text).ok_or_else(missing)?;
-        piece.text = spliced(&piece.text, TextLines(&piece.text).set(&root, &[field], &value));
+        piece.text = spliced(&piece.text, TextLines(&piece.text).set(&root, &[field], &value.inline()));
     }
     Ok(piece)
 }

@@ -1,6 +1,6 @@
 //! Converts places on the floor to fields of a record: moving, sizing, turning.
 
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 
 use super::address::{Address, RecordList};
 use super::change::{Edit, NEIGHBOURS};
@@ -9,7 +9,7 @@ use super::item::{Item, around};
 use super::refusal::EditRefusal;
 use underfoot::floor::Rect;
 use underfoot::widget::{Axis, Behaviour, Track};
-use underfoot_format::number::plain;
+use underfoot_format::text::{Entry, Text};
 
 /// Fields that define a place relative to a neighbour.
 pub(super) const RELATIVE: [&str; 6] =
@@ -51,29 +51,29 @@ impl Document {
                 let fields = RELATIVE.iter().filter(|field| self.written(record, field).is_some());
                 edits.extend(fields.map(|field| Edit::unset(record, field)));
             }
-            edits.push(Edit::set(record, "at", pair(at.x, at.y)));
+            edits.push(Edit::set(record, "at", pair(at).inline()));
         }
         let has_own_size = !item.is_group && item.widgets.len() <= 1;
         // A size that came from the neighbour must be written once the neighbour no longer defines it.
         let needs_size = is_whole || (is_relative && is_moved && self.written(record, "size").is_none());
         if has_own_size && (is_resized || needs_size) {
-            edits.push(Edit::set(record, "size", pair(size.x, size.y)));
+            edits.push(Edit::set(record, "size", pair(size).inline()));
         }
         Ok(())
     }
 
     /// The two written numbers of a field.
-    pub(super) fn pair(&self, record: &Address, field: &str) -> Option<glam::DVec2> {
+    pub(super) fn pair(&self, record: &Address, field: &str) -> Option<DVec2> {
         let (east, north) = self.written(record, field)?.trim_matches(['(', ')']).split_once(',')?;
         let number = |text: &str| text.trim().trim_end_matches(',').trim_end().parse::<f64>().ok();
-        Some(glam::DVec2::new(number(east)?, number(north)?))
+        Some(DVec2::new(number(east)?, number(north)?))
     }
 
     /// The origin of the places in the list of `record`, in the layout's units.
-    pub(super) fn origin(&self, record: &Address) -> Result<glam::DVec2, EditRefusal> {
-        let Some((parent, RecordList::Widgets, _)) = record.split() else { return Ok(glam::DVec2::ZERO) };
+    pub(super) fn origin(&self, record: &Address) -> Result<DVec2, EditRefusal> {
+        let Some((parent, RecordList::Widgets, _)) = record.split() else { return Ok(DVec2::ZERO) };
         if parent.list() != Some(RecordList::Widgets) {
-            return Ok(glam::DVec2::ZERO);
+            return Ok(DVec2::ZERO);
         }
         // Any member of the group with a written place reveals the place of the group.
         let items = self.items();
@@ -123,15 +123,23 @@ impl Document {
         if let Some(first) = label.get_mut(0..1) {
             first.make_ascii_uppercase();
         }
-        format!("(id: \"{id}\", kind: \"{kind}\", {}, label: \"{label}\")", self.placed(area))
+        let [at, size] = self.placed(area);
+        let fields = vec![
+            ("id", Text::quoted(id)),
+            ("kind", Text::quoted(kind)),
+            at,
+            size,
+            ("label", Text::quoted(label)),
+        ];
+        Text::Record("Widget", fields).inline()
     }
 
     /// `at` and `size` of this area, in floor metres, as fields.
     #[must_use]
-    pub fn placed(&self, area: Rect) -> String {
+    pub fn placed(&self, area: Rect) -> [Entry; 2] {
         let unit = self.unit_m();
         let (at, size) = (area.min.as_dvec2() / unit, area.size().as_dvec2() / unit);
-        format!("at: {}, size: {}", pair(at.x, at.y), pair(size.x, size.y))
+        [("at", pair(at)), ("size", pair(size))]
     }
 
     /// `wish`, or `wish` with a number, such that no record and none of `taken` has this id.
@@ -171,10 +179,6 @@ fn other(axis: Axis) -> &'static str {
 }
 
 /// Two numbers in the file's notation: to a ten-thousandth of a unit, which is below 0.1 mm.
-pub(super) fn pair(east: f64, north: f64) -> String {
-    let written = |value: f64| {
-        let value = (value * 1e4).round() / 1e4;
-        plain(if value == 0.0 { 0.0 } else { value })
-    };
-    format!("({}, {})", written(east), written(north))
+pub(super) fn pair(place: DVec2) -> Text {
+    Text::pair(((place * 1e4).round() / 1e4).into())
 }

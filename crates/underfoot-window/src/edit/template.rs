@@ -1,6 +1,7 @@
 //! Templates of layouts.
 
 use underfoot::floor::Geometry;
+use underfoot_format::text::Text;
 
 /// A template for a new layout on the given floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +90,7 @@ impl Template {
 }
 
 fn plain(value: f64) -> String {
-    underfoot_format::number::plain((value * 1e3).round() / 1e3)
+    Text::double((value * 1e3).round() / 1e3).inline()
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::inspector::{Inspector, ROW_PX, effect_name, felt, unit_name};
 use crate::edit::{Address, Edit, FieldOrigin, Property};
 use underfoot::floor::Rect;
 use underfoot_format::describe::FieldType;
-use underfoot_format::number::plain;
+use underfoot_format::text::Text;
 use underfoot_format::words::unit;
 
 /// Width of a text field, in points.
@@ -46,7 +46,7 @@ impl Inspector {
                 let mut on = value == "true";
                 let tick = ui.checkbox(&mut on, "");
                 tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, on, short));
-                (tick.changed().then(|| set(on.to_string())).flatten(), tick)
+                (tick.changed().then(|| set(Text::Flag(on).inline())).flatten(), tick)
             }
             FieldType::Number { range: (low, high), whole } if value.parse::<f64>().is_ok() => {
                 let mut number: f64 = value.parse().unwrap_or_default();
@@ -58,7 +58,7 @@ impl Inspector {
                     .update_while_editing(false);
                 let drag = ui.add(drag);
                 drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, short));
-                let changed = drag.changed().then(|| set(plain(number))).flatten();
+                let changed = drag.changed().then(|| set(Text::rounded(number).inline())).flatten();
                 (self.dragged(edited, &drag, changed), drag)
             }
             shape => {
@@ -110,7 +110,7 @@ impl Inspector {
                 unit_name(&edited.document)
             ))
         });
-        let value = format!("({}, {})", plain(now[0]), plain(now[1]));
+        let value = Text::Tuple(now.map(Text::rounded).into()).inline();
         let wanted = (now != before).then(|| Edit::set(record, &property.name, value));
         let [first, second] = drags;
         let wanted = self.dragged(edited, &first, wanted);
@@ -174,7 +174,7 @@ fn place_of(edited: &EditedLayout, record: &Address, property: &Property) -> Opt
 
 /// The choices for a field, as the file writes them; `None` for a field that is typed.
 fn choices(edited: &EditedLayout, property: &Property) -> Option<Vec<String>> {
-    let quoted = |names: Vec<String>| names.into_iter().map(|name| format!("\"{name}\"")).collect();
+    let quoted = |names: Vec<String>| names.iter().map(|name| crate::edit::quoted(name)).collect();
     match (&property.shape, property.name.as_str()) {
         (FieldType::Names(names), "kind") if names.is_empty() => {
             Some(quoted(edited.document.kinds().iter().map(|kind| kind.name.clone()).collect()))

@@ -14,6 +14,7 @@ use underfoot::engine::Snapshot;
 use underfoot::floor::{Geometry, Rect};
 use underfoot::layout::{Layout, Widget};
 use underfoot::widget::WidgetId;
+use underfoot_format::text::Text;
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
 use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
@@ -208,14 +209,24 @@ impl EditedLayout {
             PaletteThing::Control(kind) => {
                 (on_page(RecordList::Widgets), self.document.new_control(kind, area))
             }
-            PaletteThing::Ground(name) => (on_page(RecordList::Grounds), format!("{name}({place})")),
+            PaletteThing::Ground(name) => {
+                (on_page(RecordList::Grounds), Text::Variant(name, place.into()).inline())
+            }
             PaletteThing::Stance => {
-                let text = format!("({place}, label: \"Stand here\")");
-                (Address::LAYOUT.entry(RecordList::Stances, usize::MAX), text)
+                let [at, size] = place;
+                let fields = vec![at, size, ("label", Text::quoted("Stand here"))];
+                (
+                    Address::LAYOUT.entry(RecordList::Stances, usize::MAX),
+                    Text::Record("Stance", fields).inline(),
+                )
             }
             PaletteThing::Region => {
-                let id = self.document.free_id("region", &[]);
-                (Address::LAYOUT.entry(RecordList::Regions, usize::MAX), format!("(id: \"{id}\", {place})"))
+                let [at, size] = place;
+                let fields = vec![("id", Text::quoted(self.document.free_id("region", &[]))), at, size];
+                (
+                    Address::LAYOUT.entry(RecordList::Regions, usize::MAX),
+                    Text::Record("Region", fields).inline(),
+                )
             }
         };
         let done = self.edit(&[Edit::Insert { at: at.clone(), text }]);
@@ -267,9 +278,10 @@ impl EditedLayout {
     }
 
     fn add_page(&mut self) {
-        let id = self.document.free_id("page_1", &[]);
+        let id = Text::quoted(self.document.free_id("page_1", &[]));
+        let page = Text::Record("Page", vec![("id", id), ("widgets", Text::List(Vec::new()))]);
         let at = Address::of(RecordList::Pages, usize::MAX);
-        if self.edit(&[Edit::Insert { at, text: format!("(id: \"{id}\", widgets: [])") }]) {
+        if self.edit(&[Edit::Insert { at, text: page.inline() }]) {
             self.refresh();
             self.page = self.layout().pages.len().saturating_sub(1);
             self.selected = vec![Address::of(RecordList::Pages, self.page)];
