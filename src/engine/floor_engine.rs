@@ -30,11 +30,7 @@ pub struct Engine {
     /// Number of layouts given so far, without the first one.
     layouts_given: u64,
     layout_revision: u64,
-    /// A page that waits until every foot has let go.
-    waiting_page: Option<usize>,
-    /// A page shown since the last step, and the one that the last step reports.
-    page_shown: Option<PageShown>,
-    page_told: Option<PageShown>,
+    pages: PageTurns,
     overrides: Overrides,
     sensing: Sensing,
     interaction: Interaction,
@@ -52,6 +48,17 @@ pub struct Engine {
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
     sustained: SustainedCues,
+}
+
+/// The pages on their way to the feet and to the apps.
+#[derive(Debug, Default)]
+struct PageTurns {
+    /// A page that waits until every foot has let go.
+    waiting: Option<usize>,
+    /// A page shown since the last step.
+    shown: Option<PageShown>,
+    /// The page that the last step reports.
+    reported: Option<PageShown>,
 }
 
 /// The results of one frame.
@@ -99,9 +106,7 @@ impl Engine {
             waiting_layout: None,
             layouts_given: 0,
             layout_revision: 0,
-            waiting_page: None,
-            page_shown: None,
-            page_told: None,
+            pages: PageTurns::default(),
             overrides: Overrides::default(),
             responses,
             pending: Vec::with_capacity(CUES),
@@ -162,10 +167,10 @@ impl Engine {
         self.events.extend(new.filter_map(|event| event.named(&self.layout)));
         self.take_waiting_layout();
         self.take_waiting_page();
-        self.page_told = self.page_shown.take();
+        self.pages.reported = self.pages.shown.take();
         Step {
             events: &self.events,
-            page: self.page_told.as_ref(),
+            page: self.pages.reported.as_ref(),
             cues: &self.cues,
             sustained: &self.sustained,
             ignored: self.interaction.ignored().new_ones(),
@@ -229,7 +234,7 @@ impl Engine {
     /// # Errors
     /// [`SetError::Unknown`] if the layout has no such page.
     pub fn set_page(&mut self, id: &str) -> Result<(), SetError> {
-        self.waiting_page = Some(self.layout.page_index(id).ok_or(SetError::Unknown)?);
+        self.pages.waiting = Some(self.layout.page_index(id).ok_or(SetError::Unknown)?);
         self.take_waiting_page();
         Ok(())
     }
@@ -411,18 +416,18 @@ impl Engine {
     fn follow_clicks(&mut self) {
         let clicked = self.indexed.iter().filter(|event| event.kind == EventKind::Clicked);
         let goto = clicked.filter_map(|event| self.layout.widgets.get(event.widget)?.goto).next_back();
-        self.waiting_page = goto.or(self.waiting_page);
+        self.pages.waiting = goto.or(self.pages.waiting);
     }
 
     fn take_waiting_page(&mut self) {
-        if self.waiting_page.is_none() || self.interaction.is_engaged() {
+        if self.pages.waiting.is_none() || self.interaction.is_engaged() {
             return;
         }
-        let Some(page) = self.waiting_page.take().filter(|&page| page != self.interaction.page()) else {
+        let Some(page) = self.pages.waiting.take().filter(|&page| page != self.interaction.page()) else {
             return;
         };
         self.interaction.show(page, &self.layout);
-        self.page_shown = self
+        self.pages.shown = self
             .layout
             .pages
             .get(page)
@@ -454,7 +459,7 @@ impl Engine {
         // The current page and a waiting page stay if the new layout has them too.
         let same_page = |page: usize| layout.page_index(self.layout.pages.get(page)?.id.as_str());
         let page = same_page(self.interaction.page()).unwrap_or(0);
-        let waiting_page = self.waiting_page.and_then(same_page);
+        let waiting_page = self.pages.waiting.and_then(same_page);
         self.overrides.apply(&mut layout);
         let mut interaction = Interaction::new(&layout, &self.geometry, page);
         for (index, widget) in layout.widgets.iter().enumerate() {
@@ -473,7 +478,7 @@ impl Engine {
         grounds.inherit(&mut self.grounds);
         self.cues.reserve(CUES + grounds.most_events());
         self.grounds = grounds;
-        self.waiting_page = waiting_page;
+        self.pages.waiting = waiting_page;
         self.interaction = interaction;
         self.layout = layout;
         self.responses.begin(&self.layout, self.interaction.controls());

@@ -1,12 +1,12 @@
-//! What a floor of underfoot looks like, and whether feet and eyes can use it.
+//! Drawings of a floor of underfoot, and reviews of how well feet and eyes can use it.
 //!
 //! | module | content |
 //! |---|---|
 //! | [`scene`] | a floor and its layout as a drawing |
 //! | `egui_painter` | scenes drawn by egui (feature `egui`) |
-//! | `letters` | lines of text as outlines, and which characters no font has (feature `letters`) |
+//! | `letters` | lines of text as outlines, and the characters that no font has (feature `letters`) |
 //! | `picture` | scenes as PNG and SVG files (feature `picture`) |
-//! | [`ergonomics`] | what is hard to reach, see or press on a layout |
+//! | [`ergonomics`] | the controls of a layout that are hard to reach, see or press |
 
 #[cfg(feature = "egui")]
 pub mod egui_painter;

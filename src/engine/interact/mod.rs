@@ -236,7 +236,7 @@ impl Interaction {
         for index in 0..self.regions.len() {
             self.step_region(index, &at, events);
         }
-        self.note_ignored(&at);
+        unanswered::note_ignored(self, &at);
         self.rest(&at, events);
     }
 
