@@ -10,12 +10,12 @@ use underfoot::wire::{ControlMessage, Request, is_pattern, matches};
 
 use super::Gateway;
 use super::requests::{Answered, Asker};
-use super::told::Told;
-use crate::message::{NodeState, Standing};
+use super::told::GatewayReport;
+use crate::message::{AreaStanding, NodeState};
 
 /// The answer to an app's request.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer {
+pub enum RequestAnswer {
     /// The state of a control.
     Control(Box<ControlState>),
     /// The page on the floor; empty without pages.
@@ -103,7 +103,7 @@ impl Gateway {
         for number in 0..self.areas.len() {
             let Some(area) = self.areas.get_mut(number) else { continue };
             let lacks = current.is_some() && area.layout.running != current;
-            if area.standing != Standing::Live || area.is_brought_up || lacks {
+            if area.standing != AreaStanding::Live || area.is_brought_up || lacks {
                 continue;
             }
             area.is_brought_up = true;
@@ -123,7 +123,7 @@ impl Gateway {
         }
         let id = WidgetId::new(&page);
         self.shared.page = Some(page);
-        self.out.push(Told::Page(PageShown { at: now, page: id.clone() }));
+        self.out.push(GatewayReport::Page(PageShown { at: now, page: id.clone() }));
         let mut others = self.live_areas();
         others.retain(|area| *area != number);
         let others = self.named(&others);
@@ -144,9 +144,9 @@ impl Gateway {
             self.keep(&message, now);
             let is_asked = matches!(message, ControlMessage::Get { .. } | ControlMessage::GetAll);
             for state in states.iter().map(NodeState::state) {
-                self.out.push(Told::Control(now, Box::new(state.clone())));
+                self.out.push(GatewayReport::Control(now, Box::new(state.clone())));
                 if let Some(to) = sender.filter(|_| is_asked) {
-                    self.out.push(Told::Answer(to, Answer::Control(Box::new(state))));
+                    self.out.push(GatewayReport::Answer(to, RequestAnswer::Control(Box::new(state))));
                 }
             }
             if message == ControlMessage::GetAll {
@@ -159,29 +159,30 @@ impl Gateway {
     /// Answers a request about the state of the whole floor.
     fn tell_of_all(&mut self, message: &ControlMessage, sender: Option<SocketAddr>, now: Instant) {
         let answer = if *message == ControlMessage::GetMute {
-            self.out.push(Told::Muted(now, self.shared.muted.clone()));
-            Answer::Muted(self.shared.muted.clone())
+            self.out.push(GatewayReport::Muted(now, self.shared.muted.clone()));
+            RequestAnswer::Muted(self.shared.muted.clone())
         } else {
             let page = self.shared.page().to_owned();
-            self.out.push(Told::Page(PageShown { at: now, page: WidgetId::new(&page) }));
-            Answer::Page(page)
+            self.out.push(GatewayReport::Page(PageShown { at: now, page: WidgetId::new(&page) }));
+            RequestAnswer::Page(page)
         };
-        self.out.extend(sender.map(|to| Told::Answer(to, answer)));
+        self.out.extend(sender.map(|to| GatewayReport::Answer(to, answer)));
     }
 
     fn keep(&mut self, message: &ControlMessage, now: Instant) {
         if self.shared.keep(message) {
-            self.out.push(Told::Muted(now, self.shared.muted.clone()));
+            self.out.push(GatewayReport::Muted(now, self.shared.muted.clone()));
         }
     }
 
     fn refuse(&mut self, sender: Option<SocketAddr>, message: &ControlMessage, why: String) {
         self.counters.denied += 1;
-        self.out.extend(sender.map(|to| Told::Answer(to, Answer::Refused(message.path(), why))));
+        self.out
+            .extend(sender.map(|to| GatewayReport::Answer(to, RequestAnswer::Refused(message.path(), why))));
     }
 
     fn is_live(&self, number: usize) -> bool {
-        self.areas.get(number).is_some_and(|area| area.standing == Standing::Live)
+        self.areas.get(number).is_some_and(|area| area.standing == AreaStanding::Live)
     }
 
     fn live_areas(&self) -> Vec<usize> {

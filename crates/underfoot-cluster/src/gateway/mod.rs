@@ -36,21 +36,21 @@ use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::LinkState;
 
-use self::area::{AreaState, Worth};
+use self::area::{AreaRecord, MessageUse};
 use self::held::HeldReports;
 use self::join::Joiner;
-use self::layouts::{Layouts, Outcome};
+use self::layouts::{GatewayLayouts, ProposalOutcome};
 use self::requests::Requests;
-use self::shared::Shared;
+use self::shared::SharedState;
 use crate::message::{
-    GatewayMessage, LayoutMessage, LayoutOrder, LayoutStanding, NodeContact, NodeEvent, NodeFrame,
-    NodeMessage, NodeValue, Standing, VERSION, fingerprint, shown,
+    AreaStanding, GatewayMessage, LayoutMessage, LayoutOrder, LayoutStanding, NodeContact, NodeEvent,
+    NodeFrame, NodeMessage, NodeValue, VERSION, fingerprint, shown,
 };
 
 pub use area::LOST_AFTER;
-pub use ask::Answer;
+pub use ask::RequestAnswer;
 pub use clock::NodeClock;
-pub use told::{Counters, Told};
+pub use told::{Counters, GatewayReport};
 
 /// Time for which the reports of one area wait for those of other areas about earlier times.
 pub const WINDOW: Duration = Duration::from_millis(25);
@@ -92,7 +92,7 @@ pub struct Gateway {
     id: u64,
     floor: u64,
     names: Vec<String>,
-    areas: Vec<AreaState>,
+    areas: Vec<AreaRecord>,
     joiner: Joiner,
     /// By ordering time, area and number, with the reported time, which may be before the ordering time.
     queue: BTreeMap<(Instant, usize, u64), (Instant, Item)>,
@@ -105,13 +105,13 @@ pub struct Gateway {
     link: LinkState,
     alive: (u32, Instant),
     complained: HashSet<u64>,
-    shared: Shared,
+    shared: SharedState,
     requests: Requests,
-    layouts: Layouts,
+    layouts: GatewayLayouts,
     /// Whether nodes need a message before the next beat is due.
     has_news: bool,
     counters: Counters,
-    out: Vec<Told>,
+    out: Vec<GatewayReport>,
 }
 
 impl Gateway {
@@ -127,7 +127,7 @@ impl Gateway {
             id,
             floor: fingerprint(floor),
             names: floor.areas.iter().map(|area| area.id.clone()).collect(),
-            areas: vec![AreaState::default(); floor.areas.len()],
+            areas: vec![AreaRecord::default(); floor.areas.len()],
             joiner: Joiner::new(floor),
             queue: BTreeMap::new(),
             number: 0,
@@ -138,9 +138,9 @@ impl Gateway {
             link: LinkState::Waiting,
             alive: (0, Instant::START),
             complained: HashSet::new(),
-            shared: Shared::new(floor),
+            shared: SharedState::new(floor),
             requests: Requests::default(),
-            layouts: Layouts::default(),
+            layouts: GatewayLayouts::default(),
             has_news: false,
             counters: Counters::default(),
             out: Vec::new(),
@@ -155,7 +155,7 @@ impl Gateway {
 
     /// The standing of the area `id`; `None` for an unknown one.
     #[must_use]
-    pub fn standing(&self, id: &str) -> Option<Standing> {
+    pub fn standing(&self, id: &str) -> Option<AreaStanding> {
         let area = self.names.iter().position(|name| name == id)?;
         self.areas.get(area).map(|area| area.standing)
     }
@@ -166,7 +166,7 @@ impl Gateway {
     pub fn message(&self, now: Instant) -> GatewayMessage {
         let standings = self.areas.iter().map(|area| area.standing);
         let current = self.layouts.current();
-        let from = |(name, area): (&String, &AreaState)| {
+        let from = |(name, area): (&String, &AreaRecord)| {
             let (_, from) = current?;
             Some((name.clone(), area.clock.there(from)?))
         };
@@ -224,18 +224,18 @@ impl Gateway {
                 self.requests.note(number, answer.clone());
             }
         }
-        if area.holder != before && area.standing == Standing::Live {
-            self.fall(number, Standing::Lost, "its node was started again", now);
+        if area.holder != before && area.standing == AreaStanding::Live {
+            self.fall(number, AreaStanding::Lost, "its node was started again", now);
         }
         match worth {
-            Worth::Nothing => {}
-            Worth::Stale => self.counters.stale += 1,
-            Worth::ClockSet => {
-                if self.areas.get(number).is_some_and(|area| area.standing == Standing::Live) {
-                    self.fall(number, Standing::Lost, "its node's clock was set", now);
+            MessageUse::Nothing => {}
+            MessageUse::Stale => self.counters.stale += 1,
+            MessageUse::ClockSet => {
+                if self.areas.get(number).is_some_and(|area| area.standing == AreaStanding::Live) {
+                    self.fall(number, AreaStanding::Lost, "its node's clock was set", now);
                 }
             }
-            Worth::Fresh { lost } => {
+            MessageUse::Fresh { lost } => {
                 self.counters.lost += lost;
                 self.join(number, message, lost > 0, now);
             }
@@ -243,12 +243,12 @@ impl Gateway {
     }
 
     /// The reports that are due at `now`, a time at or after that of all earlier calls.
-    pub fn advance(&mut self, now: Instant) -> Vec<Told> {
+    pub fn advance(&mut self, now: Instant) -> Vec<GatewayReport> {
         for number in 0..self.areas.len() {
             let Some(area) = self.areas.get_mut(number) else { continue };
             let Some(standing) = area.fallen(now) else { continue };
             let why = match standing {
-                Standing::Disputed => {
+                AreaStanding::Disputed => {
                     format!(
                         "{} both serve it: neither is believed until one of them has stopped",
                         area.claims.names()
@@ -259,7 +259,7 @@ impl Gateway {
             };
             self.fall(number, standing, &why, now);
         }
-        let told = self.areas.iter().filter(|area| area.standing == Standing::Live).map(|area| area.told);
+        let told = self.areas.iter().filter(|area| area.standing == AreaStanding::Live).map(|area| area.told);
         // Areas later than the window do not delay the others.
         let until = told.min().unwrap_or(now).max(now.before(WINDOW));
         while let Some(entry) = self.queue.first_entry().filter(|entry| entry.key().0 <= until) {
@@ -276,10 +276,10 @@ impl Gateway {
     }
 
     /// The final reports of a gateway that stops at `now`: it cancels all holds, which are unknown from then on.
-    pub fn end(&mut self, now: Instant) -> Vec<Told> {
+    pub fn end(&mut self, now: Instant) -> Vec<GatewayReport> {
         for number in 0..self.areas.len() {
-            if self.areas.get(number).is_some_and(|area| area.standing == Standing::Live) {
-                self.fall(number, Standing::Lost, "the gateway has stopped", now);
+            if self.areas.get(number).is_some_and(|area| area.standing == AreaStanding::Live) {
+                self.fall(number, AreaStanding::Lost, "the gateway has stopped", now);
             }
         }
         self.tell_contacts(now, now);
@@ -309,8 +309,9 @@ impl Gateway {
         };
         if self.complained.len() < COMPLAINTS && self.complained.insert(message.node) {
             let (name, area) = (&message.name, shown(&message.area, LONGEST_AREA));
-            self.out
-                .push(Told::Notice(format!("the node at {name} for area \"{area}\" is not heard: it {why}")));
+            self.out.push(GatewayReport::Notice(format!(
+                "the node at {name} for area \"{area}\" is not heard: it {why}"
+            )));
         }
         None
     }
@@ -319,14 +320,19 @@ impl Gateway {
     fn join(&mut self, number: usize, message: NodeMessage, is_torn: bool, now: Instant) {
         let Some(area) = self.areas.get_mut(number) else { return };
         let Some(frame) = area.newest else { return };
-        if area.standing != Standing::Live {
+        if area.standing != AreaStanding::Live {
             area.begin(frame);
             area.presses.shut(&message.held);
             let (at, name) = (now, self.names.get(number).cloned().unwrap_or_default());
             let uncertainty = area.clock.uncertainty(now).unwrap_or_default();
-            let news =
-                AreaNews { at, area: name, state: Standing::Live.into(), why: String::new(), uncertainty };
-            self.out.push(Told::Area(news));
+            let news = AreaNews {
+                at,
+                area: name,
+                state: AreaStanding::Live.into(),
+                why: String::new(),
+                uncertainty,
+            };
+            self.out.push(GatewayReport::Area(news));
             area.page.clone_from(&message.page);
             self.tell_mutes(number, now);
         } else if is_torn {
@@ -370,11 +376,11 @@ impl Gateway {
         let Some(area) = self.areas.get_mut(number) else { return };
         let cancelled = area.presses.cancel(now);
         area.presses.shut(held);
-        self.out.extend(cancelled.into_iter().map(Told::Event));
+        self.out.extend(cancelled.into_iter().map(GatewayReport::Event));
     }
 
     /// Takes an area off the floor: cancels its holds and ends its contacts.
-    fn fall(&mut self, number: usize, standing: Standing, why: &str, now: Instant) {
+    fn fall(&mut self, number: usize, standing: AreaStanding, why: &str, now: Instant) {
         let Some(area) = self.areas.get_mut(number) else { return };
         area.fall(standing);
         let cancelled = area.presses.cancel(now);
@@ -382,9 +388,15 @@ impl Gateway {
         self.joiner.lose(number, now);
         let name = self.names.get(number).cloned().unwrap_or_default();
         self.requests.lose(number, &name);
-        self.out.extend(cancelled.into_iter().map(Told::Event));
+        self.out.extend(cancelled.into_iter().map(GatewayReport::Event));
         let (why, uncertainty) = (why.to_owned(), Duration::ZERO);
-        self.out.push(Told::Area(AreaNews { at: now, area: name, state: standing.into(), why, uncertainty }));
+        self.out.push(GatewayReport::Area(AreaNews {
+            at: now,
+            area: name,
+            state: standing.into(),
+            why,
+            uncertainty,
+        }));
     }
 
     fn tell(&mut self, number: usize, at: Instant, happened: Instant, item: Item) {
@@ -402,13 +414,13 @@ impl Gateway {
                     return;
                 }
                 self.counters.late += u64::from(at < self.told_until);
-                self.out.push(Told::Event(told));
+                self.out.push(GatewayReport::Event(told));
             }
             Item::Frame { contacts } => self.joiner.frame(number, at, &contacts),
             Item::Held { held, values } => {
                 self.counters.unpressed += area.presses.hold(&held);
                 let changed = values.map(|values| area.presses.compare(&values, at)).unwrap_or_default();
-                self.out.extend(changed.into_iter().map(Told::Event));
+                self.out.extend(changed.into_iter().map(GatewayReport::Event));
             }
         }
     }
@@ -417,27 +429,27 @@ impl Gateway {
     fn decide(&mut self, now: Instant) {
         let Some(outcome) = self.layouts.decide(live(&self.names, &self.areas), now) else { return };
         let notice = match outcome {
-            Outcome::Current(name, _) => {
+            ProposalOutcome::Current(name, _) => {
                 self.shared.take_proposal();
                 self.has_news = true;
                 format!("Layout {} goes to all areas.", name.revision)
             }
-            Outcome::Dropped(name, why) => {
+            ProposalOutcome::Dropped(name, why) => {
                 self.shared.drop_proposal();
                 format!("Layout {} goes to no area: {why}.", name.revision)
             }
-            Outcome::Unfit(area, why) => {
+            ProposalOutcome::Unfit(area, why) => {
                 format!("the node of area \"{area}\" does not take the layout of the others: {why}")
             }
         };
-        self.out.push(Told::Notice(notice));
+        self.out.push(GatewayReport::Notice(notice));
     }
 
     fn tell_contacts(&mut self, until: Instant, now: Instant) {
-        let is_live = self.areas.iter().any(|area| area.standing == Standing::Live);
+        let is_live = self.areas.iter().any(|area| area.standing == AreaStanding::Live);
         if !is_live {
             if std::mem::take(&mut self.is_anybody_there) {
-                self.out.push(Told::Contacts(now, Vec::new()));
+                self.out.push(GatewayReport::Contacts(now, Vec::new()));
             }
             return;
         }
@@ -447,11 +459,11 @@ impl Gateway {
         self.contacts_told = Some(until);
         let contacts = self.joiner.contacts(until);
         self.is_anybody_there = !contacts.is_empty();
-        self.out.push(Told::Contacts(until, contacts));
+        self.out.push(GatewayReport::Contacts(until, contacts));
     }
 
     fn tell_state(&mut self, now: Instant) {
-        let live = || self.areas.iter().filter(|area| area.standing == Standing::Live);
+        let live = || self.areas.iter().filter(|area| area.standing == AreaStanding::Live);
         let link = match live().count() {
             0 if self.link == LinkState::Waiting => LinkState::Waiting,
             0 => LinkState::Lost,
@@ -460,18 +472,18 @@ impl Gateway {
         };
         if link != self.link {
             self.link = link;
-            self.out.push(Told::Link(now, link));
+            self.out.push(GatewayReport::Link(now, link));
         }
         let held: Vec<&str> = live().flat_map(|area| area.presses.held()).collect();
         let holding = live().filter(|area| area.presses.held().next().is_some());
         let age = holding.filter_map(|area| area.age(now)).max().unwrap_or_default();
         if let Some(report) = self.held.report(&held, age, now) {
-            self.out.push(Told::Held(report.clone()));
+            self.out.push(GatewayReport::Held(report.clone()));
         }
         let (number, due) = &mut self.alive;
         if now >= *due {
             (*number, *due) = (number.wrapping_add(1), now + ALIVE_EVERY);
-            self.out.push(Told::Alive(now, *number));
+            self.out.push(GatewayReport::Alive(now, *number));
         }
     }
 }
@@ -479,16 +491,16 @@ impl Gateway {
 /// The live nodes and the states of their layouts.
 fn live<'a>(
     names: &'a [String],
-    areas: &'a [AreaState],
+    areas: &'a [AreaRecord],
 ) -> impl Iterator<Item = (&'a str, &'a LayoutStanding)> + Clone {
-    let all = names.iter().zip(areas).filter(|(_, area)| area.standing == Standing::Live);
+    let all = names.iter().zip(areas).filter(|(_, area)| area.standing == AreaStanding::Live);
     all.map(|(name, area)| (name.as_str(), &area.layout))
 }
 
 /// The events among the reports.
-pub fn events(told: &[Told]) -> impl Iterator<Item = &WidgetEvent> {
+pub fn events(told: &[GatewayReport]) -> impl Iterator<Item = &WidgetEvent> {
     told.iter().filter_map(|told| match told {
-        Told::Event(event) => Some(event),
+        GatewayReport::Event(event) => Some(event),
         _ => None,
     })
 }

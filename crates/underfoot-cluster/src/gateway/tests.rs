@@ -89,7 +89,7 @@ impl Node {
 /// A gateway and all its reports.
 struct Stage {
     gateway: Gateway,
-    told: Vec<Told>,
+    told: Vec<GatewayReport>,
 }
 
 impl Stage {
@@ -115,7 +115,7 @@ impl Stage {
     fn names(&self) -> (Vec<u32>, usize) {
         let (mut names, mut most) = (Vec::new(), 0);
         for told in &self.told {
-            if let Told::Contacts(_, contacts) = told {
+            if let GatewayReport::Contacts(_, contacts) = told {
                 most = most.max(contacts.len());
                 for contact in
                     contacts.iter().filter(|contact| !names.contains(&contact.id.0)).collect::<Vec<_>>()
@@ -129,7 +129,7 @@ impl Stage {
 
     fn contacts(&self) -> Vec<(u32, f32)> {
         let last = self.told.iter().rev().find_map(|told| match told {
-            Told::Contacts(_, contacts) => {
+            GatewayReport::Contacts(_, contacts) => {
                 Some(contacts.iter().map(|one| (one.id.0, one.centroid.x)).collect())
             }
             _ => None,
@@ -139,7 +139,7 @@ impl Stage {
 
     fn last_area(&self) -> Option<&AreaNews> {
         self.told.iter().rev().find_map(|told| match told {
-            Told::Area(news) => Some(news),
+            GatewayReport::Area(news) => Some(news),
             _ => None,
         })
     }
@@ -303,9 +303,9 @@ fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
     assert_eq!(stage.contacts(), [(2, 3.0)], "east's foot is still there, west's is not");
     let news = stage.last_area().unwrap();
     assert_eq!((news.area.as_str(), news.state), ("west", AreaState::Lost));
-    assert!(stage.told.contains(&Told::Link(news.at, LinkState::Partial)));
+    assert!(stage.told.contains(&GatewayReport::Link(news.at, LinkState::Partial)));
     let held = stage.told.iter().rev().find_map(|told| match told {
-        Told::Held(report) => Some(report),
+        GatewayReport::Held(report) => Some(report),
         _ => None,
     });
     assert!(held.is_some_and(|report| report.held.is_empty() && report.ended.len() == 1), "{held:?}");
@@ -327,7 +327,7 @@ fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghost
     let thawed = frozen + 300_000;
     late.into_iter().for_each(|message| stage.take(message, thawed));
     stage.advance(thawed + 300);
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Lost));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Lost));
     assert_eq!(stage.gateway.counters().stale, 10);
     for step in 0..50_u64 {
         let at = thawed + step * 2000;
@@ -383,7 +383,7 @@ fn step_of_the_clock(step_us: i64) -> (Vec<EventKind>, u64, u64) {
             pressed.get_or_insert(at + 300 - (begun + 200_000));
         }
     }
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Live));
     (stage.kinds(), cancelled.unwrap(), pressed.unwrap())
 }
 
@@ -412,7 +412,7 @@ fn a_node_that_starts_again_at_once_has_cancelled_what_was_held() {
     }
     assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled]);
     assert_eq!(stage.contacts(), [(2, 3.0)]);
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Live));
 }
 
 // C10
@@ -442,7 +442,7 @@ fn of_two_nodes_that_claim_an_area_neither_acts() {
         stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
         stage.advance(at + 300);
     }
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Live));
     assert_eq!(stage.contacts().len(), 2);
 }
 
@@ -482,7 +482,7 @@ fn events_from_before_a_gap_end_with_it() {
 
 #[test]
 fn the_uncertainty_of_a_node_s_clock_adds_to_the_age_of_its_frames() {
-    for (one_way_ms, standing) in [(40, Standing::Live), (60, Standing::Waiting)] {
+    for (one_way_ms, standing) in [(40, AreaStanding::Live), (60, AreaStanding::Waiting)] {
         let (mut stage, mut west) = (Stage::new(), Node::new("west", 1));
         let way = one_way_ms * 1000;
         // A round trip of twice that bounds the frame's age only to between 0 and two ways.
@@ -521,7 +521,7 @@ fn a_notice_shows_the_name_of_a_node_without_control_characters() {
     stage.take(NodeMessage { area: "no\u{7}where".into(), ..message }, START);
     stage.advance(START + 300);
     let notice = stage.told.iter().find_map(|told| match told {
-        Told::Notice(notice) => Some(notice.as_str()),
+        GatewayReport::Notice(notice) => Some(notice.as_str()),
         _ => None,
     });
     assert!(
@@ -541,9 +541,9 @@ fn a_node_with_another_floor_file_is_told_about_once_and_not_heard() {
         stage.take(message, at);
         stage.advance(at + 300);
     }
-    let notices = stage.told.iter().filter(|told| matches!(told, Told::Notice(_))).count();
+    let notices = stage.told.iter().filter(|told| matches!(told, GatewayReport::Notice(_))).count();
     assert_eq!((notices, stage.gateway.counters().refused), (1, 5));
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Waiting));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Waiting));
 }
 
 proptest! {
@@ -665,7 +665,7 @@ fn ask(stage: &mut Stage, message: ControlMessage, at: u64) {
 
 fn refusals(stage: &Stage) -> Vec<&str> {
     let refused = stage.told.iter().filter_map(|told| match told {
-        Told::Answer(_, Answer::Refused(_, why)) => Some(why.as_str()),
+        GatewayReport::Answer(_, RequestAnswer::Refused(_, why)) => Some(why.as_str()),
         _ => None,
     });
     refused.collect()
@@ -736,7 +736,8 @@ fn a_page_that_one_node_shows_is_that_of_all() {
     message.page = Some("two".into());
     stage.take(message, at);
     stage.advance(at + 300);
-    let shown = stage.told.iter().any(|told| matches!(told, Told::Page(shown) if shown.page == "two"));
+    let shown =
+        stage.told.iter().any(|told| matches!(told, GatewayReport::Page(shown) if shown.page == "two"));
     assert!(shown, "{:?}", stage.told);
     let asked = answer_all(&mut stage, &mut west, &mut east, at + 1000);
     assert_eq!(asked, [("east".to_owned(), "page/set".to_owned())]);

@@ -10,12 +10,12 @@ use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::LinkState;
 
-use super::ask::Answer;
+use super::ask::RequestAnswer;
 
 /// One report of the gateway; times are on its clock.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Told {
+pub enum GatewayReport {
     /// An event of a control; contacts have their joint numbers.
     Event(WidgetEvent),
     /// The contacts on the whole floor at one time; once a millisecond at most.
@@ -35,12 +35,12 @@ pub enum Told {
     /// The muted set has changed, or an app has asked for it.
     Muted(Instant, Muted),
     /// The answer to the app that asked.
-    Answer(SocketAddr, Answer),
+    Answer(SocketAddr, RequestAnswer),
     /// A notice for the operator.
     Notice(String),
 }
 
-impl Told {
+impl GatewayReport {
     /// The same report for the outputs of a single floor; `None` for one that only the operator or one app receives.
     #[must_use]
     pub fn report(&self) -> Option<Report<'_>> {

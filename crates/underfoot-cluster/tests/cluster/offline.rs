@@ -14,7 +14,7 @@ use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
 use underfoot::wire::{LinkCounters, SensorPacket};
 use underfoot_cluster::auth::Echo;
-use underfoot_cluster::gateway::{Gateway, Told};
+use underfoot_cluster::gateway::{Gateway, GatewayReport};
 use underfoot_cluster::message::{NodeMessage, VERSION, fingerprint};
 use underfoot_cluster::node::NodeSink;
 use underfoot_sim::{Pace, SimulatedSource};
@@ -103,7 +103,11 @@ fn compare(rounds: usize) {
     for message in all {
         let now = Instant::from_micros(message.sent + 200);
         gateway.take(message, now);
-        gateway.advance(now).iter().filter_map(Told::report).for_each(|report| joined.report(report));
+        gateway
+            .advance(now)
+            .iter()
+            .filter_map(GatewayReport::report)
+            .for_each(|report| joined.report(report));
     }
     assert_eq!(gateway.counters().unpressed, 0, "each hold follows its press");
     // The same times, to the microsecond.
