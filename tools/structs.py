@@ -95,8 +95,11 @@ def read(folders):
         if stem not in ("mod.rs", "lib.rs", "main.rs"):
             folder += "/" + stem.removesuffix(".rs")
         tests.update(f"{folder}/{module}" for module in modules if module)
-    for_tests = lambda name: any(name == test + ".rs" or name.startswith(test + "/") for test in tests)
-    return {name: code for name, code in codes.items() if not for_tests(name)}
+    return {
+        name: code
+        for name, code in codes.items()
+        if not any(name == test + ".rs" or name.startswith(test + "/") for test in tests)
+    }
 
 
 def count(codes):

@@ -19,7 +19,7 @@ const AHEAD: Duration = Duration::from_millis(20);
 
 /// One area.
 #[derive(Clone, Debug, Default)]
-pub(super) struct AreaRecord {
+pub(super) struct JoinedArea {
     pub(super) claims: Claims,
     pub(super) holder: Option<u64>,
     pub(super) standing: AreaStanding,
@@ -58,7 +58,7 @@ pub(super) enum MessageUse {
     Fresh { lost: u64 },
 }
 
-impl AreaRecord {
+impl JoinedArea {
     /// Notes a message and its sender, received at `now`.
     pub(super) fn note(&mut self, message: &NodeMessage, now: Instant) -> MessageUse {
         self.claims.note(message.node, &message.name, now);

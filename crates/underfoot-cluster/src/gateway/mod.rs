@@ -36,7 +36,7 @@ use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::LinkState;
 
-use self::area::{AreaRecord, MessageUse};
+use self::area::{JoinedArea, MessageUse};
 use self::held::HeldReports;
 use self::join::Joiner;
 use self::layouts::{GatewayLayouts, ProposalOutcome};
@@ -92,7 +92,7 @@ pub struct Gateway {
     id: u64,
     floor: u64,
     names: Vec<String>,
-    areas: Vec<AreaRecord>,
+    areas: Vec<JoinedArea>,
     joiner: Joiner,
     /// By ordering time, area and number, with the reported time, which may be before the ordering time.
     queue: BTreeMap<(Instant, usize, u64), (Instant, Item)>,
@@ -127,7 +127,7 @@ impl Gateway {
             id,
             floor: fingerprint(floor),
             names: floor.areas.iter().map(|area| area.id.clone()).collect(),
-            areas: vec![AreaRecord::default(); floor.areas.len()],
+            areas: vec![JoinedArea::default(); floor.areas.len()],
             joiner: Joiner::new(floor),
             queue: BTreeMap::new(),
             number: 0,
@@ -166,7 +166,7 @@ impl Gateway {
     pub fn message(&self, now: Instant) -> GatewayMessage {
         let standings = self.areas.iter().map(|area| area.standing);
         let current = self.layouts.current();
-        let from = |(name, area): (&String, &AreaRecord)| {
+        let from = |(name, area): (&String, &JoinedArea)| {
             let (_, from) = current?;
             Some((name.clone(), area.clock.there(from)?))
         };
@@ -491,7 +491,7 @@ impl Gateway {
 /// The live nodes and the states of their layouts.
 fn live<'a>(
     names: &'a [String],
-    areas: &'a [AreaRecord],
+    areas: &'a [JoinedArea],
 ) -> impl Iterator<Item = (&'a str, &'a LayoutStanding)> + Clone {
     let all = names.iter().zip(areas).filter(|(_, area)| area.standing == AreaStanding::Live);
     all.map(|(name, area)| (name.as_str(), &area.layout))
