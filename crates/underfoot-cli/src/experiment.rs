@@ -17,7 +17,7 @@ use underfoot_sim::FloorQuality;
 use super::failure::Failure;
 use super::fonts::fonts;
 use super::output::print_json;
-use super::progress::Progress;
+use super::progress::ProgressLine;
 
 /// Options of `underfoot experiment`.
 #[derive(clap::Args, Debug)]
@@ -251,7 +251,7 @@ fn in_parallel<T: Send>(
     times: u64,
     act: impl Fn(u64) -> Result<T, ExperimentError> + Sync,
 ) -> Result<Vec<T>, Failure> {
-    let progress = Progress::of(what, times);
+    let progress = ProgressLine::of(what, times);
     let next = AtomicU64::new(0);
     let done = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
@@ -377,7 +377,7 @@ fn counted(
     times: u64,
     mut act: impl FnMut(u64) -> Result<(), ExperimentError>,
 ) -> Result<(), Failure> {
-    let progress = Progress::of(what, times);
+    let progress = ProgressLine::of(what, times);
     for step in 0..times {
         act(step)?;
         progress.advance();

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use underfoot_lab::capacity::SocketLoad;
 
 use super::failure::Failure;
-use super::progress::Progress;
+use super::progress::ProgressLine;
 
 /// The measured speed of one load.
 pub(super) struct Measured {
@@ -22,13 +22,13 @@ pub(super) struct Measured {
 pub(super) struct Meter {
     length: Duration,
     threads: NonZeroUsize,
-    progress: Progress,
+    progress: ProgressLine,
 }
 
 impl Meter {
     /// Measures each of `loads` loads for `length`, on this many threads at once.
     pub(super) fn new(length: Duration, threads: NonZeroUsize, loads: u64) -> Self {
-        Self { length, threads, progress: Progress::of("load", loads) }
+        Self { length, threads, progress: ProgressLine::of("load", loads) }
     }
 
     /// Seconds of floor per second of work, summed over all threads, each with a load of its own.

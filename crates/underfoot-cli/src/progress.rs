@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 /// Work of equal parts; removes its line when dropped.
 ///
 /// The thread that writes standard error also writes the line, so that a stalled terminal delays no work.
-pub(crate) struct Progress {
+pub(crate) struct ProgressLine {
     /// One part of the work, such as "person".
     part: &'static str,
     parts: u64,
@@ -17,7 +17,7 @@ pub(crate) struct Progress {
     is_shown: bool,
 }
 
-impl Progress {
+impl ProgressLine {
     /// Begins work of this many parts.
     pub(crate) fn of(part: &'static str, parts: u64) -> Self {
         let is_shown = std::io::stderr().is_terminal();
@@ -52,7 +52,7 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         if self.is_shown {
             // Overwrites the line, so that the next output begins on a clean line.
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn what_is_left_follows_from_what_is_done() {
-        let progress = Progress::of("person", 100);
+        let progress = ProgressLine::of("person", 100);
         let left = |elapsed_s, done| progress.left(Duration::from_secs(elapsed_s), done).to_string();
         assert_eq!(left(5, 0), "");
         assert_eq!(left(5, 50), ", 5 s left");

@@ -34,7 +34,7 @@ use super::number::{lifetime, threads};
 use super::outputs::OutputArgs;
 use super::senders::{BoardArgs, CommandArgs};
 use super::stop::{panic_flag, stop_flag};
-use super::watch::Watch;
+use super::watch::FileWatch;
 use super::web::WebArgs;
 
 /// Default address for packets.
@@ -145,7 +145,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .start()?;
     let told = session.clone();
     let (geometry, here) = (served.geometry, served);
-    let watch = Watch::start(&args.layout, geometry, move |read| match read {
+    let watch = FileWatch::start(&args.layout, geometry, move |read| match read {
         Ok(layout) => {
             info!("the changed layout is on the floor");
             told.set_layout(here.layout(layout));

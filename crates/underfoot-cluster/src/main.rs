@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
 
-use program::Failure;
+use program::ClusterFailure;
 
 /// One floor served by several computers.
 ///
@@ -44,7 +44,7 @@ fn main() -> ExitCode {
     };
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
     tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).with_target(false).init();
-    let done: Result<(), Failure> = match cli.command {
+    let done: Result<(), ClusterFailure> = match cli.command {
         Command::Node(args) => program::node::run(args),
         Command::Gateway(args) => program::gateway::run(&args),
         Command::Key(args) => program::key::run(&args),

@@ -8,7 +8,7 @@ use underfoot::schema;
 use underfoot_lab::plan::{LOADS, Machine, measure};
 
 use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 
 /// Maximum size of a file of constants in bytes, larger than any real one.
 const MOST_BYTES: u64 = 1 << 20;
@@ -32,7 +32,7 @@ pub(super) fn measured(length: Duration) -> Result<Machine, Failure> {
     if cfg!(debug_assertions) {
         errln!("This is a debug build: a release build is many times faster.");
     }
-    let progress = Progress::of("load", LOADS);
+    let progress = ProgressLine::of("load", LOADS);
     Ok(measure(length, || progress.advance())?)
 }
 

@@ -16,7 +16,7 @@ use underfoot_window::preview::{LayoutCause, LayoutNews, PreviewCommand, Warning
 
 use super::super::failure::Failure;
 use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
-use super::super::watch::Watch;
+use super::super::watch::FileWatch;
 
 /// Gives layouts to the floor and reports them to the window.
 #[derive(Clone)]
@@ -44,9 +44,9 @@ impl Desk {
     }
 
     /// Reports each change of the files to the window, which has the text.
-    pub(super) fn watch(&self, files: &LayoutArgs) -> Result<Option<Watch>, Failure> {
+    pub(super) fn watch(&self, files: &LayoutArgs) -> Result<Option<FileWatch>, Failure> {
         let layouts = self.layouts.clone();
-        Watch::on_change(files, move || {
+        FileWatch::on_change(files, move || {
             // If the queue is full, it already contains changes.
             let _ = layouts.try_send(LayoutNews::Changed);
         })
@@ -57,7 +57,7 @@ impl Desk {
 pub(super) struct CommandHandler {
     pub(super) files: LayoutArgs,
     /// Dropped when the next one starts.
-    pub(super) watch: Option<Watch>,
+    pub(super) watch: Option<FileWatch>,
     pub(super) choices: Vec<String>,
     pub(super) floor: Floor,
     pub(super) desk: Desk,

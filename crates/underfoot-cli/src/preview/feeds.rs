@@ -74,18 +74,18 @@ pub(super) fn shoe(foot: &Foot) -> PreviewFoot {
 }
 
 /// Signals of the actuators, as the window draws them.
-pub(super) struct Scopes {
+pub(super) struct SignalScopes {
     reader: ScopeReader,
     points: Vec<(f32, f32)>,
 }
 
-impl Scopes {
+impl SignalScopes {
     pub(super) fn new(reader: ScopeReader) -> Self {
         Self { reader, points: Vec::new() }
     }
 }
 
-impl ScopeFeed for Scopes {
+impl ScopeFeed for SignalScopes {
     fn update(&mut self) {
         self.reader.update();
     }

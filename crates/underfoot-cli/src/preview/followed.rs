@@ -21,7 +21,7 @@ use underfoot_window::preview::{
 
 use super::super::failure::Failure;
 use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
-use super::super::watch::Watch;
+use super::super::watch::FileWatch;
 use super::LOOK;
 use super::commands::keep_floor;
 use super::feeds::ToWindow;
@@ -36,7 +36,7 @@ const CHANGES_WAITING: usize = 16;
 const LONGEST: u64 = 1 << 18;
 
 /// A floor that is followed; ends when the window closes its channels.
-pub(super) struct Followed {
+pub(super) struct FollowedFeed {
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
     /// Reports the state of the server to the window.
     pub(super) feed: ServerFeed,
@@ -44,7 +44,7 @@ pub(super) struct Followed {
     pub(super) name: String,
 }
 
-impl Followed {
+impl FollowedFeed {
     /// Follows the lines in the file at `path`, or on standard input for `-`, on a floor with this layout; `files`
     /// belong to the layout.
     pub(super) fn start(
@@ -75,7 +75,7 @@ impl Followed {
         let told = Arc::clone(&shared);
         let (changed, changes) = sync_channel(CHANGES_WAITING);
         // The window may be closed.
-        let watch = Watch::start(files, floor.geometry, move |layout| drop(changed.send(layout)))?;
+        let watch = FileWatch::start(files, floor.geometry, move |layout| drop(changed.send(layout)))?;
         let floor = FollowedFloor {
             lines: read,
             changes,
@@ -117,7 +117,7 @@ struct FollowedFloor {
     shared: Arc<Mutex<ServerState>>,
     layout_name: String,
     ended: bool,
-    _watch: Option<Watch>,
+    _watch: Option<FileWatch>,
 }
 
 impl FollowedFloor {

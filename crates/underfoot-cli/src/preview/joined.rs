@@ -23,7 +23,7 @@ use underfoot_window::preview::{
 
 use super::super::failure::Failure;
 use super::super::layout_args::LayoutArgs;
-use super::super::watch::Watch;
+use super::super::watch::FileWatch;
 use super::LOOK;
 use super::announced::announced;
 use super::commands::keep_floor;
@@ -184,7 +184,7 @@ struct ServedFloor {
     compared: HostInstant,
     shared: Shared,
     /// Dropped when the next one starts.
-    watch: Option<Watch>,
+    watch: Option<FileWatch>,
     files: LayoutArgs,
 }
 
@@ -340,9 +340,9 @@ impl ServedFloor {
     }
 
     /// Reports each change of the layout's files to the window.
-    fn watch(&self) -> Option<Watch> {
+    fn watch(&self) -> Option<FileWatch> {
         let news = self.window.layouts.clone();
-        let watch = Watch::on_change(&self.files, move || {
+        let watch = FileWatch::on_change(&self.files, move || {
             // If the queue is full, it already contains changes.
             let _ = news.try_send(LayoutNews::Changed);
         });

@@ -37,10 +37,10 @@ use underfoot_window::preview::{
 };
 
 use self::commands::{CommandHandler, Desk};
-use self::feeds::{Mouse, Scopes, ToWindow, shoe, stop_and_wait};
-use self::followed::Followed;
+use self::feeds::{Mouse, SignalScopes, ToWindow, shoe, stop_and_wait};
+use self::followed::FollowedFeed;
 use self::joined::Joined;
-use self::player::Player;
+use self::player::ShownRecording;
 use super::actuate::ActuateArgs;
 use super::failure::Failure;
 use super::fault_args::say_what_is_rehearsed;
@@ -193,7 +193,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     handler.process_commands(commands, notices);
 
     let scopes = scopes.try_iter().last().flatten();
-    let scopes = scopes.map(|reader| Box::new(Scopes::new(reader)) as Box<dyn ScopeFeed>);
+    let scopes = scopes.map(|reader| Box::new(SignalScopes::new(reader)) as Box<dyn ScopeFeed>);
     let (floor, layout) = (Arc::new(stage.floor), Arc::new(layout));
     let input = PreviewInput {
         warnings: Warnings::from(&warnings),
@@ -262,7 +262,7 @@ impl Drop for SignalWatch {
 /// Shows a recording; its events go to no other program.
 fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
     let (window, program) = channels();
-    let (player, floor, layout, snapshots) = Player::start(path, program)?;
+    let (player, floor, layout, snapshots) = ShownRecording::start(path, program)?;
     let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
     let input = PreviewInput {
         playback: Some(Box::new(player)),
@@ -295,7 +295,7 @@ fn followed(args: &Args, path: &Path) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let (layout, warnings) = args.layout.reviewed(&floor)?;
     let (window, program) = channels();
-    let followed = Followed::start(path, program, &args.layout, &floor, layout.clone())?;
+    let followed = FollowedFeed::start(path, program, &args.layout, &floor, layout.clone())?;
     let input = PreviewInput {
         warnings: Warnings::from(&warnings),
         server: Some(followed.feed),

@@ -23,7 +23,7 @@ use super::announced::announced;
 use super::feeds::{ToWindow, stop_and_wait};
 
 /// A recording that is shown; ends when this is dropped.
-pub(super) struct Player {
+pub(super) struct ShownRecording {
     orders: Option<SyncSender<PlaybackOrder>>,
     shown: Arc<Shown>,
     thread: Option<JoinHandle<()>>,
@@ -44,7 +44,7 @@ impl Shown {
     }
 }
 
-impl Player {
+impl ShownRecording {
     /// Plays the recording at `path` from its beginning; returns its floor, its first layout and its snapshots.
     pub(super) fn start(
         path: &Path,
@@ -72,7 +72,7 @@ impl Player {
     }
 }
 
-impl Playback for Player {
+impl Playback for ShownRecording {
     fn state(&mut self) -> PlaybackState {
         self.shown.state().clone()
     }
@@ -85,7 +85,7 @@ impl Playback for Player {
     }
 }
 
-impl Drop for Player {
+impl Drop for ShownRecording {
     fn drop(&mut self) {
         self.shown.is_over.store(true, Ordering::Relaxed);
         self.orders = None;
@@ -277,7 +277,7 @@ mod tests {
     }
 
     /// Waits until `what` holds, on a machine of any speed.
-    fn until(player: &mut Player, what: impl Fn(&PlaybackState) -> bool) -> PlaybackState {
+    fn until(player: &mut ShownRecording, what: impl Fn(&PlaybackState) -> bool) -> PlaybackState {
         let begun = HostInstant::now();
         loop {
             let state = player.state();
@@ -300,7 +300,7 @@ mod tests {
         let (events, told) = mpsc::sync_channel(100_000);
         let (_window, program) = underfoot_window::preview::channels();
         let (mut player, _, layout, mut snapshots) =
-            Player::start(&file, ProgramChannels { events, ..program }).unwrap();
+            ShownRecording::start(&file, ProgramChannels { events, ..program }).unwrap();
         assert!(layout.widget_index("home").is_some());
         player.lead(PlaybackOrder::Speed(f64::INFINITY));
         let end = until(&mut player, |state| state.is_paused);

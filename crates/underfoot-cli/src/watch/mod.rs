@@ -38,13 +38,13 @@ const GONE: Duration = Duration::from_millis(500);
 const COMPARED: Duration = Duration::from_secs(3);
 
 /// Watches files until it is dropped.
-pub(crate) struct Watch {
+pub(crate) struct FileWatch {
     /// `None` only during the drop.
     end: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Watch {
+impl FileWatch {
     /// Calls `tell` with the layout, or with all its errors, each time its file or a kind's or an effect's file is
     /// saved.
     ///
@@ -90,7 +90,7 @@ impl Watch {
     }
 }
 
-impl Drop for Watch {
+impl Drop for FileWatch {
     fn drop(&mut self) {
         self.end = None;
         // The thread is at most reading; a panic in it has been reported.

@@ -45,7 +45,7 @@ struct Client {
 }
 
 /// The messages to one client.
-pub(super) struct Lines {
+pub(super) struct ClientLines {
     pub(super) queue: Receiver<Message>,
     /// Whether too many messages wait for it: no more follow, and the waiting ones are old.
     pub(super) dropped: Arc<AtomicBool>,
@@ -63,7 +63,7 @@ impl Clients {
 
     /// Adds a client, which gets messages from now on; `joins` if it is a window, which also gets the boards'
     /// packets.
-    pub(super) fn join(&self, peer: SocketAddr, joins: bool) -> Lines {
+    pub(super) fn join(&self, peer: SocketAddr, joins: bool) -> ClientLines {
         let (lines, queue) = sync_channel(if joins { WAITING_FRAMES } else { WAITING });
         let dropped = Arc::<AtomicBool>::default();
         let mut state = self.lock();
@@ -73,7 +73,7 @@ impl Clients {
         }
         state.tell_counts();
         self.count_windows(&state);
-        Lines { queue, dropped }
+        ClientLines { queue, dropped }
     }
 
     /// Removes a client; `slow` if it does not read.

@@ -13,12 +13,12 @@ use tungstenite::http::{StatusCode, header};
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Bytes, Error, Message, WebSocket, accept_hdr_with_config};
 
-use super::broadcast::Lines;
+use super::broadcast::ClientLines;
 use super::budget::Budget;
 use super::greeting::{greeting, mirror_greeting};
 use super::layout;
 use super::origin::may_connect;
-use super::request::{Standing, process};
+use super::request::{StandingRequests, process};
 use super::{MOST_BYTES, Shared};
 
 /// Interval between two checks for requests of the client.
@@ -85,7 +85,7 @@ pub(super) fn serve(stream: TcpStream, peer: SocketAddr, shared: &Shared, joins:
         peer,
         shared,
         joins,
-        standing: Standing::default(),
+        standing: StandingRequests::default(),
         budget: Budget::new(most.max(BYTES_A_SECOND), now),
         waits_since: None,
         heard: now,
@@ -100,7 +100,7 @@ struct Client<'a> {
     shared: &'a Shared,
     /// Whether it is a window that shows the floor as well.
     joins: bool,
-    standing: Standing,
+    standing: StandingRequests,
     budget: Budget,
     /// Time since which output waits for the client.
     waits_since: Option<Instant>,
@@ -109,13 +109,13 @@ struct Client<'a> {
 }
 
 impl Client<'_> {
-    fn talk(&mut self, lines: &Lines) -> End {
+    fn talk(&mut self, lines: &ClientLines) -> End {
         match self.try_talk(lines) {
             Ok(end) | Err(end) => end,
         }
     }
 
-    fn try_talk(&mut self, lines: &Lines) -> Result<End, End> {
+    fn try_talk(&mut self, lines: &ClientLines) -> Result<End, End> {
         let mut shown = None;
         let mut pinged = Instant::now();
         loop {
@@ -147,7 +147,7 @@ impl Client<'_> {
     }
 
     /// Sends the waiting messages, or waits for one briefly; returns whether no more follow.
-    fn pass_on(&mut self, lines: &Lines) -> Result<bool, End> {
+    fn pass_on(&mut self, lines: &ClientLines) -> Result<bool, End> {
         if self.waits_since.is_some() {
             std::thread::sleep(LOOK_EVERY / 2);
             self.flush()?;

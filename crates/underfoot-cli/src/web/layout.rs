@@ -21,12 +21,12 @@ const TOO_OFTEN: &str = "one layout a second is checked: send it again";
 
 /// The layouts of one client.
 #[derive(Default)]
-pub(super) struct Layouts {
+pub(super) struct ClientLayouts {
     asked: Option<Instant>,
     checking: Option<Receiver<Checked>>,
 }
 
-impl Layouts {
+impl ClientLayouts {
     /// The reason why no layout is accepted now, if any; call it before anything is read.
     pub(super) fn why_not(&self, now: Instant) -> Option<&'static str> {
         let is_soon = self.asked.is_some_and(|asked| now.duration_since(asked) < EVERY);
@@ -34,7 +34,7 @@ impl Layouts {
     }
 
     /// Queues the layout in `arguments` for a check and for the floor; the result comes later, from
-    /// [`Layouts::checked`].
+    /// [`ClientLayouts::checked`].
     pub(super) fn put(&mut self, arguments: Vec<Value>, shared: &Shared, now: Instant) -> Checked {
         let Some(checks) = &shared.checks else {
             return Err(

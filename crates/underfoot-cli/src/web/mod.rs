@@ -29,7 +29,7 @@ use underfoot::source::FloorInput;
 use super::failure::Failure;
 use broadcast::{Broadcast, Clients};
 use checks::Checks;
-use origin::Origin;
+use origin::PageOrigin;
 use rooms::{Refusals, Rooms};
 
 /// Options of the server for web pages.
@@ -41,7 +41,7 @@ pub(crate) struct WebArgs {
     /// Also let pages of this origin connect, such as https://app.example.org; several may be given. Without it,
     /// pages of this machine only.
     #[arg(long, value_name = "ORIGIN", requires = "web")]
-    web_origin: Vec<Origin>,
+    web_origin: Vec<PageOrigin>,
     /// Let joined windows put other layouts on the floor, from the addresses that may send requests.
     #[arg(long, requires = "web")]
     web_layouts: bool,
@@ -67,7 +67,7 @@ const PAGE: &str = include_str!("page.html");
 /// The server before the floor exists: its port is open, but it accepts no clients yet.
 pub(crate) struct WebListener {
     listener: TcpListener,
-    origins: Vec<Origin>,
+    origins: Vec<PageOrigin>,
     takes_layouts: bool,
     clients: Arc<Clients>,
     feed: MirrorFeed,
@@ -80,7 +80,7 @@ struct Shared {
     method: Method,
     /// The checks of clients' layouts, if the server accepts layouts.
     checks: Option<Checks>,
-    origins: Vec<Origin>,
+    origins: Vec<PageOrigin>,
     /// Networks from which requests are accepted.
     apps: Vec<Network>,
     clients: Arc<Clients>,

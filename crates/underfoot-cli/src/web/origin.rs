@@ -8,9 +8,9 @@ use underfoot::floor::{canonical, read_address};
 
 /// The origin of a page, as browsers report it: scheme, host and port.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Origin(String);
+pub(super) struct PageOrigin(String);
 
-impl FromStr for Origin {
+impl FromStr for PageOrigin {
     type Err = Infallible;
 
     fn from_str(text: &str) -> Result<Self, Infallible> {
@@ -21,7 +21,7 @@ impl FromStr for Origin {
 /// Whether a page from `origin` may connect to `own`: if it is allowed, comes from this machine, or comes from the
 /// very numeric address to which it connects. A host name counts only if it is allowed, since any name may resolve to
 /// this machine (DNS rebinding). A client without an origin is not a web page.
-pub(super) fn may_connect(origin: Option<&str>, own: SocketAddr, allowed: &[Origin]) -> bool {
+pub(super) fn may_connect(origin: Option<&str>, own: SocketAddr, allowed: &[PageOrigin]) -> bool {
     let Some(origin) = origin else { return true };
     let origin = origin.to_ascii_lowercase();
     if allowed.iter().any(|other| other.0 == origin) {
@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn pages_of_this_machine_and_those_allowed_may_connect() {
         let own: SocketAddr = "192.168.1.5:9002".parse().unwrap();
-        let allowed: Vec<Origin> = vec!["https://app.example.org/".parse().unwrap()];
+        let allowed: Vec<PageOrigin> = vec!["https://app.example.org/".parse().unwrap()];
         let may = |origin| may_connect(Some(origin), own, &allowed);
         for good in [
             "http://localhost:3000",

@@ -10,7 +10,7 @@ use underfoot::runtime::{ControlsOff, Session};
 use underfoot::serve::Command;
 use underfoot::wire::{ControlMessage, read_json};
 
-use super::layout::{self, Layouts};
+use super::layout::{self, ClientLayouts};
 use super::{MOST_BYTES, Shared};
 
 /// Maximum time to wait for an answer of the floor.
@@ -21,14 +21,14 @@ const CONTROLS_OFF: &str = "controls_off";
 
 /// Requests of a client that stay in effect.
 #[derive(Default)]
-pub(super) struct Standing {
+pub(super) struct StandingRequests {
     /// Present while it keeps the controls off, and the time of the last start.
     off: Option<ControlsOff>,
     off_since: Option<Instant>,
-    layouts: Layouts,
+    layouts: ClientLayouts,
 }
 
-impl Standing {
+impl StandingRequests {
     /// The line with the reason for the refusal of a layout, as soon as it is known.
     pub(super) fn refusal(&mut self) -> Option<String> {
         self.layouts.checked()?.err().map(|why| refused(layout::REQUEST, &why))
@@ -49,7 +49,7 @@ pub(super) fn process(
     text: &str,
     peer: SocketAddr,
     shared: &Shared,
-    standing: &mut Standing,
+    standing: &mut StandingRequests,
 ) -> Result<(), String> {
     // Only a layout is this large: if it will be refused anyway, it is not parsed.
     if text.len() > MOST_BYTES

@@ -44,9 +44,9 @@ fn wait_until(what: &str, mut happened: impl FnMut() -> bool) {
 
 /// Lines of JSON in memory.
 #[derive(Clone, Default)]
-struct Lines(Arc<Mutex<Vec<u8>>>);
+struct ClientLines(Arc<Mutex<Vec<u8>>>);
 
-impl Write for Lines {
+impl Write for ClientLines {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.0.lock().unwrap().extend(bytes);
         Ok(bytes.len())
@@ -57,7 +57,7 @@ impl Write for Lines {
     }
 }
 
-impl Lines {
+impl ClientLines {
     fn text(&self) -> String {
         String::from_utf8(self.0.lock().unwrap().clone()).unwrap()
     }
@@ -67,13 +67,13 @@ impl Lines {
 struct Joined {
     greeting: Box<Greeting>,
     session: Session,
-    lines: Lines,
+    lines: ClientLines,
     left_out: Box<dyn Fn() -> u64 + Send>,
 }
 
 impl Joined {
     fn of(greeting: Box<Greeting>, source: MirrorSource) -> Self {
-        let (lines, clock, left_out) = (Lines::default(), source.clock(), source.left_out());
+        let (lines, clock, left_out) = (ClientLines::default(), source.clock(), source.left_out());
         let session = Session::source(source, clock)
             .floor(greeting.floor.clone())
             .layout(greeting.layout.clone())

@@ -18,7 +18,7 @@ const ANSWER: usize = 24;
 
 /// The purpose of a message. Each kind has its own key, so that none passes for another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum MessageKind {
     /// From a node to gateways.
     Node = 1,
     /// From a gateway to nodes.
@@ -29,7 +29,7 @@ pub enum Kind {
     Packet = 4,
 }
 
-impl Kind {
+impl MessageKind {
     pub(super) const ALL: [Self; 4] = [Self::Node, Self::Gateway, Self::Note, Self::Packet];
 
     /// The context from which its key is derived.
@@ -65,14 +65,14 @@ pub struct Head {
 
 /// The parts of a message.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Parts<'m> {
+pub(super) struct EnvelopeParts<'m> {
     pub(super) head: Head,
     answers: &'m [u8],
     /// Start and end of the body among the bytes.
     pub(super) body: (usize, usize),
 }
 
-impl Parts<'_> {
+impl EnvelopeParts<'_> {
     /// Its answer to the program with this `nonce`.
     pub(super) fn answer_to(&self, nonce: u64) -> Option<Echo> {
         let mut answers = self.answers.chunks_exact(ANSWER).filter_map(|mut answer| {
@@ -84,7 +84,7 @@ impl Parts<'_> {
 
 /// Writes a message into `out`, replacing its content.
 pub(super) fn write(
-    (kind, key): (Kind, &[u8; TAG]),
+    (kind, key): (MessageKind, &[u8; TAG]),
     head: &Head,
     answers: impl Iterator<Item = (u64, Echo)>,
     body: &[u8],
@@ -114,9 +114,9 @@ pub(super) fn write(
 }
 
 /// The kind of a message; `None` for bytes of another format.
-pub(super) fn kind(bytes: &[u8]) -> Option<Kind> {
+pub(super) fn kind(bytes: &[u8]) -> Option<MessageKind> {
     let (&number, _) = bytes.strip_prefix(&MAGIC)?.split_first()?;
-    Kind::ALL.into_iter().find(|kind| *kind as u8 == number)
+    MessageKind::ALL.into_iter().find(|kind| *kind as u8 == number)
 }
 
 /// Whether the MAC at the end of `bytes` is right for `key`. The comparison takes the same time for any differing
@@ -128,13 +128,13 @@ pub(super) fn is_genuine(bytes: &[u8], key: &[u8; TAG]) -> bool {
 }
 
 /// The parts of a message; `None` if it is cut short.
-pub(super) fn parts(bytes: &[u8]) -> Option<Parts<'_>> {
+pub(super) fn parts(bytes: &[u8]) -> Option<EnvelopeParts<'_>> {
     let (content, _) = bytes.split_last_chunk::<TAG>()?;
     let mut rest = content.get(MAGIC.len() + 1..)?;
     let (from, counter, sent) = (take_u64(&mut rest)?, take_u64(&mut rest)?, take_u64(&mut rest)?);
     let (count, rest) = rest.split_first_chunk::<2>()?;
     let (answers, body) = rest.split_at_checked(usize::from(u16::from_be_bytes(*count)) * ANSWER)?;
-    Some(Parts {
+    Some(EnvelopeParts {
         head: Head { from, counter, sent },
         answers,
         body: (content.len() - body.len(), content.len()),
@@ -158,7 +158,7 @@ mod tests {
     fn written(answers: &[(u64, Echo)], body: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
         let head = Head { from: 1, counter: 2, sent: 3 };
-        write((Kind::Note, &KEY), &head, answers.iter().copied(), body, &mut out);
+        write((MessageKind::Note, &KEY), &head, answers.iter().copied(), body, &mut out);
         out
     }
 
@@ -166,7 +166,7 @@ mod tests {
     fn a_message_is_read_as_it_was_written() {
         let answers = [4, 5].map(|to| (to, Echo { sent: 10 * to, received: 100 * to }));
         let bytes = written(&answers, b"body");
-        assert_eq!(kind(&bytes), Some(Kind::Note));
+        assert_eq!(kind(&bytes), Some(MessageKind::Note));
         assert!(is_genuine(&bytes, &KEY));
         let parts = parts(&bytes).unwrap();
         assert_eq!(parts.head, Head { from: 1, counter: 2, sent: 3 });

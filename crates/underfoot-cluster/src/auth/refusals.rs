@@ -5,7 +5,7 @@ use thiserror::Error;
 /// Reason for rejecting a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
-pub enum Refusal {
+pub enum AuthRefusal {
     /// It has another format, or is of a kind that this program does not receive.
     #[error("it has another format")]
     Malformed,
@@ -29,30 +29,30 @@ pub enum Refusal {
 
 /// Number of rejected messages, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Refusals {
-    /// [`Refusal::Malformed`].
+pub struct AuthRefusals {
+    /// [`AuthRefusal::Malformed`].
     pub malformed: u64,
-    /// [`Refusal::Forged`].
+    /// [`AuthRefusal::Forged`].
     pub forged: u64,
-    /// [`Refusal::Unanswered`], without those of senders that have answered since.
+    /// [`AuthRefusal::Unanswered`], without those of senders that have answered since.
     pub unanswered: u64,
-    /// [`Refusal::Stale`].
+    /// [`AuthRefusal::Stale`].
     pub stale: u64,
-    /// [`Refusal::Repeated`].
+    /// [`AuthRefusal::Repeated`].
     pub repeated: u64,
-    /// [`Refusal::Jumped`].
+    /// [`AuthRefusal::Jumped`].
     pub jumped: u64,
 }
 
-impl Refusals {
-    pub(super) fn count(&mut self, refusal: Refusal) {
+impl AuthRefusals {
+    pub(super) fn count(&mut self, refusal: AuthRefusal) {
         let counter = match refusal {
-            Refusal::Malformed => &mut self.malformed,
-            Refusal::Forged => &mut self.forged,
-            Refusal::Unanswered => &mut self.unanswered,
-            Refusal::Stale => &mut self.stale,
-            Refusal::Repeated => &mut self.repeated,
-            Refusal::Jumped => &mut self.jumped,
+            AuthRefusal::Malformed => &mut self.malformed,
+            AuthRefusal::Forged => &mut self.forged,
+            AuthRefusal::Unanswered => &mut self.unanswered,
+            AuthRefusal::Stale => &mut self.stale,
+            AuthRefusal::Repeated => &mut self.repeated,
+            AuthRefusal::Jumped => &mut self.jumped,
         };
         *counter = counter.saturating_add(1);
     }

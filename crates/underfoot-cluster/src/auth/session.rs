@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use underfoot::units::Instant;
 
-use super::envelope::{self, Echo, Head, Kind};
+use super::envelope::{self, Echo, Head, MessageKind};
 use super::key::Key;
-use super::refusals::{Refusal, Refusals};
-use super::window::{Novelty, Window};
+use super::refusals::{AuthRefusal, AuthRefusals};
+use super::window::{Novelty, ReplayWindow};
 
 /// Greatest age of the message that another one answers: nodes wait 150 ms for a gateway, and a message that was on
 /// its way for 100 ms is too late for a hold.
@@ -29,11 +29,11 @@ pub enum Role {
 }
 
 impl Role {
-    const fn receives(self, kind: Kind) -> bool {
+    const fn receives(self, kind: MessageKind) -> bool {
         match self {
-            Self::Gateway => matches!(kind, Kind::Node),
-            Self::Node => matches!(kind, Kind::Gateway),
-            Self::Neighbour => matches!(kind, Kind::Note | Kind::Packet),
+            Self::Gateway => matches!(kind, MessageKind::Node),
+            Self::Node => matches!(kind, MessageKind::Gateway),
+            Self::Neighbour => matches!(kind, MessageKind::Note | MessageKind::Packet),
         }
     }
 }
@@ -58,7 +58,7 @@ impl Proof {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Opened {
     /// Its purpose.
-    pub kind: Kind,
+    pub kind: MessageKind,
     /// Its sender, number and time.
     pub head: Head,
     /// The message that it answers; `None` for a packet of a board.
@@ -71,7 +71,7 @@ pub struct Opened {
 #[derive(Clone, Debug)]
 struct Peer {
     nonce: u64,
-    window: Window,
+    window: ReplayWindow,
     /// Receipt of its newest message.
     echo: Echo,
     heard: Instant,
@@ -85,30 +85,30 @@ struct Peer {
 
 /// Writes the messages of one program, and accepts those of others.
 #[derive(Clone, Debug)]
-pub struct Session {
+pub struct AuthSession {
     role: Role,
-    /// The key of each kind, in the order of [`Kind::ALL`].
-    keys: [[u8; 32]; Kind::ALL.len()],
+    /// The key of each kind, in the order of [`MessageKind::ALL`].
+    keys: [[u8; 32]; MessageKind::ALL.len()],
     nonce: u64,
     counter: u64,
     peers: Vec<Peer>,
     most_peers: usize,
-    refusals: Refusals,
+    refusals: AuthRefusals,
 }
 
-impl Session {
+impl AuthSession {
     /// A session with the floor's `key`. `nonce` must be random and new for each session; `most_peers` is the number
     /// of other programs that are remembered, at least one.
     #[must_use]
     pub fn new(role: Role, key: &Key, nonce: u64, most_peers: usize) -> Self {
         Self {
             role,
-            keys: Kind::ALL.map(|kind| key.derived(kind.context())),
+            keys: MessageKind::ALL.map(|kind| key.derived(kind.context())),
             nonce,
             counter: 0,
             peers: Vec::new(),
             most_peers: most_peers.max(1),
-            refusals: Refusals::default(),
+            refusals: AuthRefusals::default(),
         }
     }
 
@@ -120,16 +120,17 @@ impl Session {
 
     /// Number of rejected messages so far.
     #[must_use]
-    pub const fn refusals(&self) -> Refusals {
+    pub const fn refusals(&self) -> AuthRefusals {
         self.refusals
     }
 
     /// Writes a message with this `body`, sent at `now`, into `out`, replacing its content. Packets of boards carry
     /// no answers.
-    pub fn seal(&mut self, kind: Kind, body: &[u8], now: Instant, out: &mut Vec<u8>) {
+    pub fn seal(&mut self, kind: MessageKind, body: &[u8], now: Instant, out: &mut Vec<u8>) {
         self.counter += 1;
         let head = Head { from: self.nonce, counter: self.counter, sent: now.micros() };
-        let heard = self.peers.iter().filter(|peer| kind != Kind::Packet && now.since(peer.heard) <= FRESH);
+        let heard =
+            self.peers.iter().filter(|peer| kind != MessageKind::Packet && now.since(peer.heard) <= FRESH);
         let answers = heard.map(|peer| (peer.nonce, peer.echo));
         envelope::write((kind, &self.keys[kind as usize - 1]), &head, answers, body, out);
     }
@@ -138,7 +139,7 @@ impl Session {
     ///
     /// # Errors
     /// The reason for rejecting it, which is also counted.
-    pub fn open(&mut self, bytes: &[u8], now: Instant) -> Result<Opened, Refusal> {
+    pub fn open(&mut self, bytes: &[u8], now: Instant) -> Result<Opened, AuthRefusal> {
         let opened = self.look(bytes, now);
         if let Err(refusal) = opened {
             self.refusals.count(refusal);
@@ -146,28 +147,28 @@ impl Session {
         opened
     }
 
-    fn look(&mut self, bytes: &[u8], now: Instant) -> Result<Opened, Refusal> {
+    fn look(&mut self, bytes: &[u8], now: Instant) -> Result<Opened, AuthRefusal> {
         let kind =
-            envelope::kind(bytes).filter(|kind| self.role.receives(*kind)).ok_or(Refusal::Malformed)?;
+            envelope::kind(bytes).filter(|kind| self.role.receives(*kind)).ok_or(AuthRefusal::Malformed)?;
         if !envelope::is_genuine(bytes, &self.keys[kind as usize - 1]) {
-            return Err(Refusal::Forged);
+            return Err(AuthRefusal::Forged);
         }
-        let parts = envelope::parts(bytes).ok_or(Refusal::Malformed)?;
+        let parts = envelope::parts(bytes).ok_or(AuthRefusal::Malformed)?;
         let head = parts.head;
         // Its own message, reflected.
         if head.from == self.nonce {
-            return Err(Refusal::Repeated);
+            return Err(AuthRefusal::Repeated);
         }
         let echo = parts.answer_to(self.nonce);
         let proof = echo.map(|echo| Proof { answered: Instant::from_micros(echo.sent), sent: head.sent });
         let peer = self.peer(&head, now)?;
         peer.note(&head, proof, now)?;
-        let Some(proof) = proof.or(peer.proof.filter(|_| kind == Kind::Packet)) else {
+        let Some(proof) = proof.or(peer.proof.filter(|_| kind == MessageKind::Packet)) else {
             peer.unanswered += 1;
-            return Err(Refusal::Unanswered);
+            return Err(AuthRefusal::Unanswered);
         };
         if proof.answered > now || proof.age(head.sent, now) > FRESH {
-            return Err(Refusal::Stale);
+            return Err(AuthRefusal::Stale);
         }
         peer.proof = Some(proof);
         self.refusals.unanswered -= std::mem::take(&mut peer.unanswered);
@@ -175,19 +176,19 @@ impl Session {
     }
 
     /// The sender of a message with this `head`, which is added if it is new.
-    fn peer(&mut self, head: &Head, now: Instant) -> Result<&mut Peer, Refusal> {
+    fn peer(&mut self, head: &Head, now: Instant) -> Result<&mut Peer, AuthRefusal> {
         self.peers.retain(|peer| now.since(peer.heard) <= REMEMBERED);
         let known = self.peers.iter().position(|peer| peer.nonce == head.from);
         let index = match known {
             Some(index) => index,
             None => {
-                let peer = Peer::met(head, now).ok_or(Refusal::Jumped)?;
+                let peer = Peer::met(head, now).ok_or(AuthRefusal::Jumped)?;
                 self.make_room();
                 self.peers.push(peer);
                 self.peers.len() - 1
             }
         };
-        self.peers.get_mut(index).ok_or(Refusal::Malformed)
+        self.peers.get_mut(index).ok_or(AuthRefusal::Malformed)
     }
 
     /// Forgets one sender if there is no room for another: the one that has been silent for longest, of those without
@@ -208,7 +209,7 @@ impl Peer {
         Some(Self {
             nonce: head.from,
             // `note` adds the message itself.
-            window: Window::beginning(head.counter.saturating_sub(1))?,
+            window: ReplayWindow::beginning(head.counter.saturating_sub(1))?,
             echo: Echo { sent: head.sent, received: now.micros() },
             heard: now,
             proof: None,
@@ -218,19 +219,19 @@ impl Peer {
     }
 
     /// Checks the counter of a message, and adds it; `proof` is from its answer, if it has one.
-    fn note(&mut self, head: &Head, proof: Option<Proof>, now: Instant) -> Result<(), Refusal> {
+    fn note(&mut self, head: &Head, proof: Option<Proof>, now: Instant) -> Result<(), AuthRefusal> {
         let mut novelty = self.window.look(head.counter);
         if novelty == Novelty::Jumped {
             let is_new = self.jumped.zip(proof).is_some_and(|(jumped, proof)| proof.answered > jumped);
-            let anew = Window::beginning(head.counter.saturating_sub(1)).filter(|_| is_new);
+            let anew = ReplayWindow::beginning(head.counter.saturating_sub(1)).filter(|_| is_new);
             let Some(window) = anew else {
                 self.jumped.get_or_insert(now);
-                return Err(Refusal::Jumped);
+                return Err(AuthRefusal::Jumped);
             };
             (self.window, self.jumped, novelty) = (window, None, Novelty::Newest);
         }
         if novelty == Novelty::Repeated {
-            return Err(Refusal::Repeated);
+            return Err(AuthRefusal::Repeated);
         }
         self.window.note(head.counter);
         if novelty == Novelty::Newest {
@@ -254,17 +255,17 @@ mod tests {
         Key::new([7; 32])
     }
 
-    fn session(role: Role, nonce: u64) -> Session {
-        Session::new(role, &key(), nonce, 4)
+    fn session(role: Role, nonce: u64) -> AuthSession {
+        AuthSession::new(role, &key(), nonce, 4)
     }
 
-    fn sealed(from: &mut Session, kind: Kind, ms: u64) -> Vec<u8> {
+    fn sealed(from: &mut AuthSession, kind: MessageKind, ms: u64) -> Vec<u8> {
         let mut out = Vec::new();
         from.seal(kind, b"body", at(ms), &mut out);
         out
     }
 
-    fn opened(by: &mut Session, bytes: &[u8], ms: u64) -> Result<Head, Refusal> {
+    fn opened(by: &mut AuthSession, bytes: &[u8], ms: u64) -> Result<Head, AuthRefusal> {
         by.open(bytes, at(ms)).map(|opened| {
             assert_eq!(&bytes[opened.body], b"body");
             opened.head
@@ -272,28 +273,28 @@ mod tests {
     }
 
     /// A gateway and a node that have answered each other at 1000 ms.
-    fn pair() -> (Session, Session) {
+    fn pair() -> (AuthSession, AuthSession) {
         let (mut gateway, mut node) = (session(Role::Gateway, 1), session(Role::Node, 2));
         meet(&mut gateway, &mut node, 1000);
         (gateway, node)
     }
 
-    fn meet(gateway: &mut Session, node: &mut Session, ms: u64) {
-        let beat = sealed(gateway, Kind::Gateway, ms);
-        assert_eq!(opened(node, &beat, ms), Err(Refusal::Unanswered));
-        let message = sealed(node, Kind::Node, ms);
+    fn meet(gateway: &mut AuthSession, node: &mut AuthSession, ms: u64) {
+        let beat = sealed(gateway, MessageKind::Gateway, ms);
+        assert_eq!(opened(node, &beat, ms), Err(AuthRefusal::Unanswered));
+        let message = sealed(node, MessageKind::Node, ms);
         assert!(opened(gateway, &message, ms).is_ok());
-        let beat = sealed(gateway, Kind::Gateway, ms);
+        let beat = sealed(gateway, MessageKind::Gateway, ms);
         assert!(opened(node, &beat, ms).is_ok());
     }
 
     #[test]
     fn programs_that_answer_each_other_are_accepted_within_a_round_trip() {
         let (gateway, node) = pair();
-        assert_eq!(gateway.refusals(), Refusals::default());
+        assert_eq!(gateway.refusals(), AuthRefusals::default());
         assert_eq!(
             node.refusals(),
-            Refusals::default(),
+            AuthRefusals::default(),
             "messages before the first answer are no longer counted"
         );
     }
@@ -301,9 +302,9 @@ mod tests {
     #[test]
     fn a_message_carries_the_receipt_of_the_one_that_it_answers() {
         let (mut gateway, mut node) = pair();
-        let beat = sealed(&mut gateway, Kind::Gateway, 1040);
+        let beat = sealed(&mut gateway, MessageKind::Gateway, 1040);
         opened(&mut node, &beat, 9_041).unwrap_err();
-        let message = sealed(&mut node, Kind::Node, 9_045);
+        let message = sealed(&mut node, MessageKind::Node, 9_045);
         let Opened { head, echo, .. } = gateway.open(&message, at(1046)).unwrap();
         assert_eq!((head.from, head.counter, head.sent), (2, 2, 9_045_000));
         assert_eq!(echo, Some(Echo { sent: 1_040_000, received: 9_041_000 }));
@@ -313,9 +314,9 @@ mod tests {
     #[test]
     fn a_message_counts_once() {
         let (mut gateway, mut node) = pair();
-        let message = sealed(&mut node, Kind::Node, 1010);
+        let message = sealed(&mut node, MessageKind::Node, 1010);
         assert!(opened(&mut gateway, &message, 1011).is_ok());
-        assert_eq!(opened(&mut gateway, &message, 1012), Err(Refusal::Repeated));
+        assert_eq!(opened(&mut gateway, &message, 1012), Err(AuthRefusal::Repeated));
         assert_eq!(gateway.refusals().repeated, 1);
     }
 
@@ -323,34 +324,37 @@ mod tests {
     #[test]
     fn a_message_with_another_key_is_forged() {
         let (mut gateway, mut node) = pair();
-        let mut other = Session::new(Role::Node, &Key::new([8; 32]), 2, 4);
-        let mut forged = sealed(&mut other, Kind::Node, 1010);
-        assert_eq!(opened(&mut gateway, &forged, 1011), Err(Refusal::Forged));
-        forged = sealed(&mut node, Kind::Node, 1010);
+        let mut other = AuthSession::new(Role::Node, &Key::new([8; 32]), 2, 4);
+        let mut forged = sealed(&mut other, MessageKind::Node, 1010);
+        assert_eq!(opened(&mut gateway, &forged, 1011), Err(AuthRefusal::Forged));
+        forged = sealed(&mut node, MessageKind::Node, 1010);
         // The counter: the next one, and the greatest.
         for counter in [4_u64, u64::MAX] {
             forged[12..20].copy_from_slice(&counter.to_be_bytes());
-            assert_eq!(opened(&mut gateway, &forged, 1011), Err(Refusal::Forged));
+            assert_eq!(opened(&mut gateway, &forged, 1011), Err(AuthRefusal::Forged));
         }
-        let message = sealed(&mut node, Kind::Node, 1012);
+        let message = sealed(&mut node, MessageKind::Node, 1012);
         assert!(opened(&mut gateway, &message, 1013).is_ok(), "the forged counters have no effect");
-        assert_eq!(gateway.refusals(), Refusals { forged: 3, ..Refusals::default() });
+        assert_eq!(gateway.refusals(), AuthRefusals { forged: 3, ..AuthRefusals::default() });
     }
 
     // C6
     #[test]
     fn a_recording_is_worthless_after_the_receiver_s_next_start() {
         let (_, mut node) = pair();
-        let recorded = sealed(&mut node, Kind::Node, 1010);
+        let recorded = sealed(&mut node, MessageKind::Node, 1010);
         let mut gateway = session(Role::Gateway, 3);
         for ms in [1011, 1012] {
             assert!(opened(&mut gateway, &recorded, ms).is_err());
         }
-        assert_eq!(gateway.refusals(), Refusals { unanswered: 1, repeated: 1, ..Refusals::default() });
+        assert_eq!(
+            gateway.refusals(),
+            AuthRefusals { unanswered: 1, repeated: 1, ..AuthRefusals::default() }
+        );
         // The node itself is accepted once it has answered.
-        let beat = sealed(&mut gateway, Kind::Gateway, 1020);
+        let beat = sealed(&mut gateway, MessageKind::Gateway, 1020);
         opened(&mut node, &beat, 1021).unwrap();
-        let message = sealed(&mut node, Kind::Node, 1022);
+        let message = sealed(&mut node, MessageKind::Node, 1022);
         assert!(opened(&mut gateway, &message, 1023).is_ok());
     }
 
@@ -358,14 +362,14 @@ mod tests {
     #[test]
     fn a_recording_is_worthless_after_the_sender_s_next_start() {
         let (mut gateway, mut old) = pair();
-        let recorded: Vec<_> = (0..3).map(|_| sealed(&mut old, Kind::Node, 1010)).collect();
+        let recorded: Vec<_> = (0..3).map(|_| sealed(&mut old, MessageKind::Node, 1010)).collect();
         assert!(opened(&mut gateway, &recorded[1], 1011).is_ok());
         let mut node = session(Role::Node, 3);
         meet(&mut gateway, &mut node, 2000);
         for message in &recorded {
-            assert_eq!(opened(&mut gateway, message, 2300), Err(Refusal::Stale));
+            assert_eq!(opened(&mut gateway, message, 2300), Err(AuthRefusal::Stale));
         }
-        let message = sealed(&mut node, Kind::Node, 2010);
+        let message = sealed(&mut node, MessageKind::Node, 2010);
         assert!(opened(&mut gateway, &message, 2011).is_ok());
     }
 
@@ -373,19 +377,19 @@ mod tests {
     #[test]
     fn a_message_that_is_held_back_is_stale() {
         let (mut gateway, mut node) = pair();
-        let held_back: Vec<_> = (0..2).map(|_| sealed(&mut node, Kind::Node, 1010)).collect();
+        let held_back: Vec<_> = (0..2).map(|_| sealed(&mut node, MessageKind::Node, 1010)).collect();
         assert!(opened(&mut gateway, &held_back[0], 1250).is_ok(), "250 ms after the beat that it answers");
-        assert_eq!(opened(&mut gateway, &held_back[1], 1251), Err(Refusal::Stale));
+        assert_eq!(opened(&mut gateway, &held_back[1], 1251), Err(AuthRefusal::Stale));
     }
 
     /// Two neighbours that have answered each other at 1000 ms; the clock of the second is 70 s ahead.
-    fn neighbours() -> (Session, Session) {
+    fn neighbours() -> (AuthSession, AuthSession) {
         let (mut west, mut east) = (session(Role::Neighbour, 1), session(Role::Neighbour, 2));
-        let note = sealed(&mut west, Kind::Note, 1000);
+        let note = sealed(&mut west, MessageKind::Note, 1000);
         opened(&mut east, &note, 71_000).unwrap_err();
-        let note = sealed(&mut east, Kind::Note, 71_000);
+        let note = sealed(&mut east, MessageKind::Note, 71_000);
         opened(&mut west, &note, 1000).unwrap();
-        let note = sealed(&mut west, Kind::Note, 1000);
+        let note = sealed(&mut west, MessageKind::Note, 1000);
         opened(&mut east, &note, 71_000).unwrap();
         (west, east)
     }
@@ -393,20 +397,20 @@ mod tests {
     #[test]
     fn a_packet_is_as_new_as_its_sender_s_last_note() {
         let (mut west, mut east) = neighbours();
-        let packets: Vec<_> = (0..4).map(|_| sealed(&mut west, Kind::Packet, 1010)).collect();
+        let packets: Vec<_> = (0..4).map(|_| sealed(&mut west, MessageKind::Packet, 1010)).collect();
         assert!(opened(&mut east, &packets[0], 71_011).is_ok());
-        assert_eq!(opened(&mut east, &packets[0], 71_012), Err(Refusal::Repeated));
+        assert_eq!(opened(&mut east, &packets[0], 71_012), Err(AuthRefusal::Repeated));
         assert!(opened(&mut east, &packets[1], 71_250).is_ok(), "250 ms after what the last note answers");
-        assert_eq!(opened(&mut east, &packets[2], 71_251), Err(Refusal::Stale));
+        assert_eq!(opened(&mut east, &packets[2], 71_251), Err(AuthRefusal::Stale));
         // An attacker holds the packet back and lets notes pass.
         for ms in [1100, 1200, 1300] {
-            let note = sealed(&mut east, Kind::Note, 70_000 + ms);
+            let note = sealed(&mut east, MessageKind::Note, 70_000 + ms);
             opened(&mut west, &note, ms).unwrap();
-            let note = sealed(&mut west, Kind::Note, ms);
+            let note = sealed(&mut west, MessageKind::Note, ms);
             opened(&mut east, &note, 70_000 + ms).unwrap();
         }
-        assert_eq!(opened(&mut east, &packets[3], 71_300), Err(Refusal::Stale), "290 ms old");
-        let packet = sealed(&mut west, Kind::Packet, 1300);
+        assert_eq!(opened(&mut east, &packets[3], 71_300), Err(AuthRefusal::Stale), "290 ms old");
+        let packet = sealed(&mut west, MessageKind::Packet, 1300);
         assert!(opened(&mut east, &packet, 71_301).is_ok());
     }
 
@@ -415,20 +419,24 @@ mod tests {
     fn a_packet_without_a_note_before_it_is_rejected() {
         let (_, mut east) = neighbours();
         let mut stranger = session(Role::Neighbour, 3);
-        let packet = sealed(&mut stranger, Kind::Packet, 1010);
-        assert_eq!(opened(&mut east, &packet, 71_010), Err(Refusal::Unanswered));
+        let packet = sealed(&mut stranger, MessageKind::Packet, 1010);
+        assert_eq!(opened(&mut east, &packet, 71_010), Err(AuthRefusal::Unanswered));
     }
 
     #[test]
     fn a_message_for_others_or_from_itself_is_rejected() {
         let (mut gateway, mut node) = pair();
-        let beat = sealed(&mut gateway, Kind::Gateway, 1010);
-        assert_eq!(opened(&mut gateway, &beat, 1010), Err(Refusal::Malformed), "gateways receive from nodes");
+        let beat = sealed(&mut gateway, MessageKind::Gateway, 1010);
+        assert_eq!(
+            opened(&mut gateway, &beat, 1010),
+            Err(AuthRefusal::Malformed),
+            "gateways receive from nodes"
+        );
         let mut east = session(Role::Neighbour, 9);
-        let note = sealed(&mut east, Kind::Note, 1010);
-        assert_eq!(opened(&mut east, &note, 1010), Err(Refusal::Repeated), "its own");
-        assert_eq!(opened(&mut node, &note, 1010), Err(Refusal::Malformed));
-        assert_eq!(opened(&mut node, b"{}", 1010), Err(Refusal::Malformed));
+        let note = sealed(&mut east, MessageKind::Note, 1010);
+        assert_eq!(opened(&mut east, &note, 1010), Err(AuthRefusal::Repeated), "its own");
+        assert_eq!(opened(&mut node, &note, 1010), Err(AuthRefusal::Malformed));
+        assert_eq!(opened(&mut node, b"{}", 1010), Err(AuthRefusal::Malformed));
     }
 
     // C5
@@ -438,11 +446,11 @@ mod tests {
         let honest = node.clone();
         for counter in [1 << 40, u64::MAX - 1] {
             node.counter = counter;
-            let jump = sealed(&mut node, Kind::Node, 1010);
-            assert_eq!(opened(&mut gateway, &jump, 1011), Err(Refusal::Jumped));
+            let jump = sealed(&mut node, MessageKind::Node, 1010);
+            assert_eq!(opened(&mut gateway, &jump, 1011), Err(AuthRefusal::Jumped));
         }
         node = honest;
-        let message = sealed(&mut node, Kind::Node, 1012);
+        let message = sealed(&mut node, MessageKind::Node, 1012);
         assert!(opened(&mut gateway, &message, 1013).is_ok());
     }
 
@@ -451,23 +459,23 @@ mod tests {
         let (mut gateway, mut node) = pair();
         node.counter = 1 << 40;
         for _ in 0..2 {
-            let jump = sealed(&mut node, Kind::Node, 1010);
-            assert_eq!(opened(&mut gateway, &jump, 1011), Err(Refusal::Jumped));
+            let jump = sealed(&mut node, MessageKind::Node, 1010);
+            assert_eq!(opened(&mut gateway, &jump, 1011), Err(AuthRefusal::Jumped));
         }
-        let beat = sealed(&mut gateway, Kind::Gateway, 1020);
+        let beat = sealed(&mut gateway, MessageKind::Gateway, 1020);
         opened(&mut node, &beat, 1020).unwrap();
-        let message = sealed(&mut node, Kind::Node, 1021);
+        let message = sealed(&mut node, MessageKind::Node, 1021);
         assert!(opened(&mut gateway, &message, 1021).is_ok());
-        assert_eq!(opened(&mut gateway, &message, 1022), Err(Refusal::Repeated));
+        assert_eq!(opened(&mut gateway, &message, 1022), Err(AuthRefusal::Repeated));
     }
 
     #[test]
     fn a_sender_is_accepted_with_any_counter_after_a_pause() {
         let (mut gateway, mut node) = pair();
         node.counter = 1 << 40;
-        let beat = sealed(&mut gateway, Kind::Gateway, 60_000);
+        let beat = sealed(&mut gateway, MessageKind::Gateway, 60_000);
         opened(&mut node, &beat, 60_000).unwrap_err();
-        let message = sealed(&mut node, Kind::Node, 60_001);
+        let message = sealed(&mut node, MessageKind::Node, 60_001);
         assert!(opened(&mut gateway, &message, 60_001).is_ok());
     }
 
@@ -476,11 +484,11 @@ mod tests {
         let (mut gateway, mut node) = pair();
         for nonce in 100..200 {
             let mut old = session(Role::Node, nonce);
-            let recorded = sealed(&mut old, Kind::Node, 1);
-            assert_eq!(opened(&mut gateway, &recorded, 1010), Err(Refusal::Unanswered));
+            let recorded = sealed(&mut old, MessageKind::Node, 1);
+            assert_eq!(opened(&mut gateway, &recorded, 1010), Err(AuthRefusal::Unanswered));
             assert!(gateway.peers.len() <= 4);
         }
-        let message = sealed(&mut node, Kind::Node, 1011);
+        let message = sealed(&mut node, MessageKind::Node, 1011);
         assert!(opened(&mut gateway, &message, 1011).is_ok());
     }
 
@@ -522,7 +530,7 @@ mod tests {
                         None
                     }
                     Step::Tell { by_node, arrives } => {
-                        let kind = if by_node { Kind::Node } else { Kind::Gateway };
+                        let kind = if by_node { MessageKind::Node } else { MessageKind::Gateway };
                         sent.push((sealed(&mut ends[usize::from(by_node)], kind, now), now));
                         arrives.then_some((sent.len() - 1, !by_node))
                     }

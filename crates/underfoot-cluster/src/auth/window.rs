@@ -28,13 +28,13 @@ pub(super) enum Novelty {
 /// # Source
 /// RFC 4303, appendix A2: the anti-replay window of IPsec.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Window {
+pub(super) struct ReplayWindow {
     newest: u64,
     /// Bit n: whether `newest - n` has come.
     seen: u64,
 }
 
-impl Window {
+impl ReplayWindow {
     /// The window after a sender's first message with this `counter`; `None` beyond the greatest counter of any
     /// sender.
     pub(super) fn beginning(counter: u64) -> Option<Self> {
@@ -73,13 +73,13 @@ mod tests {
 
     #[test]
     fn a_counter_far_beyond_the_last_one_changes_nothing() {
-        let window = Window::beginning(5).unwrap();
+        let window = ReplayWindow::beginning(5).unwrap();
         for counter in [5 + AHEAD + 1, GREATEST, GREATEST + 1, u64::MAX] {
             assert_eq!(window.look(counter), Novelty::Jumped, "{counter}");
         }
         assert_eq!(window.look(6), Novelty::Newest);
         assert_eq!(window.look(5 + AHEAD), Novelty::Newest);
-        assert!(Window::beginning(u64::MAX).is_none());
+        assert!(ReplayWindow::beginning(u64::MAX).is_none());
     }
 
     proptest! {
@@ -88,7 +88,7 @@ mod tests {
         fn each_counter_counts_once_in_any_order(
             steps in prop::collection::vec(-80_i64..90, 1..400),
         ) {
-            let mut window = Window::beginning(1000).unwrap();
+            let mut window = ReplayWindow::beginning(1000).unwrap();
             let mut come = BTreeSet::from([1000_u64]);
             let mut last = 1000_i64;
             for step in steps {

@@ -6,8 +6,8 @@ use underfoot::units::Instant;
 
 use super::claim::{Claims, Holder};
 use super::clock::NodeClock;
-use super::presses::Presses;
-use crate::message::{LayoutStanding, NodeMessage, Standing};
+use super::presses::AreaPresses;
+use crate::message::{AreaStanding, LayoutStanding, NodeMessage};
 
 /// Greatest age of an area's newest frame, by the gateway's own clock: the uncertainty of the node's clock adds to
 /// the age. Beyond it, the gateway cancels all holds of the area.
@@ -19,12 +19,12 @@ const AHEAD: Duration = Duration::from_millis(20);
 
 /// One area.
 #[derive(Clone, Debug, Default)]
-pub(super) struct AreaState {
+pub(super) struct JoinedArea {
     pub(super) claims: Claims,
     pub(super) holder: Option<u64>,
-    pub(super) standing: Standing,
+    pub(super) standing: AreaStanding,
     pub(super) clock: NodeClock,
-    pub(super) presses: Presses,
+    pub(super) presses: AreaPresses,
     /// Time of its newest frame, on the gateway's clock.
     pub(super) newest: Option<Instant>,
     /// Uncertainty of that time.
@@ -47,7 +47,7 @@ pub(super) struct AreaState {
 
 /// The use of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Worth {
+pub(super) enum MessageUse {
     /// It is dropped: an old one, one from a node that does not hold the area, or one of an unknown time.
     Nothing,
     /// It is too old to act on, or lies in the future.
@@ -58,12 +58,12 @@ pub(super) enum Worth {
     Fresh { lost: u64 },
 }
 
-impl AreaState {
+impl JoinedArea {
     /// Notes a message and its sender, received at `now`.
-    pub(super) fn note(&mut self, message: &NodeMessage, now: Instant) -> Worth {
+    pub(super) fn note(&mut self, message: &NodeMessage, now: Instant) -> MessageUse {
         self.claims.note(message.node, &message.name, now);
         if self.claims.holder(now) != Holder::One(message.node) {
-            return Worth::Nothing;
+            return MessageUse::Nothing;
         }
         if self.holder.replace(message.node) != Some(message.node) {
             // The clock and the numbers of another node.
@@ -71,7 +71,7 @@ impl AreaState {
             (self.sequence, self.next_event, self.newest) = (0, None, None);
         }
         if message.sequence <= self.sequence {
-            return Worth::Nothing;
+            return MessageUse::Nothing;
         }
         self.sequence = message.sequence;
         self.silent = message.silent;
@@ -80,18 +80,18 @@ impl AreaState {
             self.next_event.replace(message.first_event.saturating_add(message.events.len() as u64));
         let lost = message.first_event.saturating_sub(expected.unwrap_or(message.first_event));
         if was_set {
-            return Worth::ClockSet;
+            return MessageUse::ClockSet;
         }
         let Some(frame) = message.frame.and_then(|frame| self.clock.here(frame)) else {
-            return Worth::Nothing;
+            return MessageUse::Nothing;
         };
         let unsure = self.clock.uncertainty(now).unwrap_or_default();
         // A message about silent boards brings no new frame, however recent it is.
         if message.silent || now.since(frame) + unsure > LOST_AFTER || frame > now + AHEAD {
-            return Worth::Stale;
+            return MessageUse::Stale;
         }
         (self.newest, self.unsure) = (Some(frame), unsure);
-        Worth::Fresh { lost }
+        MessageUse::Fresh { lost }
     }
 
     /// The gateway's time at which the node's clock showed `micros`.
@@ -112,7 +112,7 @@ impl AreaState {
 
     /// Makes the area live from `at` on.
     pub(super) fn begin(&mut self, at: Instant) {
-        self.standing = Standing::Live;
+        self.standing = AreaStanding::Live;
         self.is_brought_up = false;
         (self.since, self.told) = (at, at);
     }
@@ -123,21 +123,21 @@ impl AreaState {
     }
 
     /// The standing to which it falls at `now`, if it falls.
-    pub(super) fn fallen(&mut self, now: Instant) -> Option<Standing> {
+    pub(super) fn fallen(&mut self, now: Instant) -> Option<AreaStanding> {
         let is_disputed = self.claims.holder(now) == Holder::Disputed;
         let is_old = self.age(now).is_none_or(|age| age > LOST_AFTER);
         let next = match self.standing {
-            Standing::Disputed if is_disputed => return None,
-            _ if is_disputed => Standing::Disputed,
-            Standing::Live if is_old => Standing::Lost,
-            Standing::Disputed => Standing::Lost,
+            AreaStanding::Disputed if is_disputed => return None,
+            _ if is_disputed => AreaStanding::Disputed,
+            AreaStanding::Live if is_old => AreaStanding::Lost,
+            AreaStanding::Disputed => AreaStanding::Lost,
             _ => return None,
         };
         Some(next)
     }
 
     /// Sets the standing to which it falls.
-    pub(super) fn fall(&mut self, standing: Standing) {
+    pub(super) fn fall(&mut self, standing: AreaStanding) {
         self.standing = standing;
         self.newest = None;
     }

@@ -13,11 +13,11 @@ use underfoot::wire::{ControlMessage, Request, is_pattern, matches};
 use super::Gateway;
 use super::output::Output;
 use super::requests::{Answered, Asker};
-use crate::message::{NodeState, Standing};
+use crate::message::{AreaStanding, NodeState};
 
 /// The answer to an app's request.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer {
+pub enum RequestAnswer {
     /// The state of a control.
     Control(Box<ControlState>),
     /// The page on the floor; empty without pages.
@@ -105,7 +105,7 @@ impl Gateway {
         for number in 0..self.areas.len() {
             let Some(area) = self.areas.get_mut(number) else { continue };
             let lacks = current.is_some() && area.layout.running != current;
-            if area.standing != Standing::Live || area.is_brought_up || lacks {
+            if area.standing != AreaStanding::Live || area.is_brought_up || lacks {
                 continue;
             }
             area.is_brought_up = true;
@@ -148,7 +148,7 @@ impl Gateway {
             for state in states.iter().map(NodeState::state) {
                 self.tell_all(Report::Control(now, Cow::Owned(state.clone())));
                 if let Some(to) = sender.filter(|_| is_asked) {
-                    self.out.push(Output::Answer(to, Answer::Control(Box::new(state))));
+                    self.out.push(Output::Answer(to, RequestAnswer::Control(Box::new(state))));
                 }
             }
             if message == ControlMessage::GetAll {
@@ -162,11 +162,11 @@ impl Gateway {
     fn tell_of_all(&mut self, message: &ControlMessage, sender: Option<SocketAddr>, now: Instant) {
         let answer = if *message == ControlMessage::GetMute {
             self.tell_all(Report::Muted(now, Cow::Owned(self.shared.muted.clone())));
-            Answer::Muted(self.shared.muted.clone())
+            RequestAnswer::Muted(self.shared.muted.clone())
         } else {
             let page = self.shared.page().to_owned();
             self.tell_all(Report::Page(Cow::Owned(PageShown { at: now, page: WidgetId::new(&page) })));
-            Answer::Page(page)
+            RequestAnswer::Page(page)
         };
         self.out.extend(sender.map(|to| Output::Answer(to, answer)));
     }
@@ -179,11 +179,11 @@ impl Gateway {
 
     fn refuse(&mut self, sender: Option<SocketAddr>, message: &ControlMessage, why: String) {
         self.counters.denied += 1;
-        self.out.extend(sender.map(|to| Output::Answer(to, Answer::Refused(message.path(), why))));
+        self.out.extend(sender.map(|to| Output::Answer(to, RequestAnswer::Refused(message.path(), why))));
     }
 
     fn is_live(&self, number: usize) -> bool {
-        self.areas.get(number).is_some_and(|area| area.standing == Standing::Live)
+        self.areas.get(number).is_some_and(|area| area.standing == AreaStanding::Live)
     }
 
     fn live_areas(&self) -> Vec<usize> {

@@ -36,7 +36,7 @@ struct Proposal {
 
 /// The outcome of a proposal.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Outcome {
+pub(super) enum ProposalOutcome {
     /// All nodes run it from that time on.
     Current(LayoutName, Instant),
     /// No node runs it.
@@ -46,11 +46,11 @@ pub(super) enum Outcome {
 }
 
 /// A live node: its area, and the state of its layouts.
-pub(super) type Standing<'a> = (&'a str, &'a LayoutStanding);
+pub(super) type NodeLayout<'a> = (&'a str, &'a LayoutStanding);
 
 /// The layouts of a gateway.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Layouts {
+pub(super) struct GatewayLayouts {
     revision: u64,
     current: Option<(Text, Instant)>,
     proposed: Option<Proposal>,
@@ -59,7 +59,7 @@ pub(super) struct Layouts {
     unfit: Vec<String>,
 }
 
-impl Layouts {
+impl GatewayLayouts {
     /// Proposes the layout that `text` describes, in place of any earlier proposal.
     pub(super) fn propose(&mut self, text: String, now: Instant) -> LayoutName {
         self.revision += 1;
@@ -83,7 +83,7 @@ impl Layouts {
     /// The text that nodes need at `now`.
     pub(super) fn send<'a>(
         &mut self,
-        mut live: impl Iterator<Item = Standing<'a>>,
+        mut live: impl Iterator<Item = NodeLayout<'a>>,
         now: Instant,
     ) -> Option<(LayoutName, &str)> {
         if now < self.send_due {
@@ -105,9 +105,9 @@ impl Layouts {
     /// The decision at `now`, given the live nodes.
     pub(super) fn decide<'a>(
         &mut self,
-        live: impl Iterator<Item = Standing<'a>> + Clone,
+        live: impl Iterator<Item = NodeLayout<'a>> + Clone,
         now: Instant,
-    ) -> Option<Outcome> {
+    ) -> Option<ProposalOutcome> {
         let Some(proposal) = &self.proposed else { return self.unfit(live) };
         let (name, since) = (proposal.text.name, proposal.since);
         let refused = live.clone().find_map(|(area, standing)| {
@@ -123,7 +123,7 @@ impl Layouts {
                 let from = now + AHEAD;
                 self.current = Some((text, from));
                 self.unfit.clear();
-                return Some(Outcome::Current(name, from));
+                return Some(ProposalOutcome::Current(name, from));
             }
             (None, Some(area)) if now.since(since) > ANSWER_WITHIN => {
                 format!("the node of area \"{area}\" does not say within 5 s that it has it")
@@ -131,11 +131,11 @@ impl Layouts {
             (None, Some(_)) => return None,
         };
         self.proposed = None;
-        Some(Outcome::Dropped(name, why))
+        Some(ProposalOutcome::Dropped(name, why))
     }
 
     /// A node that refuses the current layout and has not been reported yet.
-    fn unfit<'a>(&mut self, live: impl Iterator<Item = Standing<'a>>) -> Option<Outcome> {
+    fn unfit<'a>(&mut self, live: impl Iterator<Item = NodeLayout<'a>>) -> Option<ProposalOutcome> {
         let name = self.current.as_ref()?.0.name;
         for (area, standing) in live {
             let Some((_, why)) = standing.refused.as_ref().filter(|(refused, _)| *refused == name) else {
@@ -143,7 +143,7 @@ impl Layouts {
             };
             if !self.unfit.iter().any(|known| known == area) {
                 self.unfit.push(area.to_owned());
-                return Some(Outcome::Unfit(area.to_owned(), why.clone()));
+                return Some(ProposalOutcome::Unfit(area.to_owned(), why.clone()));
             }
         }
         None
@@ -162,14 +162,14 @@ mod tests {
     struct Nodes([LayoutStanding; 2]);
 
     impl Nodes {
-        fn live(&self) -> impl Iterator<Item = Standing<'_>> + Clone {
+        fn live(&self) -> impl Iterator<Item = NodeLayout<'_>> + Clone {
             ["west", "east"].into_iter().zip(&self.0)
         }
     }
 
     #[test]
     fn a_layout_is_current_when_all_live_nodes_are_ready_and_from_a_moment_to_come() {
-        let mut layouts = Layouts::default();
+        let mut layouts = GatewayLayouts::default();
         let mut nodes = Nodes(Default::default());
         let name = layouts.propose("new".into(), at(0));
         assert_eq!(layouts.send(nodes.live(), at(0)), Some((name, "new")));
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(layouts.decide(nodes.live(), at(10)), None);
         assert!(layouts.send(nodes.live(), at(500)).is_some());
         nodes.0[1].ready = Some(name);
-        assert_eq!(layouts.decide(nodes.live(), at(600)), Some(Outcome::Current(name, at(700))));
+        assert_eq!(layouts.decide(nodes.live(), at(600)), Some(ProposalOutcome::Current(name, at(700))));
         assert_eq!(layouts.current(), Some((name, at(700))));
         assert_eq!(layouts.send(nodes.live(), at(9000)), None);
         // A node that joins receives it.
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_layout_that_one_node_refuses_or_does_not_answer_is_no_node_s() {
-        let mut layouts = Layouts::default();
+        let mut layouts = GatewayLayouts::default();
         let mut nodes = Nodes(Default::default());
         let old = layouts.propose("old".into(), at(0));
         nodes.0.iter_mut().for_each(|node| node.ready = Some(old));
@@ -197,24 +197,30 @@ mod tests {
         nodes.0[0].ready = Some(bad);
         nodes.0[1].refused = Some((bad, "no such kind".into()));
         let said = "the node of area \"east\" refuses it: no such kind".to_owned();
-        assert_eq!(layouts.decide(nodes.live(), at(1001)), Some(Outcome::Dropped(bad, said)));
+        assert_eq!(layouts.decide(nodes.live(), at(1001)), Some(ProposalOutcome::Dropped(bad, said)));
         assert_eq!(layouts.current(), Some((old, at(101))));
         let slow = layouts.propose("slow".into(), at(2000));
         nodes.0[0].ready = Some(slow);
         assert_eq!(layouts.decide(nodes.live(), at(7000)), None);
         let dropped = layouts.decide(nodes.live(), at(7001)).unwrap();
-        assert!(matches!(&dropped, Outcome::Dropped(_, why) if why.contains("\"east\"")), "{dropped:?}");
+        assert!(
+            matches!(&dropped, ProposalOutcome::Dropped(_, why) if why.contains("\"east\"")),
+            "{dropped:?}"
+        );
         assert!(bad.revision < slow.revision);
     }
 
     #[test]
     fn a_node_that_joins_and_does_not_take_the_current_layout_is_named_once() {
-        let mut layouts = Layouts::default();
+        let mut layouts = GatewayLayouts::default();
         let mut nodes = Nodes(Default::default());
         let name = layouts.propose("new".into(), at(0));
-        assert!(matches!(layouts.decide([].into_iter(), at(1)), Some(Outcome::Current(..))), "nobody to ask");
+        assert!(
+            matches!(layouts.decide([].into_iter(), at(1)), Some(ProposalOutcome::Current(..))),
+            "nobody to ask"
+        );
         nodes.0[1].refused = Some((name, "why".into()));
-        let named = Outcome::Unfit("east".into(), "why".into());
+        let named = ProposalOutcome::Unfit("east".into(), "why".into());
         assert_eq!(layouts.decide(nodes.live(), at(2)), Some(named));
         assert_eq!(layouts.decide(nodes.live(), at(3)), None);
     }

@@ -37,19 +37,19 @@ use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::LinkState;
 
-use self::area::{AreaState, Worth};
+use self::area::{JoinedArea, MessageUse};
 use self::held::HeldReports;
 use self::join::Joiner;
-use self::layouts::{Layouts, Outcome};
+use self::layouts::{GatewayLayouts, ProposalOutcome};
 use self::requests::Requests;
-use self::shared::Shared;
+use self::shared::SharedState;
 use crate::message::{
-    GatewayMessage, LayoutMessage, LayoutOrder, LayoutStanding, NodeContact, NodeEvent, NodeFrame,
-    NodeMessage, NodeValue, Standing, VERSION, fingerprint, shown,
+    AreaStanding, GatewayMessage, LayoutMessage, LayoutOrder, LayoutStanding, NodeContact, NodeEvent,
+    NodeFrame, NodeMessage, NodeValue, VERSION, fingerprint, shown,
 };
 
 pub use area::LOST_AFTER;
-pub use ask::Answer;
+pub use ask::RequestAnswer;
 pub use clock::NodeClock;
 pub use output::{Counters, Output};
 
@@ -93,7 +93,7 @@ pub struct Gateway {
     id: u64,
     floor: u64,
     names: Vec<String>,
-    areas: Vec<AreaState>,
+    areas: Vec<JoinedArea>,
     joiner: Joiner,
     /// By ordering time, area and number, with the reported time, which may be before the ordering time.
     queue: BTreeMap<(Instant, usize, u64), (Instant, Item)>,
@@ -106,9 +106,9 @@ pub struct Gateway {
     link: LinkState,
     alive: (u32, Instant),
     complained: HashSet<u64>,
-    shared: Shared,
+    shared: SharedState,
     requests: Requests,
-    layouts: Layouts,
+    layouts: GatewayLayouts,
     /// Whether nodes need a message before the next beat is due.
     has_news: bool,
     counters: Counters,
@@ -128,7 +128,7 @@ impl Gateway {
             id,
             floor: fingerprint(floor),
             names: floor.areas.iter().map(|area| area.id.clone()).collect(),
-            areas: vec![AreaState::default(); floor.areas.len()],
+            areas: vec![JoinedArea::default(); floor.areas.len()],
             joiner: Joiner::new(floor),
             queue: BTreeMap::new(),
             number: 0,
@@ -139,9 +139,9 @@ impl Gateway {
             link: LinkState::Waiting,
             alive: (0, Instant::START),
             complained: HashSet::new(),
-            shared: Shared::new(floor),
+            shared: SharedState::new(floor),
             requests: Requests::default(),
-            layouts: Layouts::default(),
+            layouts: GatewayLayouts::default(),
             has_news: false,
             counters: Counters::default(),
             out: Vec::new(),
@@ -156,7 +156,7 @@ impl Gateway {
 
     /// The standing of the area `id`; `None` for an unknown one.
     #[must_use]
-    pub fn standing(&self, id: &str) -> Option<Standing> {
+    pub fn standing(&self, id: &str) -> Option<AreaStanding> {
         let area = self.names.iter().position(|name| name == id)?;
         self.areas.get(area).map(|area| area.standing)
     }
@@ -167,7 +167,7 @@ impl Gateway {
     pub fn message(&self, now: Instant) -> GatewayMessage {
         let standings = self.areas.iter().map(|area| area.standing);
         let current = self.layouts.current();
-        let from = |(name, area): (&String, &AreaState)| {
+        let from = |(name, area): (&String, &JoinedArea)| {
             let (_, from) = current?;
             Some((name.clone(), area.clock.there(from)?))
         };
@@ -225,18 +225,18 @@ impl Gateway {
                 self.requests.note(number, answer.clone());
             }
         }
-        if area.holder != before && area.standing == Standing::Live {
-            self.fall(number, Standing::Lost, "its node was started again", now);
+        if area.holder != before && area.standing == AreaStanding::Live {
+            self.fall(number, AreaStanding::Lost, "its node was started again", now);
         }
         match worth {
-            Worth::Nothing => {}
-            Worth::Stale => self.counters.stale += 1,
-            Worth::ClockSet => {
-                if self.areas.get(number).is_some_and(|area| area.standing == Standing::Live) {
-                    self.fall(number, Standing::Lost, "its node's clock was set", now);
+            MessageUse::Nothing => {}
+            MessageUse::Stale => self.counters.stale += 1,
+            MessageUse::ClockSet => {
+                if self.areas.get(number).is_some_and(|area| area.standing == AreaStanding::Live) {
+                    self.fall(number, AreaStanding::Lost, "its node's clock was set", now);
                 }
             }
-            Worth::Fresh { lost } => {
+            MessageUse::Fresh { lost } => {
                 self.counters.lost += lost;
                 self.join(number, message, lost > 0, now);
             }
@@ -249,7 +249,7 @@ impl Gateway {
             let Some(area) = self.areas.get_mut(number) else { continue };
             let Some(standing) = area.fallen(now) else { continue };
             let why = match standing {
-                Standing::Disputed => {
+                AreaStanding::Disputed => {
                     format!(
                         "{} both serve it: neither is believed until one of them has stopped",
                         area.claims.names()
@@ -260,7 +260,7 @@ impl Gateway {
             };
             self.fall(number, standing, &why, now);
         }
-        let told = self.areas.iter().filter(|area| area.standing == Standing::Live).map(|area| area.told);
+        let told = self.areas.iter().filter(|area| area.standing == AreaStanding::Live).map(|area| area.told);
         // Areas later than the window do not delay the others.
         let until = told.min().unwrap_or(now).max(now.before(WINDOW));
         while let Some(entry) = self.queue.first_entry().filter(|entry| entry.key().0 <= until) {
@@ -279,8 +279,8 @@ impl Gateway {
     /// The final reports of a gateway that stops at `now`: it cancels all holds, which are unknown from then on.
     pub fn end(&mut self, now: Instant) -> Vec<Output> {
         for number in 0..self.areas.len() {
-            if self.areas.get(number).is_some_and(|area| area.standing == Standing::Live) {
-                self.fall(number, Standing::Lost, "the gateway has stopped", now);
+            if self.areas.get(number).is_some_and(|area| area.standing == AreaStanding::Live) {
+                self.fall(number, AreaStanding::Lost, "the gateway has stopped", now);
             }
         }
         self.tell_contacts(now, now);
@@ -321,13 +321,18 @@ impl Gateway {
     fn join(&mut self, number: usize, message: NodeMessage, is_torn: bool, now: Instant) {
         let Some(area) = self.areas.get_mut(number) else { return };
         let Some(frame) = area.newest else { return };
-        if area.standing != Standing::Live {
+        if area.standing != AreaStanding::Live {
             area.begin(frame);
             area.presses.shut(&message.held);
             let (at, name) = (now, self.names.get(number).cloned().unwrap_or_default());
             let uncertainty = area.clock.uncertainty(now).unwrap_or_default();
-            let news =
-                AreaNews { at, area: name, state: Standing::Live.into(), why: String::new(), uncertainty };
+            let news = AreaNews {
+                at,
+                area: name,
+                state: AreaStanding::Live.into(),
+                why: String::new(),
+                uncertainty,
+            };
             self.out.push(Output::Report(Report::Area(Cow::Owned(news))));
             area.page.clone_from(&message.page);
             self.tell_mutes(number, now);
@@ -376,7 +381,7 @@ impl Gateway {
     }
 
     /// Takes an area off the floor: cancels its holds and ends its contacts.
-    fn fall(&mut self, number: usize, standing: Standing, why: &str, now: Instant) {
+    fn fall(&mut self, number: usize, standing: AreaStanding, why: &str, now: Instant) {
         let Some(area) = self.areas.get_mut(number) else { return };
         area.fall(standing);
         let cancelled = area.presses.cancel(now);
@@ -425,16 +430,16 @@ impl Gateway {
     fn decide(&mut self, now: Instant) {
         let Some(outcome) = self.layouts.decide(live(&self.names, &self.areas), now) else { return };
         let notice = match outcome {
-            Outcome::Current(name, _) => {
+            ProposalOutcome::Current(name, _) => {
                 self.shared.take_proposal();
                 self.has_news = true;
                 format!("Layout {} goes to all areas.", name.revision)
             }
-            Outcome::Dropped(name, why) => {
+            ProposalOutcome::Dropped(name, why) => {
                 self.shared.drop_proposal();
                 format!("Layout {} goes to no area: {why}.", name.revision)
             }
-            Outcome::Unfit(area, why) => {
+            ProposalOutcome::Unfit(area, why) => {
                 format!("the node of area \"{area}\" does not take the layout of the others: {why}")
             }
         };
@@ -442,7 +447,7 @@ impl Gateway {
     }
 
     fn tell_contacts(&mut self, until: Instant, now: Instant) {
-        let is_live = self.areas.iter().any(|area| area.standing == Standing::Live);
+        let is_live = self.areas.iter().any(|area| area.standing == AreaStanding::Live);
         if !is_live {
             if std::mem::take(&mut self.is_anybody_there) {
                 self.tell_all(Report::Contacts(now, Cow::Borrowed(&[])));
@@ -459,7 +464,7 @@ impl Gateway {
     }
 
     fn tell_state(&mut self, now: Instant) {
-        let live = || self.areas.iter().filter(|area| area.standing == Standing::Live);
+        let live = || self.areas.iter().filter(|area| area.standing == AreaStanding::Live);
         let link = match live().count() {
             0 if self.link == LinkState::Waiting => LinkState::Waiting,
             0 => LinkState::Lost,
@@ -487,9 +492,9 @@ impl Gateway {
 /// The live nodes and the states of their layouts.
 fn live<'a>(
     names: &'a [String],
-    areas: &'a [AreaState],
+    areas: &'a [JoinedArea],
 ) -> impl Iterator<Item = (&'a str, &'a LayoutStanding)> + Clone {
-    let all = names.iter().zip(areas).filter(|(_, area)| area.standing == Standing::Live);
+    let all = names.iter().zip(areas).filter(|(_, area)| area.standing == AreaStanding::Live);
     all.map(|(name, area)| (name.as_str(), &area.layout))
 }
 

@@ -6,7 +6,7 @@ use std::net::SocketAddr;
 use underfoot::sink::Report;
 use underfoot::widget::WidgetEvent;
 
-use super::ask::Answer;
+use super::ask::RequestAnswer;
 
 /// One output of the gateway; times are on its clock, and contacts have their joint numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub enum Output {
     /// A report about the whole floor, as of a floor of one computer. Contacts come once a millisecond at most.
     Report(Report<'static>),
     /// The answer to the app that asked.
-    Answer(SocketAddr, Answer),
+    Answer(SocketAddr, RequestAnswer),
     /// A notice for the operator.
     Notice(String),
 }

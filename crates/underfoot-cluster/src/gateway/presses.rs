@@ -27,7 +27,7 @@ struct Press {
 
 /// The reported state of the controls of one area.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Presses {
+pub(super) struct AreaPresses {
     open: BTreeMap<String, Press>,
     armed: BTreeSet<String>,
     values: BTreeMap<String, Value>,
@@ -43,7 +43,7 @@ pub(super) struct Presses {
     is_unsure: bool,
 }
 
-impl Presses {
+impl AreaPresses {
     /// Whether `event` is to be reported; if so, this updates the state.
     pub(super) fn takes(&mut self, event: &WidgetEvent) -> bool {
         let id = event.id.as_str();
@@ -168,7 +168,7 @@ mod tests {
         Instant::from_millis(ms)
     }
 
-    fn takes(presses: &mut Presses, ms: u64, kind: EventKind) -> bool {
+    fn takes(presses: &mut AreaPresses, ms: u64, kind: EventKind) -> bool {
         presses.takes(&by_nobody(at(ms), "drive", kind))
     }
 
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_hold_that_is_cut_off_is_off_and_cancelled_and_does_not_come_back_by_itself() {
-        let mut presses = Presses::default();
+        let mut presses = AreaPresses::default();
         let held = ["drive".to_owned()];
         assert!(takes(&mut presses, 1, EventKind::Pressed) && takes(&mut presses, 1, ON));
         presses.hold(&held);
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn a_hold_counts_only_after_its_own_press() {
-        let mut presses = Presses::default();
+        let mut presses = AreaPresses::default();
         let held = ["drive".to_owned()];
         assert_eq!(presses.hold(&held), 1);
         assert_eq!(presses.hold(&held), 0, "the same hold");
@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn a_click_is_told_after_its_release_and_never_after_a_cancellation() {
-        let mut presses = Presses::default();
+        let mut presses = AreaPresses::default();
         takes(&mut presses, 1, EventKind::Pressed);
         assert!(takes(&mut presses, 9, EventKind::Released) && takes(&mut presses, 300, EventKind::Clicked));
         takes(&mut presses, 320, EventKind::Pressed);
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_slider_changes_back_and_what_it_holds_after_all_is_told_when_the_node_is_back() {
-        let mut presses = Presses::default();
+        let mut presses = AreaPresses::default();
         let number = |number| vec![("drive".to_owned(), NodeValue::Number(number))];
         assert!(presses.compare(&number(0.2), at(0)).is_empty(), "what it holds at the start is no news");
         takes(&mut presses, 1, EventKind::Pressed);

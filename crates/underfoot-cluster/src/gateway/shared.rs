@@ -9,7 +9,7 @@ use underfoot::wire::ControlMessage;
 
 /// The state that all nodes share.
 #[derive(Clone, Debug)]
-pub(super) struct Shared {
+pub(super) struct SharedState {
     geometry: Geometry,
     areas: Vec<Area>,
     /// The tiles that an actuator moves, by tile index.
@@ -26,7 +26,7 @@ pub(super) struct Shared {
     kept: BTreeMap<String, ControlMessage>,
 }
 
-impl Shared {
+impl SharedState {
     pub(super) fn new(floor: &Floor) -> Self {
         Self {
             geometry: floor.geometry,

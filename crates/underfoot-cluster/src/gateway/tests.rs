@@ -327,7 +327,7 @@ fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghost
     let thawed = frozen + 300_000;
     late.into_iter().for_each(|message| stage.take(message, thawed));
     stage.advance(thawed + 300);
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Lost));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Lost));
     assert_eq!(stage.gateway.counters().stale, 10);
     for step in 0..50_u64 {
         let at = thawed + step * 2000;
@@ -383,7 +383,7 @@ fn step_of_the_clock(step_us: i64) -> (Vec<EventKind>, u64, u64) {
             pressed.get_or_insert(at + 300 - (begun + 200_000));
         }
     }
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Live));
     (stage.kinds(), cancelled.unwrap(), pressed.unwrap())
 }
 
@@ -412,7 +412,7 @@ fn a_node_that_starts_again_at_once_has_cancelled_what_was_held() {
     }
     assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled]);
     assert_eq!(stage.contacts(), [(2, 3.0)]);
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Live));
 }
 
 // C10
@@ -442,7 +442,7 @@ fn of_two_nodes_that_claim_an_area_neither_acts() {
         stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
         stage.advance(at + 300);
     }
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Live));
     assert_eq!(stage.contacts().len(), 2);
 }
 
@@ -482,7 +482,7 @@ fn events_from_before_a_gap_end_with_it() {
 
 #[test]
 fn the_uncertainty_of_a_node_s_clock_adds_to_the_age_of_its_frames() {
-    for (one_way_ms, standing) in [(40, Standing::Live), (60, Standing::Waiting)] {
+    for (one_way_ms, standing) in [(40, AreaStanding::Live), (60, AreaStanding::Waiting)] {
         let (mut stage, mut west) = (Stage::new(), Node::new("west", 1));
         let way = one_way_ms * 1000;
         // A round trip of twice that bounds the frame's age only to between 0 and two ways.
@@ -543,7 +543,7 @@ fn a_node_with_another_floor_file_is_told_about_once_and_not_heard() {
     }
     let notices = stage.told.iter().filter(|told| matches!(told, Output::Notice(_))).count();
     assert_eq!((notices, stage.gateway.counters().refused), (1, 5));
-    assert_eq!(stage.gateway.standing("west"), Some(Standing::Waiting));
+    assert_eq!(stage.gateway.standing("west"), Some(AreaStanding::Waiting));
 }
 
 proptest! {
@@ -665,7 +665,7 @@ fn ask(stage: &mut Stage, message: ControlMessage, at: u64) {
 
 fn refusals(stage: &Stage) -> Vec<&str> {
     let refused = stage.told.iter().filter_map(|told| match told {
-        Output::Answer(_, Answer::Refused(_, why)) => Some(why.as_str()),
+        Output::Answer(_, RequestAnswer::Refused(_, why)) => Some(why.as_str()),
         _ => None,
     });
     refused.collect()

@@ -133,7 +133,7 @@ pub struct GatewayMessage {
     #[serde(skip)]
     pub sent: u64,
     /// The standing of each area with the gateway.
-    pub areas: Vec<(String, Standing)>,
+    pub areas: Vec<(String, AreaStanding)>,
     /// Requests of apps without an answer so far, in their order; each is repeated until its answer arrives.
     pub requests: Vec<NodeRequest>,
     /// The layout that nodes are to run.
@@ -143,7 +143,7 @@ pub struct GatewayMessage {
 /// The standing of an area with a gateway.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Standing {
+pub enum AreaStanding {
     /// No message of it has arrived yet.
     #[default]
     Waiting,
@@ -155,13 +155,13 @@ pub enum Standing {
     Disputed,
 }
 
-impl From<Standing> for AreaState {
-    fn from(standing: Standing) -> Self {
+impl From<AreaStanding> for AreaState {
+    fn from(standing: AreaStanding) -> Self {
         match standing {
-            Standing::Waiting => Self::Waiting,
-            Standing::Live => Self::Live,
-            Standing::Lost => Self::Lost,
-            Standing::Disputed => Self::Disputed,
+            AreaStanding::Waiting => Self::Waiting,
+            AreaStanding::Live => Self::Live,
+            AreaStanding::Lost => Self::Lost,
+            AreaStanding::Disputed => Self::Disputed,
         }
     }
 }

@@ -348,7 +348,7 @@ mod tests {
     use underfoot::units::{HostClock, Newtons};
 
     use super::*;
-    use crate::auth::{Key, Refusals, Role, Session};
+    use crate::auth::{AuthRefusals, AuthSession, Key, Role};
     use crate::node::{NeighbourSeal, NeighbourSession};
 
     /// Offset of the east's clock against the west's.
@@ -374,7 +374,7 @@ mod tests {
             let now = Arc::<AtomicU64>::default();
             let shown = Arc::clone(&now);
             let clock: HostClock = Arc::new(move || Instant::from_micros(shown.load(Ordering::Relaxed)));
-            let session = NeighbourSession::new(Session::new(Role::Neighbour, key, nonce, 8), clock);
+            let session = NeighbourSession::new(AuthSession::new(Role::Neighbour, key, nonce, 8), clock);
             let wire = Wire::default();
             let (to_wire, sealing) = (Arc::clone(&wire), session.clone());
             let send = move |to, note: &[u8]| {
@@ -593,7 +593,7 @@ mod tests {
         pair.give(&[click(900)], &SustainedCues::new(), 900);
         pair.deliver(0, true);
         assert!(pair.take(1, 901).0.is_empty());
-        assert_eq!(pair.0[1].session.refusals(), Refusals { unanswered: 1, ..Refusals::default() });
+        assert_eq!(pair.0[1].session.refusals(), AuthRefusals { unanswered: 1, ..AuthRefusals::default() });
     }
 
     #[test]
@@ -652,7 +652,7 @@ mod tests {
             pair.0[1].arrived.push(bytes.clone());
         }
         assert_eq!(pair.take(1, 1300).0.len(), 1, "the one that is genuine, once");
-        let refused = Refusals { forged: 1, malformed: 1, repeated: 1, ..Refusals::default() };
+        let refused = AuthRefusals { forged: 1, malformed: 1, repeated: 1, ..AuthRefusals::default() };
         assert_eq!(pair.0[1].session.refusals(), refused);
     }
 }

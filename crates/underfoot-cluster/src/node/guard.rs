@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use underfoot::units::Instant;
 
-use crate::message::{GatewayMessage, Standing, VERSION};
+use crate::message::{AreaStanding, GatewayMessage, VERSION};
 
 /// Longest silence of a gateway, which sends a message every 50 ms.
 const SILENT_AFTER: Duration = Duration::from_millis(150);
@@ -21,7 +21,7 @@ pub enum Action {
     /// A gateway uses this node's reports.
     Heard,
     /// Cancel all holds: the gateway has done so, or is gone.
-    Cancel(Reason),
+    Cancel(CancelReason),
     /// Cancel all holds and stop all actuators: another node serves the area too.
     Mute,
     /// Start the actuators again: the other node has stopped.
@@ -30,7 +30,7 @@ pub enum Action {
 
 /// The reason why holds are cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason {
+pub enum CancelReason {
     /// The gateway has received no new frame for 100 ms.
     Late,
     /// The gateway has sent no message.
@@ -41,19 +41,19 @@ pub enum Reason {
 struct Known {
     gateway: u64,
     heard: Instant,
-    standing: Standing,
+    standing: AreaStanding,
     is_silent: bool,
 }
 
 /// The gateways that a node knows.
 #[derive(Clone, Debug)]
-pub struct Guard {
+pub struct GatewayGuard {
     area: String,
     gateways: Vec<Known>,
     is_muted: bool,
 }
 
-impl Guard {
+impl GatewayGuard {
     /// The guard of the node of `area`.
     #[must_use]
     pub fn new(area: &str) -> Self {
@@ -80,11 +80,11 @@ impl Guard {
                 None
             }
         };
-        let was_live = before.is_some_and(|known| known.standing == Standing::Live && !known.is_silent);
+        let was_live = before.is_some_and(|known| known.standing == AreaStanding::Live && !known.is_silent);
         let mut actions = Vec::new();
         match standing {
-            Standing::Live if !was_live => actions.push(Action::Heard),
-            Standing::Lost if was_live => actions.push(Action::Cancel(Reason::Late)),
+            AreaStanding::Live if !was_live => actions.push(Action::Heard),
+            AreaStanding::Lost if was_live => actions.push(Action::Cancel(CancelReason::Late)),
             _ => {}
         }
         actions.extend(self.mute());
@@ -97,8 +97,8 @@ impl Guard {
         for known in &mut self.gateways {
             if !known.is_silent && now.since(known.heard) > SILENT_AFTER {
                 known.is_silent = true;
-                if known.standing == Standing::Live {
-                    actions.push(Action::Cancel(Reason::Silent));
+                if known.standing == AreaStanding::Live {
+                    actions.push(Action::Cancel(CancelReason::Silent));
                 }
             }
         }
@@ -109,7 +109,7 @@ impl Guard {
 
     fn mute(&mut self) -> Option<Action> {
         let is_disputed =
-            self.gateways.iter().any(|known| known.standing == Standing::Disputed && !known.is_silent);
+            self.gateways.iter().any(|known| known.standing == AreaStanding::Disputed && !known.is_silent);
         let was_muted = std::mem::replace(&mut self.is_muted, is_disputed);
         match (was_muted, is_disputed) {
             (false, true) => Some(Action::Mute),
@@ -123,7 +123,7 @@ impl Guard {
 mod tests {
     use super::*;
 
-    fn said(standing: Standing) -> GatewayMessage {
+    fn said(standing: AreaStanding) -> GatewayMessage {
         GatewayMessage {
             version: VERSION,
             gateway: 9,
@@ -135,25 +135,26 @@ mod tests {
     // C8
     #[test]
     fn what_feet_hold_is_cancelled_once_when_the_gateway_no_longer_hears_or_speaks() {
-        let mut guard = Guard::new("west");
-        let hear = |guard: &mut Guard, standing, ms| guard.hear(&said(standing), Instant::from_millis(ms));
-        assert_eq!(hear(&mut guard, Standing::Waiting, 0), []);
-        assert_eq!(hear(&mut guard, Standing::Live, 50), [Action::Heard]);
+        let mut guard = GatewayGuard::new("west");
+        let hear =
+            |guard: &mut GatewayGuard, standing, ms| guard.hear(&said(standing), Instant::from_millis(ms));
+        assert_eq!(hear(&mut guard, AreaStanding::Waiting, 0), []);
+        assert_eq!(hear(&mut guard, AreaStanding::Live, 50), [Action::Heard]);
         assert_eq!(guard.tick(Instant::from_millis(200)), []);
-        assert_eq!(guard.tick(Instant::from_millis(201)), [Action::Cancel(Reason::Silent)]);
+        assert_eq!(guard.tick(Instant::from_millis(201)), [Action::Cancel(CancelReason::Silent)]);
         assert_eq!(guard.tick(Instant::from_millis(400)), []);
-        assert_eq!(hear(&mut guard, Standing::Live, 500), [Action::Heard]);
-        assert_eq!(hear(&mut guard, Standing::Lost, 550), [Action::Cancel(Reason::Late)]);
-        assert_eq!(hear(&mut guard, Standing::Lost, 600), []);
+        assert_eq!(hear(&mut guard, AreaStanding::Live, 500), [Action::Heard]);
+        assert_eq!(hear(&mut guard, AreaStanding::Lost, 550), [Action::Cancel(CancelReason::Late)]);
+        assert_eq!(hear(&mut guard, AreaStanding::Lost, 600), []);
     }
 
     #[test]
     fn a_node_whose_area_is_disputed_is_mute_until_it_no_longer_is() {
-        let mut guard = Guard::new("west");
+        let mut guard = GatewayGuard::new("west");
         let mut hear = |standing| guard.hear(&said(standing), Instant::from_millis(1));
-        assert_eq!(hear(Standing::Disputed), [Action::Mute]);
-        assert_eq!(hear(Standing::Disputed), []);
-        assert_eq!(hear(Standing::Lost), [Action::Unmute]);
-        assert_eq!(hear(Standing::Live), [Action::Heard]);
+        assert_eq!(hear(AreaStanding::Disputed), [Action::Mute]);
+        assert_eq!(hear(AreaStanding::Disputed), []);
+        assert_eq!(hear(AreaStanding::Lost), [Action::Unmute]);
+        assert_eq!(hear(AreaStanding::Live), [Action::Heard]);
     }
 }

@@ -17,7 +17,7 @@ mod sink;
 pub use asked::AskedRequests;
 pub use border::{Border, BorderCounters, ReceivedNote, SendNote};
 pub use draft::Draft;
-pub use guard::{Action, Guard, Reason};
+pub use guard::{Action, CancelReason, GatewayGuard};
 pub use layouts::NodeLayouts;
 pub use seal::{NeighbourSeal, NeighbourSession};
 pub use sink::NodeSink;

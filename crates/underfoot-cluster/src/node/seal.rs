@@ -9,12 +9,12 @@ use underfoot::source::{Seal, Sealed};
 use underfoot::units::HostClock;
 
 use super::border::ReceivedNote;
-use crate::auth::{Kind, Opened, Refusals, Session};
+use crate::auth::{AuthRefusals, AuthSession, MessageKind, Opened};
 
 /// The session of a node with its neighbours, on the node's clock. Clones are the same session.
 #[derive(Clone)]
 pub struct NeighbourSession {
-    session: Arc<Mutex<Session>>,
+    session: Arc<Mutex<AuthSession>>,
     clock: HostClock,
 }
 
@@ -27,22 +27,22 @@ impl fmt::Debug for NeighbourSession {
 impl NeighbourSession {
     /// `session` on `clock`.
     #[must_use]
-    pub fn new(session: Session, clock: HostClock) -> Self {
+    pub fn new(session: AuthSession, clock: HostClock) -> Self {
         Self { session: Arc::new(Mutex::new(session)), clock }
     }
 
-    fn locked(&self) -> MutexGuard<'_, Session> {
+    fn locked(&self) -> MutexGuard<'_, AuthSession> {
         self.session.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Writes `note` in an envelope into `out`, replacing its content.
     pub fn seal_note(&self, note: &[u8], out: &mut Vec<u8>) {
-        self.locked().seal(Kind::Note, note, (self.clock)(), out);
+        self.locked().seal(MessageKind::Note, note, (self.clock)(), out);
     }
 
     /// Number of rejected datagrams so far, by reason.
     #[must_use]
-    pub fn refusals(&self) -> Refusals {
+    pub fn refusals(&self) -> AuthRefusals {
         self.locked().refusals()
     }
 }
@@ -74,7 +74,7 @@ impl Seal for NeighbourSeal {
     fn seal(&mut self, message: &[u8]) -> &[u8] {
         let NeighbourSession { session, clock } = &self.session;
         let mut session = session.lock().unwrap_or_else(PoisonError::into_inner);
-        session.seal(Kind::Packet, message, clock(), &mut self.sealed);
+        session.seal(MessageKind::Packet, message, clock(), &mut self.sealed);
         &self.sealed
     }
 
@@ -82,8 +82,8 @@ impl Seal for NeighbourSeal {
         let now = (self.session.clock)();
         let opened = self.session.locked().open(datagram, now);
         match opened {
-            Ok(Opened { kind: Kind::Packet, body, .. }) => Sealed::Forwarded(body),
-            Ok(Opened { kind: Kind::Note, head, echo, body }) => {
+            Ok(Opened { kind: MessageKind::Packet, body, .. }) => Sealed::Forwarded(body),
+            Ok(Opened { kind: MessageKind::Note, head, echo, body }) => {
                 let body = datagram.get(body).unwrap_or_default().to_vec();
                 if self.notes.try_send(ReceivedNote { head, echo, body }).is_err() {
                     self.dropped.fetch_add(1, Ordering::Relaxed);

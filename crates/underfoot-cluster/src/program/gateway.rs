@@ -20,8 +20,8 @@ use underfoot::sink::{
 use underfoot::source::{Port, UdpSource};
 use underfoot::units::Instant;
 use underfoot::wire::{Prefix, Request};
-use underfoot_cluster::auth::{Kind, Opened, Role};
-use underfoot_cluster::gateway::{Answer, Counters, Gateway, Output};
+use underfoot_cluster::auth::{MessageKind, Opened, Role};
+use underfoot_cluster::gateway::{Counters, Gateway, Output, RequestAnswer};
 use underfoot_cluster::message::{NodeMessage, ToNodes, decode, encode};
 use underfoot_cluster::transport::Transport;
 
@@ -29,7 +29,7 @@ use super::key::{KeyArgs, session};
 use super::notices::Notices;
 use super::refused::{self, RefusalNotices};
 use super::slowed::slow;
-use super::{Failure, endpoints, layout, locked, stop_flag};
+use super::{ClusterFailure, endpoints, layout, locked, stop_flag};
 
 /// Options of the gateway.
 #[derive(clap::Args, Debug)]
@@ -95,7 +95,7 @@ const PATIENCE: Duration = Duration::from_millis(2);
 const TELL_EVERY: Duration = Duration::from_millis(50);
 
 /// Joins the nodes' reports until a stop.
-pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+pub(crate) fn run(args: &Args) -> Result<(), ClusterFailure> {
     let floor = schema::load_floor(&args.floor)?;
     let listen = endpoints(args.listen.clone(), &floor);
     let (key, made) = args.key.find((&floor, &args.floor), &listen, [])?;
@@ -137,7 +137,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let send = |message: &ToNodes| {
         let mut sealed = Vec::new();
-        locked(&session).seal(Kind::Gateway, &encode(message), now(), &mut sealed);
+        locked(&session).seal(MessageKind::Gateway, &encode(message), now(), &mut sealed);
         transport.send(sealed);
     };
     let areas = areas.len();
@@ -189,7 +189,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// The outputs in `args`.
-fn outputs(args: &Args, floor: &Floor) -> Result<Fanout, Failure> {
+fn outputs(args: &Args, floor: &Floor) -> Result<Fanout, ClusterFailure> {
     let mut sinks = Fanout::new();
     for &target in &args.osc {
         sinks.push(OscSink::under(target, args.osc_prefix.clone())?);
@@ -220,7 +220,7 @@ struct RequestSocket {
 }
 
 impl RequestSocket {
-    fn open(address: SocketAddr, args: &Args) -> Result<Self, Failure> {
+    fn open(address: SocketAddr, args: &Args) -> Result<Self, ClusterFailure> {
         let apps = if args.allow_commands.is_empty() { &Network::LOOPBACK[..] } else { &args.allow_commands };
         let prefix = args.osc_prefix.clone();
         let source = UdpSource::requests(address, apps.iter().copied())?.with_prefix(prefix.clone());
@@ -228,7 +228,7 @@ impl RequestSocket {
     }
 
     /// The requests of apps that have arrived.
-    fn take(&mut self) -> Result<Vec<Request>, Failure> {
+    fn take(&mut self) -> Result<Vec<Request>, ClusterFailure> {
         // No boards send to this socket; the loop only reads packets so that requests are received.
         while self.source.next(Duration::ZERO)?.is_some() {}
         Ok(std::iter::from_fn(|| self.source.take_request()).collect())
@@ -238,10 +238,10 @@ impl RequestSocket {
     fn answer(&mut self, told: &Output) {
         let Output::Answer(to, answer) = told else { return };
         match answer {
-            Answer::Control(state) => write_control(&self.prefix, state, &mut self.bytes),
-            Answer::Page(page) => write_page(&self.prefix, page, &mut self.bytes),
-            Answer::Muted(muted) => write_mute(&self.prefix, muted, &mut self.bytes),
-            Answer::Refused(path, why) => {
+            RequestAnswer::Control(state) => write_control(&self.prefix, state, &mut self.bytes),
+            RequestAnswer::Page(page) => write_page(&self.prefix, page, &mut self.bytes),
+            RequestAnswer::Muted(muted) => write_mute(&self.prefix, muted, &mut self.bytes),
+            RequestAnswer::Refused(path, why) => {
                 write_error(&self.prefix, &self.prefix.address(path), why, &mut self.bytes);
             }
         }

@@ -4,9 +4,9 @@ use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 
 use underfoot::floor::Floor;
-use underfoot_cluster::auth::{Key, KeyError, Role, Session};
+use underfoot_cluster::auth::{AuthSession, Key, KeyError, Role};
 
-use super::Failure;
+use super::ClusterFailure;
 
 /// Options for making a key.
 #[derive(clap::Args, Debug)]
@@ -17,7 +17,7 @@ pub(crate) struct Args {
 }
 
 /// Makes a key.
-pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+pub(crate) fn run(args: &Args) -> Result<(), ClusterFailure> {
     Key::make(&args.file)?;
     let file = args.file.display();
     println!(
@@ -46,7 +46,7 @@ impl KeyArgs {
         (floor, path): (&Floor, &Path),
         endpoints: &[String],
         listens: impl IntoIterator<Item = SocketAddr>,
-    ) -> Result<(Key, Option<String>), Failure> {
+    ) -> Result<(Key, Option<String>), ClusterFailure> {
         let folder = path.parent().unwrap_or(Path::new(""));
         if let Some(named) = self.key.clone().or_else(|| floor.key.as_ref().map(|key| folder.join(key))) {
             return Ok((Key::read(&named)?, None));
@@ -56,7 +56,7 @@ impl KeyArgs {
             listens.find(|listen| !listen.ip().is_loopback()).map(|listen| listen.to_string())
         });
         if let Some(far) = far {
-            return Err(Failure::NoKey { far, floor: path.to_owned() });
+            return Err(ClusterFailure::NoKey { far, floor: path.to_owned() });
         }
         let beside = path.with_extension("key");
         match Key::make(&beside) {
@@ -68,9 +68,9 @@ impl KeyArgs {
 }
 
 /// A session with a nonce of its own.
-pub(super) fn session(role: Role, key: &Key, most_peers: usize) -> Result<Session, Failure> {
+pub(super) fn session(role: Role, key: &Key, most_peers: usize) -> Result<AuthSession, ClusterFailure> {
     let nonce = getrandom::u64().map_err(KeyError::Random)?;
-    Ok(Session::new(role, key, nonce, most_peers))
+    Ok(AuthSession::new(role, key, nonce, most_peers))
 }
 
 /// Whether an endpoint of Zenoh is certainly on this computer.

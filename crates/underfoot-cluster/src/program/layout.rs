@@ -10,13 +10,13 @@ use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Diagnostics, Effects, Kinds};
 
-use super::Failure;
+use super::ClusterFailure;
 
 /// Interval between two checks of the files.
 const LOOK_EVERY: Duration = Duration::from_millis(250);
 
 /// The layout at `path`, or the built-in one of that name; its warnings are logged.
-pub(super) fn load(path: &Path, geometry: &Geometry) -> Result<Layout, Failure> {
+pub(super) fn load(path: &Path, geometry: &Geometry) -> Result<Layout, ClusterFailure> {
     let builtin = path.to_str().filter(|_| !path.exists()).and_then(schema::builtin_layout);
     let loaded = match builtin {
         Some(text) => schema::parse_layout(
@@ -41,7 +41,7 @@ type Stamp = Vec<(PathBuf, Option<SystemTime>, u64)>;
 
 /// Reads the layout at `path` again each time its file, or one of a kind or an effect beside it, has changed and has
 /// then stayed the same until the next check.
-pub(super) fn watch(path: PathBuf, geometry: Geometry) -> Receiver<Result<Layout, Failure>> {
+pub(super) fn watch(path: PathBuf, geometry: Geometry) -> Receiver<Result<Layout, ClusterFailure>> {
     let (changes, changed) = sync_channel(1);
     thread::spawn(move || {
         let mut read = stamp(&path);

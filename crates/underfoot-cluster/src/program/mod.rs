@@ -33,7 +33,7 @@ use underfoot_cluster::transport::{ENDPOINT, TransportError};
 
 /// The reason why a command failed, in words for the operator.
 #[derive(Debug, Error)]
-pub(crate) enum Failure {
+pub(crate) enum ClusterFailure {
     /// A project file has errors.
     #[error("{0}")]
     Diagnostics(#[from] Diagnostics),
@@ -96,15 +96,15 @@ const ENDS: &[i32] = &[
 ];
 
 /// A flag set by each of [`ENDS`], or the end of `span`.
-fn stop_flag(span: Option<f64>) -> Result<Arc<AtomicBool>, Failure> {
+fn stop_flag(span: Option<f64>) -> Result<Arc<AtomicBool>, ClusterFailure> {
     let stop = Arc::new(AtomicBool::new(false));
     for &signal in ENDS {
         flag::register(signal, Arc::clone(&stop))
-            .map_err(|error| Failure::Other(format!("signals can't be handled: {error}")))?;
+            .map_err(|error| ClusterFailure::Other(format!("signals can't be handled: {error}")))?;
     }
     if let Some(span) = span {
         let span = Duration::try_from_secs_f64(span)
-            .map_err(|error| Failure::Other(format!("--seconds {span}: {error}")))?;
+            .map_err(|error| ClusterFailure::Other(format!("--seconds {span}: {error}")))?;
         let stop = Arc::clone(&stop);
         thread::spawn(move || {
             thread::sleep(span);

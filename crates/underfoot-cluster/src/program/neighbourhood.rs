@@ -10,7 +10,7 @@ use underfoot::units::HostClock;
 use underfoot_cluster::auth::{Key, Role};
 use underfoot_cluster::node::{Border, NeighbourSeal, NeighbourSession, SendNote};
 
-use super::Failure;
+use super::ClusterFailure;
 use super::key::session;
 
 /// Greatest number of neighbours' notes that wait for the next frame.
@@ -37,7 +37,7 @@ impl Neighbourhood {
         listen: SocketAddr,
         key: &Key,
         clock: &HostClock,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, ClusterFailure> {
         let neighbours = Border::neighbours(floor, area);
         let addresses: Vec<SocketAddr> = neighbours.iter().filter_map(|other| other.listen).collect();
         let computers = addresses.iter().map(SocketAddr::ip).collect();
@@ -51,10 +51,14 @@ impl Neighbourhood {
 }
 
 /// Sends notes to the neighbours at `to`, from a port of its own beside `listen`.
-fn sender(to: Vec<SocketAddr>, listen: SocketAddr, session: NeighbourSession) -> Result<SendNote, Failure> {
+fn sender(
+    to: Vec<SocketAddr>,
+    listen: SocketAddr,
+    session: NeighbourSession,
+) -> Result<SendNote, ClusterFailure> {
     let socket = UdpSocket::bind(SocketAddr::new(listen.ip(), 0))
         .and_then(|socket| socket.set_nonblocking(true).map(|()| socket))
-        .map_err(|error| Failure::Other(format!("cues can't be handed to neighbours: {error}")))?;
+        .map_err(|error| ClusterFailure::Other(format!("cues can't be handed to neighbours: {error}")))?;
     let mut sealed = Vec::new();
     Ok(Box::new(move |number, note| {
         let Some(to) = to.get(number) else { return false };

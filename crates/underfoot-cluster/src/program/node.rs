@@ -17,7 +17,7 @@ use underfoot::sink::{Fanout, Rank, claim_priority};
 use underfoot::source::{FloorInput, UdpSource};
 use underfoot_cluster::auth::{Opened, Role};
 use underfoot_cluster::message::{LayoutName, NodeMessage, ToNodes, VERSION, decode, fingerprint};
-use underfoot_cluster::node::{Guard, NodeSink};
+use underfoot_cluster::node::{GatewayGuard, NodeSink};
 use underfoot_cluster::transport::Transport;
 
 use super::key::{KeyArgs, session as session_of};
@@ -28,8 +28,8 @@ use super::slowed::{SlowedSource, slowed};
 use super::sound::SoundArgs;
 use super::stepped::{SteppedSource, Steps};
 use super::teller::{Commander, DATAGRAMS, MESSAGES, Teller};
-use super::worker::Worker;
-use super::{Failure, endpoints, layout, locked, stop_flag};
+use super::worker::NodeWorker;
+use super::{ClusterFailure, endpoints, layout, locked, stop_flag};
 
 /// Options of a node.
 #[derive(clap::Args, Debug)]
@@ -93,12 +93,12 @@ fn on_clock(source: UdpSource, steps: Option<Steps>, times: u32) -> FloorInput {
 }
 
 /// Serves an area until a stop.
-pub(crate) fn run(args: Args) -> Result<(), Failure> {
+pub(crate) fn run(args: Args) -> Result<(), ClusterFailure> {
     let floor = schema::load_floor(&args.floor)?;
     let area = area(&floor, &args.area)?;
     let part = floor.part(area);
-    let part =
-        part.ok_or_else(|| Failure::Other(format!("the area \"{}\" has no tile on the floor", area.id)))?;
+    let part = part
+        .ok_or_else(|| ClusterFailure::Other(format!("the area \"{}\" has no tile on the floor", area.id)))?;
     let layout = args.layout.map(|path| layout::load(&path, &floor.geometry)).transpose()?;
     let own = layout.as_ref().map(|layout| LayoutName::of(0, &schema::write_layout(layout)));
     let layout = layout.unwrap_or_default().part(area, &floor.geometry);
@@ -140,11 +140,11 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     made.into_iter().for_each(|made| notices.say(made));
     // The priority of the sending thread and of Zenoh's threads, which inherit it.
     claim_priority(Rank::Telling);
-    let guard = Arc::new(Mutex::new(Guard::new(&args.area)));
+    let guard = Arc::new(Mutex::new(GatewayGuard::new(&args.area)));
     let refused = Arc::<AtomicU64>::default();
     let answering = session_of(Role::Node, &key, gateways.len() + SPARE_GATEWAYS)?;
     let answering = Arc::new(Mutex::new(answering));
-    let worker = Worker::start(session.clone(), area.clone(), floor.geometry, own, notices.clone());
+    let worker = NodeWorker::start(session.clone(), area.clone(), floor.geometry, own, notices.clone());
     let transport = {
         let worker = worker.clone();
         let commander = Commander { session: session.clone(), notices: notices.clone() };
@@ -225,19 +225,21 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
 }
 
 /// The area called `id`.
-fn area<'f>(floor: &'f Floor, id: &str) -> Result<&'f Area, Failure> {
+fn area<'f>(floor: &'f Floor, id: &str) -> Result<&'f Area, ClusterFailure> {
     floor.area(id).ok_or_else(|| {
         let ids: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();
-        Failure::Other(format!("the floor has no area \"{id}\": there are {}", ids.join(", ")))
+        ClusterFailure::Other(format!("the floor has no area \"{id}\": there are {}", ids.join(", ")))
     })
 }
 
 /// The reason for the end of the floor's session.
-fn ended(session: &Session) -> Result<(), Failure> {
+fn ended(session: &Session) -> Result<(), ClusterFailure> {
     while let Some(event) = session.next_event_timeout(Duration::from_secs(2)) {
         match event.kind {
             Kind::Ended(EndReason::Stopped | EndReason::SourceEnded) => return Ok(()),
-            Kind::Ended(reason) => return Err(Failure::Other(format!("{reason}: {}", event.message()))),
+            Kind::Ended(reason) => {
+                return Err(ClusterFailure::Other(format!("{reason}: {}", event.message())));
+            }
             _ => {}
         }
     }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use underfoot::units::Instant;
-use underfoot_cluster::auth::Refusals;
+use underfoot_cluster::auth::AuthRefusals;
 
 /// Interval between two checks of the counters. Messages before the first answer are no longer counted by then.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
@@ -29,7 +29,7 @@ pub(super) struct RefusalNotices {
 
 impl RefusalNotices {
     /// The notices that are due at `now`; `noun` names the messages.
-    pub(super) fn look(&mut self, refusals: Refusals, noun: &str, now: Instant) -> Vec<String> {
+    pub(super) fn look(&mut self, refusals: AuthRefusals, noun: &str, now: Instant) -> Vec<String> {
         if now.since(self.looked) < LOOK_EVERY {
             return Vec::new();
         }
@@ -49,7 +49,7 @@ impl RefusalNotices {
 }
 
 /// Prints one line for each reason, at the end.
-pub(super) fn report(refusals: Refusals, noun: &str) {
+pub(super) fn report(refusals: AuthRefusals, noun: &str) {
     let all = refusals.by_reason().into_iter().filter(|(count, _)| *count > 0);
     all.for_each(|(count, reason)| eprintln!("{count} {noun} {reason}, refused."));
 }
@@ -66,7 +66,7 @@ mod tests {
     fn a_reason_is_reported_once_a_minute() {
         let mut notices = RefusalNotices::default();
         let mut look = |forged, s| {
-            let refusals = Refusals { forged, ..Refusals::default() };
+            let refusals = AuthRefusals { forged, ..AuthRefusals::default() };
             notices.look(refusals, "messages", at(s))
         };
         assert!(look(0, 1).is_empty());
@@ -80,7 +80,7 @@ mod tests {
     fn a_count_that_is_taken_back_is_not_reported() {
         let mut notices = RefusalNotices::default();
         let mut look = |unanswered, s| {
-            let refusals = Refusals { unanswered, ..Refusals::default() };
+            let refusals = AuthRefusals { unanswered, ..AuthRefusals::default() };
             notices.look(refusals, "messages", at(s)).len()
         };
         assert_eq!([look(20, 1), look(0, 2), look(0, 3)], [0; 3]);

@@ -9,7 +9,7 @@ use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
 use underfoot::wire::{LinkCounters, SensorPacket};
 
-use super::Failure;
+use super::ClusterFailure;
 
 /// Size of one step.
 const STEP: Duration = Duration::from_secs(1);
@@ -23,7 +23,7 @@ pub(super) struct Steps(Arc<AtomicU64>);
 
 impl Steps {
     /// Adds one step at each SIGUSR1; an error on systems without that signal.
-    pub(super) fn by_signal() -> Result<Self, Failure> {
+    pub(super) fn by_signal() -> Result<Self, ClusterFailure> {
         let (asked, steps_us) = (Arc::new(AtomicBool::new(false)), Arc::<AtomicU64>::default());
         register(&asked)?;
         let steps = Arc::clone(&steps_us);
@@ -50,15 +50,15 @@ impl Steps {
 }
 
 #[cfg(unix)]
-fn register(asked: &Arc<AtomicBool>) -> Result<(), Failure> {
+fn register(asked: &Arc<AtomicBool>) -> Result<(), ClusterFailure> {
     signal_hook::flag::register(signal_hook::consts::SIGUSR1, Arc::clone(asked))
         .map(drop)
-        .map_err(|error| Failure::Other(format!("signals can't be handled: {error}")))
+        .map_err(|error| ClusterFailure::Other(format!("signals can't be handled: {error}")))
 }
 
 #[cfg(not(unix))]
-fn register(_: &Arc<AtomicBool>) -> Result<(), Failure> {
-    Err(Failure::Other("this system has no signal that steps the clock".into()))
+fn register(_: &Arc<AtomicBool>) -> Result<(), ClusterFailure> {
+    Err(ClusterFailure::Other("this system has no signal that steps the clock".into()))
 }
 
 /// A source on a clock with steps.

@@ -8,15 +8,15 @@ use underfoot::runtime::Session;
 use underfoot::serve::Command;
 use underfoot::units::{HostClock, Instant};
 use underfoot::wire::ControlMessage;
-use underfoot_cluster::auth::{Kind as AuthKind, Session as AuthSession};
+use underfoot_cluster::auth::{AuthSession, MessageKind};
 use underfoot_cluster::message::{NodeMessage, NodeValue, encode};
-use underfoot_cluster::node::{Action, Draft, Guard, NeighbourSession, Reason};
+use underfoot_cluster::node::{Action, CancelReason, Draft, GatewayGuard, NeighbourSession};
 use underfoot_cluster::transport::Transport;
 
 use super::locked;
 use super::notices::Notices;
 use super::refused::RefusalNotices;
-use super::worker::Worker;
+use super::worker::NodeWorker;
 
 /// Nouns of reports about rejected messages.
 pub(super) const MESSAGES: &str = "messages of gateways";
@@ -38,11 +38,11 @@ impl Commander {
     pub(super) fn apply(&self, action: Action) {
         let (commands, notice): (&[ControlMessage], &str) = match action {
             Action::Heard => (&[], "The gateway hears this node."),
-            Action::Cancel(Reason::Late) => (
+            Action::Cancel(CancelReason::Late) => (
                 &[ControlMessage::CancelAll],
                 "The gateway got nothing new for 100 ms: what was held is cancelled.",
             ),
-            Action::Cancel(Reason::Silent) => {
+            Action::Cancel(CancelReason::Silent) => {
                 (&[ControlMessage::CancelAll], "The gateway is silent: what was held is cancelled.")
             }
             Action::Mute => (
@@ -69,10 +69,10 @@ pub(super) struct Teller {
     pub(super) neighbours: NeighbourSession,
     /// For messages of gateways and datagrams of neighbours.
     pub(super) refused: [RefusalNotices; 2],
-    pub(super) guard: Arc<Mutex<Guard>>,
+    pub(super) guard: Arc<Mutex<GatewayGuard>>,
     pub(super) clock: HostClock,
     pub(super) commander: Commander,
-    pub(super) worker: Worker,
+    pub(super) worker: NodeWorker,
     pub(super) unsent: u64,
 }
 
@@ -115,7 +115,7 @@ impl Teller {
         let message = draft.message(NodeMessage { values, answers, layout, ..self.head.clone() });
         let (body, mut sealed) = (encode(&message), Vec::new());
         // Sealed last, so that only the message's transmission follows the time in it.
-        locked(&self.session).seal(AuthKind::Node, &body, (self.clock)(), &mut sealed);
+        locked(&self.session).seal(MessageKind::Node, &body, (self.clock)(), &mut sealed);
         if !self.transport.send(sealed) {
             self.unsent += 1;
         }

@@ -34,7 +34,7 @@ struct State {
 
 /// A handle to the worker and its results.
 #[derive(Clone)]
-pub(super) struct Worker {
+pub(super) struct NodeWorker {
     state: Arc<State>,
     work: SyncSender<Work>,
     session: Session,
@@ -43,7 +43,7 @@ pub(super) struct Worker {
     notices: Notices,
 }
 
-impl Worker {
+impl NodeWorker {
     /// A worker for the node of `area`, whose own file has the layout `own`.
     pub(super) fn start(
         session: Session,

@@ -13,7 +13,7 @@ use underfoot::runtime::{Actuators, Session};
 use underfoot::sink::{ActuatorSink, ManualSink, SinkError};
 use underfoot::source::UdpSource;
 use underfoot::units::Instant;
-use underfoot_cluster::auth::{Key, Refusals, Role, Session as AuthSession};
+use underfoot_cluster::auth::{AuthRefusals, AuthSession, Key, Role};
 use underfoot_cluster::node::{Border, BorderCounters, NeighbourSeal, NeighbourSession};
 
 use crate::hall::{Boards, layout, listening, script};
@@ -111,7 +111,8 @@ fn what_belongs_to_one_computer_is_felt_on_the_tiles_of_both() {
     assert_eq!((felt + late, other), (given, (0, 0, 0, 0)));
     assert_eq!(west.counters.given(), 0, "the west's own controls have rested");
     // Datagrams become stale if the machine stalls for 250 ms.
-    let stale = |of: &Computer| Refusals { stale: of.neighbours.refusals().stale, ..Refusals::default() };
+    let stale =
+        |of: &Computer| AuthRefusals { stale: of.neighbours.refusals().stale, ..AuthRefusals::default() };
     assert_eq!(west.neighbours.refusals(), stale(&west), "neighbours refuse nothing else of each other");
     assert_eq!(east.neighbours.refusals(), stale(&east));
     let peaks = [west.peak(west_tile), east.peak(TileId::new(6, 3)), west.peak(TileId::new(0, 0))];

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 use underfoot::units;
-use underfoot_cluster::auth::{Key, Kind, Role, Session};
+use underfoot_cluster::auth::{AuthSession, Key, MessageKind, Role};
 use underfoot_cluster::message::{
-    GatewayMessage, NodeMessage, NodeRequest, Standing, ToNodes, VERSION, encode, fingerprint,
+    AreaStanding, GatewayMessage, NodeMessage, NodeRequest, ToNodes, VERSION, encode, fingerprint,
 };
 use underfoot_cluster::transport::Transport;
 use zenoh::Wait;
@@ -125,7 +125,7 @@ fn held(recorded: &[u8], counter: impl Fn(u64) -> u64) -> Vec<u8> {
 }
 
 /// A node's message with a press and a hold of `drive`, in an envelope of another key.
-fn pressed_by_another_key(session: &mut Session, hall: &Hall, ms: u64) -> Vec<u8> {
+fn pressed_by_another_key(session: &mut AuthSession, hall: &Hall, ms: u64) -> Vec<u8> {
     let now = units::Instant::from_millis(ms);
     let text = json!({
         "at": now.micros(), "id": "drive", "kind": "pressed",
@@ -141,7 +141,7 @@ fn pressed_by_another_key(session: &mut Session, hall: &Hall, ms: u64) -> Vec<u8
         ..NodeMessage::default()
     };
     let mut sealed = Vec::new();
-    session.seal(Kind::Node, &encode(&message), now, &mut sealed);
+    session.seal(MessageKind::Node, &encode(&message), now, &mut sealed);
     sealed
 }
 
@@ -198,7 +198,7 @@ fn messages_without_the_floor_s_key_hold_nothing() {
     let recording = tapped.recording();
     send(&way, recording.iter().map(|recorded| held(recorded, |own| own + 1)));
     send(&way, recording.iter().map(|recorded| held(recorded, |_| u64::MAX)));
-    let mut forger = Session::new(Role::Node, &OTHER, 77, 8);
+    let mut forger = AuthSession::new(Role::Node, &OTHER, 77, 8);
     send(&way, (0..ROUNDS as u64).map(|ms| pressed_by_another_key(&mut forger, &tapped.hall, ms)));
     // Plain JSON, as in earlier versions.
     send(&way, (0..ROUNDS).map(|_| br#"{"version":2,"area":"se","held":["drive"]}"#.to_vec()));
@@ -219,19 +219,19 @@ fn messages_without_the_floor_s_key_hold_nothing() {
 fn requests_without_the_floor_s_key_change_nothing_on_a_node() {
     let mut tapped = Tapped::open(EMPTY);
     // The node has connected to the recorder by itself.
-    let mut forger = Session::new(Role::Gateway, &OTHER, 77, 8);
+    let mut forger = AuthSession::new(Role::Gateway, &OTHER, 77, 8);
     let mut beat = |number: u64| {
         let request =
             NodeRequest { number, area: "se".into(), path: "widget/drive/disable".into(), args: Vec::new() };
         let beat = GatewayMessage {
             version: VERSION,
-            areas: vec![("se".into(), Standing::Disputed)],
+            areas: vec![("se".into(), AreaStanding::Disputed)],
             requests: vec![request],
             ..GatewayMessage::default()
         };
         let mut sealed = Vec::new();
         let now = units::Instant::from_millis(number);
-        forger.seal(Kind::Gateway, &encode(&ToNodes::Beat(beat)), now, &mut sealed);
+        forger.seal(MessageKind::Gateway, &encode(&ToNodes::Beat(beat)), now, &mut sealed);
         sealed
     };
     send(&tapped.recorder, (1..=ROUNDS as u64).map(&mut beat));
@@ -349,14 +349,14 @@ fn a_forger_changes_no_event_of_a_foot() {
 /// A program with the floor's key that poses as the node of an area.
 struct Impostor {
     transport: Transport,
-    session: Arc<Mutex<Session>>,
+    session: Arc<Mutex<AuthSession>>,
     started: Instant,
 }
 
 impl Impostor {
     fn new(hall: &Hall, area: &str) -> Self {
         let (key, started) = (hall.key(), Instant::now());
-        let session = Arc::new(Mutex::new(Session::new(Role::Node, &key, 99, 8)));
+        let session = Arc::new(Mutex::new(AuthSession::new(Role::Node, &key, 99, 8)));
         let hearing = Arc::clone(&session);
         let hear = move |bytes: &[u8]| {
             let _ = hearing.lock().unwrap().open(bytes, now(started));
@@ -371,7 +371,7 @@ impl Impostor {
             let now = now(self.started);
             let message = NodeMessage { frame: Some(now.micros()), ..message.clone() };
             let mut sealed = Vec::new();
-            self.session.lock().unwrap().seal(Kind::Node, &encode(&message), now, &mut sealed);
+            self.session.lock().unwrap().seal(MessageKind::Node, &encode(&message), now, &mut sealed);
             self.transport.send(sealed);
             thread::sleep(EVERY);
         }

@@ -12,18 +12,18 @@ use underfoot_sim::{Performance, Person, Script, SimConfig, SimFloor};
 const STRETCH: u16 = 6;
 
 /// Tile index and corner forces of each loaded tile at one millisecond.
-pub(super) type Loads = Vec<(usize, [f32; 4])>;
+pub(super) type TileLoads = Vec<(usize, [f32; 4])>;
 
 /// A floor of `side` x `side` tiles, and the loads of `walkers` people on it, two on each stretch of 6 x 6 tiles.
 ///
 /// `side` is clamped to 6 and the largest side of a floor; the number of walkers is limited to two for each stretch.
-pub(super) fn walkers_on(side: u16, walkers: u16) -> (Geometry, Vec<Loads>) {
+pub(super) fn walkers_on(side: u16, walkers: u16) -> (Geometry, Vec<TileLoads>) {
     let side = side.clamp(STRETCH, Geometry::MAX_SIDE);
     let geometry = Geometry::of_paper_tiles(side, side).unwrap_or_default();
     let small = crossing();
     let stretches = geometry.columns() / STRETCH;
     let moments = (0..small.len()).map(|ms| {
-        let mut loads = Loads::new();
+        let mut loads = TileLoads::new();
         for pair in 0..walkers.div_ceil(2).min(stretches * stretches) {
             let (east, north) = (STRETCH * (pair % stretches), STRETCH * (pair / stretches));
             // A different phase for each stretch.
@@ -42,7 +42,7 @@ pub(super) fn walkers_on(side: u16, walkers: u16) -> (Geometry, Vec<Loads>) {
 }
 
 /// Loads of two people on 6 x 6 tiles as they walk to and fro, one entry per millisecond.
-fn crossing() -> Vec<Loads> {
+fn crossing() -> Vec<TileLoads> {
     let floor = Floor::default();
     let size = floor.geometry.bounds().max;
     let walker = |mass_kg, seed, from: Vec2, to: Vec2| {

@@ -1,6 +1,6 @@
 //! Speed of sensing: floors of several sizes with people walking on them.
 
-use super::crowd::{Loads, walkers_on};
+use super::crowd::{TileLoads, walkers_on};
 use underfoot::sense::{ForceFrame, Method, Sensing};
 use underfoot::units::Instant;
 
@@ -10,7 +10,7 @@ pub struct SensingLoad {
     sensing: Sensing,
     frame: ForceFrame,
     /// Loads at each millisecond; the sequence repeats.
-    moments: Vec<Loads>,
+    moments: Vec<TileLoads>,
     next: usize,
     millis: u64,
 }

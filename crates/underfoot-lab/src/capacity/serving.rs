@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::crowd::{Loads, walkers_on};
+use super::crowd::{TileLoads, walkers_on};
 use super::receiving::{MILLIS, RESTING, millisecond, tared};
 use underfoot::engine::Snapshot;
 use underfoot::floor::{Calibration, Corner, Floor, SensorId};
@@ -217,7 +217,7 @@ fn places(floor: &Floor) -> Vec<[(usize, usize); 4]> {
 }
 
 /// Readings of nominal sensors under `loads` and the weight of the plates: board, channel and counts.
-fn as_counts(loads: &Loads, places: &[[(usize, usize); 4]]) -> Vec<(usize, usize, u16)> {
+fn as_counts(loads: &TileLoads, places: &[[(usize, usize); 4]]) -> Vec<(usize, usize, u16)> {
     let law = Calibration::NOMINAL;
     let counts = |force: f32| {
         let volts = law.volts_at(Newtons(force.max(0.0)) + law.force(RESTING));

@@ -21,7 +21,7 @@ pub(super) const LINE_M: f32 = 0.0005;
 
 /// Page of a figure.
 #[derive(Debug)]
-pub(super) struct Page {
+pub(super) struct ChartPage {
     pub(super) scene: Scene,
 }
 
@@ -52,7 +52,7 @@ impl Type {
     }
 }
 
-impl Page {
+impl ChartPage {
     /// Creates a page of `size` metres with a title, and a line below it that explains the figure.
     pub(super) fn new(size: Vec2, title: &str, about: &str) -> Self {
         let mut scene = Scene::new();
@@ -106,18 +106,18 @@ impl Page {
     }
 
     /// One line of samples with their names, from `at` eastwards.
-    pub(super) fn legend(&mut self, at: Vec2, entries: &[(Sample, Colour, &str)]) {
+    pub(super) fn legend(&mut self, at: Vec2, entries: &[(LegendSymbol, Colour, &str)]) {
         let mut x = at.x;
         for &(sample, colour, name) in entries {
             let middle = Vec2::new(x + 0.003, at.y + 0.0011);
             let (west, east) = (middle - Vec2::X * 0.003, middle + Vec2::X * 0.003);
             match sample {
-                Sample::Ring => self.ring(middle, colour),
-                Sample::Cross => self.cross(middle, colour),
-                Sample::Dot => self.dot(middle, colour),
-                Sample::Arrow => self.arrow(west, east, colour),
-                Sample::Line => self.line(west, east, Stroke::new(LINE_M, Ink::solid(colour))),
-                Sample::Dashes => {
+                LegendSymbol::Ring => self.ring(middle, colour),
+                LegendSymbol::Cross => self.cross(middle, colour),
+                LegendSymbol::Dot => self.dot(middle, colour),
+                LegendSymbol::Arrow => self.arrow(west, east, colour),
+                LegendSymbol::Line => self.line(west, east, Stroke::new(LINE_M, Ink::solid(colour))),
+                LegendSymbol::Dashes => {
                     self.line(west, east, Stroke::new(LINE_M, Ink::solid(colour)).dashed(0.0011, 0.0011));
                 }
             }
@@ -138,7 +138,7 @@ pub(super) const MARGIN_M: f32 = 0.008;
 
 /// Symbol in front of a name in a legend.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Sample {
+pub(super) enum LegendSymbol {
     Ring,
     Cross,
     Dot,
@@ -149,7 +149,7 @@ pub(super) enum Sample {
 
 /// One axis: its range, the distance of its ticks, and its label.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axis {
+pub(super) struct ChartAxis {
     pub(super) from: f32,
     pub(super) to: f32,
     pub(super) tick: f32,
@@ -160,13 +160,13 @@ pub(super) struct Axis {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plot {
     area: Rect,
-    x: Axis,
-    y: Axis,
+    x: ChartAxis,
+    y: ChartAxis,
 }
 
 impl Plot {
     /// A plot within `area` of the page, below `title`, with its axes, ticks and a faint grid.
-    pub(super) fn draw(page: &mut Page, area: Rect, title: &str, x: Axis, y: Axis) -> Self {
+    pub(super) fn draw(page: &mut ChartPage, area: Rect, title: &str, x: ChartAxis, y: ChartAxis) -> Self {
         let plot = Self { area, x, y };
         let edge = Stroke::new(0.0003, Ink::solid(THEME.stance));
         let grid = Stroke::new(0.0002, Ink::solid(THEME.line));
@@ -211,7 +211,7 @@ impl Plot {
     }
 
     /// A polyline through these values.
-    pub(super) fn curve(&self, page: &mut Page, values: impl IntoIterator<Item = Vec2>, stroke: Stroke) {
+    pub(super) fn curve(&self, page: &mut ChartPage, values: impl IntoIterator<Item = Vec2>, stroke: Stroke) {
         let points: Vec<Vec2> = values.into_iter().map(|value| self.at(value)).collect();
         page.scene.add_path(points, false, Paint::stroke(stroke));
     }
@@ -250,7 +250,7 @@ impl Map {
     }
 
     /// A closed outline through floor points.
-    pub(super) fn outline(&self, page: &mut Page, points: impl IntoIterator<Item = Vec2>, paint: Paint) {
+    pub(super) fn outline(&self, page: &mut ChartPage, points: impl IntoIterator<Item = Vec2>, paint: Paint) {
         let points: Vec<Vec2> = points.into_iter().map(|point| self.at(point)).collect();
         page.scene.add_path(points, true, paint);
     }
@@ -262,8 +262,8 @@ mod tests {
 
     #[test]
     fn plots_put_values_where_their_axes_say() {
-        let mut page = Page::new(Vec2::new(0.1, 0.1), "Title", "about");
-        let axis = |from, to| Axis { from, to, tick: 10.0, label: "degrees" };
+        let mut page = ChartPage::new(Vec2::new(0.1, 0.1), "Title", "about");
+        let axis = |from, to| ChartAxis { from, to, tick: 10.0, label: "degrees" };
         let area = Rect::new(Vec2::new(0.02, 0.02), Vec2::new(0.08, 0.08));
         let plot = Plot::draw(&mut page, area, "Plot", axis(0.0, 60.0), axis(-30.0, 30.0));
         assert!(plot.at(Vec2::new(0.0, -30.0)).distance(area.min) < 1e-6);

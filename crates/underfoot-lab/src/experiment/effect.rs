@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use super::Figure;
-use super::chart::{Axis, LINE_M, MARGIN_M, Page, Plot, Sample, THEME, Type};
+use super::chart::{ChartAxis, ChartPage, LINE_M, LegendSymbol, MARGIN_M, Plot, THEME, Type};
 use underfoot::feel::{Analysis, Band, Effect, Gesture, analyse, audition};
 use underfoot::floor::Rect;
 use underfoot::layout::Colour;
@@ -87,11 +87,12 @@ impl EffectSheet {
         self.gesture.moments.iter().any(|moment| moment.speed_m_s > 0.0)
     }
 
-    fn waveform(&self, page: &mut Page, area: Rect) {
+    fn waveform(&self, page: &mut ChartPage, area: Rect) {
         let ms = 1000.0 * self.samples.len() as f32 / self.sample_rate as f32;
         let most = even(1.04 * self.analysis.as_ref().map_or(1.0, |analysis| analysis.peak));
-        let x = Axis { from: 0.0, to: ms.max(1.0), tick: tick(ms.max(1.0), 12.0), label: "milliseconds" };
-        let y = Axis { from: -most, to: most, tick: 0.5 * most, label: "newtons" };
+        let x =
+            ChartAxis { from: 0.0, to: ms.max(1.0), tick: tick(ms.max(1.0), 12.0), label: "milliseconds" };
+        let y = ChartAxis { from: -most, to: most, tick: 0.5 * most, label: "newtons" };
         let plot = Plot::draw(page, area, "At the plate", x, y);
         let zero = Stroke::new(0.0002, Ink::solid(THEME.stance));
         plot.curve(page, [Vec2::new(0.0, 0.0), Vec2::new(ms, 0.0)], zero);
@@ -115,10 +116,10 @@ impl EffectSheet {
         plot.curve(page, points, Stroke::new(0.00028, Ink::solid(THEME.haptic)));
     }
 
-    fn spectrum(&self, page: &mut Page, area: Rect) {
+    fn spectrum(&self, page: &mut ChartPage, area: Rect) {
         const LOWEST_DB: f32 = -60.0;
-        let x = Axis { from: 0.0, to: 1000.0, tick: 100.0, label: "hertz" };
-        let y = Axis { from: LOWEST_DB, to: 0.0, tick: 20.0, label: "decibels" };
+        let x = ChartAxis { from: 0.0, to: 1000.0, tick: 100.0, label: "hertz" };
+        let y = ChartAxis { from: LOWEST_DB, to: 0.0, tick: 20.0, label: "decibels" };
         let plot = Plot::draw(page, area, "Spectrum and band", x, y);
         let band = self.effect.manner.band;
         let (low, high) = (plot.at(Vec2::new(band.low_hz, LOWEST_DB)), plot.at(Vec2::new(band.high_hz, 0.0)));
@@ -147,7 +148,7 @@ impl EffectSheet {
     }
 
     /// Motion of the foot, each quantity relative to its maximum.
-    fn foot(&self, page: &mut Page, area: Rect) {
+    fn foot(&self, page: &mut ChartPage, area: Rect) {
         page.scene.add_box(area, 0.0, Paint::fill(Ink::solid(THEME.plate)));
         let length = self.samples.len() as f32 / self.sample_rate as f32;
         let course = |of: &dyn Fn(f32) -> f32, greatest: f32| -> Vec<Vec2> {
@@ -168,13 +169,13 @@ impl EffectSheet {
         let (fastest, hardest) = (most(&speed), most(&force));
         let line = |colour: Colour| Stroke::new(LINE_M, Ink::solid(colour));
         let mut entries = vec![
-            (Sample::Line, THEME.contact, format!("slip speed, up to {fastest:.2} m/s")),
-            (Sample::Line, THEME.warning, format!("force, up to {hardest:.0} N")),
+            (LegendSymbol::Line, THEME.contact, format!("slip speed, up to {fastest:.2} m/s")),
+            (LegendSymbol::Line, THEME.warning, format!("force, up to {hardest:.0} N")),
         ];
         page.scene.add_path(course(&speed, fastest), false, Paint::stroke(line(THEME.contact)));
         page.scene.add_path(course(&force, hardest), false, Paint::stroke(line(THEME.warning)));
         if most(&value) > 0.0 {
-            entries.push((Sample::Dashes, THEME.cursor, "value, 0 to 1".to_owned()));
+            entries.push((LegendSymbol::Dashes, THEME.cursor, "value, 0 to 1".to_owned()));
             let dashes = line(THEME.cursor).dashed(0.0011, 0.0011);
             page.scene.add_path(course(&value, 1.0), false, Paint::stroke(dashes));
         }
@@ -182,7 +183,7 @@ impl EffectSheet {
         let farthest = most(&beyond);
         if farthest > 0.0 {
             entries.push((
-                Sample::Line,
+                LegendSymbol::Line,
                 THEME.haptic,
                 format!("pushed on, up to {:.0} cm", 100.0 * farthest),
             ));
@@ -192,7 +193,7 @@ impl EffectSheet {
         let title = Type { strong: true, ..Type::PLAIN };
         let at = Vec2::new(area.min.x, area.max.y + 0.0022);
         let width = page.text(at, title, format_args!("The foot"));
-        let named: Vec<(Sample, Colour, &str)> =
+        let named: Vec<(LegendSymbol, Colour, &str)> =
             entries.iter().map(|(sample, colour, name)| (*sample, *colour, name.as_str())).collect();
         page.legend(at + Vec2::X * (width + 0.008), &named);
     }
@@ -206,7 +207,7 @@ impl Figure for EffectSheet {
     fn draw(&self) -> Scene {
         let size = Vec2::new(0.26, if self.moves() { 0.188 } else { 0.163 });
         let about = if self.about.is_empty() { "As the renderer makes it" } else { &self.about };
-        let mut page = Page::new(size, &self.name, about);
+        let mut page = ChartPage::new(size, &self.name, about);
         let (west, east) = (MARGIN_M + 0.012, size.x - MARGIN_M);
         let top = size.y - 0.0275;
         self.waveform(&mut page, Rect::new(Vec2::new(west, top - 0.05), Vec2::new(east, top)));

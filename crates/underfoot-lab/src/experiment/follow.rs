@@ -154,7 +154,7 @@ fn share(part: usize, whole: usize) -> f32 {
 
 /// Matches feet and their contacts from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Follower {
+pub(super) struct ContactMatcher {
     /// The feet that were down in the last frame, each with the identity of its contact.
     down: SmallVec<[(Truth, Option<ContactId>); 4]>,
 }
@@ -162,7 +162,7 @@ pub(super) struct Follower {
 /// Maximum distance that a foot moves in a millisecond while it is down (m).
 const SAME_FOOT_M: f32 = 0.02;
 
-impl Follower {
+impl ContactMatcher {
     /// Compares one frame's contacts with its feet. Identities are compared in every frame; errors and missed feet
     /// count only if `sampled`.
     pub(super) fn compare(
@@ -313,7 +313,7 @@ mod tests {
     }
 
     fn compared(frames: &[(&[Truth], &[Contact])]) -> Followed {
-        let (mut follower, mut score) = (Follower::default(), Followed::default());
+        let (mut follower, mut score) = (ContactMatcher::default(), Followed::default());
         for (feet, contacts) in frames {
             follower.compare(feet, contacts, true, &mut score);
         }

@@ -172,14 +172,15 @@ impl IntentTable {
         let number = number as usize;
         let layout = shipped(number, &geometry)?;
         let layouts = Guarded::ALL.map(|guard| guard.put_on(&layout));
-        let mut stage = Stage::new(self.floor, seed)?;
+        let mut stage = IntentStage::new(self.floor, seed)?;
         let mut body = Somebody::of(seed, number / layouts_with_controls().count(), geometry.bounds())
             .rolling(self.floor.is_real());
         let area =
             layout.regions.iter().map(|region| region.area).reduce(joined).unwrap_or(geometry.bounds());
 
-        let trial = |(guard, layout): (Guarded, &Layout)| Trial::new(stage.engine(layout.clone()), guard);
-        let mut trials: Vec<Trial> = Guarded::ALL.into_iter().zip(&layouts).map(trial).collect();
+        let trial =
+            |(guard, layout): (Guarded, &Layout)| IntentTrial::new(stage.engine(layout.clone()), guard);
+        let mut trials: Vec<IntentTrial> = Guarded::ALL.into_iter().zip(&layouts).map(trial).collect();
         let mut walked = 0;
         while walked < effort.steps {
             for _ in 0..CROSSINGS {
@@ -350,7 +351,7 @@ impl fmt::Display for IntentTable {
 
 /// An engine, and the scores of the people's actions on it.
 #[derive(Debug)]
-pub(super) struct Trial {
+pub(super) struct IntentTrial {
     pub(super) engine: Engine,
     pub(super) scores: BTreeMap<(String, Guarded), IntentScore>,
     pub(super) steps: u64,
@@ -362,7 +363,7 @@ pub(super) struct Trial {
     unwanted: Vec<usize>,
 }
 
-impl Trial {
+impl IntentTrial {
     pub(super) fn new(engine: Engine, guard: Guarded) -> Self {
         Self { engine, scores: BTreeMap::new(), steps: 0, guard, done: Vec::new(), unwanted: Vec::new() }
     }
@@ -435,12 +436,12 @@ fn acts(kind: EventKind, widget: &Widget) -> bool {
 
 /// A floor and its sensing, shared by all trials on it.
 #[derive(Debug)]
-pub(super) struct Stage {
+pub(super) struct IntentStage {
     rig: Rig,
     sensing: Sensing,
 }
 
-impl Stage {
+impl IntentStage {
     pub(super) fn new(floor: FloorQuality, seed: u64) -> Result<Self, ExperimentError> {
         let rig = Rig::of_quality(Geometry::default(), floor, seed)?;
         Ok(Self { sensing: rig.sensing(Method::Tracker), rig })
@@ -455,7 +456,7 @@ impl Stage {
     }
 
     /// Plays an act to every trial at once, and returns the number of steps: touchdowns outside intended presses.
-    pub(super) fn play(&mut self, act: &Act, trials: &mut [Trial]) -> u64 {
+    pub(super) fn play(&mut self, act: &Act, trials: &mut [IntentTrial]) -> u64 {
         let bounds = self.geometry().bounds();
         for trial in trials.iter_mut() {
             trial.done.clear();

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use glam::Vec2;
 use serde::Serialize;
 
-use super::chart::{Axis, LINE_M, MARGIN_M, Page, Plot, Sample, THEME};
+use super::chart::{ChartAxis, ChartPage, LINE_M, LegendSymbol, MARGIN_M, Plot, THEME};
 use super::figure::Figure;
-use super::intent::{Guarded, IntentEffort, IntentScore, Stage, Trial};
+use super::intent::{Guarded, IntentEffort, IntentScore, IntentStage, IntentTrial};
 use super::intent_act::Somebody;
 use super::rig::ExperimentError;
 use super::wilson::Counted;
@@ -85,14 +85,14 @@ impl IntentSweep {
         effort: IntentEffort,
     ) -> Result<(), ExperimentError> {
         let geometry = Geometry::default();
-        let mut stage = Stage::new(self.floor, seed)?;
+        let mut stage = IntentStage::new(self.floor, seed)?;
         let mut body = Somebody::of(seed, number as usize, geometry.bounds()).rolling(self.floor.is_real());
         let pitch = geometry.pitch_m();
         let row = Rect::new(Vec2::new(1.0, 2.1), Vec2::new(5.0, 3.1));
         let area = Rect::new(row.min * pitch, row.max * pitch);
         let mut trials = Vec::with_capacity(self.cells.len());
         for cell in &self.cells {
-            trials.push(Trial::new(stage.engine(layout(cell, &geometry)?), Guarded::Free));
+            trials.push(IntentTrial::new(stage.engine(layout(cell, &geometry)?), Guarded::Free));
         }
         let mut walked = 0;
         while walked < effort.steps {
@@ -161,7 +161,7 @@ const GAP_M: f32 = 0.024;
 impl Figure for IntentSweep {
     fn draw(&self) -> Scene {
         let left = MARGIN_M + 0.011;
-        let mut page = Page::new(
+        let mut page = ChartPage::new(
             Vec2::new(left + 2.0 * SIDE_M.x + GAP_M + MARGIN_M, SIDE_M.y + 0.050),
             "What a button's size and threshold do",
             "Unguarded buttons; walkers of 45 to 120 kg crossing them, and presses of twice the threshold",
@@ -178,7 +178,7 @@ impl Figure for IntentSweep {
         let entries: Vec<_> = names
             .iter()
             .enumerate()
-            .map(|(which, name)| (Sample::Line, shade(which), name.as_str()))
+            .map(|(which, name)| (LegendSymbol::Line, shade(which), name.as_str()))
             .collect();
         page.legend(Vec2::new(MARGIN_M, 0.0055), &entries);
         page.scene
@@ -219,15 +219,15 @@ impl Figure for IntentSweep {
 }
 
 impl IntentSweep {
-    fn plot(&self, page: &mut Page, area: Rect, title: &str, label: &'static str, measure: Measure) {
+    fn plot(&self, page: &mut ChartPage, area: Rect, title: &str, label: &'static str, measure: Measure) {
         let per_1000 = |cell: &SweepCell| 1e3 * measure(cell).share() as f32;
         let most = self.cells.iter().map(per_1000).fold(0.0, f32::max);
         // Five steps of 1, 2, 5, 10, 20 ..., so that the axis reaches the highest line.
         let tick =
             [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0].into_iter().find(|tick| 5.0 * tick >= most);
         let tick = tick.unwrap_or(200.0);
-        let x = Axis { from: 0.0, to: 140.0, tick: 20.0, label: "press threshold, N" };
-        let plot = Plot::draw(page, area, title, x, Axis { from: 0.0, to: 5.0 * tick, tick, label });
+        let x = ChartAxis { from: 0.0, to: 140.0, tick: 20.0, label: "press threshold, N" };
+        let plot = Plot::draw(page, area, title, x, ChartAxis { from: 0.0, to: 5.0 * tick, tick, label });
         for (which, row) in self.cells.chunks(PRESS_N.len()).enumerate() {
             let values = || row.iter().map(|cell| Vec2::new(cell.press_n, per_1000(cell)));
             plot.curve(page, values(), Stroke::new(LINE_M, Ink::solid(shade(which))));

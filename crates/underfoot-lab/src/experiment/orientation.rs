@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use glam::Vec2;
 
-use super::chart::{Axis, LINE_M, MARGIN_M, Map, Page, Plot, Sample, THEME, Type, whole};
+use super::chart::{ChartAxis, ChartPage, LINE_M, LegendSymbol, MARGIN_M, Map, Plot, THEME, Type, whole};
 use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Geometry, Rect};
@@ -174,7 +174,7 @@ const COLOURS: [Colour; 4] = [THEME.cursor, THEME.accent, THEME.good, THEME.warn
 
 impl Figure for Orientation {
     fn draw(&self) -> Scene {
-        let mut page = Page::new(
+        let mut page = ChartPage::new(
             Vec2::new(0.256, 0.143),
             "Which way a contact points",
             "Difference of two tiles' centroids (arrows) for contacts of 200 N across a seam, on calibrated parts; \
@@ -196,7 +196,7 @@ impl Figure for Orientation {
             }
         }
         let area = Rect::new(Vec2::new(0.182, 0.0265), Vec2::new(0.248, 0.1135));
-        let axis = |label| Axis { from: 0.0, to: 90.0, tick: 15.0, label };
+        let axis = |label| ChartAxis { from: 0.0, to: 90.0, tick: 15.0, label };
         let title = "Angle from the seam's normal, degrees";
         let plot =
             Plot::draw(&mut page, area, title, axis("of the contact"), axis("of the difference vector"));
@@ -214,11 +214,11 @@ impl Figure for Orientation {
         page.legend(
             Vec2::new(MARGIN_M, 0.0055),
             &[
-                (Sample::Arrow, THEME.ink, "difference vector"),
-                (Sample::Dashes, THEME.quiet, "long axis"),
-                (Sample::Line, THEME.quiet, "theory"),
-                (Sample::Dot, THEME.quiet, "exact floor"),
-                (Sample::Cross, THEME.quiet, "calibrated parts"),
+                (LegendSymbol::Arrow, THEME.ink, "difference vector"),
+                (LegendSymbol::Dashes, THEME.quiet, "long axis"),
+                (LegendSymbol::Line, THEME.quiet, "theory"),
+                (LegendSymbol::Dot, THEME.quiet, "exact floor"),
+                (LegendSymbol::Cross, THEME.quiet, "calibrated parts"),
             ],
         );
         page.scene
@@ -270,7 +270,7 @@ impl Figure for Orientation {
 }
 
 /// Draws one contact over a seam with its two centroids and the vector between them.
-fn draw_cell(page: &mut Page, area: Rect, row: &OrientationRow, colour: Colour) {
+fn draw_cell(page: &mut ChartPage, area: Rect, row: &OrientationRow, colour: Colour) {
     let geometry = Geometry::of_paper_tiles(2, 1).unwrap_or_default();
     let middle = seam_middle(&geometry);
     let map = Map::new(Rect::from_centre_size(middle, area.size() * (0.25 / area.size().x)), area);

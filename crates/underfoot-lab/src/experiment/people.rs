@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::METHODS;
 use super::errors::Summary;
-use super::follow::{Followed, Follower, Truth};
+use super::follow::{ContactMatcher, Followed, Truth};
 use super::rig::{ExperimentError, FaultHook, Rig};
 use underfoot::floor::Geometry;
 use underfoot::units::Instant;
@@ -198,7 +198,7 @@ impl PeopleTable {
 
     /// Simulates `visit` on the floor of `rig`, with the faults of `fault`.
     pub fn add_visit(&mut self, rig: &mut Rig, visit: &Visit, fault: &mut impl FaultHook) {
-        let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));
+        let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), ContactMatcher::default()));
         let mut loads: Vec<Load> = Vec::new();
         let mut truth: Vec<Truth> = Vec::new();
         let scores = &mut self.scores;

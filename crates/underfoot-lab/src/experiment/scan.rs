@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use glam::Vec2;
 
-use super::chart::{Axis, MARGIN_M, Page, Plot, Sample, THEME, Type};
+use super::chart::{ChartAxis, ChartPage, LegendSymbol, MARGIN_M, Plot, THEME, Type};
 use super::errors::Errors;
 use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
@@ -114,7 +114,7 @@ impl Figure for TileScan {
         let side = 0.105;
         let left = MARGIN_M + 0.011;
         let width = left + self.scans.len() as f32 * (side + GAP_M);
-        let mut page = Page::new(
+        let mut page = ChartPage::new(
             Vec2::new(width - GAP_M + MARGIN_M, side + 0.050),
             "Where a point load is found on one tile",
             "100 N at 64 places; sensors (squares) 2 cm inside the edges",
@@ -126,9 +126,9 @@ impl Figure for TileScan {
         page.legend(
             Vec2::new(MARGIN_M, 0.0055),
             &[
-                (Sample::Ring, THEME.ink, "true position"),
-                (Sample::Cross, THEME.cursor, "estimated position"),
-                (Sample::Line, THEME.accent, "lines as they are seen"),
+                (LegendSymbol::Ring, THEME.ink, "true position"),
+                (LegendSymbol::Cross, THEME.cursor, "estimated position"),
+                (LegendSymbol::Line, THEME.accent, "lines as they are seen"),
             ],
         );
         page.scene
@@ -164,9 +164,9 @@ impl Figure for TileScan {
     }
 }
 
-fn draw_scan(page: &mut Page, area: Rect, scan: &Scan) {
+fn draw_scan(page: &mut ChartPage, area: Rect, scan: &Scan) {
     let geometry = Geometry::of_paper_tiles(1, 1).unwrap_or_default();
-    let centimetres = |label| Axis { from: 0.0, to: 30.4, tick: 5.0, label };
+    let centimetres = |label| ChartAxis { from: 0.0, to: 30.4, tick: 5.0, label };
     let plot = Plot::draw(page, area, &capitalised(scan.name), centimetres("x, cm"), centimetres("y, cm"));
     if let Some(found) = scan.errors().summary() {
         let at = Vec2::new(area.max.x, area.max.y + 0.0022);

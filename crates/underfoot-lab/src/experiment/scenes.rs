@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::METHODS;
-use super::follow::{Followed, Follower, Truth};
+use super::follow::{ContactMatcher, Followed, Truth};
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::Geometry;
 use underfoot::units::Instant;
@@ -114,7 +114,7 @@ fn scene(kind: SceneKind, seed: u64, geometry: &Geometry) -> Result<Scene, MoveE
 }
 
 fn play(rig: &mut Rig, scene: &Scene, scores: &mut [Followed; 2]) {
-    let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));
+    let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), ContactMatcher::default()));
     let (mut loads, mut truth) = (Vec::<Load>::new(), Vec::<Truth>::new());
     for milli in 1..=scene.duration().as_millis() as u64 {
         loads.clear();

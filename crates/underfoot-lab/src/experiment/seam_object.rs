@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use glam::Vec2;
 
-use super::chart::{Axis, MARGIN_M, Map, Page, Plot, Sample, THEME, Type, whole};
+use super::chart::{ChartAxis, ChartPage, LegendSymbol, MARGIN_M, Map, Plot, THEME, Type, whole};
 use super::errors::Errors;
 use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
@@ -102,7 +102,7 @@ fn corners(angle_deg: f32) -> [Vec2; 4] {
 
 impl Figure for SeamObject {
     fn draw(&self) -> Scene {
-        let mut page = Page::new(
+        let mut page = ChartPage::new(
             Vec2::new(0.234, 0.141),
             "An object over the seam of two tiles",
             "10 × 24 cm, pressing evenly with 51 N; what the west tile's four sensors make of their part, at six angles",
@@ -118,8 +118,8 @@ impl Figure for SeamObject {
             &mut page,
             area,
             "Centroids on the west tile, cm",
-            Axis { from: -8.0, to: 0.0, tick: 2.0, label: "from the seam" },
-            Axis { from: -6.0, to: 6.0, tick: 2.0, label: "along the seam" },
+            ChartAxis { from: -8.0, to: 0.0, tick: 2.0, label: "from the seam" },
+            ChartAxis { from: -6.0, to: 6.0, tick: 2.0, label: "along the seam" },
         );
         for row in &self.rows {
             let (truth, found) = (plot.at(row.truth * 100.0), plot.at(row.found * 100.0));
@@ -132,9 +132,9 @@ impl Figure for SeamObject {
         page.legend(
             Vec2::new(MARGIN_M, 0.0055),
             &[
-                (Sample::Dashes, THEME.stance, "object"),
-                (Sample::Ring, THEME.ink, "true centroid of the west part"),
-                (Sample::Cross, THEME.cursor, "estimated"),
+                (LegendSymbol::Dashes, THEME.stance, "object"),
+                (LegendSymbol::Ring, THEME.ink, "true centroid of the west part"),
+                (LegendSymbol::Cross, THEME.cursor, "estimated"),
             ],
         );
         page.scene
@@ -188,7 +188,7 @@ impl Figure for SeamObject {
 }
 
 /// Draws the two tiles around the seam with the object on them.
-fn draw_object(page: &mut Page, area: Rect, row: &SeamObjectRow) {
+fn draw_object(page: &mut ChartPage, area: Rect, row: &SeamObjectRow) {
     let map = Map::new(Rect::from_centre_size(Vec2::ZERO, Vec2::splat(0.30)), area);
     page.scene.add_box(area, 0.0, Paint::fill(Ink::solid(THEME.plate)));
     let seam = Stroke::new(0.0004, Ink::solid(THEME.stance));

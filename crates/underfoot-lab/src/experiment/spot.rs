@@ -107,7 +107,12 @@ impl Bench {
     }
 
     /// Returns the heaviest contact that each way finds for the object, with its covariance; `None` if it finds none.
-    pub(super) fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Found>; Way::ALL.len()] {
+    pub(super) fn find(
+        &mut self,
+        thing: Thing,
+        at: Vec2,
+        force: Newtons,
+    ) -> [Option<FoundOffset>; Way::ALL.len()] {
         self.tried += 1;
         let load = thing.load(at, force, self.tried);
         let sensing = &mut self.sensing;
@@ -124,19 +129,19 @@ impl Bench {
         self.rig.hold(SETTLE_MS, &[load], &mut sense);
         self.sensing.each_ref().map(|sensing| {
             let heaviest = sensing.contacts().iter().max_by(|a, b| a.force.0.total_cmp(&b.force.0));
-            heaviest.map(|contact| Found { off: contact.centroid - at, covariance: contact.covariance })
+            heaviest.map(|contact| FoundOffset { off: contact.centroid - at, covariance: contact.covariance })
         })
     }
 }
 
 /// Offset of a contact from the object's true position, and the contact's covariance.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
+pub(super) struct FoundOffset {
     off: Vec2,
     covariance: Covariance,
 }
 
-impl Found {
+impl FoundOffset {
     pub(super) fn error(&self) -> f32 {
         self.off.length()
     }

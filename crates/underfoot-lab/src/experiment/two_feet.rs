@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use glam::Vec2;
 
-use super::chart::{MARGIN_M, Map, Page, Sample, THEME, Type};
+use super::chart::{ChartPage, LegendSymbol, MARGIN_M, Map, THEME, Type};
 use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Corner, Geometry, Rect, TileId};
@@ -91,7 +91,7 @@ fn feet(milli: f32) -> [Foot; 2] {
 impl Figure for TwoFeet {
     fn draw(&self) -> Scene {
         let side = 0.104;
-        let mut page = Page::new(
+        let mut page = ChartPage::new(
             Vec2::new(2.0 * side + 3.0 * MARGIN_M, side + 0.046),
             "Two feet on four tiles",
             "A person of 690 N; each foot stands on two or more tiles, and tiles carry parts of both",
@@ -110,10 +110,10 @@ impl Figure for TwoFeet {
         page.legend(
             Vec2::new(MARGIN_M, 0.0055),
             &[
-                (Sample::Ring, THEME.ink, "true centre of pressure"),
-                (Sample::Cross, THEME.contact, "centroid of one tile"),
-                (Sample::Cross, THEME.warning, "contact by Eq. 4"),
-                (Sample::Cross, THEME.cursor, "resolved foot"),
+                (LegendSymbol::Ring, THEME.ink, "true centre of pressure"),
+                (LegendSymbol::Cross, THEME.contact, "centroid of one tile"),
+                (LegendSymbol::Cross, THEME.warning, "contact by Eq. 4"),
+                (LegendSymbol::Cross, THEME.cursor, "resolved foot"),
             ],
         );
         page.scene
@@ -162,7 +162,7 @@ fn nearest(foot: &Foot, contacts: &[Contact]) -> f32 {
 }
 
 impl TwoFeet {
-    fn draw_floor(&self, page: &mut Page, map: &Map) {
+    fn draw_floor(&self, page: &mut ChartPage, map: &Map) {
         let geometry = geometry();
         page.scene.add_box(map.area(), 0.0, Paint::fill(Ink::solid(THEME.seam)));
         for tile in geometry.tiles() {
@@ -177,7 +177,7 @@ impl TwoFeet {
         }
     }
 
-    fn draw_before(&self, page: &mut Page, map: &Map) {
+    fn draw_before(&self, page: &mut ChartPage, map: &Map) {
         let geometry = geometry();
         for (tile, forces) in geometry.tiles().zip(&self.forces) {
             for (corner, force) in Corner::ALL.into_iter().zip(forces) {
@@ -209,14 +209,14 @@ impl TwoFeet {
         }
     }
 
-    fn draw_after(&self, page: &mut Page, map: &Map) {
+    fn draw_after(&self, page: &mut ChartPage, map: &Map) {
         self.draw_truth(page, map);
         for contact in &self.tracker {
             draw_contact(page, map, contact, THEME.cursor, -BADGE_M);
         }
     }
 
-    fn draw_truth(&self, page: &mut Page, map: &Map) {
+    fn draw_truth(&self, page: &mut ChartPage, map: &Map) {
         for foot in &self.feet {
             page.ring(map.at(foot.centre_of_pressure()), THEME.ink);
         }
@@ -227,7 +227,7 @@ impl TwoFeet {
 const HALO: Paint = Paint { fill: Some(Ink::faint(THEME.plate, 0.75)), stroke: None };
 
 /// Draws the 95 % ellipse of a contact, a cross, and its force on a badge `badge` page metres north of it.
-fn draw_contact(page: &mut Page, map: &Map, contact: &Contact, colour: Colour, badge: f32) {
+fn draw_contact(page: &mut ChartPage, map: &Map, contact: &Contact, colour: Colour, badge: f32) {
     let edge = Stroke::new(0.0003, Ink::solid(colour));
     let paint = Paint::fill(Ink::faint(colour, 0.12)).with_stroke(edge);
     // The ellipse of an ambiguous contact may extend beyond the floor.

@@ -4,7 +4,7 @@ use egui::{Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
 
 /// The images of a scene's fields, which stay on the graphics card until they change.
 #[derive(Default)]
-pub(super) struct Fields {
+pub(super) struct FieldImages {
     shown: Vec<Field>,
     /// Number of fields that the present frame has used so far.
     used: usize,
@@ -15,7 +15,7 @@ struct Field {
     image: ColorImage,
 }
 
-impl Fields {
+impl FieldImages {
     /// Starts a frame.
     pub(super) fn begin(&mut self) {
         self.used = 0;

@@ -15,11 +15,11 @@ use egui::{Color32, FontFamily, FontId, Pos2, Rect, Shape, pos2, vec2};
 use glam::Vec2;
 use smallvec::SmallVec;
 
-use self::fields::Fields;
+use self::fields::FieldImages;
 use self::fine_line::FineLine;
-use self::patches::{Look, Patches};
+use self::patches::{BoxLook, Patches};
 use self::rounded::{Rounded, on_pixels};
-use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Piece, Scene, Stroke, outline_of, pieces};
+use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke, TextPiece, outline_of, pieces};
 use underfoot::floor;
 use underfoot::layout::Colour;
 
@@ -30,7 +30,7 @@ const LARGEST_DISC: f32 = 8.0;
 #[derive(Default)]
 pub struct Palette {
     line: FineLine,
-    fields: Fields,
+    fields: FieldImages,
     patches: Patches,
 }
 
@@ -162,7 +162,7 @@ impl Brush<'_> {
                 let (scale, pixels) = (self.map.scale(), self.pixels_per_point());
                 let (rect, radius) = (on_pixels(self.map.rect(*area), 0.0, pixels), radius_m * scale);
                 let (reach, ink) = (reach_m * scale, ink_color(*ink));
-                let look = Look::halo(radius, reach, ink, pixels);
+                let look = BoxLook::halo(radius, reach, ink, pixels);
                 let mesh = self.palette.patches.mesh(self.painter.ctx(), rect, look).unwrap_or_else(|| {
                     let mut mesh = Mesh::default();
                     Rounded::new(rect, radius, pixels).halo(&mut mesh, reach, ink);
@@ -184,7 +184,7 @@ impl Brush<'_> {
         let rect = if is_round { rect } else { on_pixels(rect, stroke.width, self.pixels_per_point()) };
         if !is_round {
             let radius = radius.min(0.5 * rect.size().min_elem()).max(0.0);
-            let look = Look::filled(radius, fill, stroke, self.pixels_per_point());
+            let look = BoxLook::filled(radius, fill, stroke, self.pixels_per_point());
             if let Some(mesh) = self.palette.patches.mesh(self.painter.ctx(), rect, look) {
                 self.painter.add(Shape::mesh(mesh));
                 return;
@@ -277,7 +277,7 @@ impl Brush<'_> {
         }
         let color = ink_color(lettering.ink);
         let font = FontId::new(size, FontFamily::Proportional);
-        let set = |piece: Piece<'_>| {
+        let set = |piece: TextPiece<'_>| {
             let galley = self.painter.layout_no_wrap(piece.text.into_owned(), font.clone(), color);
             // Each piece may have its own font; all share one base line.
             let base = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(size, |it| it.pos.y);

@@ -20,7 +20,7 @@ const PARTS: f32 = 16.0;
 
 /// The look of a box, independent of its size. Lengths are in parts of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Look {
+pub(super) struct BoxLook {
     radius: u16,
     line: Line,
     fill: Color32,
@@ -47,7 +47,7 @@ struct Place {
 #[derive(Default)]
 pub(super) struct Patches {
     texture: Option<TextureHandle>,
-    places: HashMap<Look, Place>,
+    places: HashMap<BoxLook, Place>,
     /// The place of the next image, and the height of its row.
     next: [usize; 2],
     row: usize,
@@ -56,7 +56,7 @@ pub(super) struct Patches {
     full_in: Option<u64>,
 }
 
-impl Look {
+impl BoxLook {
     /// A box with corners of `radius` points, filled, with a line along its edge.
     pub(super) fn filled(radius: f32, fill: Color32, stroke: Stroke, pixels_per_point: f32) -> Self {
         let line = Line::Stroke(if stroke.width > 0.0 { parts(stroke.width * pixels_per_point) } else { 0 });
@@ -144,7 +144,7 @@ fn parts(pixels: f32) -> u16 {
 impl Patches {
     /// A box around `rect`, with its sides all on pixel edges or all on pixel centres; `None` if it needs another
     /// method.
-    pub(super) fn mesh(&mut self, ctx: &Context, rect: Rect, look: Look) -> Option<Mesh> {
+    pub(super) fn mesh(&mut self, ctx: &Context, rect: Rect, look: BoxLook) -> Option<Mesh> {
         let scale = ctx.pixels_per_point();
         let (beyond, within) = look.reach();
         // Round to pixel edges or centres, which removes earlier rounding errors.
@@ -178,7 +178,7 @@ impl Patches {
     }
 
     /// The place of the image of this look; creates the image if necessary.
-    fn place(&mut self, ctx: &Context, look: Look, corner: usize, edge: f32) -> Option<Place> {
+    fn place(&mut self, ctx: &Context, look: BoxLook, corner: usize, edge: f32) -> Option<Place> {
         let frame = ctx.cumulative_frame_nr();
         if self.full_in.is_some_and(|full| full != frame) {
             self.places.clear();
@@ -278,7 +278,7 @@ mod tests {
             let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(size.0 as f32, size.1 as f32));
             let rect = on_pixels(rect, width, 1.0);
             let stroke = Stroke::new(width, FILL);
-            let look = Look::filled(radius, FILL, stroke, 1.0);
+            let look = BoxLook::filled(radius, FILL, stroke, 1.0);
             let mesh = patches.mesh(&ctx, rect, look).unwrap();
             assert!(mesh.indices.len() <= 54 && mesh.texture_id != TextureId::default());
             let (beyond, _) = look.reach();
@@ -298,11 +298,11 @@ mod tests {
         let (ctx, mut patches) = patches();
         let rect = |side: f32| Rect::from_min_size(pos2(3.0, 4.0), vec2(side, side));
         for side in [30.0, 50.0, 400.0] {
-            let look = Look::filled(8.0, FILL, Stroke::NONE, 1.0);
+            let look = BoxLook::filled(8.0, FILL, Stroke::NONE, 1.0);
             assert!(patches.mesh(&ctx, rect(side), look).is_some());
         }
         assert_eq!(patches.places.len(), 1);
-        let other = |number: u8| Look::halo(20.0, 12.0, Color32::from_gray(number), 1.0);
+        let other = |number: u8| BoxLook::halo(20.0, 12.0, Color32::from_gray(number), 1.0);
         let drawn =
             (0..=255).take_while(|number| patches.mesh(&ctx, rect(90.0), other(*number)).is_some()).count();
         assert!((30..200).contains(&drawn), "{drawn} fit");
@@ -310,7 +310,7 @@ mod tests {
         frame(&ctx);
         assert!(patches.mesh(&ctx, rect(90.0), other(255)).is_some());
         assert!(
-            patches.mesh(&ctx, rect(300.0), Look::filled(90.0, FILL, Stroke::NONE, 1.0)).is_none(),
+            patches.mesh(&ctx, rect(300.0), BoxLook::filled(90.0, FILL, Stroke::NONE, 1.0)).is_none(),
             "too large"
         );
         frame(&ctx);
@@ -325,7 +325,7 @@ mod tests {
         shape.halo(&mut plain, 8.0, FILL);
         shape.fill(&mut plain, FILL, true);
         shape.stroke(&mut plain, stroke);
-        let looks = [Look::halo(11.0, 8.0, FILL, 1.0), Look::filled(11.0, FILL, stroke, 1.0)];
+        let looks = [BoxLook::halo(11.0, 8.0, FILL, 1.0), BoxLook::filled(11.0, FILL, stroke, 1.0)];
         let pieces: usize =
             looks.map(|look| patches.mesh(&ctx, rect, look).unwrap().indices.len()).iter().sum();
         assert!(4 * pieces < plain.indices.len(), "{pieces} of {}", plain.indices.len());

@@ -11,11 +11,11 @@ use unicode_segmentation::UnicodeSegmentation;
 
 use super::Fonts;
 use super::fonts::FontFace;
-use crate::scene::{Direction, Piece, pieces};
+use crate::scene::{TextDirection, TextPiece, pieces};
 
 /// One step of an outline, in em from the start of the base line: x to the right, y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
+pub enum OutlineStep {
     /// Starts another outline here.
     Move(Vec2),
     /// A straight line to this point.
@@ -30,7 +30,7 @@ pub enum Step {
 
 /// A line of text, shaped and in visual order. Positions are in em.
 #[derive(Default)]
-pub struct Line {
+pub struct TextLine {
     glyphs: Vec<Glyph>,
     signs: Vec<Sign>,
     width: f32,
@@ -70,8 +70,8 @@ impl std::fmt::Debug for Sign {
 impl Fonts {
     /// Shapes the line; a letter that no font has becomes a box.
     #[must_use]
-    pub fn line(&self, text: &str, direction: Direction) -> Line {
-        let mut line = Line::default();
+    pub fn line(&self, text: &str, direction: TextDirection) -> TextLine {
+        let mut line = TextLine::default();
         for piece in pieces(text, direction) {
             let mut parts = self.parts(&piece);
             if piece.right_to_left {
@@ -89,7 +89,7 @@ impl Fonts {
 
     /// Splits a piece into parts with one font each, in reading order; each letter without a font is a part of its
     /// own.
-    fn parts<'t>(&self, piece: &'t Piece<'_>) -> Vec<(&'t str, Option<Arc<FontFace>>)> {
+    fn parts<'t>(&self, piece: &'t TextPiece<'_>) -> Vec<(&'t str, Option<Arc<FontFace>>)> {
         let mut parts: Vec<(std::ops::Range<usize>, Option<Arc<FontFace>>)> = Vec::new();
         for (at, cluster) in piece.text.grapheme_indices(true) {
             let face = self.face_of(cluster);
@@ -104,7 +104,7 @@ impl Fonts {
     }
 }
 
-impl Line {
+impl TextLine {
     /// Its width, in em.
     #[must_use]
     pub fn width(&self) -> f32 {
@@ -118,7 +118,7 @@ impl Line {
     }
 
     /// Passes the outlines of all glyphs to `draw`, in em; they are filled by the non-zero winding rule.
-    pub fn outline(&self, draw: impl FnMut(Step)) {
+    pub fn outline(&self, draw: impl FnMut(OutlineStep)) {
         let mut pen = Pen { draw, at: Vec2::ZERO, scale: 1.0 };
         for glyph in &self.glyphs {
             let Some(font) = glyph.face.font() else { continue };
@@ -199,28 +199,28 @@ impl<D> Pen<D> {
     }
 }
 
-impl<D: FnMut(Step)> OutlinePen for Pen<D> {
+impl<D: FnMut(OutlineStep)> OutlinePen for Pen<D> {
     fn move_to(&mut self, x: f32, y: f32) {
         let to = self.place(x, y);
-        (self.draw)(Step::Move(to));
+        (self.draw)(OutlineStep::Move(to));
     }
 
     fn line_to(&mut self, x: f32, y: f32) {
         let to = self.place(x, y);
-        (self.draw)(Step::Line(to));
+        (self.draw)(OutlineStep::Line(to));
     }
 
     fn quad_to(&mut self, cx: f32, cy: f32, x: f32, y: f32) {
         let (by, to) = (self.place(cx, cy), self.place(x, y));
-        (self.draw)(Step::Quadratic(by, to));
+        (self.draw)(OutlineStep::Quadratic(by, to));
     }
 
     fn curve_to(&mut self, cx: f32, cy: f32, dx: f32, dy: f32, x: f32, y: f32) {
         let (by, then, to) = (self.place(cx, cy), self.place(dx, dy), self.place(x, y));
-        (self.draw)(Step::Cubic(by, then, to));
+        (self.draw)(OutlineStep::Cubic(by, then, to));
     }
 
     fn close(&mut self) {
-        (self.draw)(Step::Close);
+        (self.draw)(OutlineStep::Close);
     }
 }

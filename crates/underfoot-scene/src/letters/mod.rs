@@ -14,6 +14,6 @@ mod tests;
 mod undrawn_tests;
 
 pub use fonts::{Fonts, definitions, missing_by};
-pub use line::{Line, Sign, Step};
+pub use line::{OutlineStep, Sign, TextLine};
 #[cfg(feature = "system_fonts")]
 pub use system::Installed;

@@ -2,24 +2,24 @@
 
 use glam::Vec2;
 
-use super::{Fonts, Line, Step};
-use crate::scene::Direction;
+use super::{Fonts, OutlineStep, TextLine};
+use crate::scene::TextDirection;
 
-fn line(fonts: &Fonts, text: &str) -> Line {
-    fonts.line(text, Direction::OfItsLetters)
+fn line(fonts: &Fonts, text: &str) -> TextLine {
+    fonts.line(text, TextDirection::OfItsLetters)
 }
 
 /// All points of a line's outlines, in thousandths of an em.
-fn points(line: &Line, from: f32) -> Vec<[i32; 2]> {
+fn points(line: &TextLine, from: f32) -> Vec<[i32; 2]> {
     let mut all = Vec::new();
     let mut note = |point: Vec2| {
         all.push([point.x - from, point.y].map(|part| (1000.0 * part).round() as i32));
     };
     line.outline(|step| match step {
-        Step::Move(to) | Step::Line(to) => note(to),
-        Step::Quadratic(by, to) => [by, to].into_iter().for_each(&mut note),
-        Step::Cubic(by, then, to) => [by, then, to].into_iter().for_each(&mut note),
-        Step::Close => {}
+        OutlineStep::Move(to) | OutlineStep::Line(to) => note(to),
+        OutlineStep::Quadratic(by, to) => [by, to].into_iter().for_each(&mut note),
+        OutlineStep::Cubic(by, then, to) => [by, then, to].into_iter().for_each(&mut note),
+        OutlineStep::Close => {}
     });
     all
 }

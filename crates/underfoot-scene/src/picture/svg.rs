@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use glam::Vec2;
 
-use super::text::{Placing, escape};
+use super::text::{LinePlacing, escape};
 use crate::letters::Fonts;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke};
 use underfoot::floor::Rect;
@@ -233,7 +233,7 @@ impl Page<'_> {
             Anchor::Middle => 0.5,
             Anchor::End => 1.0,
         };
-        let placing = Placing { start: at - Vec2::new(before * line.width() * em, 0.0), em };
+        let placing = LinePlacing { start: at - Vec2::new(before * line.width() * em, 0.0), em };
         self.out.write_str("<g role=\"img\" aria-label=\"")?;
         escape(&mut self.out, letters)?;
         self.out.write_str("\"")?;

@@ -7,7 +7,7 @@ use resvg::tiny_skia::Pixmap;
 use super::PictureError;
 use crate::letters::Fonts;
 use crate::scene::sample::{at_rest, map, pressing};
-use crate::scene::{Direction, Scene, Show, Theme, View, draw};
+use crate::scene::{Scene, Show, TextDirection, Theme, View, draw};
 use underfoot::floor::Geometry;
 
 fn svg(scene: &Scene) -> String {
@@ -62,7 +62,7 @@ fn letters_are_as_wide_as_the_scene_takes_them_for() {
     // A table of widths makes text fit; this compares the table with the font.
     let fonts = Fonts::built_in();
     for text in ["Zoom in", "Names of places", "0123456789", "WAVE 12.5 %", "Größe – façade"] {
-        let seen = 100.0 * fonts.line(text, Direction::OfItsLetters).width();
+        let seen = 100.0 * fonts.line(text, TextDirection::OfItsLetters).width();
         let mut scene = Scene::new();
         let lettering = crate::scene::Lettering::new(
             glam::Vec2::ZERO,

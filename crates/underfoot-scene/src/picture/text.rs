@@ -7,30 +7,30 @@ use glam::Vec2;
 use resvg::usvg::fontdb::{Database, Source};
 use resvg::usvg::{Options, Tree, WriteOptions};
 
-use crate::letters::{Sign, Step};
+use crate::letters::{OutlineStep, Sign};
 
 /// The placement of a line on the page, in the page's units with y downwards.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Placing {
+pub(super) struct LinePlacing {
     /// The start of its base line.
     pub(super) start: Vec2,
     /// The length of an em.
     pub(super) em: f32,
 }
 
-impl Placing {
+impl LinePlacing {
     fn place(self, point: Vec2) -> Vec2 {
         self.start + Vec2::new(point.x, -point.y) * self.em
     }
 
     /// Appends one step of a path in the syntax of the attribute `d`.
-    pub(super) fn step(self, out: &mut String, step: Step) -> fmt::Result {
+    pub(super) fn step(self, out: &mut String, step: OutlineStep) -> fmt::Result {
         let (letter, points) = match step {
-            Step::Move(to) => ('M', [Some(to), None, None]),
-            Step::Line(to) => ('L', [Some(to), None, None]),
-            Step::Quadratic(by, to) => ('Q', [Some(by), Some(to), None]),
-            Step::Cubic(by, then, to) => ('C', [Some(by), Some(then), Some(to)]),
-            Step::Close => ('Z', [None; 3]),
+            OutlineStep::Move(to) => ('M', [Some(to), None, None]),
+            OutlineStep::Line(to) => ('L', [Some(to), None, None]),
+            OutlineStep::Quadratic(by, to) => ('Q', [Some(by), Some(to), None]),
+            OutlineStep::Cubic(by, then, to) => ('C', [Some(by), Some(then), Some(to)]),
+            OutlineStep::Close => ('Z', [None; 3]),
         };
         out.write_char(letter)?;
         for (number, point) in points.into_iter().flatten().enumerate() {

@@ -256,7 +256,7 @@ fn is_noncharacter(letter: char) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Direction;
+    use super::super::TextDirection;
     use super::*;
 
     fn lettering() -> Lettering {
@@ -267,7 +267,7 @@ mod tests {
             strong: false,
             turn_rad: 0.0,
             ink: Ink::solid(Colour::rgb(0, 0, 0)),
-            direction: Direction::OfItsLetters,
+            direction: TextDirection::OfItsLetters,
         }
     }
 

@@ -6,7 +6,7 @@ use super::fit::{Fitted, fit};
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::theme::{contrast, readable};
 use super::widths::{CAP_HEIGHT, LINE_HEIGHT};
-use super::{Direction, Scene, Theme, icon, outline};
+use super::{Scene, TextDirection, Theme, icon, outline};
 use underfoot::engine::WidgetState;
 use underfoot::floor::Rect;
 use underfoot::layout::{Colour, Shape, Widget};
@@ -368,7 +368,7 @@ fn set(scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour, f
         Anchor::End => room.max.x,
     };
     let top = room.centre().y + 0.5 * fitted.height_m();
-    let direction = Direction::of(text);
+    let direction = TextDirection::of(text);
     for (line, bytes) in fitted.lines.iter().enumerate() {
         let middle = top - (line as f32 + 0.5) * LINE_HEIGHT * fitted.size_m;
         let lettering = Lettering::new(

@@ -7,7 +7,7 @@ use super::mark::{Ink, Paint, Stroke};
 use underfoot::layout::{Colour, Icon};
 
 /// One stroke in a square from (-1, -1) in the south-west to (1, 1) in the north-east.
-enum Piece {
+enum TextPiece {
     /// Open lines.
     Lines(&'static [(f32, f32)]),
     /// Closed lines.
@@ -22,7 +22,7 @@ enum Piece {
     Arc(f32, f32, f32, f32, f32),
 }
 
-use Piece::{Arc, Dot, Lines, Loop, Ring, Solid};
+use TextPiece::{Arc, Dot, Lines, Loop, Ring, Solid};
 
 /// Width of strokes in a square with side 2.
 const STROKE: f32 = 0.24;
@@ -56,7 +56,7 @@ pub(super) fn draw(scene: &mut Scene, icon: Icon, middle: Vec2, side_m: f32, ink
     }
 }
 
-const fn pieces(icon: Icon) -> &'static [Piece] {
+const fn pieces(icon: Icon) -> &'static [TextPiece] {
     match icon {
         Icon::Up => &[Lines(&[(0.0, -0.9), (0.0, 0.9)]), Lines(&[(-0.7, 0.2), (0.0, 0.9), (0.7, 0.2)])],
         Icon::Down => &[Lines(&[(0.0, 0.9), (0.0, -0.9)]), Lines(&[(-0.7, -0.2), (0.0, -0.9), (0.7, -0.2)])],

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::pieces::Direction;
+use super::pieces::TextDirection;
 use underfoot::floor::Rect;
 use underfoot::layout::Colour;
 
@@ -127,19 +127,19 @@ pub struct Lettering {
     /// Ink of the letters.
     pub ink: Ink,
     /// Order of the line's parts.
-    pub direction: Direction,
+    pub direction: TextDirection,
 }
 
 impl Lettering {
     /// Creates a horizontal line of regular weight.
     #[must_use]
     pub const fn new(at: Vec2, anchor: Anchor, size_m: f32, ink: Ink) -> Self {
-        Self { at, anchor, size_m, strong: false, turn_rad: 0.0, ink, direction: Direction::OfItsLetters }
+        Self { at, anchor, size_m, strong: false, turn_rad: 0.0, ink, direction: TextDirection::OfItsLetters }
     }
 
     /// Returns the same lettering with this order of its parts; a line of a longer text follows the whole text.
     #[must_use]
-    pub const fn reading(self, direction: Direction) -> Self {
+    pub const fn reading(self, direction: TextDirection) -> Self {
         Self { direction, ..self }
     }
 

@@ -39,7 +39,7 @@ pub use board::Scene;
 pub use layers::TOLD;
 pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::{outline_of, sole};
-pub use pieces::{Direction, Piece, in_drawn_order, pieces};
+pub use pieces::{TextDirection, TextPiece, in_drawn_order, pieces};
 pub use theme::{Faces, Theme};
 pub use view::{Layer, Shoe, Show, Trail, View};
 

@@ -16,7 +16,7 @@ use unicode_segmentation::UnicodeSegmentation;
 
 /// Order of the parts of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Direction {
+pub enum TextDirection {
     /// Direction of the line's first letter with a direction; left to right without one.
     #[default]
     OfItsLetters,
@@ -26,7 +26,7 @@ pub enum Direction {
     RightToLeft,
 }
 
-impl Direction {
+impl TextDirection {
     /// Returns the direction of `text`, which may have several lines: that of its first letter with a direction.
     #[must_use]
     pub fn of(text: &str) -> Self {
@@ -47,7 +47,7 @@ impl Direction {
 
 /// Letters to shape together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Piece<'t> {
+pub struct TextPiece<'t> {
     /// The letters in reading order; brackets are already mirrored for display.
     pub text: Cow<'t, str>,
     /// True if the first letter is the rightmost one.
@@ -60,9 +60,9 @@ const FIRST_RIGHT_TO_LEFT: char = '\u{590}';
 
 /// Returns the pieces of one line, the leftmost first; none for an empty line.
 #[must_use]
-pub fn pieces(line: &str, direction: Direction) -> Vec<Piece<'_>> {
-    if direction != Direction::RightToLeft && line.chars().all(|letter| letter < FIRST_RIGHT_TO_LEFT) {
-        let whole = Piece { text: line.into(), right_to_left: false };
+pub fn pieces(line: &str, direction: TextDirection) -> Vec<TextPiece<'_>> {
+    if direction != TextDirection::RightToLeft && line.chars().all(|letter| letter < FIRST_RIGHT_TO_LEFT) {
+        let whole = TextPiece { text: line.into(), right_to_left: false };
         return if line.is_empty() { Vec::new() } else { vec![whole] };
     }
     let bidi = BidiInfo::new(line, direction.level());
@@ -82,7 +82,7 @@ pub fn pieces(line: &str, direction: Direction) -> Vec<Piece<'_>> {
 /// but keeps the order of the words.
 #[must_use]
 pub fn in_drawn_order(line: &str) -> Cow<'_, str> {
-    let mut pieces = pieces(line, Direction::OfItsLetters);
+    let mut pieces = pieces(line, TextDirection::OfItsLetters);
     match pieces.len() {
         0 | 1 => pieces.pop().map_or(Cow::Borrowed(""), |piece| piece.text),
         _ => pieces.iter().map(|piece| &*piece.text).collect::<String>().into(),
@@ -90,7 +90,7 @@ pub fn in_drawn_order(line: &str) -> Cow<'_, str> {
 }
 
 /// Divides a left-to-right run at changes of script.
-fn rightwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
+fn rightwards<'t>(run: &'t str, pieces: &mut Vec<TextPiece<'t>>) {
     let mut begin = 0;
     let mut script = None;
     for (at, letter) in run.char_indices() {
@@ -107,7 +107,7 @@ fn rightwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
 }
 
 /// Divides a right-to-left run into words and the single signs between them, the last one first.
-fn leftwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
+fn leftwards<'t>(run: &'t str, pieces: &mut Vec<TextPiece<'t>>) {
     let mut parts: Vec<(Range<usize>, Option<Script>)> = Vec::new();
     for (at, cluster) in run.grapheme_indices(true) {
         let end = at + cluster.len();
@@ -128,13 +128,13 @@ fn leftwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
             pieces.push(piece(run, part, true));
         } else {
             let text = run.get(part).unwrap_or_default();
-            pieces.push(Piece { text: mirrored(text), right_to_left: false });
+            pieces.push(TextPiece { text: mirrored(text), right_to_left: false });
         }
     }
 }
 
-fn piece(run: &str, part: Range<usize>, right_to_left: bool) -> Piece<'_> {
-    Piece { text: run.get(part).unwrap_or_default().into(), right_to_left }
+fn piece(run: &str, part: Range<usize>, right_to_left: bool) -> TextPiece<'_> {
+    TextPiece { text: run.get(part).unwrap_or_default().into(), right_to_left }
 }
 
 /// True for a letter of a right-to-left script, which joins its neighbours.
@@ -167,15 +167,15 @@ mod tests {
     use super::*;
 
     /// Pieces in drawing order, the right-to-left ones in angle brackets.
-    fn drawn(line: &str, direction: Direction) -> Vec<String> {
-        let show = |piece: &Piece<'_>| {
+    fn drawn(line: &str, direction: TextDirection) -> Vec<String> {
+        let show = |piece: &TextPiece<'_>| {
             if piece.right_to_left { format!("<{}>", piece.text) } else { piece.text.to_string() }
         };
         pieces(line, direction).iter().map(show).collect()
     }
 
     fn by_itself(line: &str) -> Vec<String> {
-        drawn(line, Direction::OfItsLetters)
+        drawn(line, TextDirection::OfItsLetters)
     }
 
     #[test]
@@ -210,10 +210,10 @@ mod tests {
     #[test]
     fn a_line_of_a_longer_text_follows_the_direction_of_the_whole() {
         let whole = "הגדל Zoom פי 2";
-        assert_eq!(Direction::of(whole), Direction::RightToLeft);
-        assert_eq!(drawn("Zoom פי 2", Direction::of(whole)), ["2", " ", "<פי>", " ", "Zoom"]);
-        assert_eq!(drawn("12 %", Direction::RightToLeft), ["%", " ", "12"]);
-        assert_eq!(Direction::of("12 %"), Direction::LeftToRight);
+        assert_eq!(TextDirection::of(whole), TextDirection::RightToLeft);
+        assert_eq!(drawn("Zoom פי 2", TextDirection::of(whole)), ["2", " ", "<פי>", " ", "Zoom"]);
+        assert_eq!(drawn("12 %", TextDirection::RightToLeft), ["%", " ", "12"]);
+        assert_eq!(TextDirection::of("12 %"), TextDirection::LeftToRight);
     }
 
     #[test]
@@ -249,7 +249,7 @@ mod tests {
                 all.sort_unstable();
                 all
             };
-            for direction in [Direction::OfItsLetters, Direction::LeftToRight, Direction::RightToLeft] {
+            for direction in [TextDirection::OfItsLetters, TextDirection::LeftToRight, TextDirection::RightToLeft] {
                 let pieces = pieces(&line, direction);
                 let mut drawn = pieces.iter().flat_map(|piece| piece.text.chars());
                 prop_assert_eq!(sorted(&mut drawn), sorted(&mut line.chars()));

@@ -224,7 +224,7 @@ fn line(
 fn rough(piece: &Crack, with_start: bool, spacing_m: f32) -> impl Iterator<Item = Vec2> + use<> {
     let Crack { from, to, number, .. } = *piece;
     let steps = (from.distance(to) / spacing_m).round().clamp(1.0, 12.0) as u32;
-    let noise = super::Noise(number as u32);
+    let noise = super::TerrainNoise(number as u32);
     let across = (to - from).perp() * (0.22 / steps as f32);
     (u32::from(!with_start)..=steps).map(move |step| {
         let inside = step > 0 && step < steps;

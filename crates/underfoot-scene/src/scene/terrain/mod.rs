@@ -9,7 +9,7 @@ use glam::Vec2;
 
 use super::mark::Ink;
 use super::{Scene, View};
-use noise::Noise;
+use noise::TerrainNoise;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
 use underfoot::ground::{GroundState, Material, Relief};
@@ -53,7 +53,7 @@ struct Land<'a> {
     state: Option<&'a GroundState>,
     now: Instant,
     /// Deterministic noise for the constant features: the same ground always looks the same.
-    noise: Noise,
+    noise: TerrainNoise,
     surface: Colour,
     deep: Colour,
     white: Colour,
@@ -75,7 +75,7 @@ impl<'a> Land<'a> {
             ground,
             state,
             now: snapshot.at,
-            noise: Noise(ground.spec.seed),
+            noise: TerrainNoise(ground.spec.seed),
             surface: tone(ground.surface),
             deep: tone(ground.deep),
             white: tone(WHITE),

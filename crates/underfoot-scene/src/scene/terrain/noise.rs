@@ -4,9 +4,9 @@ use glam::{IVec2, Vec2};
 
 /// Deterministic noise with a seed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Noise(pub(super) u32);
+pub(super) struct TerrainNoise(pub(super) u32);
 
-impl Noise {
+impl TerrainNoise {
     /// A number from 0 up to 1 for element `n` of a kind.
     pub(super) fn at(self, kind: u32, n: u32) -> f32 {
         // Two rounds of a well-mixing integer hash.
@@ -52,10 +52,10 @@ mod tests {
 
     #[test]
     fn numbers_spread_evenly_and_hills_are_smooth() {
-        let noise = Noise(7);
+        let noise = TerrainNoise(7);
         let mean = (0..10_000).map(|n| noise.at(1, n)).sum::<f32>() / 10_000.0;
         assert!((mean - 0.5).abs() < 0.02, "{mean}");
-        assert!(noise.at(1, 5) != noise.at(2, 5) && noise.at(1, 5) != Noise(8).at(1, 5));
+        assert!(noise.at(1, 5) != noise.at(2, 5) && noise.at(1, 5) != TerrainNoise(8).at(1, 5));
         for step in 0..1000 {
             let at = Vec2::new(step as f32 * 0.003, 1.0);
             let (here, there) = (noise.hills(3, at, 0.3), noise.hills(3, at + 0.003, 0.3));
