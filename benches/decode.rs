@@ -17,7 +17,9 @@ use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::Assembler;
 use underfoot::source::UdpSource;
 use underfoot::units::Instant;
-use underfoot::wire::{Batch, Decoder, Limits, Readings, SensorEncoder, SensorFormat, SensorPacket, check};
+use underfoot::wire::{
+    Batch, DatagramLimits, Decoder, Readings, SensorEncoder, SensorFormat, SensorPacket, check,
+};
 
 /// The packets of one millisecond, one per board.
 fn millisecond(floor: &Floor, ms: u32) -> Vec<SensorPacket> {
@@ -47,7 +49,7 @@ fn decode(c: &mut Criterion) {
             b.iter(|| decoder.decode(black_box(&datagram), Instant::START, &mut batch));
         });
         group.bench_function(format!("guard alone {name}"), |b| {
-            b.iter(|| check(black_box(&datagram), &Limits::SENSORS));
+            b.iter(|| check(black_box(&datagram), &DatagramLimits::SENSORS));
         });
         group.bench_function(format!("encode {name}"), |b| {
             b.iter(|| encoder.encode(black_box(packet)).map(<[u8]>::len));
@@ -59,7 +61,7 @@ fn decode(c: &mut Criterion) {
 fn refuse(c: &mut Criterion) {
     let decoder = Decoder::new(&Floor::default());
     // As large as the limits allow, so that the walk itself runs, and far larger.
-    let roomy = Limits { bytes: 65_507, tags: 65_507, address: 65_507, ..Limits::SENSORS };
+    let roomy = DatagramLimits { bytes: 65_507, tags: 65_507, address: 65_507, ..DatagramLimits::SENSORS };
     let mut group = c.benchmark_group("refuse");
     let bombs = [
         ("bundle bomb 3000 deep, 60 kB", bundle_bomb(3000)),
@@ -77,7 +79,7 @@ fn refuse(c: &mut Criterion) {
     }
     let small = bundle_bomb(400);
     group.bench_function("bundle bomb 400 deep, 8 kB", |b| {
-        b.iter(|| check(black_box(&small), &Limits::SENSORS).is_err());
+        b.iter(|| check(black_box(&small), &DatagramLimits::SENSORS).is_err());
     });
     group.finish();
 }

@@ -48,7 +48,7 @@ pub(super) struct Left {
 
 /// One person on the floor.
 #[derive(Clone, Debug)]
-pub(super) struct Person {
+pub(super) struct TrackedPerson {
     pub(super) id: u32,
     left: ArrayVec<Left, 8>,
     scale: Scale,
@@ -57,7 +57,7 @@ pub(super) struct Person {
     seen: Instant,
 }
 
-impl Person {
+impl TrackedPerson {
     pub(super) fn new(id: u32, now: Instant) -> Self {
         Self { id, left: ArrayVec::new(), scale: Scale::default(), sum: 0.0, seen: now }
     }

@@ -8,7 +8,7 @@ use crate::units::{Instant, Newtons};
 
 /// A foot that has engaged a control.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Held {
+pub(super) struct EngagedFoot {
     pub(super) widget: usize,
     pub(super) contact: ContactId,
     pub(super) force: Newtons,
@@ -22,7 +22,7 @@ pub(super) struct Finger {
     /// The control below it in the last frame, if this finger fed that control.
     pub(super) over: Option<usize>,
     /// The control that keeps it.
-    pub(super) held: Option<Held>,
+    pub(super) held: Option<EngagedFoot>,
 }
 
 impl Finger {
@@ -61,7 +61,7 @@ impl RegionState {
         self.fingers.iter().map(|finger| finger.cursor).filter(move |cursor| Some(cursor.contact) != first)
     }
 
-    pub(super) fn held(&self) -> impl Iterator<Item = Held> + Clone + '_ {
+    pub(super) fn held(&self) -> impl Iterator<Item = EngagedFoot> + Clone + '_ {
         self.fingers.iter().filter_map(|finger| finger.held)
     }
 
@@ -104,7 +104,7 @@ impl RegionState {
     }
 
     /// Releases the foot that `widget` keeps.
-    pub(super) fn let_go(&mut self, widget: usize) -> Option<Held> {
+    pub(super) fn let_go(&mut self, widget: usize) -> Option<EngagedFoot> {
         let finger = self.fingers.iter_mut().find(|finger| finger.holds(widget))?;
         finger.over = None;
         finger.held.take()

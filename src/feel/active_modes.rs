@@ -1,7 +1,7 @@
 //! The modal banks of all channels, computed in groups.
 
 use super::ModalBank;
-use super::mix::{LANES, LaneSet, Mix};
+use super::mix::{LANES, LaneSet, MixBlock};
 use super::modal::{SPAN, ring_side_by_side};
 use super::push::Pushes;
 
@@ -66,7 +66,7 @@ impl ActiveModes {
         &mut self,
         channel: usize,
         at: usize,
-        mix: &mut Mix,
+        mix: &mut MixBlock,
     ) -> (&mut ModalBank, &mut Pushes) {
         self.groups[channel / LANES].in_rows |= 1 << (channel % LANES);
         self.render_row(channel, at, mix);
@@ -75,7 +75,7 @@ impl ActiveModes {
 
     /// Renders the banks in the mix's rows to the block's end, `frames`; returns the number of modes stolen
     /// meanwhile.
-    pub(super) fn finish_rows(&mut self, frames: usize, mix: &mut Mix) -> u32 {
+    pub(super) fn finish_rows(&mut self, frames: usize, mix: &mut MixBlock) -> u32 {
         for number in 0..self.groups.len() {
             let Group { ringing, in_rows, .. } = self.groups[number];
             self.groups[number].side_by_side = ringing & !in_rows;
@@ -111,7 +111,7 @@ impl ActiveModes {
         self.groups[group].side_by_side != 0
     }
 
-    fn render_row(&mut self, channel: usize, end: usize, mix: &mut Mix) {
+    fn render_row(&mut self, channel: usize, end: usize, mix: &mut MixBlock) {
         let (bank, pushes) = (&mut self.banks[channel], &mut self.pushes[channel]);
         let start = self.in_row[channel];
         if !(bank.is_silent() && pushes.is_empty()) && end > start {

@@ -11,7 +11,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 /// A ring alone can only reject its newest item, since the reader owns the items inside. So items are numbered: those
 /// that do not fit wait in the writer's backlog. The writer also publishes the number of the oldest valid item, and
 /// the reader skips older ones.
-pub(super) fn evicting_queue<T>(capacity: usize) -> (Writer<T>, Reader<T>) {
+pub(super) fn evicting_queue<T>(capacity: usize) -> (Writer<T>, QueueReader<T>) {
     let capacity = capacity.max(1);
     let (producer, consumer) = RingBuffer::new(capacity);
     let shared = Arc::new(Shared::default());
@@ -22,7 +22,7 @@ pub(super) fn evicting_queue<T>(capacity: usize) -> (Writer<T>, Reader<T>) {
         next: 0,
         shared: Arc::clone(&shared),
     };
-    (writer, Reader { ring: consumer, shared })
+    (writer, QueueReader { ring: consumer, shared })
 }
 
 #[derive(Debug, Default)]
@@ -104,12 +104,12 @@ impl<T> Writer<T> {
 /// # Real-time
 /// No call blocks, allocates or enters the system.
 #[derive(Debug)]
-pub(super) struct Reader<T> {
+pub(super) struct QueueReader<T> {
     ring: Consumer<Numbered<T>>,
     shared: Arc<Shared>,
 }
 
-impl<T> Reader<T> {
+impl<T> QueueReader<T> {
     /// Removes the oldest valid item.
     pub(super) fn pop(&mut self) -> Option<T> {
         let oldest = self.shared.oldest.load(Ordering::Acquire);
@@ -142,7 +142,7 @@ impl<T> Reader<T> {
 mod tests {
     use super::*;
 
-    fn drain(reader: &mut Reader<u32>) -> Vec<u32> {
+    fn drain(reader: &mut QueueReader<u32>) -> Vec<u32> {
         std::iter::from_fn(|| reader.pop()).collect()
     }
 

@@ -23,11 +23,11 @@ pub(super) struct Output {
 
 /// The channel of each tile.
 #[derive(Clone, Debug)]
-pub(super) struct Wiring {
+pub(super) struct TileChannels {
     outputs: Box<[Option<Output>]>,
 }
 
-impl Wiring {
+impl TileChannels {
     /// `actuators` in tile order; leaves out those with a channel that the device lacks, or without a positive full
     /// scale.
     pub(super) fn new(actuators: Vec<Option<Actuator>>, channels: usize) -> Self {
@@ -53,7 +53,7 @@ impl Wiring {
 
 /// One block of samples per channel, on the way to the limiter; unused channels cost nothing.
 #[derive(Clone, Debug)]
-pub(super) struct Mix {
+pub(super) struct MixBlock {
     samples: Vec<f32>,
     stride: usize,
     frames: usize,
@@ -61,7 +61,7 @@ pub(super) struct Mix {
     open: Vec<LaneSet>,
 }
 
-impl Mix {
+impl MixBlock {
     /// Rows of up to `max_frames` samples for `channels` channels, filled up to whole groups of [`LANES`].
     pub(super) fn new(channels: usize, max_frames: usize) -> Self {
         let rows = channels.next_multiple_of(LANES);
@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn actuators_the_device_cannot_drive_are_left_out() {
         let actuator = |channel, newtons| Some(Actuator { channel, full_scale: Newtons(newtons) });
-        let wiring = Wiring::new(
+        let wiring = TileChannels::new(
             vec![actuator(1, 40.0), None, actuator(2, 40.0), actuator(0, 0.0), actuator(0, f32::NAN)],
             2,
         );
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_new_block_starts_silent_even_if_only_the_group_reads_it() {
-        let mut mix = Mix::new(3, 8);
+        let mut mix = MixBlock::new(3, 8);
         mix.begin(8);
         mix.row(1).fill(1.0);
         assert!(mix.is_open(0));

@@ -10,12 +10,12 @@ use super::active_modes::ActiveModes;
 use super::click;
 use super::evicting_queue::evicting_queue;
 use super::loudspeakers::Loudspeakers;
-use super::mix::{Mix, Output, Wiring};
-use super::rack::{Faults, Rack};
+use super::mix::{MixBlock, Output, TileChannels};
+use super::rack::{Rack, SampleFaults};
 use super::schedule::{Due, SampleClock, Schedule, WAITING};
 use super::scope::ScopeWriter;
 use super::scope::{ScopeReader, scope};
-use super::sender::{CueSender, Shared, count};
+use super::sender::{CueSender, SenderState, count};
 use super::silence::Silence;
 use super::voice::{Started, Voices};
 use super::{FeelCounters, SustainedCues};
@@ -82,8 +82,8 @@ pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
     let (input, sustained) = TripleBuffer::new(&SustainedCues::new()).split();
     let sample_rate = config.sample_rate.clamp(8_000, 768_000);
     let max_block = config.max_block.clamp(1, 8192);
-    let wiring = Wiring::new(config.actuators, config.channels);
-    let shared = Arc::new(Shared::new(wiring.channels().collect()));
+    let wiring = TileChannels::new(config.actuators, config.channels);
+    let shared = Arc::new(SenderState::new(wiring.channels().collect()));
     let sender =
         CueSender { cues, sustained: input, shared: Arc::clone(&shared), turns: 0, now: Instant::START };
 
@@ -109,7 +109,7 @@ pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
         modes: ActiveModes::new(sample_rate, config.channels, MODES_PER_CHANNEL),
         voices: Voices::new(sample_rate as f32, config.channels),
         voiced: 0,
-        mix: Mix::new(config.channels, max_block),
+        mix: MixBlock::new(config.channels, max_block),
         rack,
         gains: vec![0.0; max_block],
         onsets: Vec::with_capacity(WAITING),
@@ -145,9 +145,9 @@ pub struct Renderer {
     channels: usize,
     max_block: usize,
     delay: Duration,
-    wiring: Wiring,
+    wiring: TileChannels,
     loudspeakers: Loudspeakers,
-    shared: Arc<Shared>,
+    shared: Arc<SenderState>,
     silence: Silence,
     schedule: Schedule,
     clock: SampleClock,
@@ -156,7 +156,7 @@ pub struct Renderer {
     voices: Voices,
     /// Frames of the block at hand that the voices have rendered.
     voiced: usize,
-    mix: Mix,
+    mix: MixBlock,
     rack: Rack,
     gains: Vec<f32>,
     onsets: Vec<Onset>,
@@ -358,7 +358,7 @@ impl Renderer {
         }
     }
 
-    fn count(&self, faults: Faults) {
+    fn count(&self, faults: SampleFaults) {
         count(&self.shared.not_finite, faults.not_finite);
         count(&self.shared.overloaded, faults.overloaded);
         count(&self.shared.silenced, faults.silenced);
@@ -366,7 +366,7 @@ impl Renderer {
     }
 }
 
-fn note(shared: &Shared, started: Started) {
+fn note(shared: &SenderState, started: Started) {
     count(&shared.unfelt, started.unfelt);
     count(&shared.stolen, started.stolen);
 }

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::Cue;
-use super::evicting_queue::Reader;
-use super::sender::Message;
+use super::evicting_queue::QueueReader;
+use super::sender::NumberedCue;
 use crate::units::Instant;
 
 /// Maximum number of cues that wait for their time; more stay in the ring.
@@ -13,7 +13,7 @@ pub(super) const WAITING: usize = 256;
 /// Cues that wait for the block of their time.
 #[derive(Debug)]
 pub(super) struct Schedule {
-    ring: Reader<Message>,
+    ring: QueueReader<NumberedCue>,
     /// In order of time for the block at hand.
     waiting: Vec<Due>,
 }
@@ -29,7 +29,7 @@ pub(super) struct Due {
 }
 
 impl Schedule {
-    pub(super) fn new(ring: Reader<Message>) -> Self {
+    pub(super) fn new(ring: QueueReader<NumberedCue>) -> Self {
         Self { ring, waiting: Vec::with_capacity(WAITING) }
     }
 
@@ -64,7 +64,7 @@ impl Schedule {
         while self.waiting.len() < WAITING
             && let Some(message) = self.ring.pop()
         {
-            let Message { cue, turns, sent } = message;
+            let NumberedCue { cue, turns, sent } = message;
             self.waiting.push(Due { frame: 0, cue, sent, turns });
         }
         for due in &mut self.waiting {

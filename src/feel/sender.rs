@@ -36,7 +36,7 @@ pub struct FeelCounters {
 
 /// The state shared by both ends.
 #[derive(Debug, Default)]
-pub(super) struct Shared {
+pub(super) struct SenderState {
     pub(super) muted: AtomicU64,
     pub(super) late: AtomicU64,
     pub(super) unfelt: AtomicU64,
@@ -57,7 +57,7 @@ pub(super) struct Shared {
     turns: AtomicU64,
 }
 
-impl Shared {
+impl SenderState {
     /// For tiles with these channels.
     pub(super) fn new(channels: Box<[Option<usize>]>) -> Self {
         let count = channels.iter().flatten().max().map_or(0, |most| most + 1);
@@ -104,7 +104,7 @@ pub(super) fn count(counter: &AtomicU64, by: u32) {
 
 /// A cue with the number of changes of silence at its sending.
 #[derive(Clone, Debug)]
-pub(super) struct Message {
+pub(super) struct NumberedCue {
     pub(super) cue: Cue,
     pub(super) turns: u64,
     /// Time of sending, for measuring latency.
@@ -114,9 +114,9 @@ pub(super) struct Message {
 /// The sensing thread's end of the queue to the renderer; none of its calls blocks or allocates.
 #[derive(Debug)]
 pub struct CueSender {
-    pub(super) cues: Writer<Message>,
+    pub(super) cues: Writer<NumberedCue>,
     pub(super) sustained: Input<SustainedCues>,
-    pub(super) shared: Arc<Shared>,
+    pub(super) shared: Arc<SenderState>,
     pub(super) turns: u64,
     /// The time of the last call of `note_time`.
     pub(super) now: Instant,
@@ -134,7 +134,7 @@ impl CueSender {
         }
         let is_muted = |spot: &Spot| spot.weight > 0.0 && self.mutes(spot.tile);
         count(&self.shared.muted, u32::from(cue.spots.iter().any(is_muted)));
-        self.cues.push(Message { cue: cue.clone(), turns: self.turns, sent: self.now });
+        self.cues.push(NumberedCue { cue: cue.clone(), turns: self.turns, sent: self.now });
         true
     }
 

@@ -3,7 +3,7 @@
 use super::limiter::Ramp;
 use super::rack::Rack;
 use super::schedule::Schedule;
-use super::sender::{Shared, count};
+use super::sender::{SenderState, count};
 
 /// The ramp between sound and silence, and the requests that it has followed.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ impl Silence {
     }
 
     /// Starts from zero again; the ramp then stays there while `shared` requests silence.
-    pub(super) fn restart(&mut self, sample_rate: u32, shared: &Shared) {
+    pub(super) fn restart(&mut self, sample_rate: u32, shared: &SenderState) {
         self.ramp = Ramp::new(sample_rate as f32);
         if !shared.turns().is_multiple_of(2) {
             self.ramp.fade_out();
@@ -30,7 +30,7 @@ impl Silence {
     }
 
     /// Sets the ramp and the mutes of `rack` as the sender requests, and drops cues sent before a silence.
-    pub(super) fn update(&mut self, shared: &Shared, schedule: &mut Schedule, rack: &mut Rack) {
+    pub(super) fn update(&mut self, shared: &SenderState, schedule: &mut Schedule, rack: &mut Rack) {
         let turns = shared.turns();
         if turns != self.turns {
             self.turns = turns;

@@ -2,7 +2,7 @@
 
 use super::grains::Grains;
 use super::ice::Ice;
-use super::tile::{Event, Stride};
+use super::tile::{Stride, TileEvent};
 use super::wood::Wood;
 use super::{GroundState, Material};
 use crate::floor::Rect;
@@ -33,7 +33,7 @@ impl Bed {
     }
 
     /// Steps one tile by one millisecond; passes its events to `give`.
-    pub(super) fn tread(&mut self, stride: &Stride<'_>, give: impl FnMut(Event)) {
+    pub(super) fn tread(&mut self, stride: &Stride<'_>, give: impl FnMut(TileEvent)) {
         match self {
             Self::Ice(ice) => ice.tread(stride, give),
             Self::Grains(grains) => grains.tread(stride, give),

@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::relief::Recovery;
-use super::tile::{Event, Stride};
+use super::tile::{Stride, TileEvent};
 use super::{Grain, GrainSpec, Onsets, Relief, Resonance};
 use crate::floor::Rect;
 
@@ -52,7 +52,7 @@ impl Grains {
         Self { spec, rng, relief: Relief::new(area, recovery), tiles }
     }
 
-    pub(super) fn tread(&mut self, stride: &Stride<'_>, mut give: impl FnMut(Event)) {
+    pub(super) fn tread(&mut self, stride: &Stride<'_>, mut give: impl FnMut(TileEvent)) {
         let Self { spec, rng, relief, tiles } = self;
         let Some(bed) = tiles.get_mut(stride.tile) else { return };
         let step_s = stride.elastic.step_s();
@@ -83,7 +83,7 @@ impl Grains {
             // Each grain of sand gets a random pitch; stones knock at their own pitch.
             let pitch = if spec.grain == Grain::Sand { rng.random_range(0.8..1.25) } else { 1.0 };
             let click = stone.strike(&spec.ring, energy, pitch, rng);
-            give(Event { share, energy_j: energy * spec.full_j, place: stride.place, seed: None, click });
+            give(TileEvent { share, energy_j: energy * spec.full_j, place: stride.place, seed: None, click });
         });
     }
 }

@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::relief::Recovery;
-use super::tile::{Event, Stride};
+use super::tile::{Stride, TileEvent};
 use super::{Fracture, IceSpec, Onsets, Relief, Resonance};
 use crate::floor::Rect;
 use crate::units::Instant;
@@ -41,7 +41,7 @@ impl Ice {
         }
     }
 
-    pub(super) fn tread(&mut self, stride: &Stride<'_>, mut give: impl FnMut(Event)) {
+    pub(super) fn tread(&mut self, stride: &Stride<'_>, mut give: impl FnMut(TileEvent)) {
         let Self { spec, rng, fracture, relief, tiles } = self;
         let Some((onsets, resonance)) = tiles.get_mut(stride.tile) else { return };
         let kinetic = [stride.before, stride.after].map(|motion| stride.elastic.kinetic_j(&motion));
@@ -56,7 +56,7 @@ impl Ice {
             relief.wear(stride.place, spec.sheet.depth_per_j * energy_j, spec.sheet.reach_m, stride.from);
             let pitch = 1.0 - (1.0 - THIN_PITCH) * depth;
             let click = resonance.strike(&spec.ring, energy_j / spec.energy.most_j, pitch, rng);
-            give(Event { share, energy_j, place: stride.place, seed: Some(growth.seed), click });
+            give(TileEvent { share, energy_j, place: stride.place, seed: Some(growth.seed), click });
         });
     }
 

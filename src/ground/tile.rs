@@ -33,7 +33,7 @@ pub(super) struct Stride<'a> {
 }
 
 /// One event of a tile.
-pub(super) struct Event {
+pub(super) struct TileEvent {
     /// Time within the millisecond, 0 to 1.
     pub(super) share: f64,
     pub(super) energy_j: f32,

@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use super::tile::{Event, Stride};
+use super::tile::{Stride, TileEvent};
 use super::{Resonance, WoodSpec};
 use crate::floor::Rect;
 use crate::units::Newtons;
@@ -52,7 +52,7 @@ impl Wood {
         }
     }
 
-    pub(super) fn tread(&mut self, stride: &Stride<'_>, mut give: impl FnMut(Event)) {
+    pub(super) fn tread(&mut self, stride: &Stride<'_>, mut give: impl FnMut(TileEvent)) {
         let Self { spec, area, rng, joints, planks } = self;
         let Some(joint) = joints.get_mut(stride.tile) else { return };
         let stiffness = f64::from(spec.body.stiffness_n_m);
@@ -79,7 +79,7 @@ impl Wood {
             joint.strength_n = strength(spec, rng);
             if let Some(resonance) = planks.get(plank) {
                 let click = resonance.strike(&spec.ring, relative, 1.0, rng);
-                give(Event { share, energy_j: energy_j as f32, place: stride.place, seed: None, click });
+                give(TileEvent { share, energy_j: energy_j as f32, place: stride.place, seed: None, click });
             }
         }
     }

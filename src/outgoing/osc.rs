@@ -221,7 +221,7 @@ mod tests {
     use crate::sense::{ContactId, Covariance, Quality, TileLoad};
     use crate::units::{Instant, Newtons};
     use crate::widget::{Direction, EventKind, Value};
-    use crate::wire::{Limits, check};
+    use crate::wire::{DatagramLimits, check};
 
     fn event(kind: EventKind) -> WidgetEvent {
         WidgetEvent {
@@ -239,7 +239,7 @@ mod tests {
     }
 
     fn decoded(bytes: &[u8]) -> OscPacket {
-        assert_eq!(check(bytes, &Limits::default()), Ok(()));
+        assert_eq!(check(bytes, &DatagramLimits::default()), Ok(()));
         rosc::decoder::decode_udp(bytes).unwrap().1
     }
 

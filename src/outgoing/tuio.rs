@@ -54,7 +54,7 @@ impl Surface {
 
 /// The reported state of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Told {
+pub(super) struct ReportedContact {
     pub(super) place: Vec2,
     pub(super) velocity: Vec2,
     /// Change of speed, in surfaces per second squared.
@@ -70,26 +70,26 @@ pub(super) struct Told {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct News {
     pub(super) id: ContactId,
-    pub(super) told: Told,
+    pub(super) told: ReportedContact,
     /// Whether this is its first report.
     is_new: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Known {
-    told: Told,
+    told: ReportedContact,
     at: Instant,
 }
 
 /// The contacts of the last frame, from which it selects the ones to report in the next frame.
 #[derive(Debug)]
-pub(super) struct Memory {
+pub(super) struct LastContacts {
     surface: Surface,
     known: HashMap<ContactId, Known>,
     refreshed: Option<Instant>,
 }
 
-impl Memory {
+impl LastContacts {
     pub(super) fn of(surface: Surface) -> Self {
         Self { surface, known: HashMap::new(), refreshed: None }
     }
@@ -113,7 +113,7 @@ impl Memory {
         news
     }
 
-    fn told(&self, at: Instant, contact: &Contact, before: Option<Known>) -> Told {
+    fn told(&self, at: Instant, contact: &Contact, before: Option<Known>) -> ReportedContact {
         let velocity = self.surface.velocity(contact.velocity);
         // Without a second tile the direction is unknown: it keeps its last value, at first north.
         let angle = match contact.difference {
@@ -122,13 +122,13 @@ impl Memory {
             }
             _ => before.map_or(std::f32::consts::FRAC_PI_2, |before| before.told.angle),
         };
-        let rate = |now: f32, then: fn(&Told) -> f32| {
+        let rate = |now: f32, then: fn(&ReportedContact) -> f32| {
             let Some(before) = before else { return 0.0 };
             let seconds = at.since(before.at).as_secs_f32();
             if seconds > 0.0 { (now - then(&before.told)) / seconds } else { 0.0 }
         };
         let force = contact.force.0;
-        Told {
+        ReportedContact {
             place: self.surface.place(contact.centroid),
             velocity,
             acceleration: rate(velocity.length(), |told| told.velocity.length()),

@@ -4,7 +4,9 @@ use std::f32::consts::FRAC_PI_4;
 
 use rosc::{OscPacket, OscType};
 
-use super::tuio::{Memory, News, SHOE_M, Surface, Told, heaviest, message, send_frame, session};
+use super::tuio::{
+    LastContacts, News, ReportedContact, SHOE_M, Surface, heaviest, message, send_frame, session,
+};
 use crate::floor::Geometry;
 use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
@@ -26,7 +28,7 @@ type Set = fn(&Surface, &News) -> OscPacket;
 #[derive(Debug)]
 pub struct Tuio1 {
     surface: Surface,
-    memory: Memory,
+    memory: LastContacts,
     source: String,
     /// The number of the next bundle.
     next: i32,
@@ -52,7 +54,7 @@ impl Tuio1 {
     pub fn new(geometry: &Geometry, source: &str, first: i32) -> Self {
         let surface = Surface::of(geometry);
         let profiles = TuioProfiles::default();
-        Self { surface, memory: Memory::of(surface), source: source.into(), next: first, profiles }
+        Self { surface, memory: LastContacts::of(surface), source: source.into(), next: first, profiles }
     }
 
     /// Sets the profiles.
@@ -103,13 +105,13 @@ fn set(profile: &str, id: ContactId, floats: impl IntoIterator<Item = f32>) -> O
 
 /// `set s x y X Y m`.
 fn cursor(_: &Surface, news: &News) -> OscPacket {
-    let Told { place, velocity, acceleration, .. } = news.told;
+    let ReportedContact { place, velocity, acceleration, .. } = news.told;
     set(CURSOR, news.id, [place.x, place.y, velocity.x, velocity.y, acceleration])
 }
 
 /// `set s x y a w h f X Y A m r`.
 fn blob(surface: &Surface, news: &News) -> OscPacket {
-    let Told { place, velocity, acceleration, angle, .. } = news.told;
+    let ReportedContact { place, velocity, acceleration, angle, .. } = news.told;
     let size = SHOE_M / surface.size();
     let area = FRAC_PI_4 * size.x * size.y;
     let (turning, turning_change) = (0.0, 0.0);

@@ -2,7 +2,7 @@
 
 use rosc::{OscPacket, OscTime, OscType};
 
-use super::tuio::{Memory, News, SHOE_M, Surface, heaviest, message, send_frame, session};
+use super::tuio::{LastContacts, News, SHOE_M, Surface, heaviest, message, send_frame, session};
 use crate::floor::Geometry;
 use crate::sense::Contact;
 use crate::units::Instant;
@@ -21,7 +21,7 @@ const TUIO_FULL_FORCE_N: f32 = 1000.0;
 /// TUIO 2.0 protocol specification (tuio.org).
 #[derive(Debug)]
 pub struct Tuio2 {
-    memory: Memory,
+    memory: LastContacts,
     /// Width and height in millimetres, 16 bits each.
     dimension: i32,
     /// Half a shoe's width, in units of the floor's width.
@@ -41,7 +41,7 @@ impl Tuio2 {
         // A side beyond 65 m is reported as 65 m.
         let dimension = (u32::from(millimetres.x as u16) << 16) | u32::from(millimetres.y as u16);
         Self {
-            memory: Memory::of(surface),
+            memory: LastContacts::of(surface),
             dimension: dimension.cast_signed(),
             radius: 0.5 * SHOE_M.y / surface.size().x,
             source: source.into(),

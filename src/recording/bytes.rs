@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 
 /// Bytes of a record, read field by field; a read returns `None` if they end too early or a string is not UTF-8.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fields<'b>(pub(super) &'b [u8]);
+pub(super) struct ByteReader<'b>(pub(super) &'b [u8]);
 
-impl<'b> Fields<'b> {
+impl<'b> ByteReader<'b> {
     pub(super) fn u16(&mut self) -> Option<u16> {
         self.array().map(u16::from_le_bytes)
     }

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::bytes::Fields;
+use super::bytes::ByteReader;
 use super::records::LONGEST_CHUNK;
 
 /// The records of one chunk.
@@ -15,7 +15,7 @@ pub(super) struct Chunk {
 }
 
 /// A fault of a chunk, as the end of a sentence about it.
-pub(super) type Fault = String;
+pub(super) type ChunkFault = String;
 
 /// The fields before a chunk's records.
 struct Head<'b> {
@@ -28,7 +28,7 @@ struct Head<'b> {
 }
 
 impl<'b> Head<'b> {
-    fn read(fields: &mut Fields<'b>) -> Option<Self> {
+    fn read(fields: &mut ByteReader<'b>) -> Option<Self> {
         Some(Self {
             begins_ns: fields.u64()?,
             ends_ns: fields.u64()?,
@@ -42,8 +42,8 @@ impl<'b> Head<'b> {
 
 impl Chunk {
     /// Decompresses a chunk's record; of a truncated one, as much as the file contains.
-    pub(super) fn unpack(record: &[u8], is_cut: bool) -> Result<Self, Fault> {
-        let mut fields = Fields(record);
+    pub(super) fn unpack(record: &[u8], is_cut: bool) -> Result<Self, ChunkFault> {
+        let mut fields = ByteReader(record);
         let Some(head) = Head::read(&mut fields) else {
             let empty = Self { bytes: Vec::new(), next: 0, is_cut };
             return if is_cut { Ok(empty) } else { Err("its head makes no sense".into()) };
@@ -80,8 +80,8 @@ impl Chunk {
     }
 
     /// The next record, as its kind and bytes; `None` at the end.
-    pub(super) fn next(&mut self) -> Option<Result<(u8, &[u8]), Fault>> {
-        let mut fields = Fields(self.bytes.get(self.next..).filter(|rest| !rest.is_empty())?);
+    pub(super) fn next(&mut self) -> Option<Result<(u8, &[u8]), ChunkFault>> {
+        let mut fields = ByteReader(self.bytes.get(self.next..).filter(|rest| !rest.is_empty())?);
         let record = fields.bytes(1).and_then(|kind| {
             let (kind, length) = (*kind.first()?, fields.u64()?);
             Some((kind, fields.bytes(length)?))
@@ -98,10 +98,10 @@ impl Chunk {
 }
 
 /// Decompresses the frame at the beginning of the bytes, which it takes off them, up to a length.
-type Unpack = fn(&mut &[u8], &mut Vec<u8>, u64) -> Result<(), Fault>;
+type Unpack = fn(&mut &[u8], &mut Vec<u8>, u64) -> Result<(), ChunkFault>;
 
 /// Decompresses up to `most` bytes of `packed`; on invalid data, returns the bytes before it and the fault.
-fn decompress(compression: &str, packed: &[u8], most: u64) -> Result<Vec<u8>, (Vec<u8>, Fault)> {
+fn decompress(compression: &str, packed: &[u8], most: u64) -> Result<Vec<u8>, (Vec<u8>, ChunkFault)> {
     let unpack: Unpack = match compression {
         "" => return Ok(packed.to_vec()),
         "zstd" => zstd_frame,
@@ -130,7 +130,7 @@ fn decompress(compression: &str, packed: &[u8], most: u64) -> Result<Vec<u8>, (V
 
 /// The bytes behind a skippable frame, if `bytes` begins with one; zstd and lz4 use the same format for it.
 fn behind_skippable(bytes: &[u8]) -> Option<&[u8]> {
-    let mut fields = Fields(bytes);
+    let mut fields = ByteReader(bytes);
     let is_skippable = fields.u32()? & 0xffff_fff0 == 0x184d_2a50;
     let length = fields.u32().filter(|_| is_skippable)?;
     Some(fields.bytes(length.into()).map_or(&[][..], |_| fields.0))
@@ -138,7 +138,7 @@ fn behind_skippable(bytes: &[u8]) -> Option<&[u8]> {
 
 /// Decompresses one frame of `packed` and leaves the rest. It reads at most one byte more than `most`, enough to
 /// detect an oversized frame.
-fn zstd_frame(packed: &mut &[u8], bytes: &mut Vec<u8>, most: u64) -> Result<(), Fault> {
+fn zstd_frame(packed: &mut &[u8], bytes: &mut Vec<u8>, most: u64) -> Result<(), ChunkFault> {
     let mut decoder =
         ruzstd::decoding::StreamingDecoder::new(&mut *packed).map_err(|error| error.to_string())?;
     let room = most.saturating_add(1).saturating_sub(bytes.len() as u64);
@@ -153,7 +153,7 @@ fn zstd_frame(packed: &mut &[u8], bytes: &mut Vec<u8>, most: u64) -> Result<(), 
 }
 
 /// As [`zstd_frame`].
-fn lz4_frame(packed: &mut &[u8], bytes: &mut Vec<u8>, most: u64) -> Result<(), Fault> {
+fn lz4_frame(packed: &mut &[u8], bytes: &mut Vec<u8>, most: u64) -> Result<(), ChunkFault> {
     let room = most.saturating_add(1).saturating_sub(bytes.len() as u64);
     let mut decoder = lz4_flex::frame::FrameDecoder::new(&mut *packed).take(room);
     decoder.read_to_end(bytes).map(drop).map_err(|error| error.to_string())

@@ -10,7 +10,7 @@ use mcap::records::op;
 use super::chunk::Chunk;
 use super::entry::{self, Entry};
 use super::parts::{Attachment, Message, channel, metadata, statistics};
-use super::records::{RawRecord, Records, State};
+use super::records::{RawRecord, ReadState, Records};
 use super::{EVENTS, FLOOR, LAYOUT, METADATA, TOPICS};
 use crate::units::Instant;
 use crate::wire::{Decoder, Readings};
@@ -20,7 +20,7 @@ use crate::wire::{Decoder, Readings};
     clippy::large_enum_variant,
     reason = "nearly all are packets, and packets are not allocated one by one"
 )]
-pub(super) enum Part {
+pub(super) enum LogPart {
     /// An entry, with the time at which the server took it.
     Entry(Instant, Entry),
     /// A line of an event.
@@ -34,11 +34,11 @@ pub(super) enum Part {
 /// An entry with its number among those of the same time.
 pub(super) enum Numbered {
     Entry(Instant, u32, Entry),
-    Part(Part),
+    Part(LogPart),
 }
 
 /// Reader of the messages of a file.
-pub(super) struct Messages {
+pub(super) struct MessageReader {
     records: Records,
     path: PathBuf,
     /// Checksums of the attachments and the metadata read on opening the file, by their names.
@@ -69,7 +69,7 @@ enum End {
     Broken(String),
 }
 
-impl Messages {
+impl MessageReader {
     pub(super) fn new(records: Records, path: &Path, opened: HashMap<&'static str, u32>) -> Self {
         Self {
             records,
@@ -100,7 +100,7 @@ impl Messages {
                 Numbered::Entry(_, _, Entry::Packet(packet)) => {
                     return matches!(packet.readings, Readings::Newtons(_));
                 }
-                Numbered::Part(Part::Whole | Part::Broken(_)) => return false,
+                Numbered::Part(LogPart::Whole | LogPart::Broken(_)) => return false,
                 Numbered::Entry(..) | Numbered::Part(_) => {}
             }
         }
@@ -116,8 +116,8 @@ impl Messages {
         loop {
             if let Some(end) = &self.end {
                 return Numbered::Part(match end {
-                    End::Whole => Part::Whole,
-                    End::Broken(why) => Part::Broken(why.clone()),
+                    End::Whole => LogPart::Whole,
+                    End::Broken(why) => LogPart::Broken(why.clone()),
                 });
             }
             match self.advance() {
@@ -160,24 +160,24 @@ impl Messages {
             return self.check_summary(&record);
         }
         match (opcode, state) {
-            (op::CHUNK, State::Whole | State::Cut) => {
+            (op::CHUNK, ReadState::Whole | ReadState::Cut) => {
                 self.counts.chunks += 1;
-                let chunk = Chunk::unpack(self.records.data(), state == State::Cut)
+                let chunk = Chunk::unpack(self.records.data(), state == ReadState::Cut)
                     .map_err(|fault| End::Broken(format!("the chunk at byte {at} is damaged: {fault}")))?;
                 self.chunk = Some((at, chunk));
                 Ok(None)
             }
-            (op::CHUNK, State::Long) => {
+            (op::CHUNK, ReadState::Long) => {
                 Err(End::Broken(format!("the chunk at byte {at} claims {length} bytes")))
             }
-            (_, State::Cut) => Err(End::Broken(format!(
+            (_, ReadState::Cut) => Err(End::Broken(format!(
                 "it ends in the middle of the record at byte {at}, of {length} bytes"
             ))),
-            (op::DATA_END, State::Whole) => self.end_data(at).map(|()| None),
+            (op::DATA_END, ReadState::Whole) => self.end_data(at).map(|()| None),
             (op::ATTACHMENT | op::METADATA, _) => self.check_opened(&record).map(|()| None),
-            (op::MESSAGE, State::Long) => self.pass_over_message(&record).map(|()| None),
-            (_, State::Long) => Ok(None),
-            (_, State::Whole) => {
+            (op::MESSAGE, ReadState::Long) => self.pass_over_message(&record).map(|()| None),
+            (_, ReadState::Long) => Ok(None),
+            (_, ReadState::Whole) => {
                 let data = self.records.data();
                 let read = read(opcode, data, &mut self.topics, &mut self.counts, &self.decoder);
                 read.map_err(|fault| End::Broken(format!("at byte {at} there is {fault}")))
@@ -211,7 +211,7 @@ impl Messages {
         }
         let ours =
             Attachment::name(data).and_then(|name| [FLOOR, LAYOUT].into_iter().find(|own| *own == name));
-        if state == State::Long && ours.is_none() {
+        if state == ReadState::Long && ours.is_none() {
             return Ok(());
         }
         match (Attachment::read(data), ours) {
@@ -231,7 +231,7 @@ impl Messages {
     /// Ends the data section: verifies it against its checksum, if it has one.
     fn end_data(&mut self, at: u64) -> Result<(), End> {
         self.is_past_data = true;
-        let written = super::bytes::Fields(self.records.data()).u32();
+        let written = super::bytes::ByteReader(self.records.data()).u32();
         let found = self.records.end_checksum();
         match written {
             Some(0) => Ok(()),
@@ -245,7 +245,7 @@ impl Messages {
 
     /// Compares the counts of messages and chunks with the summary.
     fn check_summary(&self, record: &RawRecord) -> Result<Option<Numbered>, End> {
-        if record.state != State::Whole || record.opcode == op::FOOTER {
+        if record.state != ReadState::Whole || record.opcode == op::FOOTER {
             return Err(End::Whole);
         }
         if record.opcode == op::STATISTICS
@@ -301,7 +301,7 @@ fn read(
 /// A message on one of our topics.
 fn ours(topic: &'static str, message: &Message<'_>, decoder: &Decoder) -> Result<Numbered, String> {
     if topic == EVENTS {
-        return Ok(Numbered::Part(Part::Event(message.data.to_vec())));
+        return Ok(Numbered::Part(LogPart::Event(message.data.to_vec())));
     }
     let [taken, came] = [message.log_ns, message.publish_ns].map(|ns| Instant::from_micros(ns / 1000));
     let entry = Entry::read(topic, message.data, came, decoder)
@@ -313,7 +313,7 @@ fn unreadable(at: u64, error: &io::Error) -> String {
     format!("it cannot be read beyond byte {at}: {error}")
 }
 
-impl fmt::Debug for Messages {
+impl fmt::Debug for MessageReader {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Messages").field("path", &self.path).finish_non_exhaustive()
     }

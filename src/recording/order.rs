@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::Path;
 
 use super::entry::Entry;
-use super::messages::{Messages, Numbered, Part};
+use super::messages::{LogPart, MessageReader, Numbered};
 use crate::units::Instant;
 
 /// Maximum number of entries of one time that are sorted: a second of a floor of 65 boards.
@@ -15,7 +15,7 @@ const MOST_AT_ONCE: usize = 1 << 16;
 ///
 /// The first recordings have no numbers; their entries keep the order of the file.
 pub(super) struct Ordered {
-    messages: Messages,
+    messages: MessageReader,
     /// Entries of one time, and whether they are complete and sorted.
     waiting: VecDeque<(Instant, u32, Entry)>,
     is_sorted: bool,
@@ -25,7 +25,7 @@ pub(super) struct Ordered {
 }
 
 impl Ordered {
-    pub(super) const fn new(messages: Messages) -> Self {
+    pub(super) const fn new(messages: MessageReader) -> Self {
         Self { messages, waiting: VecDeque::new(), is_sorted: false, ahead: None, last: None }
     }
 
@@ -40,12 +40,12 @@ impl Ordered {
     }
 
     /// The next part; after the end or a fault, the same part again.
-    pub(super) fn next_part(&mut self) -> Part {
+    pub(super) fn next_part(&mut self) -> LogPart {
         loop {
             if self.is_sorted {
                 if let Some((taken, number, entry)) = self.waiting.pop_front() {
                     self.last = Some((taken, number));
-                    return Part::Entry(taken, entry);
+                    return LogPart::Entry(taken, entry);
                 }
                 self.is_sorted = false;
             }
@@ -57,7 +57,7 @@ impl Ordered {
     }
 
     /// Collects the entries of the next time; returns `None` once they are complete, or a part that is not an entry.
-    fn fill(&mut self) -> Option<Part> {
+    fn fill(&mut self) -> Option<LogPart> {
         loop {
             let next = self.ahead.take().unwrap_or_else(|| self.messages.next());
             let moment = self.waiting.front().map(|(taken, ..)| *taken);
@@ -66,12 +66,12 @@ impl Ordered {
                     if moment.is_none_or(|moment| moment == taken) && self.waiting.len() < MOST_AT_ONCE =>
                 {
                     if let Some((last, _)) = self.last.filter(|(last, _)| taken < *last) {
-                        return Some(Part::Broken(out_of_order(taken, last)));
+                        return Some(LogPart::Broken(out_of_order(taken, last)));
                     }
                     self.waiting.push_back((taken, number, entry));
                 }
                 // Lines of events come from another thread, so their order among entries is undefined.
-                Numbered::Part(Part::Event(line)) => return Some(Part::Event(line)),
+                Numbered::Part(LogPart::Event(line)) => return Some(LogPart::Event(line)),
                 Numbered::Part(part) if self.waiting.is_empty() => return Some(part),
                 behind => {
                     self.ahead = Some(behind);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::bytes::Fields;
+use super::bytes::ByteReader;
 
 /// An attachment's bytes, and whether they match its checksum.
 pub(super) struct Attachment<'b> {
@@ -12,7 +12,7 @@ pub(super) struct Attachment<'b> {
 
 impl<'b> Attachment<'b> {
     pub(super) fn read(record: &'b [u8]) -> Option<Self> {
-        let mut fields = Fields(record);
+        let mut fields = ByteReader(record);
         fields.bytes(16)?;
         let (_name, _media_type) = (fields.text()?, fields.text()?);
         let length = fields.u64()?;
@@ -26,7 +26,7 @@ impl<'b> Attachment<'b> {
 
     /// The name alone, for which the first bytes of the record suffice.
     pub(super) fn name(record: &'b [u8]) -> Option<&'b str> {
-        let mut fields = Fields(record);
+        let mut fields = ByteReader(record);
         // The times of creation and logging.
         fields.bytes(16)?;
         fields.text()
@@ -35,13 +35,13 @@ impl<'b> Attachment<'b> {
 
 /// The name of a metadata record, and its entries.
 pub(super) fn metadata(record: &[u8]) -> Option<(&str, BTreeMap<&str, &str>)> {
-    let mut fields = Fields(record);
+    let mut fields = ByteReader(record);
     Some((fields.text()?, fields.map()?))
 }
 
 /// The number and the topic of a channel.
 pub(super) fn channel(record: &[u8]) -> Option<(u16, &str)> {
-    let mut fields = Fields(record);
+    let mut fields = ByteReader(record);
     let number = fields.u16()?;
     let _schema = fields.u16()?;
     Some((number, fields.text()?))
@@ -58,7 +58,7 @@ pub(super) struct Message<'b> {
 
 impl<'b> Message<'b> {
     pub(super) fn read(record: &'b [u8]) -> Option<Self> {
-        let mut fields = Fields(record);
+        let mut fields = ByteReader(record);
         let (channel, sequence) = (fields.u16()?, fields.u32()?);
         let (log_ns, publish_ns) = (fields.u64()?, fields.u64()?);
         Some(Self { channel, sequence, log_ns, publish_ns, data: fields.0 })
@@ -67,7 +67,7 @@ impl<'b> Message<'b> {
 
 /// Numbers of messages and of chunks according to the file's summary.
 pub(super) fn statistics(record: &[u8]) -> Option<(u64, u32)> {
-    let mut fields = Fields(record);
+    let mut fields = ByteReader(record);
     let messages = fields.u64()?;
     let (_schemas, _channels, _attachments, _metadata) =
         (fields.u16()?, fields.u32()?, fields.u32()?, fields.u32()?);

@@ -6,11 +6,11 @@ use std::path::Path;
 
 use mcap::records::op;
 
-use super::messages::{Messages, Part};
+use super::messages::{LogPart, MessageReader};
 use super::order::Ordered;
 use super::parts::{Attachment, metadata};
 use super::recorder::read_layout;
-use super::records::{RawRecord, RecordingBytes, Records, State};
+use super::records::{RawRecord, ReadState, RecordingBytes, Records};
 use super::replay::{ReplaySource, Speed};
 use super::{FLOOR, LAYOUT, LEARNT, METADATA, NOISE, RecordingError, VERSION};
 use crate::floor::{Floor, FloorFile};
@@ -110,10 +110,10 @@ impl Recording {
         std::iter::from_fn(move || {
             while !is_over {
                 match parts.next_part() {
-                    Part::Event(line) => return Some(Ok(line)),
-                    Part::Entry(..) => {}
-                    Part::Whole => is_over = true,
-                    Part::Broken(why) => {
+                    LogPart::Event(line) => return Some(Ok(line)),
+                    LogPart::Entry(..) => {}
+                    LogPart::Whole => is_over = true,
+                    LogPart::Broken(why) => {
                         is_over = true;
                         return Some(Err(why));
                     }
@@ -138,12 +138,12 @@ impl Opening {
         let mut opening = Self::find(&mut records).map_err(failed)?.map_err(unreadable)?;
         records.rewind().map_err(failed)?;
         if !opening.learnt {
-            let mut messages = Messages::new(records, name, opening.checksums.clone());
+            let mut messages = MessageReader::new(records, name, opening.checksums.clone());
             opening.noiseless = messages.begin_with_newtons();
             records = messages.into_records();
             records.rewind().map_err(failed)?;
         }
-        let messages = Messages::new(records, name, std::mem::take(&mut opening.checksums));
+        let messages = MessageReader::new(records, name, std::mem::take(&mut opening.checksums));
         Ok((opening, Ordered::new(messages)))
     }
 
@@ -187,7 +187,7 @@ impl Opening {
                 let Some(name) = [FLOOR, LAYOUT].into_iter().find(|own| name == Some(*own)) else {
                     return Ok(());
                 };
-                let attachment = Attachment::read(data).filter(|_| state == State::Whole);
+                let attachment = Attachment::read(data).filter(|_| state == ReadState::Whole);
                 let Some(attachment) = attachment.filter(|attachment| attachment.is_sound) else {
                     return Err(format!("{name}, at byte {at}, is damaged or cut"));
                 };
@@ -200,7 +200,7 @@ impl Opening {
                 Ok(())
             }
             op::METADATA if self.method.is_none() => {
-                let Some((METADATA, entries)) = metadata(data).filter(|_| state == State::Whole) else {
+                let Some((METADATA, entries)) = metadata(data).filter(|_| state == ReadState::Whole) else {
                     return Ok(());
                 };
                 let version = entries.get("version").copied().unwrap_or_default();

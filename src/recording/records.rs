@@ -41,12 +41,12 @@ pub(super) struct RawRecord {
     /// The length in its head.
     pub(super) length: u64,
     /// How far it was read.
-    pub(super) state: State,
+    pub(super) state: ReadState,
 }
 
 /// How far a record was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum State {
+pub(super) enum ReadState {
     Whole,
     /// The file ends within it.
     Cut,
@@ -86,7 +86,7 @@ impl Records {
         let Some((opcode, length, head)) = self.next_head()? else { return Ok(None) };
         let at = self.at;
         let most = if opcode == op::CHUNK { LONGEST_CHUNK } else { LONGEST };
-        let mut record = RawRecord { opcode, at, length, state: State::Whole };
+        let mut record = RawRecord { opcode, at, length, state: ReadState::Whole };
         let kept = if length > most { length.min(FIRST_BYTES) } else { length };
         let mut read = self.read(kept)?;
         // The checksum does not cover the record that contains it.
@@ -95,11 +95,11 @@ impl Records {
             checksum.update(&self.data);
         }
         if length > most {
-            record.state = State::Long;
+            record.state = ReadState::Long;
             read += self.pass_over(length - kept)?;
         }
         if read < length {
-            record.state = State::Cut;
+            record.state = ReadState::Cut;
         }
         self.at = self.at.saturating_add(HEAD).saturating_add(read);
         Ok(Some(record))

@@ -6,7 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
 use super::entry::Entry;
-use super::messages::Part;
+use super::messages::LogPart;
 use super::order::Ordered;
 use super::recorder::read_layout;
 use super::transport::Transport;
@@ -159,17 +159,17 @@ impl ReplaySource {
         }
         while self.ahead.is_none() && !self.progress.is_over() {
             match self.parts.next_part() {
-                Part::Entry(_, Entry::Gap(entries)) => {
+                LogPart::Entry(_, Entry::Gap(entries)) => {
                     self.progress.gaps.fetch_add(entries, Ordering::Relaxed);
                 }
-                Part::Entry(taken, entry) => self.ahead = Some((taken, entry)),
-                Part::Whole => self.progress.is_over.store(true, Ordering::Relaxed),
-                Part::Broken(why) => {
+                LogPart::Entry(taken, entry) => self.ahead = Some((taken, entry)),
+                LogPart::Whole => self.progress.is_over.store(true, Ordering::Relaxed),
+                LogPart::Broken(why) => {
                     let why = format!("{}: {why}", self.parts.path().display());
                     *self.progress.broken.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
                     self.progress.is_over.store(true, Ordering::Relaxed);
                 }
-                Part::Event(_) => {}
+                LogPart::Event(_) => {}
             }
         }
         self.progress.foreign.store(self.parts.foreign(), Ordering::Relaxed);

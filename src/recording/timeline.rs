@@ -1,7 +1,7 @@
 //! An overview of a recording: its span and its important events.
 
 use super::entry::Entry;
-use super::messages::Part;
+use super::messages::LogPart;
 use super::reader::Recording;
 use crate::outgoing::json::{Line, Message};
 use crate::units::Instant;
@@ -47,14 +47,14 @@ impl Recording {
         let (mut parts, mut timeline) = (self.into_parts(), Timeline::default());
         for round in 1_usize.. {
             match parts.next_part() {
-                Part::Entry(_, Entry::Gap(_)) => {}
-                Part::Entry(taken, _) => {
+                LogPart::Entry(_, Entry::Gap(_)) => {}
+                LogPart::Entry(taken, _) => {
                     let begins = timeline.span.map_or(taken, |(begins, _)| begins);
                     timeline.span = Some((begins, taken.max(begins)));
                 }
-                Part::Event(line) => timeline.marks.extend(mark(&line)),
-                Part::Whole => break,
-                Part::Broken(why) => {
+                LogPart::Event(line) => timeline.marks.extend(mark(&line)),
+                LogPart::Whole => break,
+                LogPart::Broken(why) => {
                     timeline.broken = Some(why);
                     break;
                 }

@@ -14,10 +14,10 @@ use triple_buffer::triple_buffer;
 
 use super::app_sink::{AppSink, HeldNow, Waker};
 use super::held::HeldWatch;
-use super::queue::{Queue, QueueInput};
+use super::queue::{EventQueue, QueueInput};
 use super::session::{Inner, Session};
 use super::snapshot::Shown;
-use super::thread::{self, Actuators, EndWatchers, OpenActuators, Plan};
+use super::thread::{self, Actuators, EndWatchers, OpenActuators, SensingThread};
 use crate::engine;
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
@@ -297,7 +297,7 @@ impl SessionBuilder {
         if let Some(recorder) = recorder {
             self.sinks.push(recorder.events()?);
         }
-        let queue = Arc::new(Queue::new(self.every_change));
+        let queue = Arc::new(EventQueue::new(self.every_change));
         let (held_input, held) = triple_buffer(&HeldNow::default());
         let held = Arc::new(HeldWatch::new(held));
         let (snapshots, latest) = triple_buffer(&engine::Snapshot::default());
@@ -313,7 +313,7 @@ impl SessionBuilder {
             cracks: CrackRateLimiter::default(),
         });
         let sinks = sinks.with(self.sinks);
-        let plan = Plan {
+        let plan = SensingThread {
             floor,
             layout,
             method: self.method,

@@ -51,7 +51,7 @@ impl Waiting {
 
 /// The app's end of the queue.
 #[derive(Debug, Default)]
-pub(super) struct Queue {
+pub(super) struct EventQueue {
     state: Mutex<State>,
     arrived: Condvar,
 }
@@ -62,7 +62,7 @@ struct State {
     ended: bool,
 }
 
-impl Queue {
+impl EventQueue {
     pub(super) fn new(every_change: bool) -> Self {
         let queue = Self::default();
         queue.lock().waiting.every_change = every_change;
@@ -110,13 +110,13 @@ impl Queue {
 /// The sensing thread's end of the queue.
 #[derive(Debug)]
 pub(super) struct QueueInput {
-    queue: Arc<Queue>,
+    queue: Arc<EventQueue>,
     /// Events that arrived while the app had the queue locked.
     held_up: Waiting,
 }
 
 impl QueueInput {
-    pub(super) fn new(queue: Arc<Queue>, every_change: bool) -> Self {
+    pub(super) fn new(queue: Arc<EventQueue>, every_change: bool) -> Self {
         Self { queue, held_up: Waiting { every_change, ..Waiting::default() } }
     }
 
@@ -180,7 +180,7 @@ mod tests {
         event(ms, id, EventKind::Changed(Value::Number(ms as f32)))
     }
 
-    fn taken(queue: &Queue) -> Vec<(u64, String)> {
+    fn taken(queue: &EventQueue) -> Vec<(u64, String)> {
         let event = |event: Event| (event.at.micros() / 1000, event.id().to_owned());
         std::iter::from_fn(|| queue.next()).map(event).collect()
     }
@@ -188,7 +188,7 @@ mod tests {
     #[test]
     fn of_several_values_that_wait_the_latest_is_told_unless_each_one_is_asked_for() {
         for every_change in [false, true] {
-            let queue = Arc::new(Queue::new(every_change));
+            let queue = Arc::new(EventQueue::new(every_change));
             let mut input = QueueInput::new(Arc::clone(&queue), every_change);
             input.put(event(1, "zoom", EventKind::Pressed));
             for ms in 2..5 {
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn an_app_that_never_reads_misses_no_end_of_a_press_no_state_and_not_how_much() {
-        let queue = Arc::new(Queue::new(true));
+        let queue = Arc::new(EventQueue::new(true));
         let mut input = QueueInput::new(Arc::clone(&queue), true);
         input.put(Event::of(&Report::Link(Instant::START, LinkState::Lost)).unwrap());
         let ids: Vec<String> = (0..20).map(|number| format!("control {number}")).collect();
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn the_sensing_thread_never_waits_for_the_app() {
-        let queue = Arc::new(Queue::new(false));
+        let queue = Arc::new(EventQueue::new(false));
         let mut input = QueueInput::new(Arc::clone(&queue), false);
         let held = queue.lock();
         input.put(changed(1, "zoom"));

@@ -13,7 +13,7 @@ use super::control::Control;
 use super::event::Event;
 use super::events::Events;
 use super::held::{Held, HeldWatch};
-use super::queue::Queue;
+use super::queue::EventQueue;
 use super::snapshot::{Shown, Snapshot};
 use crate::floor::Geometry;
 use crate::layout::Layout;
@@ -33,7 +33,7 @@ const PATIENCE: Duration = Duration::from_millis(200);
 pub struct Session(Arc<Inner>);
 
 pub(super) struct Inner {
-    pub(super) queue: Arc<Queue>,
+    pub(super) queue: Arc<EventQueue>,
     pub(super) held: Arc<HeldWatch>,
     pub(super) shown: Arc<Shown>,
     pub(super) commands: SyncSender<Command>,

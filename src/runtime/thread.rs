@@ -10,7 +10,7 @@ use super::app_sink::Waker;
 use super::builder::StartError;
 use super::event::{EndReason, Event};
 use super::held::HeldWatch;
-use super::queue::Queue;
+use super::queue::EventQueue;
 use crate::engine;
 use crate::feel::CueSender;
 use crate::floor::Floor;
@@ -38,7 +38,7 @@ pub(super) type OpenActuators =
     Box<dyn FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send>;
 
 /// Everything that the sensing thread owns.
-pub(super) struct Plan {
+pub(super) struct SensingThread {
     pub(super) floor: Floor,
     pub(super) layout: Layout,
     pub(super) method: Method,
@@ -60,7 +60,7 @@ pub(super) struct Plan {
 
 /// Receivers of the end of a session.
 pub(super) struct EndWatchers {
-    pub(super) queue: Arc<Queue>,
+    pub(super) queue: Arc<EventQueue>,
     pub(super) held: Arc<HeldWatch>,
     pub(super) waker: Option<Arc<Waker>>,
 }
@@ -68,7 +68,11 @@ pub(super) struct EndWatchers {
 /// Serves until the end, on this thread or on one of the pool; sends to `ready` once the first snapshot exists, or
 /// the error that prevents the start.
 #[cfg_attr(not(feature = "threads"), expect(unused_mut, reason = "no pool to take from it"))]
-pub(super) fn run(mut plan: Plan, watchers: &EndWatchers, ready: &SyncSender<Result<(), StartError>>) {
+pub(super) fn run(
+    mut plan: SensingThread,
+    watchers: &EndWatchers,
+    ready: &SyncSender<Result<(), StartError>>,
+) {
     #[cfg(feature = "threads")]
     if let Some(pool) = plan.pool.take() {
         if plan.realtime {
@@ -79,7 +83,7 @@ pub(super) fn run(mut plan: Plan, watchers: &EndWatchers, ready: &SyncSender<Res
     run_here(plan, watchers, ready);
 }
 
-fn run_here(plan: Plan, watchers: &EndWatchers, ready: &SyncSender<Result<(), StartError>>) {
+fn run_here(plan: SensingThread, watchers: &EndWatchers, ready: &SyncSender<Result<(), StartError>>) {
     let clock = Arc::clone(&plan.clock);
     // After a panic, inconsistent state is only read to cancel presses.
     let served = catch_unwind(AssertUnwindSafe(|| serve(plan, watchers, ready)));
@@ -92,7 +96,7 @@ fn run_here(plan: Plan, watchers: &EndWatchers, ready: &SyncSender<Result<(), St
 }
 
 fn serve(
-    plan: Plan,
+    plan: SensingThread,
     watchers: &EndWatchers,
     ready: &SyncSender<Result<(), StartError>>,
 ) -> (EndReason, String) {
@@ -124,9 +128,20 @@ fn serve(
     }
 }
 
-fn server(plan: Plan) -> Result<Server, SinkError> {
-    let Plan { floor, layout, method, input, clock, prefix, sinks, actuators, neighbours, latency, .. } =
-        plan;
+fn server(plan: SensingThread) -> Result<Server, SinkError> {
+    let SensingThread {
+        floor,
+        layout,
+        method,
+        input,
+        clock,
+        prefix,
+        sinks,
+        actuators,
+        neighbours,
+        latency,
+        ..
+    } = plan;
     let actuators = actuators.map(|open| open(&floor, input.source.now(), &clock)).transpose()?;
     let mut server = Server::new(&floor, layout, method, input)
         .with_events(Box::new(sinks))

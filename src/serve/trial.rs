@@ -7,7 +7,7 @@ use crate::units::Instant;
 
 /// An effect on trial on one tile.
 #[derive(Debug)]
-pub(super) struct Trial {
+pub(super) struct EffectTrial {
     effect: Arc<Effect>,
     gesture: Gesture,
     spots: Spots,
@@ -17,7 +17,7 @@ pub(super) struct Trial {
     sustained: SustainedCues,
 }
 
-impl Trial {
+impl EffectTrial {
     pub(super) fn new(effect: Arc<Effect>, gesture: Gesture, tile: u16) -> Self {
         let spots = [Spot { tile, weight: 1.0 }].into_iter().collect();
         Self { effect, gesture, spots, audition: None, cues: Vec::new(), sustained: SustainedCues::new() }

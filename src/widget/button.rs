@@ -31,8 +31,8 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::moment::{FootInput, Machine, Moment};
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine, FootOnControl};
+use super::press::PressOutcome;
 use super::stage::Stage;
 use super::{Direction, Emitted, EventKind, Guard, Thresholds};
 use crate::units::{Instant, Newtons};
@@ -194,7 +194,7 @@ impl Button {
         }
     }
 
-    fn held(&mut self, moment: &Moment, foot: FootInput, emitted: &mut Emitted) {
+    fn held(&mut self, moment: &BehaviourInput, foot: FootOnControl, emitted: &mut Emitted) {
         let Some(down) = &mut self.down else { return };
         if let Some(at) = moment.offset() {
             down.path = Some((down.path.map_or(at, |(from, _)| from), at));
@@ -221,7 +221,7 @@ impl Button {
         }
     }
 
-    fn released(&mut self, moment: &Moment, emitted: &mut Emitted) {
+    fn released(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         let Some(down) = self.down.take() else { return };
         let Gestures { swipe_m, double_tap, .. } = self.spec.gestures;
         if let Some(far) = swipe_m
@@ -253,7 +253,7 @@ impl Button {
         }
     }
 
-    fn cancelled(&mut self, moment: &Moment, down: Down, emitted: &mut Emitted) {
+    fn cancelled(&mut self, moment: &BehaviourInput, down: Down, emitted: &mut Emitted) {
         emitted.push(EventKind::Cancelled);
         // The first tap was valid; a second one decides its meaning a little later.
         if down.second && !down.spent && !moment.broken {
@@ -296,8 +296,8 @@ impl Down {
     }
 }
 
-impl Machine for Button {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+impl BehaviourMachine for Button {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         if moment.broken {
             self.tapped = None;
         } else if self.tapped.is_some_and(|until| moment.now > until) {
@@ -305,9 +305,9 @@ impl Machine for Button {
             emitted.push(EventKind::Clicked);
         }
         match moment.outcome {
-            Some(Outcome::Pressed) => self.pressed(moment.now, emitted),
-            Some(Outcome::Released) => self.released(moment, emitted),
-            Some(Outcome::Cancelled) => {
+            Some(PressOutcome::Pressed) => self.pressed(moment.now, emitted),
+            Some(PressOutcome::Released) => self.released(moment, emitted),
+            Some(PressOutcome::Cancelled) => {
                 if let Some(down) = self.down.take() {
                     self.cancelled(moment, down, emitted);
                 }

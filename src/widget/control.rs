@@ -9,10 +9,10 @@ use super::dial::Dial;
 use super::guarding::Guarding;
 use super::hold::Hold;
 use super::lean::Lean;
-use super::moment::{Machine, Moment};
+use super::moment::{BehaviourInput, BehaviourMachine};
 use super::pad::Pad;
 use super::pedal::Pedal;
-use super::press::{Outcome, Press};
+use super::press::{PressOutcome, PressState};
 use super::selector::Selector;
 use super::slider::Slider;
 use super::stepper::Stepper;
@@ -23,9 +23,9 @@ use crate::units::Instant;
 /// One control: its press, its guard and the state of its behaviour.
 #[derive(Debug)]
 pub struct Control {
-    press: Press,
+    press: PressState,
     guard: Guarding,
-    machine: Box<dyn Machine>,
+    machine: Box<dyn BehaviourMachine>,
     /// Width and depth, in metres.
     size: Vec2,
     /// Time of the last step.
@@ -42,7 +42,7 @@ impl Control {
     pub fn new(behaviour: &Behaviour, size: Vec2) -> Self {
         let thresholds = behaviour.thresholds();
         Self {
-            press: Press::new(thresholds),
+            press: PressState::new(thresholds),
             guard: Guarding::new(thresholds.guard),
             machine: machine(behaviour),
             size,
@@ -83,8 +83,14 @@ impl Control {
         emitted
     }
 
-    fn react(&mut self, elapsed: Duration, input: Input, outcome: Option<Outcome>, emitted: &mut Emitted) {
-        let moment = Moment::new(self.now, elapsed, input, &self.press, outcome, self.size);
+    fn react(
+        &mut self,
+        elapsed: Duration,
+        input: Input,
+        outcome: Option<PressOutcome>,
+        emitted: &mut Emitted,
+    ) {
+        let moment = BehaviourInput::new(self.now, elapsed, input, &self.press, outcome, self.size);
         if self.guard.passes(self.now, outcome, moment.broken, emitted) {
             self.machine.act(&moment, emitted);
             self.guard.after(self.press.is_engaged(), !self.machine.is_at_rest(), emitted);
@@ -231,13 +237,13 @@ impl Control {
     }
 }
 
-fn refusal(outcome: Option<Outcome>) -> Emitted {
-    let pressed = outcome == Some(Outcome::Pressed);
+fn refusal(outcome: Option<PressOutcome>) -> Emitted {
+    let pressed = outcome == Some(PressOutcome::Pressed);
     pressed.then_some(EventKind::Refused).into_iter().collect()
 }
 
 /// The initial state of a control with this behaviour.
-fn machine(behaviour: &Behaviour) -> Box<dyn Machine> {
+fn machine(behaviour: &Behaviour) -> Box<dyn BehaviourMachine> {
     match behaviour {
         Behaviour::Button(spec) => Box::new(Button::new(*spec)),
         Behaviour::Hold(_) => Box::new(Hold::default()),

@@ -14,9 +14,9 @@
 //! 11  an app sets it                 -> no event; brought to range and steps
 //! ```
 
-use super::moment::{Machine, Moment};
-use super::number::Number;
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine};
+use super::number::ControlNumber;
+use super::press::PressOutcome;
 use super::scale::INITIAL;
 use super::track::wrapped;
 use super::{Emitted, Scale, SetError, Thresholds, Value};
@@ -43,20 +43,20 @@ const HUB: f32 = 0.2;
 #[derive(Clone, Debug)]
 pub(super) struct Dial {
     spec: DialSpec,
-    number: Number,
+    number: ControlNumber,
     /// Last angle of the foot, in radians.
     angle: Option<f32>,
 }
 
 impl Dial {
     pub(super) fn new(spec: DialSpec) -> Self {
-        Self { number: Number::new(spec.scale, spec.initial), spec, angle: None }
+        Self { number: ControlNumber::new(spec.scale, spec.initial), spec, angle: None }
     }
 }
 
-impl Machine for Dial {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
-        if moment.is(Outcome::Pressed) {
+impl BehaviourMachine for Dial {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
+        if moment.is(PressOutcome::Pressed) {
             self.angle = None;
         }
         self.number.follow_press(moment.outcome, emitted);

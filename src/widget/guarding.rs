@@ -21,7 +21,7 @@
 //! ```
 
 use super::guard::{Confirm, Guard};
-use super::press::{Outcome, Press};
+use super::press::{PressOutcome, PressState};
 use super::{Emitted, EventKind, Input};
 use crate::units::Instant;
 
@@ -76,17 +76,17 @@ impl Guarding {
         &mut self,
         now: Instant,
         input: Input,
-        press: &mut Press,
-        outcome: Option<Outcome>,
+        press: &mut PressState,
+        outcome: Option<PressOutcome>,
         emitted: &mut Emitted,
-    ) -> Option<Outcome> {
+    ) -> Option<PressOutcome> {
         let (Guard::HoldToRun(run), State::Acting { since, warned }) = (self.guard, self.state) else {
             return outcome;
         };
         let untrusted = matches!(input, Input::Foot { trusted: false, .. });
-        if outcome == Some(Outcome::Cancelled) || (untrusted && outcome.is_none()) {
+        if outcome == Some(PressOutcome::Cancelled) || (untrusted && outcome.is_none()) {
             press.cancel();
-            return Some(Outcome::Cancelled);
+            return Some(PressOutcome::Cancelled);
         }
         let held = now.since(since);
         if outcome.is_none() && held >= run.max {
@@ -103,30 +103,30 @@ impl Guarding {
     pub(super) fn passes(
         &mut self,
         now: Instant,
-        outcome: Option<Outcome>,
+        outcome: Option<PressOutcome>,
         broken: bool,
         emitted: &mut Emitted,
     ) -> bool {
         let Guard::Confirm(Confirm { within }) = self.guard else {
-            if outcome == Some(Outcome::Pressed) {
+            if outcome == Some(PressOutcome::Pressed) {
                 self.state = State::Acting { since: now, warned: false };
             }
             return true;
         };
         match (self.state, outcome) {
-            (State::Idle, Some(Outcome::Pressed)) => {
+            (State::Idle, Some(PressOutcome::Pressed)) => {
                 self.state = State::Arming;
                 emitted.push(EventKind::Pressed);
             }
-            (State::Arming, Some(Outcome::Released)) => {
+            (State::Arming, Some(PressOutcome::Released)) => {
                 self.state = State::Armed { until: now + within };
                 emitted.extend([EventKind::Released, EventKind::Armed]);
             }
-            (State::Arming, Some(Outcome::Cancelled)) => {
+            (State::Arming, Some(PressOutcome::Cancelled)) => {
                 self.state = State::Idle;
                 emitted.push(EventKind::Cancelled);
             }
-            (State::Armed { until }, Some(Outcome::Pressed)) if now < until => {
+            (State::Armed { until }, Some(PressOutcome::Pressed)) if now < until => {
                 self.state = State::Acting { since: now, warned: false };
                 return true;
             }
@@ -134,7 +134,7 @@ impl Guarding {
                 self.state = State::Idle;
                 emitted.push(EventKind::Disarmed);
                 // Too late for the second press: it counts as a first one.
-                if outcome == Some(Outcome::Pressed) {
+                if outcome == Some(PressOutcome::Pressed) {
                     self.state = State::Arming;
                     emitted.push(EventKind::Pressed);
                 }

@@ -9,8 +9,8 @@
 //!
 //! With the guard `HoldToRun` it is also off as soon as the contact is uncertain, and after a time.
 
-use super::moment::{Machine, Moment};
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine};
+use super::press::PressOutcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
 use underfoot_format::{Flat, record};
 
@@ -27,12 +27,12 @@ pub(super) struct Hold {
     on: bool,
 }
 
-impl Machine for Hold {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+impl BehaviourMachine for Hold {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         let (on, kind) = match moment.outcome {
-            Some(Outcome::Pressed) => (true, EventKind::Pressed),
-            Some(Outcome::Released) => (false, EventKind::Released),
-            Some(Outcome::Cancelled) => (false, EventKind::Cancelled),
+            Some(PressOutcome::Pressed) => (true, EventKind::Pressed),
+            Some(PressOutcome::Released) => (false, EventKind::Released),
+            Some(PressOutcome::Cancelled) => (false, EventKind::Cancelled),
             None => return,
         };
         self.on = on;

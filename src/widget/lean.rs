@@ -16,8 +16,8 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::moment::{Machine, Moment};
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine};
+use super::press::PressOutcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
 use crate::units::Instant;
 use underfoot_format::number::plain;
@@ -89,19 +89,19 @@ impl Lean {
     }
 }
 
-impl Machine for Lean {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+impl BehaviourMachine for Lean {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         match moment.outcome {
-            Some(Outcome::Pressed) => {
+            Some(PressOutcome::Pressed) => {
                 self.origin = Origin::Settling { since: moment.now, mean: None };
                 emitted.push(EventKind::Pressed);
             }
-            Some(Outcome::Released) => {
+            Some(PressOutcome::Released) => {
                 self.origin = Origin::None;
                 self.change(Vec2::ZERO, emitted);
                 emitted.push(EventKind::Released);
             }
-            Some(Outcome::Cancelled) => {
+            Some(PressOutcome::Cancelled) => {
                 self.origin = Origin::None;
                 self.change(Vec2::ZERO, emitted);
                 emitted.push(EventKind::Cancelled);

@@ -4,20 +4,20 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::press::{Outcome, Press};
+use super::press::{PressOutcome, PressState};
 use super::{Emitted, Input, SetError, Thresholds, Value};
 use crate::units::{Instant, Newtons};
 
 /// The input of a behaviour in one frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moment {
+pub(super) struct BehaviourInput {
     pub(super) now: Instant,
     /// Time since the last frame.
     pub(super) elapsed: Duration,
     /// The outcome of the press in this frame.
-    pub(super) outcome: Option<Outcome>,
+    pub(super) outcome: Option<PressOutcome>,
     /// The foot that presses, if its force is reliable.
-    pub(super) foot: Option<FootInput>,
+    pub(super) foot: Option<FootOnControl>,
     /// Whether that foot presses firmly: a lifting foot rolls, and its place is of no use.
     pub(super) firm: bool,
     /// Whether pending actions must be dropped: sensing was lost, the foot steps, or an app stopped the control.
@@ -30,25 +30,25 @@ pub(super) struct Moment {
 
 /// A foot on a control.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FootInput {
+pub(super) struct FootOnControl {
     pub(super) force: Newtons,
     /// 0 to 1 across the control, beyond that outside.
     pub(super) place: Vec2,
 }
 
-impl Moment {
+impl BehaviourInput {
     /// The moment for `input` and the `outcome` of `press`, at `elapsed` after the last frame.
     pub(super) fn new(
         now: Instant,
         elapsed: Duration,
         input: Input,
-        press: &Press,
-        outcome: Option<Outcome>,
+        press: &PressState,
+        outcome: Option<PressOutcome>,
         size: Vec2,
     ) -> Self {
         let foot = match input {
             Input::Foot { force, trusted: true, place, .. } if press.is_engaged() && place.is_finite() => {
-                Some(FootInput { force, place })
+                Some(FootOnControl { force, place })
             }
             _ => None,
         };
@@ -57,7 +57,7 @@ impl Moment {
     }
 
     /// The foot, if it presses firmly: only then may its place change a value.
-    pub(super) fn firm_foot(&self) -> Option<FootInput> {
+    pub(super) fn firm_foot(&self) -> Option<FootOnControl> {
         self.foot.filter(|_| self.firm)
     }
 
@@ -66,15 +66,15 @@ impl Moment {
         self.firm_foot().map(|foot| (foot.place - 0.5) * self.size)
     }
 
-    pub(super) fn is(&self, outcome: Outcome) -> bool {
+    pub(super) fn is(&self, outcome: PressOutcome) -> bool {
         self.outcome == Some(outcome)
     }
 }
 
 /// The interface of behaviours.
-pub(super) trait Machine: std::fmt::Debug + Send {
+pub(super) trait BehaviourMachine: std::fmt::Debug + Send {
     /// Processes one frame and appends its events.
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted);
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted);
 
     /// Its value; `None` if it has none.
     fn value(&self) -> Option<Value> {
@@ -86,7 +86,7 @@ pub(super) trait Machine: std::fmt::Debug + Send {
         Err(SetError::WrongType)
     }
 
-    /// The value after a release, if different from [`Machine::value`].
+    /// The value after a release, if different from [`BehaviourMachine::value`].
     fn pending(&self) -> Option<Value> {
         None
     }

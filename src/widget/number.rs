@@ -1,11 +1,11 @@
 //! A number moved by feet and reverted by a cancel.
 
-use super::press::Outcome;
+use super::press::PressOutcome;
 use super::{Emitted, EventKind, Scale, SetError, Value};
 
 /// A number moved by feet; a cancelled press reverts it.
 #[derive(Clone, Debug)]
-pub(super) struct Number {
+pub(super) struct ControlNumber {
     scale: Scale,
     value: f32,
     /// The value before the press.
@@ -14,7 +14,7 @@ pub(super) struct Number {
     raw: f32,
 }
 
-impl Number {
+impl ControlNumber {
     pub(super) fn new(scale: Scale, initial: f32) -> Self {
         let value = scale.settle(initial);
         Self { scale, value, before: value, raw: value }
@@ -25,15 +25,15 @@ impl Number {
     }
 
     /// Emits the outcome of the press, and reverts a cancelled one.
-    pub(super) fn follow_press(&mut self, outcome: Option<Outcome>, emitted: &mut Emitted) {
+    pub(super) fn follow_press(&mut self, outcome: Option<PressOutcome>, emitted: &mut Emitted) {
         match outcome {
-            Some(Outcome::Pressed) => {
+            Some(PressOutcome::Pressed) => {
                 self.before = self.value;
                 self.raw = self.value;
                 emitted.push(EventKind::Pressed);
             }
-            Some(Outcome::Released) => emitted.push(EventKind::Released),
-            Some(Outcome::Cancelled) => {
+            Some(PressOutcome::Released) => emitted.push(EventKind::Released),
+            Some(PressOutcome::Cancelled) => {
                 if self.value != self.before {
                     self.value = self.before;
                     emitted.push(EventKind::Changed(Value::Number(self.value)));

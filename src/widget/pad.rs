@@ -13,8 +13,8 @@
 
 use glam::Vec2;
 
-use super::moment::{Machine, Moment};
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine};
+use super::press::PressOutcome;
 use super::scale::QUANTUM;
 use super::scale::{VALUES, WIDTHS};
 use super::{Emitted, EventKind, Scale, SetError, Thresholds, Value};
@@ -104,15 +104,15 @@ impl Pad {
     }
 }
 
-impl Machine for Pad {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+impl BehaviourMachine for Pad {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         match moment.outcome {
-            Some(Outcome::Pressed) => {
+            Some(PressOutcome::Pressed) => {
                 self.before = self.value;
                 emitted.push(EventKind::Pressed);
             }
-            Some(Outcome::Released) => emitted.push(EventKind::Released),
-            Some(Outcome::Cancelled) => {
+            Some(PressOutcome::Released) => emitted.push(EventKind::Released),
+            Some(PressOutcome::Cancelled) => {
                 self.change(self.before, emitted);
                 emitted.push(EventKind::Cancelled);
             }

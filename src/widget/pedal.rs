@@ -11,8 +11,8 @@
 //!  8  an app sets it                         -> refused: only a foot can hold it
 //! ```
 
-use super::moment::{Machine, Moment};
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine};
+use super::press::PressOutcome;
 use super::{Emitted, EventKind, Scale, SetError, Thresholds, Value};
 use crate::units::Newtons;
 use underfoot_format::number::plain;
@@ -71,17 +71,17 @@ impl Pedal {
     }
 }
 
-impl Machine for Pedal {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+impl BehaviourMachine for Pedal {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         let PedalSpec { thresholds, scale, full, curve, .. } = self.spec;
         let deadband = self.spec.gives_from();
         match moment.outcome {
-            Some(Outcome::Pressed) => emitted.push(EventKind::Pressed),
-            Some(Outcome::Released) => {
+            Some(PressOutcome::Pressed) => emitted.push(EventKind::Pressed),
+            Some(PressOutcome::Released) => {
                 self.change(Some(scale.min), emitted);
                 emitted.push(EventKind::Released);
             }
-            Some(Outcome::Cancelled) => {
+            Some(PressOutcome::Cancelled) => {
                 self.change(Some(scale.min), emitted);
                 emitted.push(EventKind::Cancelled);
             }

@@ -35,7 +35,7 @@ const UNLOAD_TIME: Duration = Duration::from_millis(20);
 
 /// The outcome of a press in one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Outcome {
+pub(super) enum PressOutcome {
     Pressed,
     Released,
     Cancelled,
@@ -59,7 +59,7 @@ const NEEDS_LIFT: State = State::NeedsLift { clear: None };
 
 /// One control's press: needs a lift, up, arming, down or lifting.
 #[derive(Clone, Debug)]
-pub(super) struct Press {
+pub(super) struct PressState {
     /// The thresholds as written.
     written: Thresholds,
     /// The thresholds for the person of the last foot on it.
@@ -68,7 +68,7 @@ pub(super) struct Press {
     force: Newtons,
 }
 
-impl Press {
+impl PressState {
     /// A press that first needs a span without load.
     pub(super) fn new(at: Thresholds) -> Self {
         Self { written: at, at, state: NEEDS_LIFT, force: Newtons::ZERO }
@@ -103,13 +103,13 @@ impl Press {
     }
 
     /// Ends the press without committing; a foot still on it must lift first.
-    pub(super) fn cancel(&mut self) -> Option<Outcome> {
+    pub(super) fn cancel(&mut self) -> Option<PressOutcome> {
         let engaged = self.is_engaged();
         self.state = NEEDS_LIFT;
-        engaged.then_some(Outcome::Cancelled)
+        engaged.then_some(PressOutcome::Cancelled)
     }
 
-    pub(super) fn step(&mut self, now: Instant, input: Input) -> Option<Outcome> {
+    pub(super) fn step(&mut self, now: Instant, input: Input) -> Option<PressOutcome> {
         use State::{Arming, Down, Lifting, NeedsLift, Up};
         // An absent foot has no force.
         let (force, trusted) = match input {
@@ -129,7 +129,7 @@ impl Press {
                 self.force = Newtons::ZERO;
                 let engaged = self.is_engaged();
                 self.state = Up { ready: now };
-                return engaged.then_some(Outcome::Cancelled);
+                return engaged.then_some(PressOutcome::Cancelled);
             }
             Input::Lost => {
                 self.force = Newtons::ZERO;
@@ -145,7 +145,7 @@ impl Press {
 
             Up { ready } if trusted && force >= self.at.press && now >= ready => {
                 if self.at.dwell.is_zero() {
-                    (Down, Some(Outcome::Pressed))
+                    (Down, Some(PressOutcome::Pressed))
                 } else {
                     (Arming { since: now }, None)
                 }
@@ -153,7 +153,7 @@ impl Press {
             Up { ready } => (Up { ready }, None),
 
             Arming { .. } if !loaded || !trusted => (Up { ready: now }, None),
-            Arming { since } if now.since(since) >= self.at.dwell => (Down, Some(Outcome::Pressed)),
+            Arming { since } if now.since(since) >= self.at.dwell => (Down, Some(PressOutcome::Pressed)),
             Arming { since } => (Arming { since }, None),
 
             Down if loaded => (Down, None),
@@ -161,10 +161,10 @@ impl Press {
 
             Lifting { .. } if loaded => (Down, None),
             Lifting { since } if now.since(since) >= LIFT_TIME && !trusted => {
-                (NEEDS_LIFT, Some(Outcome::Cancelled))
+                (NEEDS_LIFT, Some(PressOutcome::Cancelled))
             }
             Lifting { since } if now.since(since) >= LIFT_TIME => {
-                (Up { ready: now + self.at.lockout }, Some(Outcome::Released))
+                (Up { ready: now + self.at.lockout }, Some(PressOutcome::Released))
             }
             Lifting { since } => (Lifting { since }, None),
         };
@@ -186,15 +186,15 @@ mod tests {
 
     /// One press fed millisecond by millisecond.
     struct Bench {
-        press: Press,
+        press: PressState,
         now: Instant,
-        outcomes: Vec<(u64, Outcome)>,
+        outcomes: Vec<(u64, PressOutcome)>,
     }
 
     impl Bench {
         /// A press after a span without load.
         fn ready() -> Self {
-            let mut bench = Self { press: Press::new(AT), now: Instant::START, outcomes: Vec::new() };
+            let mut bench = Self { press: PressState::new(AT), now: Instant::START, outcomes: Vec::new() };
             bench.give(Input::Clear, SETTLED);
             bench
         }
@@ -222,7 +222,7 @@ mod tests {
         let mut bench = Bench::ready();
         bench.force(80.0, 100);
         // Loaded from 1 ms on, 20 ms dwell.
-        assert_eq!(bench.outcomes, [(21, Outcome::Pressed)]);
+        assert_eq!(bench.outcomes, [(21, PressOutcome::Pressed)]);
     }
 
     #[test]
@@ -240,7 +240,7 @@ mod tests {
         bench.force(45.0, 200);
         assert!(bench.press.is_engaged());
         bench.force(35.0, 10);
-        assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (235, Outcome::Released)]);
+        assert_eq!(bench.outcomes, [(21, PressOutcome::Pressed), (235, PressOutcome::Released)]);
     }
 
     #[test]
@@ -249,7 +249,7 @@ mod tests {
         bench.force(80.0, 30);
         bench.force(0.0, 1);
         bench.force(80.0, 30);
-        assert_eq!(bench.outcomes, [(21, Outcome::Pressed)]);
+        assert_eq!(bench.outcomes, [(21, PressOutcome::Pressed)]);
     }
 
     #[test]
@@ -258,7 +258,11 @@ mod tests {
             let mut bench = Bench::ready();
             bench.force(80.0, 30);
             bench.give(end, 5);
-            assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (31, Outcome::Cancelled)], "{end:?}");
+            assert_eq!(
+                bench.outcomes,
+                [(21, PressOutcome::Pressed), (31, PressOutcome::Cancelled)],
+                "{end:?}"
+            );
         }
     }
 
@@ -269,7 +273,10 @@ mod tests {
         bench.force(0.0, 6);
         bench.force(80.0, 60);
         // Released at 35 ms; locked out until 55 ms; then the dwell.
-        assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (35, Outcome::Released), (75, Outcome::Pressed)]);
+        assert_eq!(
+            bench.outcomes,
+            [(21, PressOutcome::Pressed), (35, PressOutcome::Released), (75, PressOutcome::Pressed)]
+        );
     }
 
     #[test]
@@ -300,7 +307,7 @@ mod tests {
         assert_eq!(bench.outcomes.len(), 1, "held while untrusted");
         bench.give(untrusted(0.0), 10);
         let kinds: Vec<_> = bench.outcomes.iter().map(|(_, outcome)| *outcome).collect();
-        assert_eq!(kinds, [Outcome::Pressed, Outcome::Cancelled]);
+        assert_eq!(kinds, [PressOutcome::Pressed, PressOutcome::Cancelled]);
     }
 
     #[test]
@@ -313,14 +320,14 @@ mod tests {
         let mut bench = Bench::ready();
         bench.force(80.0, 30);
         bench.give(stepping, 1);
-        assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (31, Outcome::Cancelled)]);
+        assert_eq!(bench.outcomes, [(21, PressOutcome::Pressed), (31, PressOutcome::Cancelled)]);
     }
 
     #[test]
     fn the_weight_moves_the_thresholds_but_not_under_a_foot_that_presses() {
         let share = Some(super::super::WeightShare { press: 0.1, release: 0.06 });
         let mut bench = Bench::ready();
-        bench.press = Press::new(Thresholds { share, ..AT });
+        bench.press = PressState::new(Thresholds { share, ..AT });
         bench.give(Input::Clear, SETTLED);
         let of = |force, weight| Input::Foot {
             force: Newtons(force),

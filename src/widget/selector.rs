@@ -12,8 +12,8 @@
 
 use std::sync::Arc;
 
-use super::moment::{FootInput, Machine, Moment};
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine, FootOnControl};
+use super::press::PressOutcome;
 use super::{Axis, Emitted, EventKind, SetError, Thresholds, Value};
 use underfoot_format::{Flat, Follow, Name, Text, list, num, record};
 
@@ -59,7 +59,7 @@ impl Selector {
         Self { axis: spec.axis, count, choice: spec.initial.min(count - 1), question: None }
     }
 
-    fn under(&self, foot: FootInput) -> u16 {
+    fn under(&self, foot: FootOnControl) -> u16 {
         let along = match self.axis {
             Axis::East => foot.place.x,
             Axis::North => 1.0 - foot.place.y,
@@ -72,21 +72,21 @@ impl Selector {
     }
 }
 
-impl Machine for Selector {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+impl BehaviourMachine for Selector {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         match moment.outcome {
-            Some(Outcome::Pressed) => {
+            Some(PressOutcome::Pressed) => {
                 self.question = None;
                 emitted.push(EventKind::Pressed);
             }
-            Some(Outcome::Released) => {
+            Some(PressOutcome::Released) => {
                 emitted.push(EventKind::Released);
                 if let Some(choice) = self.question.take().filter(|choice| *choice != self.choice) {
                     self.choice = choice;
                     emitted.push(EventKind::Changed(Value::Choice(choice)));
                 }
             }
-            Some(Outcome::Cancelled) => {
+            Some(PressOutcome::Cancelled) => {
                 self.question = None;
                 emitted.push(EventKind::Cancelled);
             }

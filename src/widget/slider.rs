@@ -18,9 +18,9 @@
 
 use std::time::Duration;
 
-use super::moment::{Machine, Moment};
-use super::number::Number;
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine};
+use super::number::ControlNumber;
+use super::press::PressOutcome;
 use super::scale::INITIAL;
 use super::scale::QUANTUM;
 use super::track::TrackFields;
@@ -86,14 +86,14 @@ const LONGEST: Duration = Duration::from_millis(20);
 #[derive(Clone, Debug)]
 pub(super) struct Slider {
     spec: SliderSpec,
-    number: Number,
+    number: ControlNumber,
     /// Place of the press (rate) or last place of the foot (relative) along the track.
     anchor: Option<f32>,
 }
 
 impl Slider {
     pub(super) fn new(spec: SliderSpec) -> Self {
-        Self { number: Number::new(spec.scale, spec.initial), spec, anchor: None }
+        Self { number: ControlNumber::new(spec.scale, spec.initial), spec, anchor: None }
     }
 
     fn slide(&mut self, share: f32, elapsed: Duration, emitted: &mut Emitted) {
@@ -113,9 +113,9 @@ impl Slider {
     }
 }
 
-impl Machine for Slider {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
-        if moment.is(Outcome::Pressed) {
+impl BehaviourMachine for Slider {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
+        if moment.is(PressOutcome::Pressed) {
             self.anchor = None;
         }
         self.number.follow_press(moment.outcome, emitted);

@@ -14,9 +14,9 @@
 
 use std::time::Duration;
 
-use super::moment::{FootInput, Machine, Moment};
-use super::number::Number;
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine, FootOnControl};
+use super::number::ControlNumber;
+use super::press::PressOutcome;
 use super::scale::INITIAL;
 use super::{Axis, Emitted, Scale, SetError, Thresholds, Value};
 use underfoot_format::{Flat, Name, Opt, num, record};
@@ -71,7 +71,7 @@ const ACCELERATION: f32 = 0.85;
 #[derive(Clone, Debug)]
 pub(super) struct Stepper {
     spec: StepperSpec,
-    number: Number,
+    number: ControlNumber,
     held: Option<Held>,
 }
 
@@ -85,10 +85,10 @@ struct Held {
 
 impl Stepper {
     pub(super) fn new(spec: StepperSpec) -> Self {
-        Self { number: Number::new(spec.scale, spec.initial), spec, held: None }
+        Self { number: ControlNumber::new(spec.scale, spec.initial), spec, held: None }
     }
 
-    fn is_up(&self, foot: FootInput) -> bool {
+    fn is_up(&self, foot: FootOnControl) -> bool {
         match self.spec.axis {
             Axis::East => foot.place.x >= 0.5,
             Axis::North => foot.place.y >= 0.5,
@@ -106,13 +106,13 @@ impl Stepper {
     }
 }
 
-impl Machine for Stepper {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+impl BehaviourMachine for Stepper {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         self.number.follow_press(moment.outcome, emitted);
         if moment.outcome.is_some() {
             self.held = None;
         }
-        if moment.is(Outcome::Pressed)
+        if moment.is(PressOutcome::Pressed)
             && let Some(foot) = moment.foot
         {
             let up = self.is_up(foot);

@@ -7,8 +7,8 @@
 //!  4  an app sets it                     -> no event
 //! ```
 
-use super::moment::{Machine, Moment};
-use super::press::Outcome;
+use super::moment::{BehaviourInput, BehaviourMachine};
+use super::press::PressOutcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
 use underfoot_format::{Flag, Flat, record};
 
@@ -33,15 +33,15 @@ impl Switch {
     }
 }
 
-impl Machine for Switch {
-    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+impl BehaviourMachine for Switch {
+    fn act(&mut self, moment: &BehaviourInput, emitted: &mut Emitted) {
         match moment.outcome {
-            Some(Outcome::Pressed) => emitted.push(EventKind::Pressed),
-            Some(Outcome::Released) => {
+            Some(PressOutcome::Pressed) => emitted.push(EventKind::Pressed),
+            Some(PressOutcome::Released) => {
                 self.on = !self.on;
                 emitted.extend([EventKind::Released, EventKind::Changed(Value::Switch(self.on))]);
             }
-            Some(Outcome::Cancelled) => emitted.push(EventKind::Cancelled),
+            Some(PressOutcome::Cancelled) => emitted.push(EventKind::Cancelled),
             None => {}
         }
     }

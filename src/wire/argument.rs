@@ -32,7 +32,7 @@ pub enum ArgumentKind {
 }
 
 /// An argument as read.
-pub(super) enum Argument {
+pub(super) enum DecodedArgument {
     Nothing,
     Value(Value),
     Text(String),
@@ -43,35 +43,39 @@ pub(super) enum Argument {
 }
 
 impl ArgumentKind {
-    pub(super) fn read(self, args: &[OscType]) -> Option<Argument> {
+    pub(super) fn read(self, args: &[OscType]) -> Option<DecodedArgument> {
         match (self, args) {
-            (Self::Nothing, []) => Some(Argument::Nothing),
-            (Self::Value, [one]) => value(one).map(Argument::Value),
+            (Self::Nothing, []) => Some(DecodedArgument::Nothing),
+            (Self::Value, [one]) => value(one).map(DecodedArgument::Value),
             (Self::Value, [x, y]) => match (value(x)?, value(y)?) {
-                (Value::Number(x), Value::Number(y)) => Some(Argument::Value(Value::Pair(Vec2::new(x, y)))),
+                (Value::Number(x), Value::Number(y)) => {
+                    Some(DecodedArgument::Value(Value::Pair(Vec2::new(x, y))))
+                }
                 _ => None,
             },
             (Self::Range, [least, greatest]) => match (value(least)?, value(greatest)?) {
-                (Value::Number(least), Value::Number(greatest)) => Some(Argument::Range(least, greatest)),
+                (Value::Number(least), Value::Number(greatest)) => {
+                    Some(DecodedArgument::Range(least, greatest))
+                }
                 _ => None,
             },
             (Self::Label, [OscType::String(text)]) if text.chars().count() <= MAX_LABEL => {
-                Some(Argument::Text(text.clone()))
+                Some(DecodedArgument::Text(text.clone()))
             }
-            (Self::Page, [OscType::String(text)]) => Some(Argument::Text(text.clone())),
-            (Self::Switch, []) => Some(Argument::Flag(true)),
-            (Self::Flag | Self::Switch, [on]) => flag(on).map(Argument::Flag),
+            (Self::Page, [OscType::String(text)]) => Some(DecodedArgument::Text(text.clone())),
+            (Self::Switch, []) => Some(DecodedArgument::Flag(true)),
+            (Self::Flag | Self::Switch, [on]) => flag(on).map(DecodedArgument::Flag),
             (Self::TileFlag, [column, row, on]) => {
                 let tile = TileId::new(index(column)?, index(row)?);
-                flag(on).map(|on| Argument::TileFlag(tile, on))
+                flag(on).map(|on| DecodedArgument::TileFlag(tile, on))
             }
             (Self::Indicator, [OscType::String(text)]) => {
                 let found = Indicator::ALL.into_iter().find(|indicator| indicator.name() == text);
-                found.map(Argument::Indicator)
+                found.map(DecodedArgument::Indicator)
             }
             (Self::Indicator, [one]) => {
                 let lamp = if flag(one)? { Indicator::On } else { Indicator::Off };
-                Some(Argument::Indicator(lamp))
+                Some(DecodedArgument::Indicator(lamp))
             }
             _ => None,
         }

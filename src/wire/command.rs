@@ -2,7 +2,7 @@
 
 use rosc::OscType;
 
-use super::argument::{Argument, ArgumentKind};
+use super::argument::{ArgumentKind, DecodedArgument};
 use super::message::ControlMessage;
 use super::pattern::{is_pattern, matches};
 use super::prefix::Prefix;
@@ -17,7 +17,7 @@ pub struct Command {
     pub argument: ArgumentKind,
     /// Its effect, in a sentence.
     pub says: &'static str,
-    make: fn(WidgetId, Argument) -> Option<ControlMessage>,
+    make: fn(WidgetId, DecodedArgument) -> Option<ControlMessage>,
 }
 
 /// All requests that apps can make.
@@ -33,7 +33,7 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Value,
         says: "Hold this value; refused while a foot uses the control, while it is locked, and for what only a foot holds.",
         make: |id, argument| match argument {
-            Argument::Value(value) => Some(ControlMessage::Set { id, value }),
+            DecodedArgument::Value(value) => Some(ControlMessage::Set { id, value }),
             _ => None,
         },
     },
@@ -48,8 +48,8 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Switch,
         says: "React to feet again.",
         make: |id, argument| match argument {
-            Argument::Flag(true) => Some(ControlMessage::Enable { id }),
-            Argument::Flag(false) => Some(ControlMessage::Disable { id }),
+            DecodedArgument::Flag(true) => Some(ControlMessage::Enable { id }),
+            DecodedArgument::Flag(false) => Some(ControlMessage::Disable { id }),
             _ => None,
         },
     },
@@ -58,8 +58,8 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Switch,
         says: "React to feet no more; a press under way is cancelled.",
         make: |id, argument| match argument {
-            Argument::Flag(true) => Some(ControlMessage::Disable { id }),
-            Argument::Flag(false) => Some(ControlMessage::Enable { id }),
+            DecodedArgument::Flag(true) => Some(ControlMessage::Disable { id }),
+            DecodedArgument::Flag(false) => Some(ControlMessage::Enable { id }),
             _ => None,
         },
     },
@@ -68,8 +68,8 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Switch,
         says: "Keep the value, whatever feet and apps do; a press under way is cancelled.",
         make: |id, argument| match argument {
-            Argument::Flag(true) => Some(ControlMessage::Lock { id }),
-            Argument::Flag(false) => Some(ControlMessage::Unlock { id }),
+            DecodedArgument::Flag(true) => Some(ControlMessage::Lock { id }),
+            DecodedArgument::Flag(false) => Some(ControlMessage::Unlock { id }),
             _ => None,
         },
     },
@@ -78,8 +78,8 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Switch,
         says: "Change the value again.",
         make: |id, argument| match argument {
-            Argument::Flag(true) => Some(ControlMessage::Unlock { id }),
-            Argument::Flag(false) => Some(ControlMessage::Lock { id }),
+            DecodedArgument::Flag(true) => Some(ControlMessage::Unlock { id }),
+            DecodedArgument::Flag(false) => Some(ControlMessage::Lock { id }),
             _ => None,
         },
     },
@@ -88,7 +88,7 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Label,
         says: "Carry this label.",
         make: |id, argument| match argument {
-            Argument::Text(text) => Some(ControlMessage::Label { id, text }),
+            DecodedArgument::Text(text) => Some(ControlMessage::Label { id, text }),
             _ => None,
         },
     },
@@ -97,7 +97,7 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Indicator,
         says: "Switch the lamp.",
         make: |id, argument| match argument {
-            Argument::Indicator(indicator) => Some(ControlMessage::Indicate { id, indicator }),
+            DecodedArgument::Indicator(indicator) => Some(ControlMessage::Indicate { id, indicator }),
             _ => None,
         },
     },
@@ -106,7 +106,7 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Range,
         says: "Have this range, also in layouts that come later; the value is brought into it.",
         make: |id, argument| match argument {
-            Argument::Range(least, greatest) => Some(ControlMessage::SetRange { id, least, greatest }),
+            DecodedArgument::Range(least, greatest) => Some(ControlMessage::SetRange { id, least, greatest }),
             _ => None,
         },
     },
@@ -115,7 +115,7 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Page,
         says: "Show this page, as soon as no foot is engaged.",
         make: |_, argument| match argument {
-            Argument::Text(text) => Some(ControlMessage::ShowPage { page: WidgetId::new(&text) }),
+            DecodedArgument::Text(text) => Some(ControlMessage::ShowPage { page: WidgetId::new(&text) }),
             _ => None,
         },
     },
@@ -136,7 +136,7 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::Flag,
         says: "Let nothing be felt or heard (1), or everything again but single tiles that are muted (0).",
         make: |_, argument| match argument {
-            Argument::Flag(on) => Some(ControlMessage::Mute { on }),
+            DecodedArgument::Flag(on) => Some(ControlMessage::Mute { on }),
             _ => None,
         },
     },
@@ -145,7 +145,7 @@ pub const COMMANDS: [Command; 16] = [
         argument: ArgumentKind::TileFlag,
         says: "Let the actuator of one tile not be felt (1), or again (0); loudspeakers go on.",
         make: |_, argument| match argument {
-            Argument::TileFlag(tile, on) => Some(ControlMessage::MuteTile { tile, on }),
+            DecodedArgument::TileFlag(tile, on) => Some(ControlMessage::MuteTile { tile, on }),
             _ => None,
         },
     },

@@ -6,7 +6,7 @@ use rosc::{OscPacket, OscTime, OscType};
 use thiserror::Error;
 
 use super::command::{self, NoCommand};
-use super::guard::{self, Form, Limits, Malformed};
+use super::guard::{self, DatagramLimits, Form, Malformed};
 use super::message::ControlMessage;
 use super::sensor_message::RawMessage;
 use super::sent::is_sent_by_floors;
@@ -164,13 +164,13 @@ impl Decoder {
 
     fn fill(&self, datagram: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
         // Nearly all datagrams are single messages of boards, which are checked while they are read.
-        if datagram.len() <= Limits::SENSORS.bytes
+        if datagram.len() <= DatagramLimits::SENSORS.bytes
             && let Some(packet) = RawMessage::split(datagram).and_then(|raw| self.sensors(&raw, received))
         {
             batch.packets.push(packet);
             return Ok(());
         }
-        guard::check_parts(datagram, &Limits::SENSORS)?;
+        guard::check_parts(datagram, &DatagramLimits::SENSORS)?;
         match guard::Bundle::of(datagram) {
             Some(bundle) => self.bundle(&bundle, received, batch),
             None => self.message(datagram, received, batch),
@@ -213,7 +213,7 @@ impl Decoder {
             return Err(shape.refuses(&raw));
         }
         let address = raw.address_text();
-        let controls = match guard::form(bytes, &Limits::SENSORS) {
+        let controls = match guard::form(bytes, &DatagramLimits::SENSORS) {
             // The guard passes nothing that rosc rejects (a property test checks this); if they ever disagree, the
             // datagram is rejected.
             Ok(Form::Whole) => match rosc::decoder::decode_udp(bytes) {
@@ -239,7 +239,7 @@ impl Decoder {
     /// Returns the packet, if the message belongs to a board of this floor.
     fn sensors(&self, raw: &RawMessage<'_>, received: Instant) -> Option<SensorPacket> {
         let shape = self.boards.get(raw.address)?;
-        let (sequence, readings) = raw.read(&Limits::SENSORS)?;
+        let (sequence, readings) = raw.read(&DatagramLimits::SENSORS)?;
         let packet = SensorPacket { board: shape.number, sequence, received, readings };
         (packet.readings.len() == shape.channels).then_some(packet)
     }

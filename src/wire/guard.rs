@@ -9,10 +9,10 @@ use thiserror::Error;
 /// Every limit is far above the needs of a board or an app, and far below the depth that exhausts the stack of a
 /// recursive decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
+pub struct DatagramLimits {
     /// Maximum number of bytes.
     pub bytes: usize,
-    /// Maximum nesting of bundles; at most [`Limits::MAX_DEPTH`], 0 allows messages only.
+    /// Maximum nesting of bundles; at most [`DatagramLimits::MAX_DEPTH`], 0 allows messages only.
     pub depth: usize,
     /// Maximum number of bundle elements, counted over all bundles.
     pub elements: usize,
@@ -22,8 +22,8 @@ pub struct Limits {
     pub address: usize,
 }
 
-impl Limits {
-    /// Upper limit on the nesting of bundles, regardless of [`Limits::depth`].
+impl DatagramLimits {
+    /// Upper limit on the nesting of bundles, regardless of [`DatagramLimits::depth`].
     pub const MAX_DEPTH: usize = 8;
 
     /// Maximum nesting of arrays within a message.
@@ -33,7 +33,7 @@ impl Limits {
     pub const SENSORS: Self = Self { bytes: 8192, depth: 4, elements: 256, tags: 256, address: 128 };
 }
 
-impl Default for Limits {
+impl Default for DatagramLimits {
     fn default() -> Self {
         Self::SENSORS
     }
@@ -45,7 +45,7 @@ pub enum Malformed {
     /// The datagram is empty.
     #[error("the datagram is empty")]
     Empty,
-    /// It is longer than [`Limits::bytes`].
+    /// It is longer than [`DatagramLimits::bytes`].
     #[error("{bytes} bytes are more than the {limit} a datagram may have")]
     TooLarge {
         /// Bytes received; a socket may have cut the rest off.
@@ -110,7 +110,7 @@ pub enum Malformed {
 ///
 /// # Source
 /// Open Sound Control 1.0 with the type tags of 1.1, as far as rosc supports them.
-pub fn check(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
+pub fn check(datagram: &[u8], limits: &DatagramLimits) -> Result<(), Malformed> {
     walk(datagram, limits, |scan, _| match scan.form(limits)? {
         Form::Whole => Ok(()),
         Form::Bare { at } => Err(Malformed::CutShort { at }),
@@ -120,7 +120,7 @@ pub fn check(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
 
 /// Checks whether `datagram` splits into its parts: as [`check`], but a message may have no type tags or unknown
 /// ones, and a message in a bundle may exceed `limits`. [`form`] tells which messages are readable.
-pub(super) fn check_parts(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
+pub(super) fn check_parts(datagram: &[u8], limits: &DatagramLimits) -> Result<(), Malformed> {
     walk(datagram, limits, |scan, is_alone| match scan.form(limits) {
         Err(Malformed::TooMany { .. }) if !is_alone => Ok(()),
         form => form.map(drop),
@@ -153,14 +153,14 @@ pub(super) enum Form {
 ///
 /// # Errors
 /// [`Malformed`] if it exceeds `limits`, or is not well-formed.
-pub(super) fn form(bytes: &[u8], limits: &Limits) -> Result<Form, Malformed> {
+pub(super) fn form(bytes: &[u8], limits: &DatagramLimits) -> Result<Form, Malformed> {
     Scan { bytes, offset: 0, at: 0 }.form(limits)
 }
 
 /// Calls `message` for all messages of `datagram`; the flag says whether the message stands alone.
 fn walk(
     datagram: &[u8],
-    limits: &Limits,
+    limits: &DatagramLimits,
     mut message: impl FnMut(Scan<'_>, bool) -> Result<(), Malformed>,
 ) -> Result<(), Malformed> {
     if datagram.is_empty() {
@@ -174,7 +174,7 @@ fn walk(
     }
 
     // End of each open bundle, outermost first; the outermost element is the datagram itself.
-    let mut ends: ArrayVec<usize, { Limits::MAX_DEPTH }> = ArrayVec::new();
+    let mut ends: ArrayVec<usize, { DatagramLimits::MAX_DEPTH }> = ArrayVec::new();
     let mut elements = 0;
     let mut element = 0..datagram.len();
     loop {
@@ -262,7 +262,7 @@ struct Scan<'a> {
 }
 
 impl<'a> Scan<'a> {
-    fn form(mut self, limits: &Limits) -> Result<Form, Malformed> {
+    fn form(mut self, limits: &DatagramLimits) -> Result<Form, Malformed> {
         if self.bytes.first() != Some(&b'/') {
             return Err(Malformed::Neither { at: self.offset });
         }
@@ -283,7 +283,7 @@ impl<'a> Scan<'a> {
     }
 
     /// Returns the form of a message with its type tags at `at`.
-    fn tagged(&mut self, limits: &Limits, at: usize) -> Result<Form, Malformed> {
+    fn tagged(&mut self, limits: &DatagramLimits, at: usize) -> Result<Form, Malformed> {
         let tags = self.text()?.strip_prefix(',').unwrap_or_default();
         if !self.arguments(tags, at)? {
             return Ok(Form::Unknown { at });
@@ -310,7 +310,7 @@ impl<'a> Scan<'a> {
                 }
                 b'c' => self.character()?,
                 b'b' => self.blob()?,
-                b'[' if depth < Limits::MAX_ARRAY_DEPTH => depth += 1,
+                b'[' if depth < DatagramLimits::MAX_ARRAY_DEPTH => depth += 1,
                 b'[' => return Err(Malformed::TooDeep { at: tags_at }),
                 b']' if depth > 0 => depth -= 1,
                 b']' => return Err(Malformed::Text { at: tags_at }),
@@ -379,7 +379,7 @@ mod tests {
     }
 
     fn verdict(packet: &OscPacket) -> Result<(), Malformed> {
-        check(&encoder::encode(packet).unwrap(), &Limits::default())
+        check(&encoder::encode(packet).unwrap(), &DatagramLimits::default())
     }
 
     #[test]
@@ -419,7 +419,7 @@ mod tests {
             bytes.extend(tags);
             bytes.push(0);
             bytes.resize(bytes.len().next_multiple_of(4), 0);
-            check(&bytes, &Limits::default())
+            check(&bytes, &DatagramLimits::default())
         };
         assert_eq!(tags(b",[[[[]]]]"), Ok(()));
         assert_eq!(tags(b",[[[[[]]]]]"), Err(Malformed::TooDeep { at: 4 }));
@@ -434,10 +434,10 @@ mod tests {
     fn every_prefix_of_a_good_datagram_is_refused() {
         let whole =
             encoder::encode(&bundle(vec![message("/underfoot/board/0", vec![OscType::Int(1); 25])])).unwrap();
-        assert_eq!(check(&whole, &Limits::default()), Ok(()));
+        assert_eq!(check(&whole, &DatagramLimits::default()), Ok(()));
         for length in 0..whole.len() {
             // A bundle header alone, and a header with whole elements, are valid bundles.
-            let verdict = check(&whole[..length], &Limits::default());
+            let verdict = check(&whole[..length], &DatagramLimits::default());
             assert_eq!(verdict.is_ok(), length == 16, "{length}: {verdict:?}");
         }
     }
@@ -447,13 +447,13 @@ mod tests {
         let mut bytes = encoder::encode(&message("/a", vec![OscType::Int(1)])).unwrap();
         let end = bytes.len();
         bytes.extend([0; 4]);
-        assert_eq!(check(&bytes, &Limits::default()), Err(Malformed::LeftOver { at: end }));
+        assert_eq!(check(&bytes, &DatagramLimits::default()), Err(Malformed::LeftOver { at: end }));
 
         // The same inside a bundle, where rosc alone would not detect it.
         let mut inside = b"#bundle\0\0\0\0\0\0\0\0\x01".to_vec();
         inside.extend((bytes.len() as u32).to_be_bytes());
         inside.extend(&bytes);
-        assert_eq!(check(&inside, &Limits::default()), Err(Malformed::LeftOver { at: 20 + end }));
+        assert_eq!(check(&inside, &DatagramLimits::default()), Err(Malformed::LeftOver { at: 20 + end }));
     }
 
     #[test]
@@ -462,7 +462,7 @@ mod tests {
             let mut bytes = b"#bundle\0\0\0\0\0\0\0\0\x01".to_vec();
             bytes.extend(length.to_be_bytes());
             bytes.extend(b"/a\0\0,\0\0\0");
-            check(&bytes, &Limits::default())
+            check(&bytes, &DatagramLimits::default())
         };
         assert_eq!(with_length(8), Ok(()));
         assert_eq!(with_length(7), Err(Malformed::Length { length: 7, at: 16 }));
@@ -474,7 +474,7 @@ mod tests {
             let mut bytes = b"/a\0\0,b\0\0".to_vec();
             bytes.extend(length.to_be_bytes());
             bytes.extend([0; 4]);
-            check(&bytes, &Limits::default())
+            check(&bytes, &DatagramLimits::default())
         };
         assert_eq!(blob(4), Ok(()));
         assert_eq!(blob(5), Err(Malformed::CutShort { at: 8 }));
@@ -484,7 +484,7 @@ mod tests {
     // P5
     #[test]
     fn too_much_of_anything_is_refused() {
-        let limits = Limits::default();
+        let limits = DatagramLimits::default();
         assert_eq!(check(&[], &limits), Err(Malformed::Empty));
         assert!(matches!(check(&[0; 65_507], &limits), Err(Malformed::TooLarge { bytes: 65_507, .. })));
         assert!(matches!(verdict(&message("/a", vec![OscType::Nil; 257])), Err(Malformed::TooMany { .. })));

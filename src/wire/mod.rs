@@ -34,7 +34,7 @@ pub use argument::{ArgumentKind, MAX_LABEL};
 pub use command::{COMMANDS, Command};
 pub use decode::{Batch, Decoder, WireError};
 pub use encode::{EncodeError, SensorEncoder, SensorFormat};
-pub use guard::{Limits, Malformed, check};
+pub use guard::{DatagramLimits, Malformed, check};
 pub use json_request::{read_json, write_json};
 pub use packet::MAX_CHANNELS;
 pub use pattern::{is_pattern, matches};

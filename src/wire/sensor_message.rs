@@ -2,7 +2,7 @@
 
 use arrayvec::ArrayVec;
 
-use super::guard::Limits;
+use super::guard::DatagramLimits;
 use super::packet::{MAX_CHANNELS, Readings};
 
 /// A message in a datagram: its address and the bytes after it.
@@ -23,7 +23,7 @@ impl<'a> RawMessage<'a> {
     /// Returns the address as text, cut at the maximum length of an address; empty if it is not text.
     pub(super) fn address_text(&self) -> &'a str {
         let text = std::str::from_utf8(self.address).unwrap_or_default();
-        &text[..text.floor_char_boundary(Limits::SENSORS.address)]
+        &text[..text.floor_char_boundary(DatagramLimits::SENSORS.address)]
     }
 
     /// Describes its type tags for people: `iffff`, `ib (a blob of 46 bytes)`, `no type tags`.
@@ -56,7 +56,7 @@ impl<'a> RawMessage<'a> {
 
     /// Returns the sequence number and the readings; `None` unless the whole message is that of a board within
     /// `limits`.
-    pub(super) fn read(&self, limits: &Limits) -> Option<(u32, Readings)> {
+    pub(super) fn read(&self, limits: &DatagramLimits) -> Option<(u32, Readings)> {
         let (tags, arguments) = text(self.rest)?;
         let tags = tags.strip_prefix(b",")?;
         if self.address.len() > limits.address || tags.len() > limits.tags {
@@ -171,8 +171,8 @@ mod tests {
                 datagram.truncate(cut.index(datagram.len()));
             }
             let raw = RawMessage::split(&datagram);
-            let read = raw.and_then(|raw| Some((raw.address, raw.read(&Limits::SENSORS)?)));
-            let is_sound = check(&datagram, &Limits::SENSORS).is_ok();
+            let read = raw.and_then(|raw| Some((raw.address, raw.read(&DatagramLimits::SENSORS)?)));
+            let is_sound = check(&datagram, &DatagramLimits::SENSORS).is_ok();
             let others = is_sound.then(|| by_rosc(&datagram)).flatten();
             match (read, others) {
                 (Some((address, (sequence, readings))), others) if address == ADDRESS.as_bytes() => {

@@ -17,7 +17,7 @@ fn simulated_parts_come_back_within_one_percent_through_two_percent_of_noise() {
     use rand_distr::{Distribution, Normal};
     let floor = small_floor();
     let exact = PartConfig { a_spread: 0.25, b_spread: 0.05, ..PartConfig::exact() };
-    let config = SimConfig { sensing: sim::Sensing::Counts(exact), ..SimConfig::default() };
+    let config = SimConfig { sensing: sim::SimulatedSensors::Counts(exact), ..SimConfig::default() };
     let sim = SimFloor::new(&floor, config, 7);
     let table = LoadTable::read(sim::load_table(&sim, 3).as_bytes(), &floor.geometry).unwrap();
     assert_eq!(table.sensors.len(), 24);

@@ -1,6 +1,6 @@
 //! `underfoot addresses`: every OSC address of a layout.
 
-use underfoot::serve::{Direction, Entry, Reference};
+use underfoot::serve::{AddressEntry, MessageDirection, Reference};
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
@@ -37,11 +37,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// One address on a line: direction, address, arguments, meaning.
-fn line(entry: &Entry) -> String {
+fn line(entry: &AddressEntry) -> String {
     let way = match entry.direction {
-        Direction::In => "in",
-        Direction::Out => "out",
-        Direction::Answer => "answer",
+        MessageDirection::In => "in",
+        MessageDirection::Out => "out",
+        MessageDirection::Answer => "answer",
     };
     let arguments: Vec<String> = entry
         .arguments

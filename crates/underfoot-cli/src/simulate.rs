@@ -13,7 +13,7 @@ use underfoot::schema;
 use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::SourceError;
 use underfoot::wire::{SensorEncoder, SensorFormat};
-use underfoot_sim::{self as sim, Pace, Sensing, SimConfig, SimFloor, SimulatedSource};
+use underfoot_sim::{self as sim, Pace, SimConfig, SimFloor, SimulatedSensors, SimulatedSource};
 
 use super::failure::Failure;
 use super::fault_args::FaultArgs;
@@ -107,12 +107,12 @@ impl Args {
     fn simulated(&self, floor: &Floor) -> Result<(SimFloor, SensorEncoder), Failure> {
         let mut config: SimConfig = self.sim.config();
         let format = match (self.format, config.sensing) {
-            (None | Some(Format::Newtons), Sensing::Exact) => SensorFormat::Newtons,
-            (Some(_), Sensing::Exact) => {
+            (None | Some(Format::Newtons), SimulatedSensors::Exact) => SensorFormat::Newtons,
+            (Some(_), SimulatedSensors::Exact) => {
                 return Err(Failure::Other("perfect sensors send newtons; leave out --format".into()));
             }
-            (Some(Format::Newtons), Sensing::Counts(parts) | Sensing::Newtons(parts)) => {
-                config.sensing = Sensing::Newtons(parts);
+            (Some(Format::Newtons), SimulatedSensors::Counts(parts) | SimulatedSensors::Newtons(parts)) => {
+                config.sensing = SimulatedSensors::Newtons(parts);
                 SensorFormat::Newtons
             }
             (Some(Format::Blob), _) => SensorFormat::Blob,

@@ -10,7 +10,7 @@ use underfoot::sense::{Contact, ContactId};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::LinkState;
 
-use crate::touch::Touch;
+use crate::touch::TouchingFoot;
 
 /// Force at which a foot touches, and below which it releases: those of the shipped buttons.
 const PRESS: Newtons = Newtons(60.0);
@@ -50,7 +50,7 @@ enum Before {
 pub struct FootInput {
     part: floor::Rect,
     target: Option<Rect>,
-    touches: Vec<Touch>,
+    touches: Vec<TouchingFoot>,
     others: Vec<(ContactId, Before)>,
     /// The latest snapshot's time, and the time of its arrival in seconds of egui's clock.
     seen: Option<(Instant, f64)>,
@@ -181,7 +181,7 @@ impl FootInput {
                 (Some((_, Before::Presses(since))), Some(at)) if now - *since >= DWELL_S => {
                     self.others.retain(|(id, _)| *id != contact.id);
                     let is_pointer = !self.touches.iter().any(|touch| touch.is_pointer);
-                    let touch = Touch { contact: contact.id, at, force: contact.force, is_pointer };
+                    let touch = TouchingFoot { contact: contact.id, at, force: contact.force, is_pointer };
                     touch.start(events);
                     self.touches.push(touch);
                 }

@@ -15,7 +15,7 @@ const AWAY: f32 = 100_000.0;
 
 /// A foot that touches.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch {
+pub(crate) struct TouchingFoot {
     pub(crate) contact: ContactId,
     pub(crate) at: Pos2,
     pub(crate) force: Newtons,
@@ -23,7 +23,7 @@ pub(crate) struct Touch {
     pub(crate) is_pointer: bool,
 }
 
-impl Touch {
+impl TouchingFoot {
     pub(crate) fn start(self, events: &mut Vec<Event>) {
         events.push(self.event(TouchPhase::Start));
         if self.is_pointer {

@@ -153,9 +153,9 @@ record! {
     pub(super) widget: Option<String> = "widget", Opt(Text(64)) => None;
     /// Place of the touchdown: as a share of a slider's track or of a dial's range, as shares of a pad's width and
     /// depth, on free floor in tiles.
-    pub(super) from: End = "from", END;
+    pub(super) from: DragEnd = "from", END;
     /// Place of the lift-off, in the same form as `from`.
-    pub(super) to: End = "to", END;
+    pub(super) to: DragEnd = "to", END;
     /// Speed of the slide.
     pub(super) speed_m_s: f32 = "speed_m_s", num(0.01..=2.0) => 0.3;
     /// Force of the press.
@@ -194,7 +194,7 @@ const PLACE: Pair = Pair { each: num(-1e4..=1e4), pattern: "(east, north)", part
 
 /// One end of a drag: the touchdown or the lift-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum End {
+pub(super) enum DragEnd {
     /// Along a track or a range.
     Share(f32),
     /// Eastwards and northwards: shares of a pad, tiles of the floor.
@@ -202,17 +202,17 @@ pub(super) enum End {
 }
 
 /// The check of the range of a share follows when the control is known.
-const END: By<End> = By {
+const END: By<DragEnd> = By {
     shape: || FieldType::Words("a number from 0 to 1, or (east, north)"),
     read: |node| match node.peek_number() {
-        Some(_) => SHARE.read(node, None).map(End::Share),
-        None => PLACE.read(node, None).map(End::Place),
+        Some(_) => SHARE.read(node, None).map(DragEnd::Share),
+        None => PLACE.read(node, None).map(DragEnd::Place),
     },
-    write: |end: &End| match end {
-        End::Share(share) => SHARE.write(share),
-        End::Place(place) => PLACE.write(place),
+    write: |end: &DragEnd| match end {
+        DragEnd::Share(share) => SHARE.write(share),
+        DragEnd::Place(place) => PLACE.write(place),
     },
-    stand_in: || End::Share(0.0),
+    stand_in: || DragEnd::Share(0.0),
 };
 
 const SHARE: Num = num(0.0..=1.0);

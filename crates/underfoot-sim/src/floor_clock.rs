@@ -22,9 +22,9 @@ pub trait Host: Send + Sync {
 
 /// The monotonic clock of this machine.
 #[derive(Debug)]
-pub(super) struct Machine(pub(super) std::time::Instant);
+pub(super) struct MachineClock(pub(super) std::time::Instant);
 
-impl Host for Machine {
+impl Host for MachineClock {
     fn elapsed(&self) -> Duration {
         self.0.elapsed()
     }

@@ -82,7 +82,7 @@ impl Load {
     }
 
     /// Like [`Load::on_tiles`], with the twist of each tile.
-    pub(super) fn parts(&self, geometry: &Geometry) -> SmallVec<[Part; 4]> {
+    pub(super) fn parts(&self, geometry: &Geometry) -> SmallVec<[TilePart; 4]> {
         let finite = self.position.is_finite() && self.heading.is_finite() && self.force.is_finite();
         if !finite || self.force <= Newtons::ZERO {
             return SmallVec::new();
@@ -109,7 +109,7 @@ impl Load {
         self.straddling(geometry, turn, low, high)
     }
 
-    fn straddling(&self, geometry: &Geometry, turn: Vec2, low: Vec2, high: Vec2) -> SmallVec<[Part; 4]> {
+    fn straddling(&self, geometry: &Geometry, turn: Vec2, low: Vec2, high: Vec2) -> SmallVec<[TilePart; 4]> {
         let Some(mut window) = Window::around(geometry, low, high) else { return SmallVec::new() };
         self.print
             .for_each_cell(|cell| window.add(self.position + turn.rotate(cell.at), cell.size, cell.share));
@@ -121,15 +121,15 @@ impl Load {
             .collect()
     }
 
-    fn part(&self, geometry: &Geometry, tile: TileId, share: f32, at: Vec2, lean: f32) -> Part {
+    fn part(&self, geometry: &Geometry, tile: TileId, share: f32, at: Vec2, lean: f32) -> TilePart {
         let index = geometry.index(tile).unwrap_or_default();
-        Part { load: TileLoad { tile, index, force: self.force * share, centroid: at }, lean }
+        TilePart { load: TileLoad { tile, index, force: self.force * share, centroid: at }, lean }
     }
 }
 
 /// The part of a load on one tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Part {
+pub(super) struct TilePart {
     pub(super) load: TileLoad,
     /// Mean product of the pressure's distances east and north of its centroid (m²): a foot along a tile's diagonal
     /// twists the tile even if its centroid is at the centre.

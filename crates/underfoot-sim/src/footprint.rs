@@ -9,7 +9,7 @@ use glam::Vec2;
 
 /// One cell of a print.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cell {
+pub struct PrintCell {
     /// Centre of the cell, in the print's frame.
     pub at: Vec2,
     /// Width (x) and length (y) in metres; zero for a point.
@@ -63,7 +63,7 @@ pub enum Print {
 impl Print {
     /// Calls `visit` with each loaded cell, from heel to toe.
     #[inline]
-    pub fn for_each_cell(&self, mut visit: impl FnMut(Cell)) {
+    pub fn for_each_cell(&self, mut visit: impl FnMut(PrintCell)) {
         match *self {
             Self::Shoe { length_m, roll } => {
                 let (size, zones) = (shoe_size(length_m), zone_shares(roll));
@@ -71,7 +71,7 @@ impl Print {
                 for (at, pressure) in &SOLE.cells {
                     let share = pressure.iter().zip(zones).map(|(cell, zone)| cell * zone).sum();
                     if share > 0.0 {
-                        visit(Cell { at: *at * size, size: cell, share });
+                        visit(PrintCell { at: *at * size, size: cell, share });
                     }
                 }
             }
@@ -81,12 +81,12 @@ impl Print {
                         let share = patch.share / DISC.len() as f32;
                         let size = patch.half_m * (2.0 / DISC_CELLS as f32);
                         for at in DISC.iter() {
-                            visit(Cell { at: patch.at + *at * patch.half_m, size, share });
+                            visit(PrintCell { at: patch.at + *at * patch.half_m, size, share });
                         }
                     }
                 }
             }
-            Self::Point => visit(Cell { at: Vec2::ZERO, size: Vec2::ZERO, share: 1.0 }),
+            Self::Point => visit(PrintCell { at: Vec2::ZERO, size: Vec2::ZERO, share: 1.0 }),
             Self::Disc { radius_m } => even_cells(Vec2::splat(radius_m), true, visit),
             Self::Ellipse { half_m } => even_cells(half_m, true, visit),
             Self::Bar { half_m } => even_cells(half_m, false, visit),
@@ -311,7 +311,7 @@ fn bump(along: f32, [begin, peak, end]: [f32; 3]) -> f32 {
 }
 
 /// Uniform pressure on an ellipse or rectangle, in at most 40 x 40 cells of at most about a centimetre.
-fn even_cells(half: Vec2, round: bool, mut visit: impl FnMut(Cell)) {
+fn even_cells(half: Vec2, round: bool, mut visit: impl FnMut(PrintCell)) {
     let half = half.max(Vec2::ZERO);
     let count = (half * 200.0).ceil().clamp(Vec2::splat(8.0), Vec2::splat(40.0));
     let size = 2.0 * half / count;
@@ -324,7 +324,7 @@ fn even_cells(half: Vec2, round: bool, mut visit: impl FnMut(Cell)) {
     let total = places().filter(|&(column, row)| inside(column, row).is_some()).count();
     for (column, row) in places() {
         if let Some(at) = inside(column, row) {
-            visit(Cell { at, size, share: 1.0 / total as f32 });
+            visit(PrintCell { at, size, share: 1.0 / total as f32 });
         }
     }
 }

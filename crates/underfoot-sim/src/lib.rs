@@ -71,10 +71,10 @@ mod way;
 
 pub use arrivals::{ArrivalError, ArrivalHandle, Arrivals, arrivals};
 pub use drawn_walk::{DrawnWalk, WalkError};
-pub use floor::{Sensing, SimConfig, SimFloor};
+pub use floor::{SimConfig, SimFloor, SimulatedSensors};
 pub use floor_clock::Host;
 pub use foot::{Foot, FootDriver, Load};
-pub use footprint::{Cell, Print, shoe_size};
+pub use footprint::{Print, PrintCell, shoe_size};
 pub use footwear::Footwear;
 pub use gait::{Gait, PREFERRED_M_S};
 pub use hand::{FootHandle, HandDriver, feet_by_hand};

@@ -127,7 +127,7 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::{Foot, PartConfig, Sensing, SimConfig};
+    use crate::{Foot, PartConfig, SimConfig, SimulatedSensors};
     use underfoot::floor::TileId;
 
     /// Tared force and centroid of everything on the floor, with the floor's calibration.
@@ -184,7 +184,8 @@ mod tests {
     #[test]
     fn exact_parts_come_back_within_the_load_cell_s_error() {
         let floor = Floor::of(underfoot::floor::Geometry::of_paper_tiles(2, 2).unwrap());
-        let config = SimConfig { sensing: Sensing::Counts(PartConfig::exact()), ..SimConfig::default() };
+        let config =
+            SimConfig { sensing: SimulatedSensors::Counts(PartConfig::exact()), ..SimConfig::default() };
         let sim = SimFloor::new(&floor, config, 3);
         let floor = calibrated(&floor, &sim, 5).unwrap();
         for law in floor.calibration.iter().flatten() {

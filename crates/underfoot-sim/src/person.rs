@@ -104,7 +104,7 @@ pub(super) const PRESS_ROLL: f32 = 0.6;
 
 /// A stance on both feet.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Standing {
+pub(super) struct TwoFootStance {
     /// Midpoint between the feet.
     pub(super) middle: Vec2,
     pub(super) facing: f32,
@@ -112,7 +112,7 @@ pub(super) struct Standing {
     pub(super) feet: [Pose; 2],
 }
 
-impl Standing {
+impl TwoFootStance {
     /// The foot, 0 or 1, with the shorter way to `target` without crossing the other one.
     pub(super) fn nearer_foot(&self, target: Vec2) -> usize {
         let to_right = -forward(self.facing).perp();
@@ -131,9 +131,9 @@ impl Person {
     }
 
     /// The stance with the feet side by side.
-    pub(super) fn standing(&self, middle: Vec2, facing: f32) -> Standing {
+    pub(super) fn standing(&self, middle: Vec2, facing: f32) -> TwoFootStance {
         let feet = [0, 1].map(|side| self.foot_beside(middle, facing, side, self.stand_width_m));
-        Standing { middle, facing, feet }
+        TwoFootStance { middle, facing, feet }
     }
 
     /// Pose of the shoe with its ball on `target`.

@@ -82,7 +82,7 @@ pub(super) struct Plate {
 
 /// Sum of the loads on one plate; positions are relative to its centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Press {
+pub(super) struct PlatePress {
     /// Total force, in newtons.
     pub(super) force: f32,
     /// Position of the total force, in metres.
@@ -91,7 +91,7 @@ pub(super) struct Press {
     pub(super) twist: f32,
 }
 
-impl Press {
+impl PlatePress {
     /// One load at a point.
     pub(super) fn at(force: f32, at: Vec2) -> Self {
         Self { force, at, twist: force * at.x * at.y }
@@ -130,7 +130,7 @@ impl Plate {
     /// Plate on springs: corner forces `k_i (z + p x_i + q y_i + t x_i y_i)` with z, p, q from balance, and t from
     /// the work of the load in twist against the stiffness of supports and plate. A plate with one corner in the air
     /// rests on three, and balance alone determines their forces.
-    pub(super) fn supports(&self, load: Press) -> [f32; 4] {
+    pub(super) fn supports(&self, load: PlatePress) -> [f32; 4] {
         let total = load.force + self.preload;
         let moment = load.at * (load.force / self.reach);
         let twist = load.twist / (self.reach * self.reach);
@@ -233,7 +233,8 @@ mod tests {
 
     /// Force and position of the load as the sensors report it, without tare.
     fn sensed(plate: &Plate, force: f32, at: Vec2) -> (f32, Vec2) {
-        let (loaded, empty) = (plate.supports(Press::at(force, at)), plate.supports(Press::default()));
+        let (loaded, empty) =
+            (plate.supports(PlatePress::at(force, at)), plate.supports(PlatePress::default()));
         let net: Vec<f32> = loaded.iter().zip(empty).map(|(loaded, empty)| loaded - empty).collect();
         let sum: f32 = net.iter().sum();
         let moment: Vec2 =
@@ -252,7 +253,7 @@ mod tests {
             let (felt, place) = sensed(&plate, force, at);
             prop_assert!((felt - force).abs() < 1e-3 * force + 1e-3, "{felt} for {force}");
             prop_assert!(place.distance(at) * force < 1e-4 * force + 1e-4, "{place} for {at}");
-            prop_assert!(plate.supports(Press::at(force, at)).iter().all(|&support| support >= 0.0));
+            prop_assert!(plate.supports(PlatePress::at(force, at)).iter().all(|&support| support >= 0.0));
         }
 
         #[test]
@@ -260,7 +261,7 @@ mod tests {
             force in 0.0f32..3000.0, x in -0.152f32..0.152, y in -0.152f32..0.152,
         ) {
             let plate = plate(PlateConfig::default());
-            let supports = plate.supports(Press::at(force, Vec2::new(x, y)));
+            let supports = plate.supports(PlatePress::at(force, Vec2::new(x, y)));
             prop_assert!(supports.iter().all(|&support| support >= 0.0));
             let sum: f32 = supports.iter().sum();
             prop_assert!(sum <= (force + plate.preload) * 1.001);
@@ -270,9 +271,9 @@ mod tests {
     #[test]
     fn equal_supports_share_a_central_load_equally() {
         let plate = plate(PlateConfig::ideal());
-        assert_eq!(plate.supports(Press::at(400.0, Vec2::ZERO)), [100.0; 4]);
+        assert_eq!(plate.supports(PlatePress::at(400.0, Vec2::ZERO)), [100.0; 4]);
         // Half way to a corner: half of the load on that corner, a quarter on each beside it, none opposite.
-        let supports = plate.supports(Press::at(400.0, Vec2::splat(REACH / 2.0)));
+        let supports = plate.supports(PlatePress::at(400.0, Vec2::splat(REACH / 2.0)));
         for (support, expected) in supports.iter().zip([0.0, 100.0, 100.0, 200.0]) {
             assert!((support - expected).abs() < 1e-3, "{supports:?}");
         }
@@ -281,9 +282,9 @@ mod tests {
     #[test]
     fn a_heavy_foot_near_one_corner_lifts_the_opposite_one() {
         let plate = plate(PlateConfig { stiffness_spread: 0.0, ..PlateConfig::default() });
-        let light = plate.supports(Press::at(20.0, Vec2::splat(0.1)));
+        let light = plate.supports(PlatePress::at(20.0, Vec2::splat(0.1)));
         assert!(light[0] > 0.0, "preload holds it down: {light:?}");
-        let heavy = plate.supports(Press::at(700.0, Vec2::splat(0.1)));
+        let heavy = plate.supports(PlatePress::at(700.0, Vec2::splat(0.1)));
         assert_eq!(heavy[0], 0.0, "{heavy:?}");
         assert!(heavy[3] > 400.0, "{heavy:?}");
     }
@@ -302,10 +303,10 @@ mod tests {
     #[test]
     fn tipping_sets_in_without_a_jump() {
         let plate = plate(PlateConfig::default());
-        let mut before = plate.supports(Press::at(700.0, Vec2::new(0.0, 0.06)));
+        let mut before = plate.supports(PlatePress::at(700.0, Vec2::new(0.0, 0.06)));
         for step in 1..=1000 {
             let at = Vec2::new(0.152, 0.092) * (step as f32 / 1000.0) + Vec2::new(0.0, 0.06);
-            let now = plate.supports(Press::at(700.0, at));
+            let now = plate.supports(PlatePress::at(700.0, at));
             for (now, before) in now.iter().zip(before) {
                 assert!((now - before).abs() < 12.0, "at {at}: {before} to {now}");
             }
@@ -324,7 +325,7 @@ mod tests {
             assert!((force - 400.0).abs() < 0.1 && place.distance(at) < 1e-4, "{force} at {place}");
         }
         let twist = |plate: &Plate| {
-            let [sw, se, nw, ne] = plate.supports(Press::at(400.0, at));
+            let [sw, se, nw, ne] = plate.supports(PlatePress::at(400.0, at));
             sw + ne - se - nw
         };
         assert!(twist(&rigid).abs() < 0.01, "{}", twist(&rigid));
@@ -337,11 +338,11 @@ mod tests {
     fn a_plate_without_stiffness_shares_a_load_as_a_loose_cloth_would() {
         let plate = plate(PlateConfig { twist: 1.0, ..PlateConfig::ideal() });
         // At a support: all of the load on it. Half way between two: half on each.
-        let supports = plate.supports(Press::at(100.0, Vec2::new(REACH, -REACH)));
+        let supports = plate.supports(PlatePress::at(100.0, Vec2::new(REACH, -REACH)));
         for (support, expected) in supports.iter().zip([0.0, 100.0, 0.0, 0.0]) {
             assert!((support - expected).abs() < 1e-3, "{supports:?}");
         }
-        let supports = plate.supports(Press::at(100.0, Vec2::splat(0.5 * REACH)));
+        let supports = plate.supports(PlatePress::at(100.0, Vec2::splat(0.5 * REACH)));
         for (support, expected) in supports.iter().zip([6.25, 18.75, 18.75, 56.25]) {
             assert!((support - expected).abs() < 1e-3, "{supports:?}");
         }

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
 
-use super::floor::{Sensing, SimConfig};
+use super::floor::{SimConfig, SimulatedSensors};
 use super::plate::PlateConfig;
 use super::seam::SeamConfig;
 use super::sensor::{PartConfig, SensorFault};
@@ -111,7 +111,7 @@ impl FloorQuality {
                 PartConfig { noise_v: 0.01, saturation_n: 300.0, ..paper.1.with_memory() },
             ),
         };
-        SimConfig { plate, seam, sensing: Sensing::Counts(parts) }
+        SimConfig { plate, seam, sensing: SimulatedSensors::Counts(parts) }
     }
 
     /// Returns the standard deviation of a sensor's zero drift since the tare (N).

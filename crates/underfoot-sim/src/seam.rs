@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use smallvec::SmallVec;
 
-use super::foot::Part;
+use super::foot::TilePart;
 use underfoot::floor::{Corner, Geometry, TileId};
 
 /// Seams of a simulated floor.
@@ -67,11 +67,11 @@ impl Seams {
     }
 
     /// Distributes one load among its tiles by their heights; the total stays the same.
-    pub(super) fn share(&self, parts: &mut [Part]) {
+    pub(super) fn share(&self, parts: &mut [TilePart]) {
         if parts.len() < 2 || self.lift.is_empty() {
             return;
         }
-        let lift = |part: &Part| self.lift.get(part.load.index).copied().unwrap_or(1.0);
+        let lift = |part: &TilePart| self.lift.get(part.load.index).copied().unwrap_or(1.0);
         let (mut whole, mut lifted) = (0.0, 0.0);
         for part in parts.iter() {
             whole += part.load.force.0;

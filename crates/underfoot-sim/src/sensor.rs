@@ -93,14 +93,14 @@ pub enum SensorFault {
 
 /// One part with its tolerances.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct SensorPart {
     pub(super) law: Exponential,
     deviation: Deviation,
     /// As [`PartConfig::saturation_n`].
     saturation_n: f32,
 }
 
-impl Part {
+impl SensorPart {
     /// Draws the next part.
     pub(super) fn draw(config: &PartConfig, rng: &mut Pcg64Mcg) -> Self {
         let mut spread = |share: f32| 1.0 + rng.random_range(-1.0f32..=1.0) * share;
@@ -226,7 +226,7 @@ impl Deviation {
 
 /// Memory of one sensor.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Memory {
+pub(super) struct SensorMemory {
     /// Logarithm of the force at the lagging part of the hysteresis loop.
     lag: Option<f32>,
     /// Force, low-pass filtered over 0.1, 1, 10, 100 and 1000 seconds.
@@ -236,7 +236,7 @@ pub(super) struct Memory {
 /// Time constants of creep, in milliseconds.
 const CREEP_MS: [f64; 5] = [1e2, 1e3, 1e4, 1e5, 1e6];
 
-impl Memory {
+impl SensorMemory {
     /// Memory of a sensor after an infinite time under `force`.
     pub(super) fn settled(force: f32) -> Self {
         Self { lag: Some(force.max(LEAST_FORCE).ln()), crept: [f64::from(force.max(0.0)); 5] }
@@ -283,9 +283,9 @@ mod tests {
     use super::*;
     use underfoot::sense::{Fit, LoadPoint};
 
-    fn parts(config: &PartConfig) -> Vec<Part> {
+    fn parts(config: &PartConfig) -> Vec<SensorPart> {
         let mut rng = Pcg64Mcg::seed_from_u64(11);
-        (0..400).map(|_| Part::draw(config, &mut rng)).collect()
+        (0..400).map(|_| SensorPart::draw(config, &mut rng)).collect()
     }
 
     #[test]
@@ -367,7 +367,7 @@ mod tests {
     #[test]
     fn a_falling_force_reads_more_than_a_rising_one_by_the_loop_s_width() {
         let config = PartConfig { hysteresis: 0.1, ..PartConfig::exact() };
-        let mut memory = Memory::settled(1.0);
+        let mut memory = SensorMemory::settled(1.0);
         let mut run = |from: f32, to: f32| {
             let mut felt = 0.0;
             for step in 0..=1000 {
@@ -384,7 +384,7 @@ mod tests {
     #[test]
     fn a_standing_load_creeps_by_five_percent_per_decade_and_leaves_again() {
         let config = PartConfig { creep: 0.05, ..PartConfig::exact() };
-        let mut memory = Memory::settled(0.0);
+        let mut memory = SensorMemory::settled(0.0);
         let mut after = |from_ms: usize, to_ms: usize, force: f32| {
             (from_ms..to_ms).map(|_| memory.felt(force, 1, &config)).last().unwrap()
         };

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::floor_clock::{FloorClock, Host, Machine};
+use super::floor_clock::{FloorClock, Host, MachineClock};
 use super::{Foot, FootDriver, SimFloor};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
@@ -69,7 +69,7 @@ impl SimulatedSource {
     /// another host.
     #[must_use]
     pub fn new(floor: SimFloor, driver: Box<dyn FootDriver>, pace: Pace) -> Self {
-        Self::with_clock(floor, driver, Clock::at(pace, || Arc::new(Machine(std::time::Instant::now()))))
+        Self::with_clock(floor, driver, Clock::at(pace, || Arc::new(MachineClock(std::time::Instant::now()))))
     }
 
     /// As [`SimulatedSource::new`], on a given host.

@@ -67,7 +67,7 @@ struct Move {
 
 /// Track of one foot in a performance.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Track {
+pub(super) struct FootTrack {
     /// Force on the floor, in body weights.
     pub(super) load: Curve,
     /// From the heel (0) to the toes (1).
@@ -79,7 +79,7 @@ pub(super) struct Track {
     moves: Vec<Move>,
 }
 
-impl Track {
+impl FootTrack {
     /// Places the foot at once.
     pub(super) fn put(&mut self, at_s: f64, pose: Pose) {
         let (path, profile) = (Path::Straight, Profile::Swing);
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn both_profiles_arrive_without_jumps() {
         for profile in [Profile::Swing, Profile::Steady { ramp_s: 0.1 }] {
-            let mut track = Track::default();
+            let mut track = FootTrack::default();
             track.put(1.0, Pose::default());
             track.go(2.0, 3.0, Pose { position: Vec2::X, heading: 1.0 }, profile);
             assert_eq!(track.pose(0.5), None);

@@ -5,12 +5,12 @@ use glam::Vec2;
 use super::track::turn_between;
 
 /// A polyline.
-pub(super) struct Way<'a> {
+pub(super) struct Polyline<'a> {
     points: &'a [Vec2],
     pub(super) length: f32,
 }
 
-impl<'a> Way<'a> {
+impl<'a> Polyline<'a> {
     pub(super) fn new(points: &'a [Vec2]) -> Self {
         Self { points, length: points.windows(2).map(|pair| pair[0].distance(pair[1])).sum() }
     }
@@ -97,12 +97,12 @@ mod tests {
     #[test]
     fn a_way_is_followed_round_its_bends() {
         let points = [Vec2::ZERO, Vec2::X, Vec2::X, Vec2::ONE];
-        let way = Way::new(&points);
+        let way = Polyline::new(&points);
         assert_eq!(way.length, 2.0);
         assert_eq!(way.at(0.25), (Vec2::new(0.25, 0.0), -FRAC_PI_2));
         assert_eq!(way.at(1.5), (Vec2::new(1.0, 0.5), 0.0));
         assert_eq!(way.at(99.0).0, Vec2::ONE);
-        assert_eq!(Way::new(&[]).at(1.0).0, Vec2::ZERO);
+        assert_eq!(Polyline::new(&[]).at(1.0).0, Vec2::ZERO);
         assert!((bend(points[0], points[1], points[3]) - FRAC_PI_2).abs() < 1e-6);
     }
 

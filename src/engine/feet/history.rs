@@ -5,7 +5,7 @@ use std::time::Duration;
 use glam::Vec2;
 
 use super::super::ignored::Ignored;
-use super::super::people::{Person, SAME_FOOT_M, STANCE_M};
+use super::super::people::{SAME_FOOT_M, STANCE_M, TrackedPerson};
 use super::super::snapshot::FootRole;
 use super::super::step::{CARRIES, Landing, Loading, RESTS, RESTS_N, Since, StepWatch, Support};
 use super::super::still::Stillness;
@@ -110,7 +110,7 @@ pub(in crate::engine) struct FootHistory {
 }
 
 impl FootHistory {
-    pub(super) fn new(contact: &Contact, person: &Person, now: Instant) -> Self {
+    pub(super) fn new(contact: &Contact, person: &TrackedPerson, now: Instant) -> Self {
         let (place, force) = (contact.centroid, contact.force.0);
         Self {
             id: contact.id,
@@ -287,7 +287,7 @@ impl FootHistory {
         }
     }
 
-    pub(super) fn judge(&mut self, person: &Person, now: Instant) {
+    pub(super) fn judge(&mut self, person: &TrackedPerson, now: Instant) {
         if self.force < AS_GOOD_AS_LIFTED_N {
             (self.landed, self.landed_at) = (now, self.place);
             (self.step, self.watch, self.early) = (false, StepWatch::default(), None);

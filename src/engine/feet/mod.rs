@@ -6,7 +6,7 @@ mod past;
 use glam::Vec2;
 
 pub(super) use self::history::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
-use super::people::Person;
+use super::people::TrackedPerson;
 use super::snapshot::FootState;
 use super::step::Landing;
 use crate::layout::Stance;
@@ -24,7 +24,7 @@ const SUPPORT_N: f32 = 100.0;
 pub(super) struct FootHistories {
     /// Sorted by id.
     feet: Vec<FootHistory>,
-    people: Vec<Person>,
+    people: Vec<TrackedPerson>,
     next_person: u32,
 }
 
@@ -104,7 +104,7 @@ impl FootHistories {
         })
     }
 
-    fn person_of(&self, id: ContactId) -> Option<&Person> {
+    fn person_of(&self, id: ContactId) -> Option<&TrackedPerson> {
         let person = self.of(id)?.person;
         self.people.iter().find(|known| known.id == person)
     }
@@ -180,7 +180,7 @@ impl FootHistories {
 
     /// The index of a new person.
     fn newcomer(&mut self, now: Instant) -> usize {
-        self.people.push(Person::new(self.next_person, now));
+        self.people.push(TrackedPerson::new(self.next_person, now));
         self.next_person = self.next_person.wrapping_add(1);
         self.people.len() - 1
     }

@@ -1,11 +1,11 @@
 //! The feet of each region, assigned to the controls below them.
 
-use super::candidate::{Candidate, Conditions, Refusal};
+use super::candidate::{Conditions, PressCandidate, PressRefusal};
 use super::unanswered::switched_off;
 use super::{Interaction, Moment, holds_to_run, report};
 use crate::engine::event::ControlEvent;
 use crate::engine::feet::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
-use crate::engine::region::{Finger, Held};
+use crate::engine::region::{EngagedFoot, Finger};
 use crate::layout::{CursorRule, Layout};
 use crate::sense::Contact;
 
@@ -95,9 +95,9 @@ impl Interaction {
             return;
         };
         let conditions = Conditions { is_new, needs_lift: control.needs_lift(), rivals, rises: &self.rises };
-        let (input, why) = match Candidate::new(contact, spec, &self.feet, at).input(&conditions) {
+        let (input, why) = match PressCandidate::new(contact, spec, &self.feet, at).input(&conditions) {
             Ok(input) => (input, None),
-            Err(Refusal { why, input }) => (input, Some(why)),
+            Err(PressRefusal { why, input }) => (input, Some(why)),
         };
         let why = switched_off(control).or(why);
         let emitted = control.step(now, input);
@@ -107,7 +107,8 @@ impl Interaction {
         if control.is_engaged() || !emitted.is_empty() {
             self.ignored.note_answer(contact.id, widget, contact.force);
         }
-        let held = Held { widget, contact: contact.id, force: contact.force, position: contact.centroid };
+        let held =
+            EngagedFoot { widget, contact: contact.id, force: contact.force, position: contact.centroid };
         if control.is_engaged() {
             finger.held = Some(held);
             self.running |= holds_to_run(at.layout, widget);

@@ -18,7 +18,7 @@ use crate::widget::{Guard, Input, OffReason, Thresholds};
 const LANDING: Duration = Duration::from_millis(300);
 
 /// A foot on a control that does not hold it yet.
-pub(super) struct Candidate<'a> {
+pub(super) struct PressCandidate<'a> {
     contact: &'a Contact,
     spec: &'a Widget,
     at: &'a Moment<'a>,
@@ -41,12 +41,12 @@ pub(super) struct Conditions<'a> {
 }
 
 /// A foot that may not press: the reason, and the input that it gives the control.
-pub(super) struct Refusal {
+pub(super) struct PressRefusal {
     pub(super) why: Ignored,
     pub(super) input: Input,
 }
 
-impl<'a> Candidate<'a> {
+impl<'a> PressCandidate<'a> {
     pub(super) fn new(
         contact: &'a Contact,
         spec: &'a Widget,
@@ -68,21 +68,21 @@ impl<'a> Candidate<'a> {
     /// The input of the control from this foot.
     ///
     /// A foot below the press threshold is refused only for a step, or for sliding on.
-    pub(super) fn input(&self, conditions: &Conditions<'_>) -> Result<Input, Refusal> {
+    pub(super) fn input(&self, conditions: &Conditions<'_>) -> Result<Input, PressRefusal> {
         let force = self.contact.force;
         if let Some(Err(why)) = self.foot.map(|foot| foot.may_operate(self.mode, self.at.now())) {
-            return Err(Refusal { why, input: Input::Stepping { force } });
+            return Err(PressRefusal { why, input: Input::Stepping { force } });
         }
         let slid_on = conditions.is_new && self.has_slid_on();
         // A foot with unreliable force at the press stays unreliable when it lightens.
         if slid_on || self.presses() && !self.is_believed() && !self.waits() {
             let why = if slid_on { Ignored::SlidOn } else { Ignored::Unbelieved };
-            return Err(Refusal { why, input: Input::SlidOn { force } });
+            return Err(PressRefusal { why, input: Input::SlidOn { force } });
         }
         let may = self.may_press(conditions);
         let input = foot_input(self.contact, self.spec, self.at.frame, self.weight, may.is_ok());
         match may {
-            Err(why) if self.presses() => Err(Refusal { why, input }),
+            Err(why) if self.presses() => Err(PressRefusal { why, input }),
             _ => Ok(input),
         }
     }

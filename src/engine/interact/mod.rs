@@ -13,7 +13,7 @@ use self::readings::tiles_under;
 use super::event::ControlEvent;
 use super::feet::FootHistories;
 use super::ignored::IgnoredPresses;
-use super::region::{Held, RegionState};
+use super::region::{EngagedFoot, RegionState};
 use super::rise::Rises;
 use super::snapshot::FootState;
 use crate::floor::Geometry;
@@ -146,7 +146,7 @@ impl Interaction {
         self.feet.states(now)
     }
 
-    fn held(&self) -> impl Iterator<Item = Held> + Clone + '_ {
+    fn held(&self) -> impl Iterator<Item = EngagedFoot> + Clone + '_ {
         self.regions.iter().flat_map(RegionState::held)
     }
 
@@ -258,7 +258,7 @@ impl Interaction {
         self.awake = awake;
     }
 
-    fn release_hold(&mut self, widget: usize) -> Option<Held> {
+    fn release_hold(&mut self, widget: usize) -> Option<EngagedFoot> {
         self.regions.iter_mut().find_map(|region| region.let_go(widget))
     }
 
@@ -279,7 +279,7 @@ fn report(
     layout: &Layout,
     at: Instant,
     widget: usize,
-    held: Option<Held>,
+    held: Option<EngagedFoot>,
     emitted: &Emitted,
     events: &mut Vec<ControlEvent>,
 ) {

@@ -15,13 +15,13 @@ use crate::sense::{Contact, ContactId, ForceFrame};
 use crate::units::Instant;
 use crate::widget::{Behaviour, Control, EventKind, Value};
 
-use values::{Ends, Shares, Way};
+use values::{Ends, NumberChange, NumberShares};
 
 /// Turns events of controls into cues.
 #[derive(Debug, Default)]
 pub(super) struct Responses {
     player: Player,
-    shares: Shares,
+    shares: NumberShares,
     ends: Ends,
     last_spots: LastSpots,
 }
@@ -116,7 +116,7 @@ impl Responses {
     fn stop(
         &mut self,
         (number, widget): (usize, &Widget),
-        way: Way,
+        way: NumberChange,
         event: &ControlEvent,
         now: Now<'_>,
     ) -> Option<(Click, Manner)> {

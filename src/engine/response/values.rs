@@ -12,7 +12,7 @@ use crate::widget::{Behaviour, Control, Scale, Value};
 
 /// Positions of the controls' numbers within their ranges.
 #[derive(Debug, Default)]
-pub(super) struct Shares(Vec<Share>);
+pub(super) struct NumberShares(Vec<Share>);
 
 /// One control's number.
 #[derive(Clone, Copy, Debug)]
@@ -30,14 +30,14 @@ const AGAIN: f32 = 0.25;
 
 /// A change of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Way {
+pub(super) struct NumberChange {
     pub(super) from: f32,
     pub(super) to: f32,
     /// The end that the change reached: true for the high one; `None` if it reached none.
     pub(super) end: Option<bool>,
 }
 
-impl Shares {
+impl NumberShares {
     pub(super) fn begin(&mut self, layout: &Layout, controls: &[Control]) {
         self.0.clear();
         self.0.extend(layout.widgets.iter().zip(controls).map(|(widget, control)| {
@@ -47,7 +47,7 @@ impl Shares {
     }
 
     /// Notes the new value of control number `widget`; `None` if it is not a number.
-    pub(super) fn go(&mut self, widget: usize, behaviour: &Behaviour, value: Value) -> Option<Way> {
+    pub(super) fn go(&mut self, widget: usize, behaviour: &Behaviour, value: Value) -> Option<NumberChange> {
         let share = self.0.get_mut(widget)?;
         let to = shares(behaviour, value);
         let from = std::mem::replace(&mut share.at, to);
@@ -58,11 +58,11 @@ impl Shares {
         let end = [(from.x, to.x), (from.y, to.y)]
             .into_iter()
             .find_map(|(from, to)| end_of(to).filter(|_| from != to));
-        Some(Way { from: from.x, to: to.x, end })
+        Some(NumberChange { from: from.x, to: to.x, end })
     }
 
     /// The detent of `detents` that a number passes on this `way`, if it is not the last one that was felt.
-    pub(super) fn detent(&mut self, widget: usize, detents: &Detents, way: Way) -> Option<f32> {
+    pub(super) fn detent(&mut self, widget: usize, detents: &Detents, way: NumberChange) -> Option<f32> {
         let detent = detents.passed(way.from, way.to)?;
         let share = self.0.get_mut(widget)?;
         if share.detent == detent && share.away < AGAIN * detents.every {
@@ -73,9 +73,9 @@ impl Shares {
     }
 
     /// The change of a number that stays at its end although it was meant to go on.
-    pub(super) fn stay(&self, widget: usize) -> Way {
+    pub(super) fn stay(&self, widget: usize) -> NumberChange {
         let at = self.0.get(widget).map_or(f32::NAN, |share| share.at.x);
-        Way { from: at, to: at, end: end_of(at) }
+        NumberChange { from: at, to: at, end: end_of(at) }
     }
 
     /// Whether a number is at either end of its range.
@@ -152,7 +152,14 @@ impl Ends {
     }
 
     /// Notes a changed number: it may have reached an end, or left it.
-    pub(super) fn reach(&mut self, widget: usize, spec: &Widget, way: Way, id: ContactId, now: Now<'_>) {
+    pub(super) fn reach(
+        &mut self,
+        widget: usize,
+        spec: &Widget,
+        way: NumberChange,
+        id: ContactId,
+        now: Now<'_>,
+    ) {
         let Some(EffectKind::EndStop(end)) = spec.feel.end.as_ref().map(|effect| &effect.kind) else {
             return;
         };
@@ -169,7 +176,7 @@ impl Ends {
     }
 
     /// Appends the sustained cues of feet that push on against an end.
-    pub(super) fn push(&mut self, shares: &Shares, now: Now<'_>, sustained: &mut SustainedCues) {
+    pub(super) fn push(&mut self, shares: &NumberShares, now: Now<'_>, sustained: &mut SustainedCues) {
         self.0.retain(|pushing| {
             let Some(contact) = now.contact(pushing.contact) else { return false };
             let Some(feel) = now.layout.widgets.get(pushing.widget).map(|widget| &widget.feel) else {

@@ -25,7 +25,7 @@ pub use lasting::{Friction, Grains, Hum, Lasting, Material, Resonance, StickSlip
 pub use reading::{Effects, NamedEffect};
 pub use sequence::{CurvePoint, MAX_PARTS, Part, PartKind, Sequence};
 pub use stops::{Detents, EndStop, MAX_MARKS, Push};
-pub(crate) use timeline::Timeline;
+pub(crate) use timeline::EffectTimeline;
 pub use tone::{MAX_POINTS, Tone, TonePoint};
 
 use self::reading::BandFields;
@@ -122,7 +122,7 @@ impl EffectKind {
     }
 
     /// The clicks and tones that it plays; `None` for effects driven by a foot or a value.
-    pub(crate) fn timeline(&self) -> Option<&dyn Timeline> {
+    pub(crate) fn timeline(&self) -> Option<&dyn EffectTimeline> {
         match self {
             Self::Click(clicks) => Some(clicks),
             Self::Continuous(tone) => Some(tone),

@@ -7,7 +7,7 @@ use arrayvec::ArrayVec;
 
 use super::parts::Parts;
 use super::tone::{STRENGTH, TIME, check_order};
-use super::{MAX_POINTS, Timeline, Tone, TonePoint};
+use super::{EffectTimeline, MAX_POINTS, Tone, TonePoint};
 use crate::feel::Click;
 use underfoot_format::{Rec, list, record};
 
@@ -53,7 +53,7 @@ record! {
     pub level: f32 = "level", STRENGTH;
 }
 
-impl Timeline for Sequence {
+impl EffectTimeline for Sequence {
     fn written(&self, index: usize) -> Option<Cow<'_, Part>> {
         self.parts.get(index).map(Cow::Borrowed)
     }
@@ -134,7 +134,7 @@ mod tests {
             assert!((tone.at(t).0 - level).abs() < 1e-5, "{t} s: {:?}", tone.at(t));
         }
         assert_eq!(sequence.part(2), None);
-        let timeline: &dyn Timeline = &sequence;
+        let timeline: &dyn EffectTimeline = &sequence;
         assert!((timeline.end_s() - 1.5).abs() < 1e-5);
     }
 }

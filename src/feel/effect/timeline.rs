@@ -8,8 +8,8 @@ use super::{Clicks, Part, PartKind, Tone};
 ///
 /// # Real-time
 /// No method allocates.
-pub(crate) trait Timeline {
-    /// Part number `index`, in order of time, before [`Timeline::share_at`] scales it; `None` if there is no such
+pub(crate) trait EffectTimeline {
+    /// Part number `index`, in order of time, before [`EffectTimeline::share_at`] scales it; `None` if there is no such
     /// part.
     fn written(&self, index: usize) -> Option<Cow<'_, Part>>;
 
@@ -24,7 +24,7 @@ pub(crate) trait Timeline {
     }
 }
 
-impl dyn Timeline + '_ {
+impl dyn EffectTimeline + '_ {
     /// The parts as they play once, in order of time.
     pub(crate) fn parts(&self) -> impl Iterator<Item = Part> {
         (0..).map_while(|index| self.part(index))
@@ -50,13 +50,13 @@ fn only(index: usize, kind: impl FnOnce() -> PartKind) -> Option<Cow<'static, Pa
     (index == 0).then(|| Cow::Owned(Part { at_s: 0.0, kind: kind() }))
 }
 
-impl Timeline for Clicks {
+impl EffectTimeline for Clicks {
     fn written(&self, index: usize) -> Option<Cow<'_, Part>> {
         only(index, || PartKind::Click(self.press.clone()))
     }
 }
 
-impl Timeline for Tone {
+impl EffectTimeline for Tone {
     fn written(&self, index: usize) -> Option<Cow<'_, Part>> {
         only(index, || PartKind::Tone(self.clone()))
     }

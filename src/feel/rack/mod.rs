@@ -21,12 +21,12 @@ use multiversion::target::target_cfg_f;
 
 use super::active_modes::ActiveModes;
 use super::limiter::Limiter;
-use super::mix::{LANES, Mix, settled};
+use super::mix::{LANES, MixBlock, settled};
 use super::modal::SPAN;
 use crate::floor::{Drive, Response};
 use gate::Gate;
 use heat::Heat;
-use section::{Filter, Section};
+use section::{Filter, FilterSection};
 
 /// Samples beyond this many full scales are a fault, not a loud cue.
 const OVERLOAD: f32 = 8.0;
@@ -36,7 +36,7 @@ const SILENCE: f32 = 1e-7;
 
 /// Counts of faulty samples and of the measures against them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Faults {
+pub(super) struct SampleFaults {
     /// Samples that were not numbers or infinite: silence now.
     pub(super) not_finite: u32,
     /// Samples beyond [`OVERLOAD`]: cut off there.
@@ -62,7 +62,7 @@ pub(super) struct Rack {
 /// Sixteen channels.
 #[derive(Clone, Debug)]
 struct Group {
-    sections: Vec<Section>,
+    sections: Vec<FilterSection>,
     heat: Heat,
     limiter: Limiter,
     gate: Gate,
@@ -104,7 +104,7 @@ impl Rack {
         let Some(group) = self.groups.get_mut(channel / LANES) else { return };
         let lane = channel % LANES;
         while group.sections.len() < shapes.len() {
-            group.sections.push(Section::straight());
+            group.sections.push(FilterSection::straight());
         }
         for (section, shape) in group.sections.iter_mut().zip(&shapes) {
             section.set(lane, shape);
@@ -143,17 +143,17 @@ impl Rack {
     pub(super) fn process(
         &mut self,
         modes: &mut ActiveModes,
-        mix: &Mix,
+        mix: &MixBlock,
         gains: &[f32],
         out: &mut [f32],
-    ) -> Faults {
+    ) -> SampleFaults {
         let is_fed = |group: usize, modes: &ActiveModes| mix.is_open(group) || modes.has_more(group);
         if self.groups.iter().enumerate().all(|(number, group)| group.idle && !is_fed(number, modes)) {
             out.fill(0.0);
             self.groups.iter_mut().for_each(|group| group.rest(gains.len()));
-            return Faults::default();
+            return SampleFaults::default();
         }
-        let mut faults = Faults::default();
+        let mut faults = SampleFaults::default();
         for (span, (gains, out)) in gains.chunks(SPAN).zip(out.chunks_mut(SPAN * self.channels)).enumerate() {
             for (number, (group, columns)) in self.groups.iter_mut().zip(&mut self.columns).enumerate() {
                 let fed = is_fed(number, modes);
@@ -184,7 +184,7 @@ impl Rack {
 /// The place of a stretch of a group's samples in the mix.
 #[derive(Clone, Copy)]
 struct Rows<'a> {
-    mix: &'a Mix,
+    mix: &'a MixBlock,
     group: usize,
     from: usize,
 }
@@ -197,7 +197,7 @@ fn run<'a>(
     columns: &mut [[f32; LANES]; SPAN],
     gains: &[f32],
     fed: bool,
-) -> Faults {
+) -> SampleFaults {
     if target_cfg_f!(any(target_feature = "fma", target_arch = "aarch64")) {
         group.run::<true>(rows, columns, gains, fed)
     } else {
@@ -228,8 +228,8 @@ impl Group {
         columns: &mut [[f32; LANES]; SPAN],
         gains: &[f32],
         fed: bool,
-    ) -> Faults {
-        let mut faults = Faults::default();
+    ) -> SampleFaults {
+        let mut faults = SampleFaults::default();
         if let Some(Rows { mix, group, from }) = rows {
             mix.add_to(group, from, gains.len(), columns);
             // Checked early: a filter never recovers from NaN. Banks don't produce any.
@@ -239,7 +239,7 @@ impl Group {
             }
         }
         let columns = &mut columns[..gains.len()];
-        Section::run_all::<FUSED>(&mut self.sections, columns);
+        FilterSection::run_all::<FUSED>(&mut self.sections, columns);
         let mut found = survey(columns);
         if !found.is_calm() {
             faults += self.mend(columns);
@@ -263,8 +263,8 @@ impl Group {
 
     /// Silences samples that are not finite, cuts off those that are too large, counts both, and closes their
     /// channels.
-    fn mend(&mut self, columns: &mut [[f32; LANES]]) -> Faults {
-        let mut faults = Faults::default();
+    fn mend(&mut self, columns: &mut [[f32; LANES]]) -> SampleFaults {
+        let mut faults = SampleFaults::default();
         for column in columns {
             for (lane, sample) in column.iter_mut().enumerate() {
                 if !sample.is_finite() {
@@ -372,7 +372,7 @@ fn write(groups: &[[[f32; LANES]; SPAN]], out: &mut [f32], channels: usize) {
     }
 }
 
-impl std::ops::AddAssign for Faults {
+impl std::ops::AddAssign for SampleFaults {
     fn add_assign(&mut self, other: Self) {
         self.not_finite += other.not_finite;
         self.overloaded += other.overloaded;

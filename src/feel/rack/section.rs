@@ -62,7 +62,7 @@ impl Filter {
 /// One second-order filter for each of a group's channels.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub(super) struct Section {
+pub(super) struct FilterSection {
     /// Coefficients from the two states and the input to the next states: rows of three.
     next: [[f32; LANES]; 6],
     /// Coefficients from the two states and the input to the output.
@@ -72,7 +72,7 @@ pub(super) struct Section {
 
 type States = [[f32; LANES]; 2];
 
-impl Section {
+impl FilterSection {
     /// Filters with an output equal to the input.
     pub(super) fn straight() -> Self {
         let mut section = Self { next: [[0.0; LANES]; 6], out: [[0.0; LANES]; 3], states: [[0.0; LANES]; 2] };
@@ -149,13 +149,13 @@ mod tests {
 
     /// The measured gain of a filter for a sine, after it has settled.
     fn measured_db(filter: &Filter, hz: f64) -> f64 {
-        let mut section = Section::straight();
+        let mut section = FilterSection::straight();
         section.set(3, filter);
         let mut columns = vec![[0.0; LANES]; 96_000];
         for (n, column) in columns.iter_mut().enumerate() {
             column[3] = (TAU * hz * n as f64 / RATE).sin() as f32;
         }
-        Section::run_all::<false>(std::slice::from_mut(&mut section), &mut columns);
+        FilterSection::run_all::<false>(std::slice::from_mut(&mut section), &mut columns);
         let (mut re, mut im) = (0.0, 0.0);
         for (n, column) in columns.iter().enumerate().skip(48_000) {
             let angle = TAU * hz * n as f64 / RATE;
@@ -185,8 +185,8 @@ mod tests {
     #[test]
     fn a_straight_section_changes_nothing() {
         let mut columns = vec![[0.3; LANES]; 10];
-        Section::run_all::<false>(
-            &mut [Section::straight(), Section::straight(), Section::straight()],
+        FilterSection::run_all::<false>(
+            &mut [FilterSection::straight(), FilterSection::straight(), FilterSection::straight()],
             &mut columns,
         );
         assert_eq!(columns, vec![[0.3; LANES]; 10]);

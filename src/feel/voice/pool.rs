@@ -2,10 +2,10 @@
 
 use super::duck::Ducks;
 use super::group::{Group, Model};
-use super::single::{STEP, Span, State, Voice};
+use super::single::{STEP, SampleSpan, Voice, VoiceState};
 use super::{LANES, LowRate};
 use crate::feel::loudspeakers::Loudspeakers;
-use crate::feel::mix::{Mix, Wiring};
+use crate::feel::mix::{MixBlock, TileChannels};
 use crate::feel::{Cue, MAX_SUSTAINED, Manner, SustainedCue, SustainedCues, Tone};
 
 /// Enough for [`MAX_SUSTAINED`] voices with every distribution over the models.
@@ -70,15 +70,15 @@ impl Voices {
     pub(in crate::feel) fn follow(
         &mut self,
         sustained: &SustainedCues,
-        wiring: &Wiring,
+        wiring: &TileChannels,
         air: &Loudspeakers,
     ) -> Started {
         self.age = 0;
         for voice in &mut self.voices {
-            if voice.state == State::Sustained
+            if voice.state == VoiceState::Sustained
                 && !sustained.iter().any(|sustained_cue| sustained_cue.key == voice.key)
             {
-                voice.state = State::Fading;
+                voice.state = VoiceState::Fading;
             }
         }
         let mut started = Started::default();
@@ -98,7 +98,7 @@ impl Voices {
         &mut self,
         cue: &Cue,
         tone: &Tone,
-        wiring: &Wiring,
+        wiring: &TileChannels,
         air: &Loudspeakers,
     ) -> Started {
         let heard = air.pan(&cue.spots, cue.audio_gain, cue.heard_at);
@@ -120,7 +120,8 @@ impl Voices {
     fn voice_for(&mut self, sustained_cue: &SustainedCue, started: &mut Started) -> Option<usize> {
         let model = Model::of(&sustained_cue.effect);
         let plays = |voice: &Voice| {
-            matches!(voice.state, State::Sustained | State::Fading) && voice.key == sustained_cue.key
+            matches!(voice.state, VoiceState::Sustained | VoiceState::Fading)
+                && voice.key == sustained_cue.key
         };
         let held = self.voices.iter().position(plays);
         if let Some(number) = held {
@@ -156,7 +157,7 @@ impl Voices {
     /// of several, unless the new one has a lower priority itself.
     fn claim(&mut self, model: Model, manner: Manner, loudness: f32, started: &mut Started) -> Option<usize> {
         loop {
-            let free = self.voices.iter().position(|voice| voice.state == State::Free);
+            let free = self.voices.iter().position(|voice| voice.state == VoiceState::Free);
             let lane = self.lane(model);
             if let (Some(number), Some((group, lane))) = (free, lane) {
                 self.voices[number].group = group;
@@ -168,9 +169,9 @@ impl Voices {
                 self.groups[group].release(lane);
             }
             let rank =
-                |voice: &Voice| (voice.state != State::Fading, voice.manner.priority, voice.loudness());
+                |voice: &Voice| (voice.state != VoiceState::Fading, voice.manner.priority, voice.loudness());
             let victim = (0..self.voices.len())
-                .filter(|&number| self.voices[number].state != State::Free)
+                .filter(|&number| self.voices[number].state != VoiceState::Free)
                 .min_by(|a, b| {
                     let (a, b) = (rank(&self.voices[*a]), rank(&self.voices[*b]));
                     (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
@@ -200,8 +201,8 @@ impl Voices {
 
     fn free(&mut self, number: usize) {
         let voice = &mut self.voices[number];
-        if voice.state != State::Free {
-            voice.state = State::Free;
+        if voice.state != VoiceState::Free {
+            voice.state = VoiceState::Free;
             self.groups[voice.group].release(voice.lane);
             self.active -= 1;
         }
@@ -209,12 +210,12 @@ impl Voices {
 
     /// Adds the samples from `start` to `end` of the block at hand to the channels under the feet and of the
     /// loudspeakers.
-    pub(in crate::feel) fn render(&mut self, mix: &mut Mix, start: usize, end: usize) {
+    pub(in crate::feel) fn render(&mut self, mix: &mut MixBlock, start: usize, end: usize) {
         self.age = self.age.saturating_add(end.saturating_sub(start));
         if self.age as f32 > STALE_S * self.sample_rate {
             for voice in &mut self.voices {
-                if voice.state == State::Sustained {
-                    voice.state = State::Fading;
+                if voice.state == VoiceState::Sustained {
+                    voice.state = VoiceState::Fading;
                 }
             }
         }
@@ -229,16 +230,16 @@ impl Voices {
         }
     }
 
-    fn render_part(&mut self, mix: &mut Mix, start: usize, samples: usize, low_samples: usize) {
+    fn render_part(&mut self, mix: &mut MixBlock, start: usize, samples: usize, low_samples: usize) {
         let seconds = samples as f32 / self.sample_rate;
         for (number, voice) in self.voices.iter_mut().enumerate() {
-            if voice.state == State::Free {
+            if voice.state == VoiceState::Free {
                 continue;
             }
             let drive = voice.step(seconds);
             let band = voice.manner.band.sound();
             self.groups[voice.group].tune(voice.lane, &voice.effect, drive, band, self.rate.hz);
-            if voice.manner.duck_db > 0.0 && voice.state != State::Fading {
+            if voice.manner.duck_db > 0.0 && voice.state != VoiceState::Fading {
                 for channel in voice.channels() {
                     self.ducks.press(channel, &voice.manner, 2.0 * seconds, Some(number));
                 }
@@ -246,14 +247,14 @@ impl Voices {
         }
         let mut low = [[0.0; LANES]; STEP];
         let low = &mut low[..low_samples];
-        let span = Span { start, samples, phase: self.phase, ramp: &self.ramp };
+        let span = SampleSpan { start, samples, phase: self.phase, ramp: &self.ramp };
         for group in 0..GROUPS {
             if self.groups[group].is_silent() {
                 continue;
             }
             self.groups[group].render(low);
             for (number, voice) in self.voices.iter_mut().enumerate() {
-                if voice.state != State::Free && voice.group == group {
+                if voice.state != VoiceState::Free && voice.group == group {
                     voice.add(number, low, mix, &self.ducks, &span);
                 }
             }

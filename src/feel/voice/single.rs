@@ -6,7 +6,7 @@ use super::duck::{Ducks, MAX_REACHES};
 use super::group::Drive;
 use super::{Row, within};
 use crate::feel::loudspeakers::{PER_NEWTON, Panned};
-use crate::feel::mix::{FAINT, Mix, Output, Wiring};
+use crate::feel::mix::{FAINT, MixBlock, Output, TileChannels};
 use crate::feel::{Friction, Hum, Lasting, Manner, Spots, SustainedCue, Tone};
 
 /// Time constant with which level, speed and pitch follow the foot: `y += (x - y) * dt / (FOLLOW_S + dt)`.
@@ -22,7 +22,7 @@ const STRONGEST_N: f32 = 1000.0;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Voice {
     pub(super) key: u32,
-    pub(super) state: State,
+    pub(super) state: VoiceState,
     pub(super) effect: Lasting,
     pub(super) manner: Manner,
     pub(super) group: usize,
@@ -41,7 +41,7 @@ pub(super) struct Voice {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum State {
+pub(super) enum VoiceState {
     #[default]
     Free,
     /// A sustained cue with regular updates.
@@ -72,7 +72,7 @@ struct Reach {
 
 /// A stretch of samples to be added, and the place of the device's samples between the voices'.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Span<'a> {
+pub(super) struct SampleSpan<'a> {
     pub(super) start: usize,
     pub(super) samples: usize,
     /// Device samples since the last sample of the low rate.
@@ -100,12 +100,12 @@ impl Voice {
         tone: &Tone,
         manner: Manner,
         spots: &Spots,
-        wiring: &Wiring,
+        wiring: &TileChannels,
         heard: &Panned,
     ) -> (Self, u32) {
         let hum = Hum { level: tone.level, hz: tone.hz, noise: tone.noise };
         let mut voice = Self {
-            state: State::Sounding,
+            state: VoiceState::Sounding,
             effect: Lasting::Hum(hum),
             manner,
             tone: Some(tone.clone()),
@@ -121,8 +121,13 @@ impl Voice {
 
     /// Sets the target to the present sustained cue; returns the number of spots without an actuator, for a new
     /// sustained cue.
-    pub(super) fn follow(&mut self, sustained_cue: &SustainedCue, wiring: &Wiring, heard: &Panned) -> u32 {
-        let new = self.state == State::Free;
+    pub(super) fn follow(
+        &mut self,
+        sustained_cue: &SustainedCue,
+        wiring: &TileChannels,
+        heard: &Panned,
+    ) -> u32 {
+        let new = self.state == VoiceState::Free;
         self.wanted = wish(sustained_cue);
         if new {
             // A new sustained cue starts at its own pitch; its fade makes it start from silence.
@@ -130,14 +135,14 @@ impl Voice {
         }
         self.effect = sustained_cue.effect;
         self.manner = sustained_cue.manner;
-        self.state = State::Sustained;
+        self.state = VoiceState::Sustained;
         let unfelt = self.reach(&sustained_cue.spots, wiring, new);
         self.sound(heard);
         unfelt
     }
 
     /// Sets the targets for these spots.
-    fn reach(&mut self, spots: &Spots, wiring: &Wiring, new: bool) -> u32 {
+    fn reach(&mut self, spots: &Spots, wiring: &TileChannels, new: bool) -> u32 {
         for reach in &mut self.reaches {
             reach.wanted = 0.0;
         }
@@ -202,7 +207,7 @@ impl Voice {
             now.hz += (wanted.hz - now.hz) * pull;
         }
         match self.state {
-            State::Fading => self.fade = (self.fade - seconds / FADE_S).max(0.0),
+            VoiceState::Fading => self.fade = (self.fade - seconds / FADE_S).max(0.0),
             _ => self.fade = (self.fade + seconds / FADE_S).min(1.0),
         }
         for reach in &mut self.reaches {
@@ -214,14 +219,21 @@ impl Voice {
     /// Whether it can be freed.
     pub(super) fn is_over(&self) -> bool {
         match self.state {
-            State::Fading => self.fade == 0.0,
-            State::Sounding => !self.tone.as_ref().is_some_and(|tone| self.clock_s < tone.whole_s()),
-            State::Free | State::Sustained => false,
+            VoiceState::Fading => self.fade == 0.0,
+            VoiceState::Sounding => !self.tone.as_ref().is_some_and(|tone| self.clock_s < tone.whole_s()),
+            VoiceState::Free | VoiceState::Sustained => false,
         }
     }
 
     /// Adds its lane of `low` to its channels; the gain goes in a straight line from the last part's to this one's.
-    pub(super) fn add(&mut self, number: usize, low: &[Row], mix: &mut Mix, ducks: &Ducks, span: &Span<'_>) {
+    pub(super) fn add(
+        &mut self,
+        number: usize,
+        low: &[Row],
+        mix: &mut MixBlock,
+        ducks: &Ducks,
+        span: &SampleSpan<'_>,
+    ) {
         let mut own = [0.0; STEP];
         self.interpolate(low, &mut own[..span.samples], span);
         let level = self.now.level_n * self.fade;
@@ -241,7 +253,7 @@ impl Voice {
         self.reaches.retain(|reach| reach.wanted > 0.0 || reach.weight > FAINT);
     }
 
-    fn interpolate(&mut self, low: &[Row], own: &mut [f32], span: &Span<'_>) {
+    fn interpolate(&mut self, low: &[Row], own: &mut [f32], span: &SampleSpan<'_>) {
         let divisor = span.ramp.len();
         let mut next = low.iter();
         let (mut phase, mut rest) = (span.phase, own);

@@ -6,7 +6,7 @@ use std::path::Path;
 use mcap::records::op;
 
 use super::super::entry::Entry;
-use super::super::messages::Part;
+use super::super::messages::LogPart;
 use super::super::reader::Opening;
 use super::super::{EVENTS, FLOOR, LAYOUT, METADATA, RecordingError, TOPICS, VERSION};
 use crate::floor::{Floor, Geometry};
@@ -245,10 +245,10 @@ pub(super) fn read(file: Vec<u8>) -> Result<Given, RecordingError> {
     let mut given = Given { entries: Vec::new(), events: 0, foreign: 0, broken: None };
     loop {
         match parts.next_part() {
-            Part::Entry(at, entry) => given.entries.push((at, entry)),
-            Part::Event(_) => given.events += 1,
-            Part::Whole => break,
-            Part::Broken(why) => {
+            LogPart::Entry(at, entry) => given.entries.push((at, entry)),
+            LogPart::Event(_) => given.events += 1,
+            LogPart::Whole => break,
+            LogPart::Broken(why) => {
                 given.broken = Some(why);
                 break;
             }

@@ -1,7 +1,7 @@
 //! Keeps the boards' slots and the sample clock in step with the receive clock.
 
 use super::board::BoardTrack;
-use super::clock::{SLOT_NS, SampleClock};
+use super::clock::{SLOT_NS, SlotClock};
 
 /// Interval at which the boards' slots and the clock are compared with the receive clock.
 const ALIGN_NS: i64 = 64 * SLOT_NS;
@@ -36,7 +36,7 @@ impl Alignment {
         &mut self,
         now_ns: i64,
         done: i64,
-        clock: &mut SampleClock,
+        clock: &mut SlotClock,
         boards: &mut [BoardTrack],
     ) -> u64 {
         if now_ns - self.aligned_ns < ALIGN_NS {

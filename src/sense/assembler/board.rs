@@ -3,10 +3,10 @@
 use smallvec::SmallVec;
 
 use super::buffers::{BUFFERS, Buffers};
-use super::sample::Sample;
-use super::stream::Stream;
-use super::tare::{Found, Tare, TareMeter, TareOutcome};
-use super::window::{NARROW, WIDE, Window, count_misses_wide, misses_wide, windows};
+use super::sample::BoardSample;
+use super::stream::BoardStream;
+use super::tare::{Tare, TareMeter, TareOutcome, TareResult};
+use super::window::{NARROW, SensorWindow, WIDE, count_misses_wide, misses_wide, windows};
 use super::write::{Trust, put_narrow, put_wide};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use crate::sense::health::{Health, LOUD_N};
@@ -20,15 +20,15 @@ const RESTS_N: f32 = 1.0;
 /// One board: its stream, its wiring, and its samples in the waiting slots.
 #[derive(Clone, Debug)]
 pub(super) struct BoardTrack {
-    pub(super) stream: Stream,
+    pub(super) stream: BoardStream,
     /// Its number on the floor.
     number: usize,
     geometry: Geometry,
     channels: Vec<Option<Channel>>,
     /// The same channels as windows for vector operations. Most boards have one wide window, which is stored inline:
     /// frames are made board by board, and the next board's memory is prefetched.
-    wide: SmallVec<[Window<WIDE>; 1]>,
-    narrow: Vec<Window<NARROW>>,
+    wide: SmallVec<[SensorWindow<WIDE>; 1]>,
+    narrow: Vec<SensorWindow<NARROW>>,
     /// Buffers in which a packet of this board waits.
     waits: [bool; BUFFERS],
     /// Buffer of its last packet, and whether that packet repeated the one before under a load.
@@ -98,7 +98,7 @@ impl BoardTrack {
         };
         let (wide, narrow) = windows(&channels, 4 * floor.geometry.tile_count());
         Self {
-            stream: Stream::default(),
+            stream: BoardStream::default(),
             number,
             geometry: floor.geometry,
             channels,
@@ -160,7 +160,7 @@ impl BoardTrack {
     }
 
     /// Whether a sensor with known noise carries a load.
-    fn bears_load(&self, sample: &Sample, health: &Health) -> bool {
+    fn bears_load(&self, sample: &BoardSample, health: &Health) -> bool {
         let zero = |tile, corner| health.tells(tile, corner).then(|| health.zero(tile, corner));
         let wide = self.wide.iter().flat_map(|window| window.net(sample, zero));
         let mut all = wide.chain(self.narrow.iter().flat_map(|window| window.net(sample, zero)));
@@ -199,7 +199,12 @@ impl BoardTrack {
 
     /// Median distance of this board's sensors from their tares for the readings `mean` (N); `None` if `mean` does
     /// not fit its channels, or if the median is `below` or more. `misses` is space for sorting.
-    pub(super) fn misfit(&self, mean: &Sample, below: Option<f32>, misses: &mut Vec<f32>) -> Option<f32> {
+    pub(super) fn misfit(
+        &self,
+        mean: &BoardSample,
+        below: Option<f32>,
+        misses: &mut Vec<f32>,
+    ) -> Option<f32> {
         if mean.len() != self.channels.len() {
             return None;
         }
@@ -220,7 +225,7 @@ impl BoardTrack {
 
     /// Whether the median distance of this board's sensors from their tares for the readings `mean` is less than
     /// `below`.
-    fn misses_by_less(&self, mean: &Sample, below: f32) -> bool {
+    fn misses_by_less(&self, mean: &BoardSample, below: f32) -> bool {
         let wide = self.wide.iter().map(|window| count_misses_wide(window, mean, below));
         let counts = wide.chain(self.narrow.iter().map(|window| window.count_misses(mean, below)));
         let (known, less) = counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
@@ -292,7 +297,13 @@ impl BoardTrack {
     }
 
     /// Writes calibrated and tared forces; returns the number of bad readings.
-    fn write(&self, sample: &Sample, quality: Quality, frame: &mut ForceFrame, health: &mut Health) -> u64 {
+    fn write(
+        &self,
+        sample: &BoardSample,
+        quality: Quality,
+        frame: &mut ForceFrame,
+        health: &mut Health,
+    ) -> u64 {
         let trust = Trust { quality, is_swapped: self.is_swapped, is_foreign: health.is_foreign() };
         let mut bad = 0;
         for window in &self.wide {
@@ -311,7 +322,7 @@ impl BoardTrack {
         }
     }
 
-    fn measure_tare(&mut self, sample: &Sample, sampled_ns: i64) {
+    fn measure_tare(&mut self, sample: &BoardSample, sampled_ns: i64) {
         let TareState::Measuring(meter) = &mut self.tare else { return };
         let force = |(number, channel): (usize, &Option<Channel>)| {
             channel.map_or(f32::NAN, |channel| sample.force(number, &channel.calibration))
@@ -319,7 +330,7 @@ impl BoardTrack {
         let forces = self.channels.iter().enumerate().map(force);
         match meter.add(sampled_ns, forces) {
             None => {}
-            Some(Found::Quiet(means)) => {
+            Some(TareResult::Quiet(means)) => {
                 for (channel, mean) in self.channels.iter_mut().zip(means) {
                     if let (Some(channel), Some(mean)) = (channel, mean) {
                         channel.set_tare(mean);
@@ -328,7 +339,7 @@ impl BoardTrack {
                 (self.wide, self.narrow) = windows(&self.channels, 4 * self.geometry.tile_count());
                 self.tare = TareState::Taken;
             }
-            Some(Found::Noisy { channel, mean, deviation }) => {
+            Some(TareResult::Noisy { channel, mean, deviation }) => {
                 let sensor = self.channels.get(channel).copied().flatten().map(|channel| SensorId {
                     tile: self.geometry.tile_at_index(channel.tile as usize),
                     corner: channel.corner,

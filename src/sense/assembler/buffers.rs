@@ -1,6 +1,6 @@
 //! Buffers for the boards' samples in the slots that wait for other boards.
 
-use super::sample::Sample;
+use super::sample::BoardSample;
 
 /// Maximum number of slots that wait for their boards.
 pub(super) const BUFFERS: usize = 8;
@@ -12,20 +12,20 @@ pub(super) const BUFFERS: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Buffers {
     boards: usize,
-    samples: Vec<Sample>,
+    samples: Vec<BoardSample>,
 }
 
 impl Buffers {
     pub(super) fn new(boards: usize) -> Self {
-        Self { boards, samples: vec![Sample::EMPTY; BUFFERS * boards] }
+        Self { boards, samples: vec![BoardSample::EMPTY; BUFFERS * boards] }
     }
 
     /// The sample of this board in the slot of this buffer, or in an earlier slot.
-    pub(super) fn sample(&self, buffer: usize, board: usize) -> &Sample {
+    pub(super) fn sample(&self, buffer: usize, board: usize) -> &BoardSample {
         &self.samples[buffer * self.boards + board]
     }
 
-    pub(super) fn sample_mut(&mut self, buffer: usize, board: usize) -> &mut Sample {
+    pub(super) fn sample_mut(&mut self, buffer: usize, board: usize) -> &mut BoardSample {
         &mut self.samples[buffer * self.boards + board]
     }
 }

@@ -25,13 +25,13 @@ pub(super) fn nanos(instant: Instant) -> i64 {
 /// Runs at the receive clock's speed, corrected by at most 500 ppm, so that
 /// frames are evenly spaced however unevenly packets arrive.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SampleClock {
+pub(super) struct SlotClock {
     base_slot: i64,
     base_ns: i64,
     slot_ns: i64,
 }
 
-impl SampleClock {
+impl SlotClock {
     /// A clock whose slot 0 is at `start_ns`.
     pub(super) const fn new(start_ns: i64) -> Self {
         Self { base_slot: 0, base_ns: start_ns, slot_ns: SLOT_NS }
@@ -76,7 +76,7 @@ const WINDOW_NS: i64 = 48_000_000;
 
 /// The least delay of one board's packets: delays only add to the true time, so the least is nearest to it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Arrivals {
+pub(super) struct LeastDelay {
     window: Option<Window>,
     last_least_ns: Option<i64>,
 }
@@ -88,7 +88,7 @@ struct Window {
     least_ns: i64,
 }
 
-impl Arrivals {
+impl LeastDelay {
     /// Notes a packet that arrived `delay_ns` after its slot's time; negative if before.
     pub(super) fn note(&mut self, now_ns: i64, delay_ns: i64) {
         let window = self.window.get_or_insert(Window { start_ns: now_ns, packets: 0, least_ns: delay_ns });
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn a_clock_without_error_is_exact_for_a_year() {
-        let mut clock = SampleClock::new(5_000_000);
+        let mut clock = SlotClock::new(5_000_000);
         let year = 365 * 86_400 * 1000;
         for slot in (0..year).step_by(100_000_000) {
             assert_eq!(clock.correct(slot, 0), 0);
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn small_errors_are_steered_out_without_a_jump_and_never_faster_than_500_ppm() {
-        let mut clock = SampleClock::new(0);
+        let mut clock = SlotClock::new(0);
         let mut slot = 0;
         let mut last = clock.at_ns(0);
         // The receive clock is 10 ms ahead: 20 s at 500 ppm, then an exponential rest.
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn large_errors_set_the_clock_forward_but_never_back() {
-        let mut clock = SampleClock::new(0);
+        let mut clock = SlotClock::new(0);
         assert_eq!(clock.correct(10, 150_000_000), 150_000_000);
         assert_eq!(clock.at_ns(10), 160_000_000);
         assert_eq!(clock.correct(20, -150_000_000), 0);
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn slots_are_found_by_time() {
-        let clock = SampleClock::new(3_000_000);
+        let clock = SlotClock::new(3_000_000);
         assert_eq!(clock.slot_before(3_999_999), 0);
         assert_eq!(clock.slot_before(4_000_000), 1);
         assert_eq!(clock.slot_near(3_500_000), 1);
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_burst_of_delayed_packets_is_no_reason_to_set_the_clock() {
-        let mut arrivals = Arrivals::default();
+        let mut arrivals = LeastDelay::default();
         for delay in (100..200).rev() {
             arrivals.note(0, delay * 1_000_000);
         }

@@ -25,7 +25,7 @@ pub use tare::{Tare, TareOutcome, TareRules};
 use self::align::Alignment;
 use self::board::BoardTrack;
 use self::buffers::Buffers;
-use self::clock::{SLOT_NS, SampleClock, nanos};
+use self::clock::{SLOT_NS, SlotClock, nanos};
 use self::presence::SILENT_NS;
 use self::slots::Slots;
 use self::swap::Swaps;
@@ -90,7 +90,7 @@ pub struct Assembler {
     slots: Slots,
     times: Times,
     /// `None` before the first packet.
-    clock: Option<SampleClock>,
+    clock: Option<SlotClock>,
     alignment: Alignment,
     /// Whether a board became silent and no frame has reported it yet.
     has_news: bool,
@@ -261,12 +261,12 @@ impl Assembler {
     }
 
     /// Starts the sample clock with the first packet.
-    fn start(&mut self) -> SampleClock {
+    fn start(&mut self) -> SlotClock {
         self.expect_all();
         self.slots.set_done(-1);
         self.times.start();
         self.alignment.start(self.times.now_ns());
-        *self.clock.insert(SampleClock::new(self.times.now_ns()))
+        *self.clock.insert(SlotClock::new(self.times.now_ns()))
     }
 
     fn store(&mut self, number: usize, slot: i64, packet: &SensorPacket) {

@@ -27,7 +27,7 @@ const ONE: f64 = 1.0;
 /// At one packet a millisecond it is exactly 1, regardless of crystal drift: such boards steer the sample clock.
 /// Boards at another rate are mapped to the slots in which their packets arrive.
 #[derive(Clone, Debug)]
-pub(super) struct Pace {
+pub(super) struct PacketPace {
     /// Slots between two packets.
     slots: f64,
     /// Arrival times of packets, and their positions in the stream.
@@ -35,13 +35,13 @@ pub(super) struct Pace {
     last_ns: i64,
 }
 
-impl Default for Pace {
+impl Default for PacketPace {
     fn default() -> Self {
         Self { slots: ONE, marks: ArrayVec::new(), last_ns: 0 }
     }
 }
 
-impl Pace {
+impl PacketPace {
     /// Whether it is one packet a millisecond.
     pub(super) fn is_one(&self) -> bool {
         self.slots == ONE
@@ -119,7 +119,7 @@ mod tests {
 
     /// The pace after packets with these arrival times, and the time of its last change.
     fn after(packets: impl Iterator<Item = i64>) -> (f64, i64) {
-        let (mut pace, mut changed) = (Pace::default(), 0);
+        let (mut pace, mut changed) = (PacketPace::default(), 0);
         for (position, arrives_ns) in (0..).zip(packets) {
             pace.note(arrives_ns, position);
             if pace.adopt() {

@@ -8,7 +8,7 @@ use crate::wire::{MAX_CHANNELS, Readings};
 
 /// The readings of one board, channel by channel, laid out for vector operations.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Sample {
+pub(super) enum BoardSample {
     Counts(Counts),
     /// May hold NaN and infinities.
     Newtons(ArrayVec<f32, MAX_CHANNELS>),
@@ -24,7 +24,7 @@ pub(super) struct Counts {
     values: [u16; MAX_CHANNELS],
 }
 
-impl Sample {
+impl BoardSample {
     /// A sample without channels.
     pub(super) const EMPTY: Self =
         Self::Counts(Counts { length: 0, missing: u64::MAX, values: [0; MAX_CHANNELS] });
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn the_same_readings_again_are_no_news() {
-        let mut sample = Sample::EMPTY;
+        let mut sample = BoardSample::EMPTY;
         let newtons = Readings::Newtons([1.0, 2.0].into_iter().collect());
         let all = [
             counts(&[Some(7), Some(0)]),
@@ -165,7 +165,7 @@ mod tests {
         for readings in all {
             assert!(!sample.replace(&readings), "{readings:?}");
             assert!(sample.replace(&readings), "{readings:?}");
-            assert_eq!(sample, Sample::new(&readings));
+            assert_eq!(sample, BoardSample::new(&readings));
             assert_eq!(sample.len(), readings.len());
         }
         let nothing = Readings::Newtons([f32::NAN].into_iter().collect());
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn what_a_channel_did_not_give_is_not_a_force() {
-        let sample = Sample::new(&counts(&[Some(20_000), None]));
+        let sample = BoardSample::new(&counts(&[Some(20_000), None]));
         assert_eq!(sample.force(0, &Calibration::NOMINAL), Calibration::NOMINAL.force(20_000).0);
         assert!([1, 2, 64].into_iter().all(|channel| sample.force(channel, &Calibration::NOMINAL).is_nan()));
     }

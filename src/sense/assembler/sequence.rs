@@ -10,7 +10,7 @@ const CONFIRMED: u8 = 3;
 ///
 /// Positions count on where the 32-bit numbers wrap, so they can be compared and subtracted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum SequenceVerdict {
     /// Further on than any packet before; `skipped` numbers in between are still missing.
     Next {
         /// Its place in the stream.
@@ -80,59 +80,59 @@ impl Sequence {
 
     /// Classifies the packet with this `number`; `early` returns whether a position lies further ahead than the
     /// elapsed time allows.
-    pub(super) fn judge(&mut self, number: u32, early: impl FnOnce(i64) -> bool) -> Verdict {
+    pub(super) fn judge(&mut self, number: u32, early: impl FnOnce(i64) -> bool) -> SequenceVerdict {
         let Some(latest) = &mut self.latest else { return self.begin(number) };
         let step = number.wrapping_sub(latest.number).cast_signed();
         let position = latest.position + i64::from(step);
         match step {
-            0 => Verdict::Duplicate,
+            0 => SequenceVerdict::Duplicate,
             1.. if early(position) => self.jump(number, step),
             1.. => self.advance(number, step.unsigned_abs()),
             ..0 if step.unsigned_abs() <= WINDOW => {
                 self.jump = None;
                 let bit = 1 << step.unsigned_abs();
                 if latest.came & bit != 0 {
-                    return Verdict::Duplicate;
+                    return SequenceVerdict::Duplicate;
                 }
                 latest.came |= bit;
-                Verdict::Straggler { position, missed: step.unsigned_abs() <= latest.known }
+                SequenceVerdict::Straggler { position, missed: step.unsigned_abs() <= latest.known }
             }
             ..0 => self.jump(number, step),
         }
     }
 
-    fn begin(&mut self, number: u32) -> Verdict {
+    fn begin(&mut self, number: u32) -> SequenceVerdict {
         let position = 0;
         self.latest = Some(Latest { number, position, came: 1, known: 0 });
         self.jump = None;
-        Verdict::Next { position, skipped: 0 }
+        SequenceVerdict::Next { position, skipped: 0 }
     }
 
-    fn advance(&mut self, number: u32, step: u32) -> Verdict {
+    fn advance(&mut self, number: u32, step: u32) -> SequenceVerdict {
         self.jump = None;
         let Some(latest) = &mut self.latest else { return self.begin(number) };
         latest.number = number;
         latest.position += i64::from(step);
         latest.came = latest.came.checked_shl(step).unwrap_or(0) | 1;
         latest.known = latest.known.saturating_add(step).min(WINDOW);
-        Verdict::Next { position: latest.position, skipped: step - 1 }
+        SequenceVerdict::Next { position: latest.position, skipped: step - 1 }
     }
 
-    fn jump(&mut self, number: u32, step: i32) -> Verdict {
+    fn jump(&mut self, number: u32, step: i32) -> SequenceVerdict {
         let agreeing = match self.jump {
-            Some(jump) if number == jump.number => return Verdict::Duplicate,
+            Some(jump) if number == jump.number => return SequenceVerdict::Duplicate,
             Some(jump) if number == jump.number.wrapping_add(1) => jump.agreeing + 1,
             _ => 1,
         };
         self.jump = Some(Jump { number, agreeing });
         if agreeing < CONFIRMED {
-            Verdict::OutOfOrder
+            SequenceVerdict::OutOfOrder
         } else if (0..=WINDOW).contains(&step.cast_unsigned()) {
             // Slightly early: the transmission delay has become shorter.
             self.advance(number, step.unsigned_abs())
         } else {
             self.begin(number);
-            Verdict::Restart { position: 0 }
+            SequenceVerdict::Restart { position: 0 }
         }
     }
 }
@@ -141,12 +141,12 @@ impl Sequence {
 mod tests {
     use super::*;
 
-    fn next(position: i64) -> Verdict {
-        Verdict::Next { position, skipped: 0 }
+    fn next(position: i64) -> SequenceVerdict {
+        SequenceVerdict::Next { position, skipped: 0 }
     }
 
     /// Classifies numbers that all come in time.
-    fn judge(sequence: &mut Sequence, numbers: impl IntoIterator<Item = u32>) -> Vec<Verdict> {
+    fn judge(sequence: &mut Sequence, numbers: impl IntoIterator<Item = u32>) -> Vec<SequenceVerdict> {
         numbers.into_iter().map(|number| sequence.judge(number, |_| false)).collect()
     }
 
@@ -155,17 +155,17 @@ mod tests {
         let verdicts = judge(&mut Sequence::default(), [u32::MAX - 1, u32::MAX, 0, 1]);
         assert_eq!(verdicts, [next(0), next(1), next(2), next(3)]);
         let gap = judge(&mut Sequence::default(), [u32::MAX - 1, 1, u32::MAX]);
-        assert_eq!(gap[1], Verdict::Next { position: 3, skipped: 2 });
-        assert_eq!(gap[2], Verdict::Straggler { position: 1, missed: true });
+        assert_eq!(gap[1], SequenceVerdict::Next { position: 3, skipped: 2 });
+        assert_eq!(gap[2], SequenceVerdict::Straggler { position: 1, missed: true });
     }
 
     #[test]
     fn stragglers_count_once_and_only_inside_the_stream() {
         let verdicts = judge(&mut Sequence::default(), [10, 13, 11, 11, 9, 13]);
-        assert_eq!(verdicts[2], Verdict::Straggler { position: 1, missed: true });
-        assert_eq!(verdicts[3], Verdict::Duplicate);
-        assert_eq!(verdicts[4], Verdict::Straggler { position: -1, missed: false });
-        assert_eq!(verdicts[5], Verdict::Duplicate);
+        assert_eq!(verdicts[2], SequenceVerdict::Straggler { position: 1, missed: true });
+        assert_eq!(verdicts[3], SequenceVerdict::Duplicate);
+        assert_eq!(verdicts[4], SequenceVerdict::Straggler { position: -1, missed: false });
+        assert_eq!(verdicts[5], SequenceVerdict::Duplicate);
     }
 
     #[test]
@@ -173,8 +173,8 @@ mod tests {
         let mut sequence = Sequence::default();
         judge(&mut sequence, 5000..5010);
         let verdicts = judge(&mut sequence, [0, 0, 1, 1, 2, 2, 3]);
-        let [out_of_order, duplicate] = [Verdict::OutOfOrder, Verdict::Duplicate];
-        let restart = Verdict::Restart { position: 0 };
+        let [out_of_order, duplicate] = [SequenceVerdict::OutOfOrder, SequenceVerdict::Duplicate];
+        let restart = SequenceVerdict::Restart { position: 0 };
         assert_eq!(verdicts, [out_of_order, duplicate, out_of_order, duplicate, restart, duplicate, next(1)]);
     }
 
@@ -187,7 +187,7 @@ mod tests {
             let damaged = good ^ (1 << bit);
             let verdict = sequence.judge(damaged, |position| position > sequence_position(good));
             assert!(
-                !matches!(verdict, Verdict::Next { .. } | Verdict::Restart { .. }),
+                !matches!(verdict, SequenceVerdict::Next { .. } | SequenceVerdict::Restart { .. }),
                 "bit {bit}: {verdict:?}"
             );
             assert_eq!(sequence.judge(good, |_| false), next(sequence_position(good)), "after bit {bit}");
@@ -203,9 +203,9 @@ mod tests {
         let mut sequence = Sequence::default();
         judge(&mut sequence, [100]);
         let verdicts: Vec<_> = [110, 111, 112].map(|number| sequence.judge(number, |_| true)).into();
-        let ahead = Verdict::Next { position: 12, skipped: 11 };
-        assert_eq!(verdicts, [Verdict::OutOfOrder, Verdict::OutOfOrder, ahead]);
+        let ahead = SequenceVerdict::Next { position: 12, skipped: 11 };
+        assert_eq!(verdicts, [SequenceVerdict::OutOfOrder, SequenceVerdict::OutOfOrder, ahead]);
         let far: Vec<_> = [9110, 9111, 9112].map(|number| sequence.judge(number, |_| true)).into();
-        assert_eq!(far[2], Verdict::Restart { position: 0 });
+        assert_eq!(far[2], SequenceVerdict::Restart { position: 0 });
     }
 }

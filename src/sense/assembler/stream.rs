@@ -1,9 +1,9 @@
 //! Maps one board's packets from sequence numbers to slots of the sample clock.
 
-use super::clock::{Arrivals, SLOT_NS, SampleClock};
-use super::pace::Pace;
+use super::clock::{LeastDelay, SLOT_NS, SlotClock};
+use super::pace::PacketPace;
 use super::presence::{LossMeter, Presence, SILENT_NS};
-use super::sequence::{Sequence, Verdict};
+use super::sequence::{Sequence, SequenceVerdict};
 use crate::wire::LinkCounters;
 
 /// Age beyond its board's usual delay above which a sample after silence is useless: it was held up on the way, and
@@ -23,14 +23,14 @@ const AHEAD_NS: i64 = 100 * SLOT_NS;
 
 /// The packets of one board, and their slots.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Stream {
+pub(super) struct BoardStream {
     pub(super) presence: Presence,
     pub(super) loss: LossMeter,
     /// Whether frames wait for it.
     pub(super) awaited: bool,
     sequence: Sequence,
-    arrivals: Arrivals,
-    pace: Pace,
+    arrivals: LeastDelay,
+    pace: PacketPace,
     /// Slot of stream position 0.
     offset: i64,
     /// Slots by which `offset` has been moved since the stream began.
@@ -41,7 +41,7 @@ pub(super) struct Stream {
 
 /// The slot of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct PacketSlot {
     /// Its slot.
     pub(super) slot: i64,
     /// Whether the packet came in time for it.
@@ -50,7 +50,7 @@ pub(super) struct Place {
     pub(super) restarted: bool,
 }
 
-impl Stream {
+impl BoardStream {
     /// Waits for the board as if it had reported at `now_ns`.
     pub(super) const fn expect(&mut self, now_ns: i64) {
         self.last_packet_ns = now_ns;
@@ -88,7 +88,7 @@ impl Stream {
     }
 
     /// Adopts a measured pace that differs; returns whether it does.
-    pub(super) fn adopt_pace(&mut self, now_ns: i64, clock: &SampleClock) -> bool {
+    pub(super) fn adopt_pace(&mut self, now_ns: i64, clock: &SlotClock) -> bool {
         let Some(position) = self.sequence.position() else { return false };
         let is_other = self.pace.adopt();
         if is_other {
@@ -109,10 +109,10 @@ impl Stream {
         &mut self,
         sequence: u32,
         now_ns: i64,
-        clock: &SampleClock,
+        clock: &SlotClock,
         done: i64,
         counters: &mut LinkCounters,
-    ) -> Option<Place> {
+    ) -> Option<PacketSlot> {
         let head = self.head_slot();
         let (offset, pace) = (self.offset, &self.pace);
         let earliest = self.arrivals.least_ns();
@@ -123,7 +123,7 @@ impl Stream {
 
         let mut restarted = false;
         let (position, skipped) = match self.sequence.judge(sequence, early) {
-            Verdict::Next { position, skipped } => {
+            SequenceVerdict::Next { position, skipped } => {
                 if head.is_none() {
                     self.offset = clock.slot_near(now_ns) - self.pace.slots(position);
                 }
@@ -131,22 +131,22 @@ impl Stream {
                 counters.lost += u64::from(skipped);
                 (position, Some(skipped))
             }
-            Verdict::Straggler { position, missed } => {
+            SequenceVerdict::Straggler { position, missed } => {
                 counters.lost = counters.lost.saturating_sub(u64::from(missed));
                 (position, None)
             }
-            Verdict::Restart { position } => {
+            SequenceVerdict::Restart { position } => {
                 counters.restarts += 1;
                 restarted = true;
                 self.begin_anew(now_ns);
                 self.offset = clock.slot_near(now_ns) - self.pace.slots(position);
                 (position, Some(0))
             }
-            Verdict::Duplicate => {
+            SequenceVerdict::Duplicate => {
                 counters.duplicate += 1;
                 return None;
             }
-            Verdict::OutOfOrder => {
+            SequenceVerdict::OutOfOrder => {
                 counters.out_of_order += 1;
                 return None;
             }
@@ -165,7 +165,7 @@ impl Stream {
             None if usable => self.loss.found(),
             None => {}
         }
-        Some(Place { slot, usable, restarted })
+        Some(PacketSlot { slot, usable, restarted })
     }
 
     fn begin_anew(&mut self, now_ns: i64) {
@@ -175,7 +175,7 @@ impl Stream {
         self.presence.interrupt(now_ns);
     }
 
-    fn is_usable(&mut self, slot: i64, now_ns: i64, clock: &SampleClock, done: i64) -> bool {
+    fn is_usable(&mut self, slot: i64, now_ns: i64, clock: &SlotClock, done: i64) -> bool {
         self.last_packet_ns = now_ns;
         let delay = now_ns - clock.at_ns(slot);
         self.arrivals.note(now_ns, delay);

@@ -7,7 +7,7 @@
 use crate::wire::Readings;
 
 use super::board::BoardTrack;
-use super::sample::Sample;
+use super::sample::BoardSample;
 
 /// Interval at which a board's readings enter the mean, in milliseconds: the empty plates change no faster.
 const EVERY: i64 = 8;
@@ -80,7 +80,7 @@ impl Swaps {
     }
 
     /// Takes the readings of board `number` in the millisecond of `slot`.
-    pub(super) fn note(&mut self, number: usize, slot: i64, sample: &Sample, boards: &[BoardTrack]) {
+    pub(super) fn note(&mut self, number: usize, slot: i64, sample: &BoardSample, boards: &[BoardTrack]) {
         // Each board has its own turn: all at once would double the time of one frame in 64.
         let turn = slot.wrapping_add(number as i64);
         // A single board cannot change places.
@@ -108,7 +108,7 @@ impl Swaps {
 
     /// Compares the readings of board `number` with some more places; returns whether the comparison covers all
     /// possible places.
-    fn compare(&mut self, number: usize, mean: &Sample, boards: &[BoardTrack]) -> bool {
+    fn compare(&mut self, number: usize, mean: &BoardSample, boards: &[BoardTrack]) -> bool {
         let Self { blocks, misses, .. } = self;
         let block = &mut blocks[number];
         let mut misfit = |place: usize, below: Option<f32>| boards[place].misfit(mean, below, misses);
@@ -189,20 +189,20 @@ impl Swaps {
 }
 
 impl Block {
-    fn add(&mut self, sample: &Sample) {
+    fn add(&mut self, sample: &BoardSample) {
         self.sums.resize(sample.len(), 0.0);
         self.packets += 1;
-        self.is_counts = matches!(sample, Sample::Counts(_));
+        self.is_counts = matches!(sample, BoardSample::Counts(_));
         match sample {
-            Sample::Counts(counts) => counts.add_to(&mut self.sums),
-            Sample::Newtons(forces) => {
+            BoardSample::Counts(counts) => counts.add_to(&mut self.sums),
+            BoardSample::Newtons(forces) => {
                 self.sums.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force);
             }
         }
     }
 
     /// Mean reading of each channel, if it has one in every packet.
-    fn finish(&mut self) -> Sample {
+    fn finish(&mut self) -> BoardSample {
         let packets = self.packets as f32;
         let means = self.sums.drain(..).map(|sum| sum / packets);
         let mean = if self.is_counts {
@@ -211,6 +211,6 @@ impl Block {
             Readings::Newtons(means.collect())
         };
         self.packets = 0;
-        Sample::new(&mean)
+        BoardSample::new(&mean)
     }
 }

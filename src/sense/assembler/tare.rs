@@ -72,7 +72,7 @@ pub enum TareOutcome {
 
 /// Result of a tare meter.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Found {
+pub(super) enum TareResult {
     /// Mean of each channel; `None` for a channel without a good reading.
     Quiet(Vec<Option<f32>>),
     /// The floor was never quiet.
@@ -133,7 +133,7 @@ impl TareMeter {
     }
 
     /// Adds one sample of all channels, NaN for a bad reading or an unused channel.
-    pub(super) fn add(&mut self, at_ns: i64, forces: impl Iterator<Item = f32>) -> Option<Found> {
+    pub(super) fn add(&mut self, at_ns: i64, forces: impl Iterator<Item = f32>) -> Option<TareResult> {
         let begun = *self.begun_ns.get_or_insert(at_ns);
         let span_began = *self.span_began_ns.get_or_insert(at_ns);
         for (moments, force) in self.channels.iter_mut().zip(forces) {
@@ -145,16 +145,16 @@ impl TareMeter {
             return None;
         }
         let found = match self.worst() {
-            Some((channel, moments)) => Found::Noisy {
+            Some((channel, moments)) => TareResult::Noisy {
                 channel,
                 mean: Newtons(moments.mean as f32),
                 deviation: Newtons(moments.deviation() as f32),
             },
-            None => Found::Quiet(self.means()),
+            None => TareResult::Quiet(self.means()),
         };
         self.interrupt();
         let give_up = passed(begun, at_ns) >= self.rules.patience;
-        (give_up || matches!(found, Found::Quiet(_))).then_some(found)
+        (give_up || matches!(found, TareResult::Quiet(_))).then_some(found)
     }
 
     /// The channel furthest beyond the limits; `None` if all are within.
@@ -185,7 +185,7 @@ mod tests {
 
     const MS: i64 = 1_000_000;
 
-    fn measure(forces: impl Fn(i64) -> [f32; 2]) -> (i64, Found) {
+    fn measure(forces: impl Fn(i64) -> [f32; 2]) -> (i64, TareResult) {
         let mut meter = TareMeter::new(2, TareRules::default());
         (0..).find_map(|ms| Some((ms, meter.add(ms * MS, forces(ms).into_iter())?))).unwrap()
     }
@@ -194,7 +194,7 @@ mod tests {
     fn a_quiet_floor_is_averaged_for_half_a_second() {
         let (ms, found) = measure(|ms| [12.0 + if ms % 2 == 0 { 0.1 } else { -0.1 }, f32::NAN]);
         assert_eq!(ms, 500);
-        let Found::Quiet(means) = found else { panic!("{found:?}") };
+        let TareResult::Quiet(means) = found else { panic!("{found:?}") };
         assert!((means[0].unwrap() - 12.0).abs() < 0.01);
         assert_eq!(means[1], None);
     }
@@ -203,19 +203,19 @@ mod tests {
     fn somebody_who_leaves_in_time_only_delays_it() {
         let (ms, found) = measure(|ms| [if ms < 1200 { (ms % 100) as f32 } else { 8.0 }, 5.0]);
         assert!((1700..2300).contains(&ms), "{ms}");
-        assert_eq!(found, Found::Quiet(vec![Some(8.0), Some(5.0)]));
+        assert_eq!(found, TareResult::Quiet(vec![Some(8.0), Some(5.0)]));
     }
 
     #[test]
     fn somebody_who_stays_is_named_by_the_sensor_under_the_foot() {
         let (ms, found) = measure(|ms| [4.0, 90.0 + (ms % 10) as f32]);
         assert!((5000..5600).contains(&ms), "{ms}");
-        assert!(matches!(found, Found::Noisy { channel: 1, .. }), "{found:?}");
+        assert!(matches!(found, TareResult::Noisy { channel: 1, .. }), "{found:?}");
     }
 
     #[test]
     fn something_heavy_and_still_is_no_empty_floor() {
-        assert!(matches!(measure(|_| [4.0, 90.0]).1, Found::Noisy { channel: 1, .. }));
+        assert!(matches!(measure(|_| [4.0, 90.0]).1, TareResult::Noisy { channel: 1, .. }));
     }
 
     #[test]

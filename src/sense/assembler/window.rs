@@ -7,9 +7,9 @@ use multiversion::multiversion;
 use smallvec::SmallVec;
 
 use super::board::Channel;
-use super::sample::Sample;
+use super::sample::BoardSample;
 use crate::floor::{Calibration, LawKind, exp};
-use crate::sense::health::End;
+use crate::sense::health::RangeEnd;
 use crate::wire::MAX_CHANNELS;
 
 /// Number of sensors converted together: those of as many tiles as most boards have.
@@ -32,7 +32,7 @@ const NOMINAL: u8 = 4;
 
 /// Consecutive sensors, tile by tile and corner by corner, and the channels that read them.
 #[derive(Clone, Debug)]
-pub(super) struct Window<const LANES: usize> {
+pub(super) struct SensorWindow<const LANES: usize> {
     /// Number of the first sensor, four to a tile.
     pub(super) first: usize,
     /// The channel of each sensor, if it has one.
@@ -64,7 +64,7 @@ struct Laws<const LANES: usize> {
 pub(super) struct Read<const LANES: usize> {
     /// Before subtraction of the tare; NaN without a reading.
     pub(super) forces: [f32; LANES],
-    pub(super) ends: [End; LANES],
+    pub(super) ends: [RangeEnd; LANES],
     /// As sent by the board, 0 for a zero reading; for newtons a digest of their bits.
     pub(super) raws: [u16; LANES],
     /// Whether the board itself converted them to newtons.
@@ -77,7 +77,7 @@ pub(super) struct Read<const LANES: usize> {
 pub(super) fn windows(
     channels: &[Option<Channel>],
     sensors: usize,
-) -> (SmallVec<[Window<WIDE>; 1]>, Vec<Window<NARROW>>) {
+) -> (SmallVec<[SensorWindow<WIDE>; 1]>, Vec<SensorWindow<NARROW>>) {
     let sensor = |channel: &Channel| 4 * channel.tile as usize + channel.corner.index();
     let wired = channels.iter().take(MAX_CHANNELS).enumerate();
     let mut wired: Vec<(usize, u8, Channel)> =
@@ -90,11 +90,11 @@ pub(super) fn windows(
         let within = |lanes: usize| rest.partition_point(|(sensor, ..)| *sensor < first + lanes);
         let taken = if within(WIDE) > NARROW && sensors >= WIDE {
             let (part, _) = rest.split_at(within(WIDE));
-            wide.push(Window::new(first.min(sensors - WIDE), part));
+            wide.push(SensorWindow::new(first.min(sensors - WIDE), part));
             part.len()
         } else {
             let (part, _) = rest.split_at(within(NARROW));
-            narrow.push(Window::new(first, part));
+            narrow.push(SensorWindow::new(first, part));
             part.len()
         };
         rest = &rest[taken..];
@@ -102,7 +102,7 @@ pub(super) fn windows(
     (wide, narrow)
 }
 
-impl<const LANES: usize> Window<LANES> {
+impl<const LANES: usize> SensorWindow<LANES> {
     fn new(first: usize, wired: &[(usize, u8, Channel)]) -> Self {
         let mut window = Self {
             first,
@@ -157,9 +157,9 @@ impl<const LANES: usize> Window<LANES> {
 
     /// The readings of the sensors.
     #[inline(always)]
-    pub(super) fn read(&self, sample: &Sample) -> Read<LANES> {
+    pub(super) fn read(&self, sample: &BoardSample) -> Read<LANES> {
         match sample {
-            Sample::Newtons(newtons) => {
+            BoardSample::Newtons(newtons) => {
                 let (mut forces, mut raws) = ([f32::NAN; LANES], [0; LANES]);
                 for lane in 0..LANES {
                     forces[lane] = newtons.get(usize::from(self.channels[lane])).copied().unwrap_or(f32::NAN);
@@ -167,9 +167,9 @@ impl<const LANES: usize> Window<LANES> {
                 for lane in 0..LANES {
                     raws[lane] = digest(forces[lane]);
                 }
-                Read { forces, ends: [End::Within; LANES], raws, by_board: true }
+                Read { forces, ends: [RangeEnd::Within; LANES], raws, by_board: true }
             }
-            Sample::Counts(counts) => {
+            BoardSample::Counts(counts) => {
                 let run = self.run.and_then(|first| counts.run(first.into()));
                 let picked;
                 let values = if let Some(values) = run {
@@ -208,16 +208,16 @@ impl<const LANES: usize> Window<LANES> {
     /// A sensor that carries next to nothing of the empty floor is never missing: it may read zero.
     #[inline(always)]
     fn convert(&self, counts: &[u16; LANES]) -> Read<LANES> {
-        let (mut forces, mut ends) = ([0.0; LANES], [End::Within; LANES]);
+        let (mut forces, mut ends) = ([0.0; LANES], [RangeEnd::Within; LANES]);
         for lane in 0..LANES {
             let volts = Calibration::volts(counts[lane]);
             forces[lane] = self.factors[lane] * exp(self.exponents[lane] * volts);
         }
         let saturated = self.laws.as_ref().map_or([Calibration::SATURATED; LANES], |laws| laws.saturated);
         for lane in 0..LANES {
-            let end = if self.flags[lane] & BEARS != 0 { End::Low } else { End::Bare };
-            let end = if counts[lane] > NOTHING { End::Within } else { end };
-            ends[lane] = if counts[lane] >= saturated[lane] { End::High } else { end };
+            let end = if self.flags[lane] & BEARS != 0 { RangeEnd::Low } else { RangeEnd::Bare };
+            let end = if counts[lane] > NOTHING { RangeEnd::Within } else { end };
+            ends[lane] = if counts[lane] >= saturated[lane] { RangeEnd::High } else { end };
         }
         Read { forces, ends, raws: *counts, by_board: false }
     }
@@ -226,13 +226,13 @@ impl<const LANES: usize> Window<LANES> {
     /// together with its tare.
     pub(super) fn net<'a>(
         &'a self,
-        sample: &Sample,
+        sample: &BoardSample,
         zero: impl Fn(usize, usize) -> Option<f32> + 'a,
     ) -> impl Iterator<Item = f32> + 'a {
         let read = self.read(sample);
         (0..LANES).filter_map(move |lane| {
             let is_known =
-                self.is_wired(lane) && read.ends[lane] == End::Within && read.forces[lane].is_finite();
+                self.is_wired(lane) && read.ends[lane] == RangeEnd::Within && read.forces[lane].is_finite();
             let sensor = self.first + lane;
             let zero = if is_known { zero(sensor / 4, sensor % 4) } else { None };
             zero.map(|zero| read.forces[lane] - (self.tares[lane] + zero))
@@ -242,7 +242,7 @@ impl<const LANES: usize> Window<LANES> {
     /// Number of sensors with a known distance of their readings from their tares, and number of those with a
     /// distance below `below`.
     #[inline(always)]
-    pub(super) fn count_misses(&self, sample: &Sample, below: f32) -> (u32, u32) {
+    pub(super) fn count_misses(&self, sample: &BoardSample, below: f32) -> (u32, u32) {
         let misses = self.misses(sample);
         let (mut known, mut less) = (0, 0);
         for lane in 0..LANES {
@@ -254,7 +254,7 @@ impl<const LANES: usize> Window<LANES> {
 
     /// Distance of each sensor's reading from its tare; NaN if unknown.
     #[inline(always)]
-    pub(super) fn misses(&self, sample: &Sample) -> [f32; LANES] {
+    pub(super) fn misses(&self, sample: &BoardSample) -> [f32; LANES] {
         let read = self.read(sample);
         let mut misses = [f32::NAN; LANES];
         for lane in 0..LANES {
@@ -273,15 +273,15 @@ fn digest(force: f32) -> u16 {
     if force == 0.0 { 0 } else { (mixed as u16).max(1) }
 }
 
-/// [`Window::misses`] of a wide window, without branches, over plain arrays, compiled for each vector instruction
+/// [`SensorWindow::misses`] of a wide window, without branches, over plain arrays, compiled for each vector instruction
 /// set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
-pub(super) fn misses_wide(window: &Window<WIDE>, sample: &Sample) -> [f32; WIDE] {
+pub(super) fn misses_wide(window: &SensorWindow<WIDE>, sample: &BoardSample) -> [f32; WIDE] {
     window.misses(sample)
 }
 
-/// [`Window::count_misses`] of a wide window, likewise.
+/// [`SensorWindow::count_misses`] of a wide window, likewise.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
-pub(super) fn count_misses_wide(window: &Window<WIDE>, sample: &Sample, below: f32) -> (u32, u32) {
+pub(super) fn count_misses_wide(window: &SensorWindow<WIDE>, sample: &BoardSample, below: f32) -> (u32, u32) {
     window.count_misses(sample, below)
 }

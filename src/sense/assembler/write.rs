@@ -5,9 +5,9 @@
 
 use multiversion::multiversion;
 
-use super::sample::Sample;
-use super::window::{NARROW, Read, WIDE, Window};
-use crate::sense::health::{End, Health, LOUD_N, Lanes};
+use super::sample::BoardSample;
+use super::window::{NARROW, Read, SensorWindow, WIDE};
+use crate::sense::health::{Health, LOUD_N, Lanes, RangeEnd};
 use crate::sense::{ForceFrame, Quality};
 
 /// Above the load of any corner of a tile (N): 70 people of 70 kg on one corner (our choice).
@@ -39,10 +39,10 @@ impl<const LANES: usize> Found<LANES> {
     const QUIET: Self = Self { bad: 0, is_used: true, is_any_loud: false, loud: [false; LANES] };
 }
 
-impl<const LANES: usize> Window<LANES> {
+impl<const LANES: usize> SensorWindow<LANES> {
     /// Converts a sample and writes the result.
     #[inline(always)]
-    fn take(&self, sample: &Sample, trust: Trust, into: &mut Lanes<'_, LANES>) -> Found<LANES> {
+    fn take(&self, sample: &BoardSample, trust: Trust, into: &mut Lanes<'_, LANES>) -> Found<LANES> {
         let read = self.read(sample);
         if self.write_quiet(&read, trust, into) { Found::QUIET } else { self.write(&read, trust, into) }
     }
@@ -60,7 +60,7 @@ impl<const LANES: usize> Window<LANES> {
         }
         for lane in 0..LANES {
             let end = read.ends[lane] as u8;
-            is_quiet &= (end != End::Low as u8) & (end != End::High as u8);
+            is_quiet &= (end != RangeEnd::Low as u8) & (end != RangeEnd::High as u8);
         }
         if !is_quiet {
             return false;
@@ -103,10 +103,10 @@ impl<const LANES: usize> Window<LANES> {
         }
         let mut is_high = [false; LANES];
         for lane in 0..LANES {
-            is_high[lane] = read.ends[lane] as u8 == End::High as u8;
+            is_high[lane] = read.ends[lane] as u8 == RangeEnd::High as u8;
         }
         for lane in 0..LANES {
-            let is_low = read.ends[lane] as u8 == End::Low as u8;
+            let is_low = read.ends[lane] as u8 == RangeEnd::Low as u8;
             loud[lane] |= is_used[lane] & (is_low | is_high[lane]);
         }
         let mut is_nominal = [false; LANES];
@@ -141,8 +141,8 @@ impl<const LANES: usize> Window<LANES> {
 
 /// Writes the readings of a wide window into `frame`; returns the number of invalid readings.
 pub(super) fn put_wide(
-    window: &Window<WIDE>,
-    sample: &Sample,
+    window: &SensorWindow<WIDE>,
+    sample: &BoardSample,
     trust: Trust,
     frame: &mut ForceFrame,
     health: &mut Health,
@@ -153,8 +153,8 @@ pub(super) fn put_wide(
 
 /// The same for a narrow window.
 pub(super) fn put_narrow(
-    window: &Window<NARROW>,
-    sample: &Sample,
+    window: &SensorWindow<NARROW>,
+    sample: &BoardSample,
     trust: Trust,
     frame: &mut ForceFrame,
     health: &mut Health,
@@ -163,8 +163,13 @@ pub(super) fn put_narrow(
     note(window.first, &window.take(sample, trust, &mut lanes), sample, health)
 }
 
-fn note<const LANES: usize>(first: usize, found: &Found<LANES>, sample: &Sample, health: &mut Health) -> u64 {
-    if found.is_used && matches!(sample, Sample::Newtons(_)) {
+fn note<const LANES: usize>(
+    first: usize,
+    found: &Found<LANES>,
+    sample: &BoardSample,
+    health: &mut Health,
+) -> u64 {
+    if found.is_used && matches!(sample, BoardSample::Newtons(_)) {
         health.note_newtons();
     }
     if found.is_any_loud {
@@ -177,8 +182,8 @@ fn note<const LANES: usize>(first: usize, found: &Found<LANES>, sample: &Sample,
 /// Plain arrays and one branch for all lanes, compiled for each vector instruction set.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn write_wide<'a>(
-    window: &Window<WIDE>,
-    sample: &Sample,
+    window: &SensorWindow<WIDE>,
+    sample: &BoardSample,
     trust: Trust,
     into: &mut Lanes<'a, WIDE>,
 ) -> Found<WIDE> {

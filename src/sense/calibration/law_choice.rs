@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::law_fit::{Curve, Fit, FitError, LoadPoint, Loads};
+use super::law_fit::{Fit, FitError, LawParameters, LoadPoint, MeasuredLoads};
 use crate::floor::LawKind;
 
 /// The fit of each law to a sensor's measurements, and the law selected.
@@ -73,7 +73,7 @@ impl Comparison {
     /// 1935).
     #[must_use]
     pub fn of(points: &[LoadPoint]) -> Self {
-        let loads = match Loads::of(points) {
+        let loads = match MeasuredLoads::of(points) {
             Ok(loads) => loads,
             Err(error) => {
                 let failed = |kind| Candidate { kind, fit: Err(error), excess: f32::INFINITY };
@@ -83,7 +83,8 @@ impl Comparison {
         let mut candidates =
             LawKind::ALL.map(|kind| Candidate { kind, fit: loads.fit(kind), excess: f32::INFINITY });
         let telling: Vec<_> = points.iter().copied().filter(|point| point.volts > NOTHING_V).collect();
-        let telling = Loads::of(&telling).ok().filter(|telling| telling.volts.len() >= LEAST_COMPARED);
+        let telling =
+            MeasuredLoads::of(&telling).ok().filter(|telling| telling.volts.len() >= LEAST_COMPARED);
         let Some(telling) = telling else {
             return Self { candidates, chosen: first_that_fits(&candidates) };
         };
@@ -148,13 +149,13 @@ struct Spread {
 
 impl Spread {
     /// Constant at every load.
-    fn same(loads: &Loads) -> Self {
+    fn same(loads: &MeasuredLoads) -> Self {
         let least = (BENCH * loads.forces.max()).powi(2);
         Self { weights: DVector::repeat(loads.forces.len(), 1.0), least, constant: 0.0 }
     }
 
     /// In proportion to the load.
-    fn proportional(loads: &Loads) -> Self {
+    fn proportional(loads: &MeasuredLoads) -> Self {
         let light = LIGHT * loads.forces.max();
         let weights = loads.forces.map(|force| force.hypot(light).recip());
         let constant = -2.0 * weights.iter().map(|weight| weight.ln()).sum::<f64>();
@@ -172,9 +173,9 @@ struct Criterion {
 
 impl Criterion {
     /// The criterion under the spread with the lower value; `None` if neither permits a fit.
-    fn least(kind: LawKind, loads: &Loads, spreads: &[Spread]) -> Option<Self> {
+    fn least(kind: LawKind, loads: &MeasuredLoads, spreads: &[Spread]) -> Option<Self> {
         let under = spreads.iter().filter_map(|spread| {
-            let errors = Curve::through(kind, loads, Some(&spread.weights)).ok()?.errors();
+            let errors = LawParameters::through(kind, loads, Some(&spread.weights)).ok()?.errors();
             let count = errors.len() as f64;
             let value = count * (errors.norm_squared() / count + spread.least).ln() + spread.constant;
             value.is_finite().then_some(Self { kind, value, errors })
@@ -185,7 +186,7 @@ impl Criterion {
 
 /// Share of `errors` that count as independent, in the order of the voltages: (1 − r) / (1 + r) with the correlation
 /// r of neighbours, 1 if they are uncorrelated.
-fn independent_share(loads: &Loads, errors: &DVector<f64>) -> f64 {
+fn independent_share(loads: &MeasuredLoads, errors: &DVector<f64>) -> f64 {
     let mut order: Vec<usize> = (0..errors.len()).collect();
     order.sort_by(|one, other| loads.volts[*one].total_cmp(&loads.volts[*other]));
     let neighbours: f64 = order.windows(2).map(|pair| errors[pair[0]] * errors[pair[1]]).sum();
@@ -239,8 +240,8 @@ mod tests {
     fn a_wave_that_no_law_follows_is_one_departure_and_not_many() {
         let wave = |step: usize| 0.15 * (0.05 * step as f32).sin();
         let independent = |points: &[LoadPoint]| {
-            let loads = Loads::of(points).unwrap();
-            let errors = Curve::through(LawKind::Exponential, &loads, None).unwrap().errors();
+            let loads = MeasuredLoads::of(points).unwrap();
+            let errors = LawParameters::through(LawKind::Exponential, &loads, None).unwrap().errors();
             independent_share(&loads, &errors)
         };
         assert!(independent(&bench(Calibration::NOMINAL, 400, wave)) < 0.02);

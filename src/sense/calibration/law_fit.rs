@@ -92,17 +92,17 @@ impl Fit {
     /// `f = a exp(b v)` by least squares (paper, section 2.2), here by
     /// Levenberg-Marquardt from the straight line through `ln f`; the others alike, the linear one directly.
     pub fn of(points: &[LoadPoint]) -> Result<Self, FitError> {
-        Loads::of(points)?.fit(LawKind::Exponential)
+        MeasuredLoads::of(points)?.fit(LawKind::Exponential)
     }
 }
 
 /// The measurements of one sensor, validated.
-pub(super) struct Loads {
+pub(super) struct MeasuredLoads {
     pub(super) volts: DVector<f64>,
     pub(super) forces: DVector<f64>,
 }
 
-impl Loads {
+impl MeasuredLoads {
     pub(super) fn of(points: &[LoadPoint]) -> Result<Self, FitError> {
         if let Some(index) = points.iter().position(|p| !(p.volts.is_finite() && p.force.is_finite())) {
             return Err(FitError::NotFinite { index });
@@ -127,7 +127,7 @@ impl Loads {
 
     /// Fits the law of this kind by least squares of the force error.
     pub(super) fn fit(&self, kind: LawKind) -> Result<Fit, FitError> {
-        let best = Curve::through(kind, self, None)?;
+        let best = LawParameters::through(kind, self, None)?;
         let errors = best.modelled() - &self.forces;
         let mean = self.forces.mean();
         let around_mean: f64 = self.forces.iter().map(|force| (force - mean).powi(2)).sum();
@@ -150,9 +150,9 @@ impl Loads {
 
 /// A law during the least-squares search, in parameters that keep it rising and are of order one: `(ln a, b)` of the
 /// exponential and the power law, `(ln a, ln (s - end))` of the divider, `(a, a z)` of the straight line.
-pub(super) struct Curve<'a> {
+pub(super) struct LawParameters<'a> {
     kind: LawKind,
-    loads: &'a Loads,
+    loads: &'a MeasuredLoads,
     /// Weight of each error; `None` leaves newtons.
     weights: Option<&'a DVector<f64>>,
     /// Minimum supply of a divider: its end lies above all measurements.
@@ -160,11 +160,11 @@ pub(super) struct Curve<'a> {
     params: Vector2<f64>,
 }
 
-impl<'a> Curve<'a> {
+impl<'a> LawParameters<'a> {
     /// The curve of this kind with the least squares of weighted errors.
     pub(super) fn through(
         kind: LawKind,
-        loads: &'a Loads,
+        loads: &'a MeasuredLoads,
         weights: Option<&'a DVector<f64>>,
     ) -> Result<Self, FitError> {
         let end = loads.volts.max() / f64::from(Divider::END);
@@ -302,7 +302,7 @@ impl<'a> Curve<'a> {
     }
 }
 
-impl LeastSquaresProblem<f64, Dyn, U2> for Curve<'_> {
+impl LeastSquaresProblem<f64, Dyn, U2> for LawParameters<'_> {
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, U2>;
     type ParameterStorage = Owned<f64, U2>;
@@ -393,7 +393,7 @@ mod tests {
             Calibration::of(LawKind::Linear, [82.0, 0.4]),
             Calibration::of(LawKind::Linear, [82.0, -1.0]),
         ] {
-            let fit = Loads::of(&ramp(law, 40))
+            let fit = MeasuredLoads::of(&ramp(law, 40))
                 .and_then(|loads| loads.fit(law.kind()))
                 .unwrap_or_else(|error| panic!("{law}: {error}"));
             let near = |(found, truth): (f32, f32)| (found - truth).abs() <= 1e-3 * truth.abs();
@@ -416,7 +416,7 @@ mod tests {
         ]
         .map(|(volts, force)| LoadPoint::new(volts, Newtons(force)));
         for (kind, numbers, residual) in SCIPY {
-            let fit = Loads::of(&points).unwrap().fit(kind).unwrap();
+            let fit = MeasuredLoads::of(&points).unwrap().fit(kind).unwrap();
             let near = |found: f32, truth: f32| (found / truth - 1.0).abs() < 2e-4;
             let [a, b] = fit.calibration.numbers();
             assert!(near(a, numbers[0]) && near(b, numbers[1]) && near(fit.residual, residual), "{fit:?}");

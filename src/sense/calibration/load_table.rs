@@ -5,7 +5,7 @@ use std::io::BufRead;
 use super::law_choice::Comparison;
 use super::law_fit::{Fit, FitError, LoadPoint};
 use crate::floor::{Calibration, Corner, Geometry, SensorId, TileId};
-use crate::sense::table::{Row, Table, TableError, TableNotes, shown};
+use crate::sense::table::{TableError, TableNotes, TableReader, TableRow, shown};
 use crate::units::Newtons;
 
 /// The measurements of each sensor in a table.
@@ -85,8 +85,8 @@ impl LoadTable {
     /// # Errors
     /// [`TableError`] if the header belongs to another table, or `reader` fails.
     pub fn read(reader: impl BufRead, geometry: &Geometry) -> Result<Self, TableError> {
-        let mut table = Table::new(reader, &COLUMNS)?;
-        let (header, mut row) = (table.header(), Row::default());
+        let mut table = TableReader::new(reader, &COLUMNS)?;
+        let (header, mut row) = (table.header(), TableRow::default());
         let mut sensors: Vec<Option<SensorLoads>> = vec![None; geometry.tile_count() * 4];
         while table.next_row(&mut row)? {
             let column = table.whole(&row, 0, geometry.block().column_range());

@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use super::position_map::{MapError, MapFit, Press, Sighting};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId, TileId};
-use crate::sense::table::{Row, Table, TableError, TableNotes};
+use crate::sense::table::{TableError, TableNotes, TableReader, TableRow};
 
 /// The points pressed on each tile.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,8 +51,8 @@ impl PressTable {
     /// # Errors
     /// [`TableError`] if the header belongs to another table, or `reader` fails.
     pub fn read(reader: impl BufRead, floor: &Floor) -> Result<Self, TableError> {
-        let mut table = Table::new(reader, &COLUMNS)?;
-        let (header, mut row) = (table.header(), Row::default());
+        let mut table = TableReader::new(reader, &COLUMNS)?;
+        let (header, mut row) = (table.header(), TableRow::default());
         let mut tiles: Vec<Option<TilePoints>> = vec![None; floor.geometry.tile_count()];
         let mut saturated = 0;
         while table.next_row(&mut row)? {
@@ -74,12 +74,16 @@ impl PressTable {
 }
 
 /// A coordinate, in floor metres.
-fn place<R: BufRead>(table: &mut Table<R>, row: &Row, field: usize) -> Option<f32> {
+fn place<R: BufRead>(table: &mut TableReader<R>, row: &TableRow, field: usize) -> Option<f32> {
     table.number(row, field, -1e4..=1e4).map(|place| place as f32)
 }
 
 /// The point of a row and its measured place.
-fn sighting<R: BufRead>(table: &mut Table<R>, row: &Row, geometry: &Geometry) -> Option<(TileId, Sighting)> {
+fn sighting<R: BufRead>(
+    table: &mut TableReader<R>,
+    row: &TableRow,
+    geometry: &Geometry,
+) -> Option<(TileId, Sighting)> {
     let [x, y, est_x, est_y] = std::array::from_fn(|field| place(table, row, field));
     let (at, estimate) = (Vec2::new(x?, y?), Vec2::new(est_x?, est_y?));
     let Some(tile) = geometry.tile_under(at) else {
@@ -96,7 +100,11 @@ fn sighting<R: BufRead>(table: &mut Table<R>, row: &Row, geometry: &Geometry) ->
 }
 
 /// The point of a row and the forces under it.
-fn press<R: BufRead>(table: &mut Table<R>, row: &Row, geometry: &Geometry) -> Option<(TileId, Press)> {
+fn press<R: BufRead>(
+    table: &mut TableReader<R>,
+    row: &TableRow,
+    geometry: &Geometry,
+) -> Option<(TileId, Press)> {
     let [x, y] = std::array::from_fn(|field| place(table, row, field));
     let [sw, se, nw, ne] =
         std::array::from_fn(|corner| table.number(row, 4 + corner, -1e4..=1e5).map(|force| force as f32));

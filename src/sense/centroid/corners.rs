@@ -52,7 +52,7 @@ pub(in crate::sense) fn expected(forces: [f32; 4], corner: usize) -> f32 {
 
 /// Meaning of the [`expected`] value of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::sense) enum Told {
+pub(in crate::sense) enum KnownCorner {
     /// The exact load, except for unequal supports and gains.
     Exactly,
     /// A lower bound of the load.
@@ -66,13 +66,13 @@ pub(in crate::sense) enum Told {
 /// # Source
 /// Springs push but do not pull: with its diagonal in the air, a corner carries the [`expected`] load or more; with a
 /// neighbour in the air, that load or less, since the plate tips over it.
-pub(in crate::sense) fn told(lifted: [bool; 4], corner: usize) -> Told {
+pub(in crate::sense) fn told(lifted: [bool; 4], corner: usize) -> KnownCorner {
     if lifted[corner ^ 1] || lifted[corner ^ 2] {
-        Told::Nothing
+        KnownCorner::Nothing
     } else if lifted[corner ^ 3] {
-        Told::AtLeast
+        KnownCorner::AtLeast
     } else {
-        Told::Exactly
+        KnownCorner::Exactly
     }
 }
 
@@ -120,9 +120,9 @@ pub(in crate::sense) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32;
         let reads = forces[corner];
         match told(lifted, corner) {
             _ if !at_end[corner] => reads,
-            Told::Nothing => BEYOND * reads,
-            Told::AtLeast => expected(forces, corner).max(BEYOND * reads),
-            Told::Exactly => reads + lacking(forces, at_end, corner),
+            KnownCorner::Nothing => BEYOND * reads,
+            KnownCorner::AtLeast => expected(forces, corner).max(BEYOND * reads),
+            KnownCorner::Exactly => reads + lacking(forces, at_end, corner),
         }
     })
 }
@@ -158,7 +158,7 @@ pub(in crate::sense) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may
         Quality::Degraded if may_start => UNSURE * forces[corner].abs(),
         Quality::Degraded => {
             let unseen = AT_LEAST * forces[corner].abs();
-            let is_told = told(lifted, corner) == Told::Exactly;
+            let is_told = told(lifted, corner) == KnownCorner::Exactly;
             if is_told { unseen.min(TOLD * at_end * whole) } else { unseen }
         }
         Quality::Stale | Quality::Faulty => {
@@ -241,8 +241,11 @@ mod tests {
     fn of_a_corner_nothing_is_told_while_the_plate_tips_over_its_neighbour() {
         let air = |corner| [0, 1, 2, 3].map(|other| other == corner);
         let of_sw = [0, 1, 2, 3].map(|corner| told(air(corner), 0));
-        assert_eq!(of_sw, [Told::Exactly, Told::Nothing, Told::Nothing, Told::AtLeast]);
-        assert_eq!(told([false; 4], 0), Told::Exactly);
+        assert_eq!(
+            of_sw,
+            [KnownCorner::Exactly, KnownCorner::Nothing, KnownCorner::Nothing, KnownCorner::AtLeast]
+        );
+        assert_eq!(told([false; 4], 0), KnownCorner::Exactly);
     }
 
     #[track_caller]

@@ -232,7 +232,7 @@ impl LoadedTile {
     /// The corners are passed by reference: by value, the copy took a sixth of plain Eq. 4's time.
     #[inline]
     pub(in crate::sense) fn new(
-        place: Place,
+        place: PlacedTile,
         geometry: &Geometry,
         corners: &[f32; 4],
         least: Newtons,
@@ -249,7 +249,7 @@ impl LoadedTile {
     #[cold]
     #[inline(never)]
     pub(in crate::sense) fn of_any_quality(
-        place: Place,
+        place: PlacedTile,
         geometry: &Geometry,
         (forces, quality, may_start): ([f32; 4], [Quality; 4], bool),
         least: Newtons,
@@ -276,7 +276,7 @@ impl LoadedTile {
 
     #[inline(always)]
     fn of_corners(
-        Place { tile, index, centre }: Place,
+        PlacedTile { tile, index, centre }: PlacedTile,
         geometry: &Geometry,
         corners: [f32; 4],
         least: Newtons,
@@ -315,13 +315,13 @@ impl LoadedTile {
 
 /// A tile and its position.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::sense) struct Place {
+pub(in crate::sense) struct PlacedTile {
     tile: TileId,
     index: u32,
     centre: Vec2,
 }
 
-impl Place {
+impl PlacedTile {
     pub(in crate::sense) fn of(geometry: &Geometry, index: usize) -> Self {
         let tile = geometry.tile_at_index(index);
         Self { tile, index: index as u32, centre: geometry.centre(tile) }

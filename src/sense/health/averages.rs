@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::End;
+use super::RangeEnd;
 
 /// Number of frames between two visits to a tile.
 pub(super) const SHARES: usize = 8;
@@ -21,20 +21,20 @@ pub(super) struct Averages {
     lows: Vec<[f32; 4]>,
     highs: Vec<[f32; 4]>,
     /// Last position of each sensor in its converter's range; the high end if it was ever there.
-    ends: Vec<[End; 4]>,
+    ends: Vec<[RangeEnd; 4]>,
     /// Whether each tile's sensors were all connected at every visit.
     is_whole: Vec<bool>,
 }
 
 /// The readings of one tile's sensors in a block.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Readings {
+pub(super) struct BlockReadings {
     pub(super) means: [f32; 4],
     /// Lowest reading.
     pub(super) lows: [f32; 4],
     /// Highest less lowest reading.
     pub(super) spreads: [f32; 4],
-    pub(super) ends: [End; 4],
+    pub(super) ends: [RangeEnd; 4],
 }
 
 impl Averages {
@@ -44,7 +44,7 @@ impl Averages {
             sums: vec![[0.0; 4]; tiles],
             lows: vec![[0.0; 4]; tiles],
             highs: vec![[0.0; 4]; tiles],
-            ends: vec![[End::Within; 4]; tiles],
+            ends: vec![[RangeEnd::Within; 4]; tiles],
             is_whole: vec![true; tiles],
         }
     }
@@ -56,7 +56,7 @@ impl Averages {
         share: usize,
         tiles: Range<usize>,
         forces: &[[f32; 4]],
-        ends: &[[End; 4]],
+        ends: &[[RangeEnd; 4]],
         connected: &[bool],
     ) -> bool {
         let (forces, ends) = (&forces[tiles.clone()], &ends[tiles.clone()]);
@@ -84,9 +84,9 @@ impl Averages {
     }
 
     /// The readings of a tile's sensors in the complete block; `None` if they were not connected throughout.
-    pub(super) fn block(&self, tile: usize) -> Option<Readings> {
+    pub(super) fn block(&self, tile: usize) -> Option<BlockReadings> {
         let (lows, highs) = (self.lows[tile], self.highs[tile]);
-        self.is_whole[tile].then(|| Readings {
+        self.is_whole[tile].then(|| BlockReadings {
             means: self.sums[tile].map(|sum| sum / f32::from(VISITS)),
             lows,
             spreads: std::array::from_fn(|corner| highs[corner] - lows[corner]),
@@ -107,8 +107,8 @@ fn add_forces(sums: &mut [f32], lows: &mut [f32], highs: &mut [f32], forces: &[f
 
 /// Likewise.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
-fn add_ends(block: &mut [End], ends: &[End]) {
+fn add_ends(block: &mut [RangeEnd], ends: &[RangeEnd]) {
     for (kept, end) in block.iter_mut().zip(ends) {
-        *kept = if *kept as u8 == End::High as u8 { *kept } else { *end };
+        *kept = if *kept as u8 == RangeEnd::High as u8 { *kept } else { *end };
     }
 }

@@ -63,7 +63,7 @@ pub(super) struct Creep {
 
 /// Load averages of the sensors of one tile.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Memory {
+pub(super) struct LoadAverages {
     loads: [[f32; 4]; TIMES_S.len()],
     /// Whether any average is above zero.
     was_loaded: bool,
@@ -104,9 +104,9 @@ impl Left {
 
 /// Gain of each load average over some time: 1 − exp(−dt/τ).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Parts([f32; TIMES_S.len()]);
+pub(super) struct AverageGains([f32; TIMES_S.len()]);
 
-impl Parts {
+impl AverageGains {
     /// The gains over `dt` seconds.
     pub(super) fn of(dt: f32) -> Self {
         Self(TIMES_S.map(|time_s| 1.0 - (-dt / time_s).exp()))
@@ -116,7 +116,7 @@ impl Parts {
 impl Creep {
     /// Updates the estimate with the sum of a tile's readings, without creep correction, `seconds` after the last
     /// look.
-    pub(super) fn learn(&mut self, memory: &mut Memory, reads: f32, seconds: f32) {
+    pub(super) fn learn(&mut self, memory: &mut LoadAverages, reads: f32, seconds: f32) {
         let whole: f32 = memory.sums().iter().sum();
         if whole < TELLS_N || reads.abs() > MOST * whole {
             memory.left = Left::default();
@@ -145,10 +145,10 @@ impl Creep {
     /// writes the creep of each sensor to `crept` (N).
     pub(super) fn follow(
         &self,
-        parts: &Parts,
+        parts: &AverageGains,
         forces: &[[f32; 4]],
         connected: &[bool],
-        memories: &mut [Memory],
+        memories: &mut [LoadAverages],
         crept: &mut [[f32; 4]],
     ) {
         follow(self.used, parts, forces, connected, memories, crept);
@@ -159,10 +159,10 @@ impl Creep {
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn follow(
     share: f32,
-    parts: &Parts,
+    parts: &AverageGains,
     forces: &[[f32; 4]],
     connected: &[bool],
-    memories: &mut [Memory],
+    memories: &mut [LoadAverages],
     crept: &mut [[f32; 4]],
 ) {
     let tiles = memories.iter_mut().zip(crept).zip(forces.iter().zip(connected));
@@ -173,10 +173,10 @@ fn follow(
     }
 }
 
-impl Memory {
+impl LoadAverages {
     /// Updates the averages with these forces, m += gain (F − m); returns whether any may have changed.
     #[inline(always)]
-    fn follow(&mut self, forces: [f32; 4], Parts(parts): &Parts) -> bool {
+    fn follow(&mut self, forces: [f32; 4], AverageGains(parts): &AverageGains) -> bool {
         if !self.was_loaded && forces.iter().fold(true, |none, &force| none & (force < NOTHING_N)) {
             return false;
         }
@@ -207,8 +207,9 @@ mod tests {
     /// Feet of 150 N per sensor step on a tile for a second and leave it for two, `times`; returns the remaining
     /// apparent load of a sensor that creeps by `creep`, and the largest error under the last foot.
     fn walked_over(creep: f32, times: u32, left_n: f32) -> (f32, f32) {
-        let (mut known, mut memory, mut truth) = (Creep::default(), Memory::default(), Memory::default());
-        let parts = Parts::of(0.008);
+        let (mut known, mut memory, mut truth) =
+            (Creep::default(), LoadAverages::default(), LoadAverages::default());
+        let parts = AverageGains::of(0.008);
         let (mut after, mut worst) = (0.0, 0.0_f32);
         for step in 0..times * 375 {
             let force = if step % 375 < 125 { 150.0 } else { left_n };
@@ -251,8 +252,8 @@ mod tests {
 
     /// The estimate for a sensor that does not creep, on a tile that carries `load(seconds)` newtons.
     fn learnt_under(load: impl Fn(f32) -> f32, seconds: usize) -> f32 {
-        let (mut known, mut memory) = (Creep::default(), Memory::default());
-        let parts = Parts::of(0.008);
+        let (mut known, mut memory) = (Creep::default(), LoadAverages::default());
+        let parts = AverageGains::of(0.008);
         for step in 0..seconds * 125 {
             let force = load(step as f32 * 0.008);
             memory.follow([force; 4], &parts);

@@ -2,7 +2,7 @@
 
 use super::plate::{self, Twist};
 use super::trouble::{Sensor, Trouble};
-use super::{End, is_connected};
+use super::{RangeEnd, is_connected};
 use crate::sense::Quality;
 
 /// Maximum increase of a sensor's load by a foot within a millisecond (N): the hardest heel strike takes five to
@@ -19,7 +19,7 @@ pub(super) struct TileReadings {
     pub(super) forces: [f32; 4],
     /// Readings in the frame before.
     pub(super) before: [f32; 4],
-    pub(super) ends: [End; 4],
+    pub(super) ends: [RangeEnd; 4],
     /// Whether the laws of its sensors are known, so that the plate checks apply.
     pub(super) is_measured: bool,
 }
@@ -57,7 +57,7 @@ impl TileReadings {
         for (corner, sensor) in sensors.iter().enumerate() {
             quality[corner] = quality[corner].max(sensor.quality());
             examined.may_start &=
-                !sensor.forbids_start() && (self.ends[corner] != End::High || sensor.is_out());
+                !sensor.forbids_start() && (self.ends[corner] != RangeEnd::High || sensor.is_out());
             examined.in_trouble |= sensor.trouble().is_some();
         }
         examined
@@ -72,8 +72,8 @@ impl TileReadings {
             let is_sudden = (forces[corner] - before[corner]).abs() > SUDDEN_N;
             let fell = before[corner] - forces[corner] > FELL_N;
             let found = match ends[corner] {
-                End::High if alone == Some(corner) => Some(Trouble::Short),
-                End::Low
+                RangeEnd::High if alone == Some(corner) => Some(Trouble::Short),
+                RangeEnd::Low
                     if is_measured
                         && plate::should_bear_more(forces, ends, out, corner, fell, twist.range()) =>
                 {

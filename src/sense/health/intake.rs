@@ -1,6 +1,6 @@
 //! The destination of sensor readings, laid out for vector operations.
 
-use super::{End, Health};
+use super::{Health, RangeEnd};
 use crate::sense::{ForceFrame, Quality};
 
 /// Inputs and outputs for `LANES` consecutive sensors, four to a tile.
@@ -9,7 +9,7 @@ pub(in crate::sense) struct Lanes<'a, const LANES: usize> {
     pub offsets: &'a [f32; LANES],
     pub forces: &'a mut [f32; LANES],
     pub quality: &'a mut [Quality; LANES],
-    pub ends: &'a mut [End; LANES],
+    pub ends: &'a mut [RangeEnd; LANES],
     /// The readings as sent by the boards.
     pub raws: &'a mut [u16; LANES],
     /// Whether each has the nominal law.
@@ -22,7 +22,7 @@ pub(in crate::sense) struct Lanes<'a, const LANES: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Intake {
     /// Position of each reading in the converter's range.
-    pub(super) ends: Vec<[End; 4]>,
+    pub(super) ends: Vec<[RangeEnd; 4]>,
     /// Reading of each as sent by its board, 0 for zero; for newtons a digest of their bits.
     pub(super) raws: Vec<[u16; 4]>,
     /// Sensors with the nominal law: the plate checks do not apply to forces that may be off by a third.
@@ -32,7 +32,7 @@ pub(super) struct Intake {
 impl Intake {
     pub(super) fn new(tiles: usize) -> Self {
         Self {
-            ends: vec![[End::Within; 4]; tiles],
+            ends: vec![[RangeEnd::Within; 4]; tiles],
             raws: vec![[0; 4]; tiles],
             guessed: vec![[false; 4]; tiles],
         }

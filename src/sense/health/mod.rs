@@ -44,11 +44,11 @@ use self::foreign::FirstReadings;
 use self::intake::Intake;
 use self::jump::Jumps;
 use self::plate::Twist;
-use self::queue::Queue;
+use self::queue::TileQueue;
 use self::repeats::{Heard, Repeats};
 use self::slow::Slow;
 use self::trouble::Sensor;
-use self::visit::Shares;
+use self::visit::FloorShares;
 use self::zero::Zeros;
 
 /// Force beside zero above which a tile is examined in every frame (N): the least that counts as load.
@@ -56,7 +56,7 @@ pub(super) const LOUD_N: f32 = 6.0;
 
 /// Position of a reading in the converter's range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum End {
+pub(super) enum RangeEnd {
     /// The normal range.
     #[default]
     Within,
@@ -68,7 +68,7 @@ pub(super) enum End {
     High,
 }
 
-impl End {
+impl RangeEnd {
     /// Whether the sensor carries no measurable load.
     const fn reads_nothing(self) -> bool {
         matches!(self, Self::Low | Self::Bare)
@@ -91,10 +91,10 @@ pub(super) struct Health {
     intake: Intake,
     zeros: Zeros,
     sensors: Vec<[Sensor; 4]>,
-    queue: Queue,
+    queue: TileQueue,
     /// Flexibility of the floor's plates under twist.
     twist: Twist,
-    shares: Shares,
+    shares: FloorShares,
     averages: Averages,
     slow: Vec<Slow>,
     /// Whether each tile's sensors were all connected at the last visit.
@@ -117,9 +117,9 @@ impl Health {
             intake: Intake::new(tiles),
             zeros: Zeros::new(floor),
             sensors: vec![[Sensor::default(); 4]; tiles],
-            queue: Queue::new(tiles),
+            queue: TileQueue::new(tiles),
             twist: Twist::default(),
-            shares: Shares::new(&floor.geometry),
+            shares: FloorShares::new(&floor.geometry),
             averages: Averages::new(tiles),
             slow: vec![Slow::default(); tiles],
             connected: vec![false; tiles],

@@ -7,8 +7,8 @@
 //!
 //! Corners are numbered as in [`crate::sense::centroid::corners`].
 
-use super::End;
-use crate::sense::centroid::corners::{self, Told, expected, told};
+use super::RangeEnd;
+use crate::sense::centroid::corners::{self, KnownCorner, expected, told};
 
 /// Minimum reading of a single sensor (N) for the others to respond (our choice).
 const ALONE_N: f32 = 8.0;
@@ -151,13 +151,13 @@ pub(super) fn unanswered(forces: [f32; 4], out: [bool; 4]) -> Option<usize> {
 ///
 /// A part that misses its law at light loads may read as much in the air as at rest; a reading next to zero is
 /// evidence all the same.
-pub(super) fn evidence(forces: [f32; 4], ends: [End; 4], corner: usize) -> Told {
-    let is_beyond = (0..4).any(|other| other != corner && ends[other] == End::High);
+pub(super) fn evidence(forces: [f32; 4], ends: [RangeEnd; 4], corner: usize) -> KnownCorner {
+    let is_beyond = (0..4).any(|other| other != corner && ends[other] == RangeEnd::High);
     let lifted = [0, 1, 2, 3].map(|corner| has_lifted(forces, ends, corner));
-    if is_beyond { Told::Nothing } else { told(lifted, corner) }
+    if is_beyond { KnownCorner::Nothing } else { told(lifted, corner) }
 }
 
-fn has_lifted(forces: [f32; 4], ends: [End; 4], corner: usize) -> bool {
+fn has_lifted(forces: [f32; 4], ends: [RangeEnd; 4], corner: usize) -> bool {
     corners::has_lifted(forces[corner]) || ends[corner].reads_nothing()
 }
 
@@ -170,7 +170,7 @@ fn has_lifted(forces: [f32; 4], ends: [End; 4], corner: usize) -> bool {
 /// to require this of a lifted corner, too.)
 pub(super) fn should_bear_more(
     forces: [f32; 4],
-    ends: [End; 4],
+    ends: [RangeEnd; 4],
     out: [bool; 4],
     corner: usize,
     fell: bool,
@@ -183,7 +183,7 @@ pub(super) fn should_bear_more(
     }
     let load: f32 = others.iter().map(|&other| forces[other].abs()).sum();
     fell && !others.iter().any(|&other| out[other])
-        && evidence(forces, ends, corner) == Told::Exactly
+        && evidence(forces, ends, corner) == KnownCorner::Exactly
         && demanded(forces, corner, twist) > 0.5 * forces[corner] + AT_ONCE_SLACK * load
 }
 
@@ -227,30 +227,30 @@ mod tests {
     fn a_lifted_corner_is_no_broken_one() {
         // sw reads zero, 11 N less than at rest.
         let sw_of = |forces, ends| should_bear_more(forces, ends, NONE_OUT, 0, true, RIGID);
-        let alone = [End::Low, End::Within, End::Within, End::Within];
+        let alone = [RangeEnd::Low, RangeEnd::Within, RangeEnd::Within, RangeEnd::Within];
         assert!(sw_of([-11.0, 0.1, -0.2, 0.3], alone), "nobody there");
         assert!(sw_of([-11.0, 150.0, 160.0, 140.0], alone), "a foot in the middle");
         assert!(!should_bear_more([-11.0, 150.0, 160.0, 140.0], alone, NONE_OUT, 0, false, RIGID), "slowly");
         assert!(!sw_of([-11.0, 10.0, 10.0, 280.0], alone), "a foot on ne");
         assert!(!sw_of([-11.0, 300.0, -11.0, -10.0], alone), "tipped over se");
-        assert!(sw_of([-11.0, -11.0, -11.0, -11.0], [End::Low; 4]), "the whole tile unplugged");
+        assert!(sw_of([-11.0, -11.0, -11.0, -11.0], [RangeEnd::Low; 4]), "the whole tile unplugged");
         // The part at nw reads 1.5 N at rest under 11 N, and zero in the air.
-        let east = [End::Low, End::Within, End::Bare, End::Within];
+        let east = [RangeEnd::Low, RangeEnd::Within, RangeEnd::Bare, RangeEnd::Within];
         assert!(!sw_of([-11.0, 190.0, -1.5, 90.0], east), "tipped over the east edge");
         // ne is at the end of its range: its load is unknown.
-        let beyond = [End::Low, End::Within, End::Within, End::High];
+        let beyond = [RangeEnd::Low, RangeEnd::Within, RangeEnd::Within, RangeEnd::High];
         assert!(!sw_of([-11.0, 190.0, 180.0, 260.0], beyond), "a very heavy foot on ne");
     }
 
     #[test]
     fn beside_a_corner_at_the_end_of_its_range_nothing_is_told() {
         let forces = [0.0, 80.0, 90.0, 70.0];
-        assert_eq!(evidence(forces, [End::Within; 4], 0), Told::Exactly);
-        let mut ends = [End::Within; 4];
-        ends[1] = End::High;
-        assert_eq!(evidence(forces, ends, 0), Told::Nothing);
+        assert_eq!(evidence(forces, [RangeEnd::Within; 4], 0), KnownCorner::Exactly);
+        let mut ends = [RangeEnd::Within; 4];
+        ends[1] = RangeEnd::High;
+        assert_eq!(evidence(forces, ends, 0), KnownCorner::Nothing);
         // A sensor is no evidence about itself.
-        assert_eq!(evidence(forces, ends, 1), Told::Exactly);
+        assert_eq!(evidence(forces, ends, 1), KnownCorner::Exactly);
     }
 
     /// Corner forces of points on a plate of this twist; places in units of the sensors' reach.

@@ -4,7 +4,7 @@
 ///
 /// Allocates memory only at its creation.
 #[derive(Clone, Debug)]
-pub(super) struct Queue {
+pub(super) struct TileQueue {
     /// Tiles with a reading to be examined in this frame.
     loud: Vec<u32>,
     /// Tiles with a faulty sensor, or that may start nothing.
@@ -16,7 +16,7 @@ pub(super) struct Queue {
     read: Vec<[f32; 4]>,
 }
 
-impl Queue {
+impl TileQueue {
     pub(super) fn new(tiles: usize) -> Self {
         Self {
             loud: Vec::with_capacity(4 * tiles),

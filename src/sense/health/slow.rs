@@ -1,10 +1,10 @@
 //! The sensors of one tile, averaged over 64 ms: changes too slow to show in a single frame.
 
-use super::averages::Readings;
+use super::averages::BlockReadings;
 use super::drift::Drift;
 use super::trouble::{Sensor, Trouble};
-use super::{End, plate};
-use crate::sense::centroid::corners::{Told, has_lifted};
+use super::{RangeEnd, plate};
+use crate::sense::centroid::corners::{KnownCorner, has_lifted};
 use crate::units::Instant;
 
 /// Maximum time between blocks for a comparison (s); after a longer gap everything restarts.
@@ -53,7 +53,7 @@ pub(super) struct Block {
     pub(super) lows: [f32; 4],
     /// Highest less lowest reading.
     pub(super) spreads: [f32; 4],
-    pub(super) ends: [End; 4],
+    pub(super) ends: [RangeEnd; 4],
     /// Time since the block before (s).
     pub(super) seconds: f32,
 }
@@ -79,10 +79,10 @@ struct Track {
 
 impl Slow {
     /// The complete block; `None` if it has gaps, after which earlier blocks do not count either.
-    pub(super) fn finish(&mut self, readings: Option<Readings>, at: Instant) -> Option<Block> {
+    pub(super) fn finish(&mut self, readings: Option<BlockReadings>, at: Instant) -> Option<Block> {
         let seconds = self.ended.replace(at).map(|ended| at.since(ended).as_secs_f32());
         let seconds = seconds.filter(|&seconds| seconds <= GAP_S);
-        let Some((seconds, Readings { means, lows, spreads, ends })) = seconds.zip(readings) else {
+        let Some((seconds, BlockReadings { means, lows, spreads, ends })) = seconds.zip(readings) else {
             self.tracks = Default::default();
             self.drift.interrupt();
             return None;
@@ -122,7 +122,7 @@ impl Slow {
             }
             let lifted = has_lifted(block.lows[corner]) && sensor.trouble().is_none();
             let evidence = plate::evidence(block.lows, ends, corner);
-            if lifted || evidence == Told::Nothing {
+            if lifted || evidence == KnownCorner::Nothing {
                 // No evidence in either direction.
                 continue;
             }
@@ -130,8 +130,9 @@ impl Slow {
             let slack = RIGHT_N + plate::SLACK * load;
             // A limp plate would also leave the load on this sensor alone: that does not prove the load.
             let is_lone = plate::unanswered(means, [false; 4]) == Some(corner);
-            let is_right =
-                !is_lone && own >= expected - slack && (own <= expected + slack || evidence == Told::AtLeast);
+            let is_right = !is_lone
+                && own >= expected - slack
+                && (own <= expected + slack || evidence == KnownCorner::AtLeast);
             match sensor.trouble() {
                 None | Some(Trouble::Drifted | Trouble::Noisy) => {}
                 Some(_) if is_right && !sensor.shows(slack) => {}
@@ -139,11 +140,13 @@ impl Slow {
             }
             // A reading at the end of the range is rightly constant under a heavy foot, and a suspect load is no
             // basis for the requirement of the others.
-            if ends[corner] == End::High || sensor.is_out() || others.iter().any(|&other| suspect[other]) {
+            if ends[corner] == RangeEnd::High || sensor.is_out() || others.iter().any(|&other| suspect[other])
+            {
                 self.tracks[corner] = Track::default();
             } else {
                 // With its diagonal in the air, it may rightly read more than the expected value.
-                let demands = (expected, if evidence == Told::AtLeast { f32::INFINITY } else { expected });
+                let demands =
+                    (expected, if evidence == KnownCorner::AtLeast { f32::INFINITY } else { expected });
                 if self.tracks[corner].follow(own, block.spreads[corner], demands, load, block.seconds) {
                     sensor.find(Trouble::Stuck, own);
                 }

@@ -1,9 +1,9 @@
 //! Visits to a share of the floor with each frame: averages over 64 ms, and the faults and offsets that show in them.
 
 use super::averages::SHARES;
-use super::creep::Parts;
+use super::creep::AverageGains;
 use super::slow::GAP_S;
-use super::{End, Health, is_connected};
+use super::{Health, RangeEnd, is_connected};
 use crate::floor::{Geometry, TileBlock, TileId};
 use crate::sense::ForceFrame;
 use crate::sense::centroid::corners;
@@ -11,13 +11,13 @@ use crate::units::Instant;
 
 /// The shares of the floor, and the time of the last visit to each.
 #[derive(Clone, Debug)]
-pub(super) struct Shares {
+pub(super) struct FloorShares {
     /// The first tile of each share of the floor, and the end of the last one.
     bounds: [usize; SHARES + 1],
     visited: [Option<Instant>; SHARES],
 }
 
-impl Shares {
+impl FloorShares {
     pub(super) fn new(geometry: &Geometry) -> Self {
         Self { bounds: bounds(geometry), visited: [None; SHARES] }
     }
@@ -51,7 +51,7 @@ impl Health {
     pub(super) fn visit_share(&mut self, frame: &ForceFrame, sampled: Instant) {
         let share = self.number as usize % SHARES;
         let dt = self.shares.visit(share, sampled);
-        let parts = Parts::of(dt);
+        let parts = AverageGains::of(dt);
         self.zeros.ease(dt / SHARES as f32);
         let tiles = self.shares.tiles(share);
         for tile in tiles.clone() {
@@ -79,10 +79,10 @@ impl Health {
             let is_sound = sensors.iter().all(|sensor| sensor.trouble().is_none());
             let has_lifted = block.lows.into_iter().any(corners::has_lifted)
                 || block.ends.iter().any(|end| end.reads_nothing());
-            if is_sound && intake.has_laws(tile) && !has_lifted && !block.ends.contains(&End::High) {
+            if is_sound && intake.has_laws(tile) && !has_lifted && !block.ends.contains(&RangeEnd::High) {
                 twist.learn(block.means);
             }
-            if is_sound && !block.ends.contains(&End::High) {
+            if is_sound && !block.ends.contains(&RangeEnd::High) {
                 zeros.learn_creep(tile, &block);
             }
             zeros.follow_drift(tile, &mut slow.drift, &block, alone, sensors);

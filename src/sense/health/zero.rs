@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::creep::{Creep, Memory, Parts};
+use super::creep::{AverageGains, Creep, LoadAverages};
 use super::drift::{Drift, LIMIT};
 use super::slow::Block;
 use super::trouble::Sensor;
@@ -19,7 +19,7 @@ pub(super) struct Zeros {
     crept: Vec<[f32; 4]>,
     /// Sum of both.
     offsets: Vec<[f32; 4]>,
-    memories: Vec<Memory>,
+    memories: Vec<LoadAverages>,
     creep: Creep,
 }
 
@@ -36,7 +36,7 @@ impl Zeros {
             limits: (0..tiles).map(limits).collect(),
             crept: vec![[0.0; 4]; tiles],
             offsets: vec![[0.0; 4]; tiles],
-            memories: vec![Memory::default(); tiles],
+            memories: vec![LoadAverages::default(); tiles],
             creep: Creep::default(),
         }
     }
@@ -83,7 +83,7 @@ impl Zeros {
     pub(super) fn follow_creep(
         &mut self,
         tiles: Range<usize>,
-        parts: &Parts,
+        parts: &AverageGains,
         forces: &[[f32; 4]],
         connected: &[bool],
     ) {

@@ -9,7 +9,7 @@ mod tile_set;
 use self::survey::Survey;
 use self::threshold::Thresholds;
 pub(super) use self::tile_set::TileSet;
-use super::centroid::tile::{LoadedTile, Place, TileReading};
+use super::centroid::tile::{LoadedTile, PlacedTile, TileReading};
 use super::{ForceFrame, Quality};
 use crate::floor::{Geometry, PositionMap, TileId};
 use crate::units::{Instant, Newtons};
@@ -46,7 +46,7 @@ pub(super) struct LoadedTiles {
     geometry: Geometry,
     thresholds: Thresholds,
     /// Tile of each index, and its centre.
-    places: Vec<Place>,
+    places: Vec<PlacedTile>,
     /// Per tile of the floor; none for the tiles past the end.
     maps: Vec<Option<PositionMap>>,
     survey: Survey,
@@ -74,7 +74,7 @@ impl LoadedTiles {
         Self {
             geometry,
             thresholds: Thresholds::new(tiles, threshold),
-            places: (0..tiles).map(|index| Place::of(&geometry, index)).collect(),
+            places: (0..tiles).map(|index| PlacedTile::of(&geometry, index)).collect(),
             maps: Vec::new(),
             survey: Survey::new(&geometry),
             place: vec![NONE; tiles],

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::{self, BufRead};
 
-use super::{Row, Table, TableError, TableProblems};
+use super::{TableError, TableProblems, TableReader, TableRow};
 use crate::floor::{Geometry, TileId};
 use crate::sense::ForceFrame;
 use crate::units::Instant;
@@ -23,9 +23,9 @@ const LATEST_S: f64 = 31_557_600.0;
 /// year. Of two neighbours in the wrong order, the line that fits the surrounding lines less is skipped.
 #[derive(Debug)]
 pub struct ForceTable<R> {
-    table: Table<R>,
+    table: TableReader<R>,
     geometry: Geometry,
-    row: Row,
+    row: TableRow,
     /// Loads read ahead, at most three: enough to find the one with the wrong time.
     ahead: VecDeque<Load>,
     /// Time of the last load returned.
@@ -51,8 +51,8 @@ impl<R: BufRead> ForceTable<R> {
     /// # Errors
     /// [`TableError`] if the header belongs to another table, or `reader` fails.
     pub fn new(reader: R, geometry: Geometry) -> Result<Self, TableError> {
-        let table = Table::new(reader, &COLUMNS)?;
-        let (row, ahead, named) = (Row::default(), VecDeque::new(), Vec::new());
+        let table = TableReader::new(reader, &COLUMNS)?;
+        let (row, ahead, named) = (TableRow::default(), VecDeque::new(), Vec::new());
         Ok(Self { table, geometry, row, ahead, last_s: None, named })
     }
 

@@ -3,8 +3,8 @@
 use std::io::{self, BufRead};
 
 use super::TableError;
-use super::lines::{Line, Lines};
-use super::record::{Record, Splitter};
+use super::lines::{TableLine, TableLines};
+use super::record::{LineFields, Splitter};
 use super::shown;
 use underfoot_format::suggest::nearest;
 
@@ -30,14 +30,14 @@ impl Header {
     ///
     /// A header may be in a comment, as `numpy.savetxt` writes it.
     pub(super) fn read<R: BufRead>(
-        lines: &mut Lines<R>,
+        lines: &mut TableLines<R>,
         expected: &[&'static [&'static str]],
     ) -> Result<Self, TableError> {
         let mut in_comment = None;
         loop {
             let line = match lines.next()? {
-                Some(Line::Bytes(line)) => line,
-                Some(Line::Broken(reason)) => {
+                Some(TableLine::Bytes(line)) => line,
+                Some(TableLine::Broken(reason)) => {
                     let problem = reason.to_owned();
                     return Err(TableError::Header { line: lines.number(), problem });
                 }
@@ -121,7 +121,7 @@ fn place(names: &[String], columns: &[&'static str]) -> Result<Vec<usize>, (usiz
 
 /// The names in a header line, without the empty ones at its end.
 fn split(text: &str, separator: u8) -> Vec<String> {
-    let mut record = Record::default();
+    let mut record = LineFields::default();
     Splitter::new(separator).split(text.as_bytes(), &mut record);
     let names = record.iter().take(record.filled());
     names.map(|name| unquoted(&String::from_utf8_lossy(name)).to_owned()).collect()

@@ -8,7 +8,7 @@ const LONGEST: usize = 64 << 10;
 
 /// Reads a table line by line. Lines end with LF, CR or both; a line without an end takes no more than the maximum.
 #[derive(Debug)]
-pub(super) struct Lines<R> {
+pub(super) struct TableLines<R> {
     reader: R,
     line: Vec<u8>,
     /// Number of the current line, from 1; 0 before the first.
@@ -21,14 +21,14 @@ pub(super) struct Lines<R> {
 
 /// A line of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Line<'l> {
+pub(super) enum TableLine<'l> {
     /// Its bytes without the end; blank ones are lines as well.
     Bytes(&'l [u8]),
     /// It cannot be a row, with the reason.
     Broken(&'static str),
 }
 
-impl<R: BufRead> Lines<R> {
+impl<R: BufRead> TableLines<R> {
     pub(super) const fn new(reader: R) -> Self {
         Self { reader, line: Vec::new(), number: 0, ended_by_cr: false, is_put_back: false }
     }
@@ -44,18 +44,18 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// The next line; `None` at the end.
-    pub(super) fn next(&mut self) -> io::Result<Option<Line<'_>>> {
+    pub(super) fn next(&mut self) -> io::Result<Option<TableLine<'_>>> {
         if !std::mem::take(&mut self.is_put_back) && !self.advance()? {
             return Ok(None);
         }
         let is_comment = self.line.trim_ascii_start().first() == Some(&b'#');
         let is_open = self.line.iter().filter(|byte| **byte == b'"').count() % 2 == 1;
         Ok(Some(if self.line.len() > LONGEST {
-            Line::Broken("longer than 64 kB")
+            TableLine::Broken("longer than 64 kB")
         } else if is_open && !is_comment {
-            Line::Broken("a quotation mark is not closed")
+            TableLine::Broken("a quotation mark is not closed")
         } else {
-            Line::Bytes(&self.line)
+            TableLine::Bytes(&self.line)
         }))
     }
 

@@ -21,9 +21,9 @@ use thiserror::Error;
 
 pub use force_table::ForceTable;
 use header::{Header, unquoted};
-use lines::{Line, Lines};
+use lines::{TableLine, TableLines};
 pub use problems::{TableNotes, TableProblem, TableProblems};
-use record::{Record, Splitter};
+use record::{LineFields, Splitter};
 
 /// A table that cannot be read at all, or not to its end.
 #[derive(Debug, Error)]
@@ -44,8 +44,8 @@ pub enum TableError {
 
 /// A table that is being read.
 #[derive(Debug)]
-pub(super) struct Table<R> {
-    lines: Lines<R>,
+pub(super) struct TableReader<R> {
+    lines: TableLines<R>,
     splitter: Splitter,
     header: Header,
     names: &'static [&'static str],
@@ -54,15 +54,15 @@ pub(super) struct Table<R> {
 
 /// One row of a table.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Row {
+pub(super) struct TableRow {
     line: u64,
-    record: Record,
+    record: LineFields,
 }
 
-impl<R: BufRead> Table<R> {
+impl<R: BufRead> TableReader<R> {
     /// The table in `reader`, whose header must have the columns of one of `expected`, in any order.
     pub(super) fn new(reader: R, expected: &[&'static [&'static str]]) -> Result<Self, TableError> {
-        let mut lines = Lines::new(reader);
+        let mut lines = TableLines::new(reader);
         let header = Header::read(&mut lines, expected)?;
         let names = expected.get(header.which).copied().unwrap_or_default();
         let splitter = Splitter::new(header.separator);
@@ -90,13 +90,13 @@ impl<R: BufRead> Table<R> {
     }
 
     /// Reads the next row that has all columns into `row`; false at the end.
-    pub(super) fn next_row(&mut self, row: &mut Row) -> io::Result<bool> {
+    pub(super) fn next_row(&mut self, row: &mut TableRow) -> io::Result<bool> {
         loop {
             let problem = match self.lines.next()? {
                 None => return Ok(false),
-                Some(Line::Broken(reason)) => Some(reason.to_owned()),
-                Some(Line::Bytes(line)) if line.trim_ascii_start().first() == Some(&b'#') => continue,
-                Some(Line::Bytes(line)) => {
+                Some(TableLine::Broken(reason)) => Some(reason.to_owned()),
+                Some(TableLine::Bytes(line)) if line.trim_ascii_start().first() == Some(&b'#') => continue,
+                Some(TableLine::Bytes(line)) => {
                     self.splitter.split(line, &mut row.record);
                     if row.record.filled() == 0 {
                         continue;
@@ -113,7 +113,7 @@ impl<R: BufRead> Table<R> {
     }
 
     /// The problem of a line with too few or too many fields; empty fields at its end do not count.
-    fn fault_of_width(&self, record: &Record) -> Option<String> {
+    fn fault_of_width(&self, record: &LineFields) -> Option<String> {
         let (found, filled, expected) = (record.len(), record.filled(), self.header.width);
         if filled > expected {
             let is_comma = self.splitter.separator() == b',';
@@ -134,7 +134,7 @@ impl<R: BufRead> Table<R> {
     }
 
     /// Reports a problem in one field of `row`.
-    pub(super) fn report(&mut self, row: &Row, field: usize, problem: String) {
+    pub(super) fn report(&mut self, row: &TableRow, field: usize, problem: String) {
         self.problems.add(row.line, self.names.get(field).copied().unwrap_or_default(), problem);
     }
 
@@ -144,7 +144,7 @@ impl<R: BufRead> Table<R> {
     }
 
     /// One field as written, without blanks and quotation marks around it.
-    pub(super) fn text<'r>(&self, row: &'r Row, field: usize) -> Cow<'r, str> {
+    pub(super) fn text<'r>(&self, row: &'r TableRow, field: usize) -> Cow<'r, str> {
         let place = self.header.places.get(field).copied();
         let bytes = place.and_then(|place| row.record.get(place)).unwrap_or_default();
         match String::from_utf8_lossy(bytes) {
@@ -154,7 +154,7 @@ impl<R: BufRead> Table<R> {
     }
 
     /// The number in one field of `row`; reports anything but a finite number in the range.
-    pub(super) fn number(&mut self, row: &Row, field: usize, range: RangeInclusive<f64>) -> Option<f64> {
+    pub(super) fn number(&mut self, row: &TableRow, field: usize, range: RangeInclusive<f64>) -> Option<f64> {
         let written = self.text(row, field);
         let number = self.parse(&written).filter(|number| range.contains(number));
         if number.is_none() {
@@ -169,7 +169,7 @@ impl<R: BufRead> Table<R> {
     }
 
     /// The whole number of `range` in one field of `row`.
-    pub(super) fn whole(&mut self, row: &Row, field: usize, range: Range<u16>) -> Option<u16> {
+    pub(super) fn whole(&mut self, row: &TableRow, field: usize, range: Range<u16>) -> Option<u16> {
         let written = self.text(row, field);
         // Programs without integers write 3 as 3.0.
         let number = self.parse(&written).filter(|number| number.fract() == 0.0);
@@ -188,7 +188,7 @@ impl<R: BufRead> Table<R> {
     }
 }
 
-impl Row {
+impl TableRow {
     /// Number of its line, from 1.
     pub(super) const fn line(&self) -> u64 {
         self.line

@@ -2,7 +2,7 @@
 
 /// The fields of one line.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Record {
+pub(super) struct LineFields {
     bytes: Vec<u8>,
     ends: Vec<usize>,
 }
@@ -27,7 +27,7 @@ impl Splitter {
     }
 
     /// Splits `line`, which holds no line end, into `record`. A blank line has no fields.
-    pub(super) fn split(&mut self, line: &[u8], record: &mut Record) {
+    pub(super) fn split(&mut self, line: &[u8], record: &mut LineFields) {
         self.line.clear();
         self.line.extend_from_slice(line);
         self.line.push(b'\n');
@@ -55,7 +55,7 @@ impl Splitter {
     }
 }
 
-impl Record {
+impl LineFields {
     pub(super) fn len(&self) -> usize {
         self.ends.len()
     }

@@ -10,8 +10,8 @@ const COLUMNS: [&[&str]; 2] = [&["col", "volts"], &["col", "volts", "newtons"]];
 type Found = (Vec<Vec<f64>>, Vec<String>, Vec<String>);
 
 fn read(bytes: &[u8]) -> Result<Found, TableError> {
-    let mut table = Table::new(bytes, &COLUMNS)?;
-    let (mut row, mut rows) = (Row::default(), Vec::new());
+    let mut table = TableReader::new(bytes, &COLUMNS)?;
+    let (mut row, mut rows) = (TableRow::default(), Vec::new());
     let width = COLUMNS[table.header()].len();
     while table.next_row(&mut row)? {
         let numbers: Option<Vec<f64>> =
@@ -170,8 +170,8 @@ fn a_line_without_an_end_takes_no_memory() {
     }
     let text = io::Read::chain(&b"col,volts\n1,2.5\n"[..], Endless(300 << 20));
     let reader = io::BufReader::new(io::Read::chain(text, &b"\n3,4.5\n"[..]));
-    let mut table = Table::new(reader, &COLUMNS).unwrap();
-    let mut row = Row::default();
+    let mut table = TableReader::new(reader, &COLUMNS).unwrap();
+    let mut row = TableRow::default();
     let mut lines = Vec::new();
     while table.next_row(&mut row).unwrap() {
         lines.push(row.line());
@@ -183,8 +183,9 @@ fn a_line_without_an_end_takes_no_memory() {
 
 #[test]
 fn whole_numbers_may_be_written_as_floats_and_only_whole() {
-    let mut table = Table::new(&b"col,volts\n3.0,0\n3e0,0\n+3,0\n3.5,0\n-1,0\n9,0"[..], &COLUMNS).unwrap();
-    let (mut row, mut found) = (Row::default(), Vec::new());
+    let mut table =
+        TableReader::new(&b"col,volts\n3.0,0\n3e0,0\n+3,0\n3.5,0\n-1,0\n9,0"[..], &COLUMNS).unwrap();
+    let (mut row, mut found) = (TableRow::default(), Vec::new());
     while table.next_row(&mut row).unwrap() {
         found.push(table.whole(&row, 0, 0..9));
     }

@@ -20,7 +20,7 @@ use crate::sense::loaded::LoadedTiles;
 
 /// A foot that has just landed among another's tiles.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Candidate {
+pub(super) struct CandidateTrack {
     force: f64,
     place: DVec2,
     deviation: f64,
@@ -140,11 +140,11 @@ impl Track {
     }
 
     /// A foot that added load to tiles where this track cannot have put it.
-    fn added(&self, list: &[LoadedTile], cells: &Cells) -> Option<Candidate> {
+    fn added(&self, list: &[LoadedTile], cells: &Cells) -> Option<CandidateTrack> {
         if !self.bears() && self.velocity().length() > SLIDES_M_S {
             return None;
         }
-        let mut found: Option<Candidate> = None;
+        let mut found: Option<CandidateTrack> = None;
         for (at, &position) in self.tiles.as_slice().iter().enumerate() {
             let tile = &list[position as usize];
             let force = f64::from(tile.wrench.force);
@@ -187,7 +187,7 @@ impl Track {
         list: &[LoadedTile],
         pitch: f64,
         elapsed: &Elapsed,
-    ) -> Option<Candidate> {
+    ) -> Option<CandidateTrack> {
         let seen = Whole::of(self.tiles.as_slice().iter().map(|&position| &list[position as usize]));
         let mut explanation = self.explanation;
         let second = explanation.update(self, &seen, list, pitch, alone, elapsed);
@@ -196,11 +196,11 @@ impl Track {
             return None;
         }
         match second? {
-            Second::Shift(shift) => Some(Candidate {
+            Second::Shift(shift) => Some(CandidateTrack {
                 force: seen.force * shift.length() / STANCE_M,
                 place: self.anchor + shift.normalize() * STANCE_M,
                 deviation: GUESSED_M,
-                ..Candidate::default()
+                ..CandidateTrack::default()
             }),
             Second::Apart(spread) => {
                 let axis = spread.axis();
@@ -218,11 +218,11 @@ impl Track {
                 let new =
                     if centre(0).distance(self.landed) > centre(1).distance(self.landed) { 0 } else { 1 };
                 let (keep, place) = (centre(1 - new), centre(new));
-                let mut candidate = Candidate {
+                let mut candidate = CandidateTrack {
                     force: sides[new].0,
                     place,
                     deviation: APART_GUESS_M,
-                    ..Candidate::default()
+                    ..CandidateTrack::default()
                 };
                 candidate.keeps = Some((sides[1 - new].0, keep));
                 Some(candidate)

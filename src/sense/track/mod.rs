@@ -54,7 +54,7 @@ use self::groups::{BATCHES, GroupEstimator, Link};
 use self::neighbours::Near;
 use self::sharing::Groups;
 use self::state::Track;
-use self::strips::Axis;
+use self::strips::StripAxis;
 use self::tracks::Tracks;
 use super::centroid::tile::LoadedTile;
 use super::centroid::uncertainty::SensorUncertainty;
@@ -110,10 +110,10 @@ struct Cells {
 
 impl Cells {
     /// Returns whether the floor has a column or row of this number.
-    fn have(&self, axis: Axis, number: i32) -> bool {
+    fn have(&self, axis: StripAxis, number: i32) -> bool {
         let numbers = match axis {
-            Axis::East => self.block.column_range(),
-            Axis::North => self.block.row_range(),
+            StripAxis::East => self.block.column_range(),
+            StripAxis::North => self.block.row_range(),
         };
         (i32::from(numbers.start)..i32::from(numbers.end)).contains(&number)
     }

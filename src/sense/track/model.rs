@@ -11,7 +11,7 @@ use glam::DVec2;
 use super::elapsed::Elapsed;
 use super::joint::{Derivative, Joint, MOST_FEET};
 use super::state::{EAST, FORCE, HALF_EAST, HALF_NORTH, NORTH, STATES, Track};
-use super::strips::{Axis, Strips};
+use super::strips::{StripAxis, Strips};
 use super::{Cells, number_of};
 use crate::sense::centroid::tile::LoadedTile;
 
@@ -72,7 +72,7 @@ pub(super) fn observe(
     let (force, middle) = (strips.force, strips.middle);
     for foot in group {
         // Strips without load within reach of a patch are observations too.
-        for axis in Axis::BOTH {
+        for axis in StripAxis::BOTH {
             let wide = foot.covariance[axis.half()][axis.half()].sqrt();
             let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
             for number in number_of(c - h, cells.pitch)..=number_of(c + h, cells.pitch) {

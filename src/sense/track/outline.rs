@@ -16,14 +16,14 @@ const QUARTER: usize = DIRECTIONS / 2;
 
 /// Extents of the pressed points along each direction of the fan, in metres.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outline {
+pub(super) struct FanExtents {
     low: [f64; DIRECTIONS],
     high: [f64; DIRECTIONS],
 }
 
 /// Length and breadth of a shoe, in metres.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shoe {
+pub(super) struct ShoeSize {
     pub length: f64,
     pub breadth: f64,
 }
@@ -84,11 +84,11 @@ impl Fan {
     }
 }
 
-/// [`Outline::renew`], compiled for each vector instruction set, with bit-identical results.
+/// [`FanExtents::renew`], compiled for each vector instruction set, with bit-identical results.
 ///
 /// The fan is an argument: with constants the compiler optimises single products away and breaks the vectorisation.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn renew(outline: &mut Outline, fan: &Fan, centre: DVec2, others: &[DVec2], keep: f64) {
+fn renew(outline: &mut FanExtents, fan: &Fan, centre: DVec2, others: &[DVec2], keep: f64) {
     let at = fan.projections(centre);
     let (mut low, mut high) = (at, at);
     for &point in others {
@@ -106,7 +106,7 @@ fn renew(outline: &mut Outline, fan: &Fan, centre: DVec2, others: &[DVec2], keep
     }
 }
 
-impl Outline {
+impl FanExtents {
     /// The outline of a foot that has pressed only `point`.
     pub(super) fn new(point: DVec2) -> Self {
         let at = FAN.projections(point);
@@ -120,7 +120,7 @@ impl Outline {
     }
 
     /// Distance of `point` from the area that `shoe` can cover together with all points so far (m); negative within.
-    pub(super) fn beyond(&self, point: DVec2, shoe: Shoe) -> f64 {
+    pub(super) fn beyond(&self, point: DVec2, shoe: ShoeSize) -> f64 {
         let at = FAN.projections(point);
         let extent = |which: usize| greater(self.high[which], at[which]) - lesser(self.low[which], at[which]);
         (0..DIRECTIONS)
@@ -136,11 +136,11 @@ impl Outline {
 mod tests {
     use super::*;
 
-    const SHOE: Shoe = Shoe { length: 0.33, breadth: 0.13 };
+    const SHOE: ShoeSize = ShoeSize { length: 0.33, breadth: 0.13 };
 
     #[test]
     fn one_point_may_be_either_end_of_a_shoe() {
-        let heel = Outline::new(DVec2::ZERO);
+        let heel = FanExtents::new(DVec2::ZERO);
         for degrees in [0.0_f64, 20.0, 45.0, 100.0, 250.0] {
             let way = DVec2::from_angle(degrees.to_radians());
             assert!(heel.beyond(way * 0.31, SHOE) < 0.0, "toes at {degrees} degrees");
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn a_foot_that_has_rolled_covers_nothing_far_beside_its_line() {
-        let mut foot = Outline::new(DVec2::ZERO);
+        let mut foot = FanExtents::new(DVec2::ZERO);
         foot.renew(DVec2::new(0.0, 0.1), &[DVec2::new(0.0, 0.2)], 1.0);
         assert!(foot.beyond(DVec2::new(0.05, 0.1), SHOE) < 0.0, "the ball beside the strip");
         assert!(foot.beyond(DVec2::new(0.18, 0.1), SHOE) > 0.02, "the other foot");
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn what_was_pressed_long_ago_is_forgotten() {
-        let mut foot = Outline::new(DVec2::ZERO);
+        let mut foot = FanExtents::new(DVec2::ZERO);
         foot.renew(DVec2::new(0.3, 0.0), &[], 0.1);
         assert!(foot.beyond(DVec2::new(0.55, 0.0), SHOE) < 0.0);
     }

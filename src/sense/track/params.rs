@@ -109,7 +109,7 @@ pub(super) mod associate {
 
 /// The loads that can belong to a foot.
 pub(super) mod reach {
-    use crate::sense::track::outline::Shoe;
+    use crate::sense::track::outline::ShoeSize;
 
     /// Radius about the centre of pressure within which a flat foot presses (m): a foot that carries a person, and a
     /// light one.
@@ -118,7 +118,8 @@ pub(super) mod reach {
     pub(in crate::sense::track) const AROUND_LIGHT_M: f64 = 0.26;
 
     /// Area of one shoe: its length, and its breadth with an allowance for a small rotation.
-    pub(in crate::sense::track) const SHOE: Shoe = Shoe { length: super::state::SHOE_M, breadth: 0.13 };
+    pub(in crate::sense::track) const SHOE: ShoeSize =
+        ShoeSize { length: super::state::SHOE_M, breadth: 0.13 };
 
     /// Minimum share of the foot's force on a tile for its centroid to enter the outline. A foot that shares tiles
     /// enters up to this standard deviation of its place (m). A load must exceed this multiple of its sensors' noise.

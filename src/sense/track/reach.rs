@@ -10,7 +10,7 @@ use glam::{DVec2, IVec2};
 
 use super::elapsed::Elapsed;
 use super::state::{EAST, NORTH, Track};
-use super::strips::Axis;
+use super::strips::StripAxis;
 use super::{Cells, cell_of};
 use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::loaded::LoadedTiles;
@@ -97,8 +97,8 @@ impl Track {
         let (mut low, mut high) = NOTHING_BORNE;
         for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {
             let (low, high) = match residual.axis {
-                Axis::East => (&mut low.x, &mut high.x),
-                Axis::North => (&mut low.y, &mut high.y),
+                StripAxis::East => (&mut low.x, &mut high.x),
+                StripAxis::North => (&mut low.y, &mut high.y),
             };
             (*low, *high) = ((*low).min(residual.number), (*high).max(residual.number));
         }

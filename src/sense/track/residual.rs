@@ -6,7 +6,7 @@ use super::params::reach::KNOWN;
 use super::params::residual::{KNOWN_S, LEARN_EVERY_S, RESIDUAL_S, TOUCHES_S};
 use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
 use super::state::{HALF_EAST, HALF_NORTH, Track};
-use super::strips::{Axis, Residual, Strips, Whole};
+use super::strips::{Residual, StripAxis, Strips, Whole};
 use crate::sense::centroid::tile::LoadedTile;
 
 impl Track {
@@ -18,7 +18,7 @@ impl Track {
         let ShapeFade { dt, half: decay, .. } = *fade;
         // The model error is correlated over many frames.
         let noise = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
-        for axis in Axis::BOTH {
+        for axis in StripAxis::BOTH {
             let half = axis.half();
             self.state[half] = HALF_REST + decay * (self.state[half] - HALF_REST);
             let mut variance = self.covariance[half][half];
@@ -63,7 +63,7 @@ impl Track {
         let tiles = self.tiles.as_slice().iter().map(|&position| &list[position as usize]);
         let mut strips = Strips::about(&Whole::of(tiles.clone()), pitch);
         strips.add(tiles);
-        for axis in Axis::BOTH {
+        for axis in StripAxis::BOTH {
             let (c, h) = (axis.along(centre), axis.along(half));
             for number in number_of(c - h, pitch)..=number_of(c + h, pitch) {
                 strips.strip(axis, number);
@@ -137,7 +137,7 @@ impl Track {
     }
 
     /// Its shape residual on one strip, times `strength`; zero without one.
-    pub(super) fn residual_at(&self, axis: Axis, number: i32, strength: f64) -> Residual {
+    pub(super) fn residual_at(&self, axis: StripAxis, number: i32, strength: f64) -> Residual {
         self.residuals
             .iter()
             .find(|residual| residual.axis == axis && residual.number == number)

@@ -9,8 +9,8 @@ use smallvec::SmallVec;
 
 use super::elapsed::Elapsed;
 use super::explanation::Explanation;
-use super::initiate::Candidate;
-use super::outline::Outline;
+use super::initiate::CandidateTrack;
+use super::outline::FanExtents;
 use super::patch::PatchOnTile;
 use super::reach::NOTHING_BORNE;
 use super::smoothed::Smoothed;
@@ -99,7 +99,7 @@ pub(super) struct Track {
     /// Its centre of pressure when it landed.
     pub landed: DVec2,
     /// The points that it has pressed recently.
-    pub outline: Outline,
+    pub outline: FanExtents,
     /// Anchor point where it stood still, the time there and the time away from it (s).
     pub anchor: DVec2,
     pub anchored_s: f64,
@@ -113,7 +113,7 @@ pub(super) struct Track {
     /// Log odds of two feet against one.
     pub explanation: Explanation,
     /// A foot that may have landed among its tiles in this frame.
-    pub candidate: Option<Candidate>,
+    pub candidate: Option<CandidateTrack>,
 }
 
 impl Track {
@@ -155,7 +155,7 @@ impl Track {
             touchdown: None,
             sway_m: SWAY_MOST_M,
             landed: centre,
-            outline: Outline::new(centre),
+            outline: FanExtents::new(centre),
             anchor: centre,
             anchored_s: 0.0,
             astray_s: 0.0,

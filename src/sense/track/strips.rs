@@ -20,12 +20,12 @@ pub(super) const MOST_STRIPS: usize = 24;
 
 /// The axis along which strips are numbered: columns eastwards, rows northwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Axis {
+pub(super) enum StripAxis {
     East,
     North,
 }
 
-impl Axis {
+impl StripAxis {
     pub(super) const BOTH: [Self; 2] = [Self::East, Self::North];
 
     /// Index in a foot's state of its centre along the axis.
@@ -72,7 +72,7 @@ impl Axis {
 /// The load of one column or row of tiles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strip {
-    pub axis: Axis,
+    pub axis: StripAxis,
     pub number: i32,
     pub force: f64,
     /// First moment along the axis about the strip's middle.
@@ -85,7 +85,7 @@ pub(super) struct Strip {
 
 impl Strip {
     /// A strip without load.
-    pub(super) fn empty(axis: Axis, number: i32) -> Self {
+    pub(super) fn empty(axis: StripAxis, number: i32) -> Self {
         Self { axis, number, force: 0.0, moment: 0.0, cross: 0.0, noise: [0.0; 3] }
     }
 
@@ -144,7 +144,7 @@ impl Whole {
 
 /// Variances of a group's force and moments due to sensor noise (N², N² m²).
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Noise {
+pub(super) struct NoiseVariances {
     pub force: f64,
     pub east: f64,
     pub north: f64,
@@ -181,7 +181,7 @@ impl Strips {
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();
-            for axis in Axis::BOTH {
+            for axis in StripAxis::BOTH {
                 let number = axis.number(tile);
                 let middle = (f64::from(number) + 0.5) * self.pitch;
                 let cross = axis.across(self.middle);
@@ -199,7 +199,7 @@ impl Strips {
         for tile in tiles {
             let noise = tile.loaded_noise_n().powi(2);
             let [own, arm] = [4.0 * noise, NOISE_ARM_M * NOISE_ARM_M * noise];
-            for axis in Axis::BOTH {
+            for axis in StripAxis::BOTH {
                 let offset = axis.across(tile.centre.as_dvec2()) - axis.across(self.middle);
                 if let Some(strip) = self.strip(axis, axis.number(tile)) {
                     strip.noise[0] += own;
@@ -211,16 +211,16 @@ impl Strips {
     }
 
     /// Variance of the total force and of its moments about the middle, due to sensor noise.
-    pub(super) fn noise(&self) -> Noise {
-        let mut noise = Noise::default();
+    pub(super) fn noise(&self) -> NoiseVariances {
+        let mut noise = NoiseVariances::default();
         for strip in &self.strips {
             let [force, moment, _] = strip.noise;
             match strip.axis {
-                Axis::East => {
+                StripAxis::East => {
                     noise.force += force;
                     noise.east += moment + force * (strip.middle(self.pitch) - self.middle.x).powi(2);
                 }
-                Axis::North => {
+                StripAxis::North => {
                     noise.north += moment + force * (strip.middle(self.pitch) - self.middle.y).powi(2);
                 }
             }
@@ -229,7 +229,7 @@ impl Strips {
     }
 
     /// The strip `number`, created if there is room; `None` otherwise.
-    pub(super) fn strip(&mut self, axis: Axis, number: i32) -> Option<&mut Strip> {
+    pub(super) fn strip(&mut self, axis: StripAxis, number: i32) -> Option<&mut Strip> {
         let known = self.strips.iter().position(|strip| strip.axis == axis && strip.number == number);
         let position = match known {
             Some(position) => position,
@@ -247,7 +247,7 @@ impl Strips {
 /// Learnt while the foot stands alone, where the division is measured; in shares of the foot's force.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Residual {
-    pub axis: Axis,
+    pub axis: StripAxis,
     pub number: i32,
     pub share: f64,
     pub moment: f64,
@@ -257,7 +257,7 @@ pub(super) struct Residual {
 
 impl Residual {
     /// No difference from the model.
-    pub(super) fn none(axis: Axis, number: i32) -> Self {
+    pub(super) fn none(axis: StripAxis, number: i32) -> Self {
         Self { axis, number, share: 0.0, moment: 0.0, cross: 0.0, seen: false }
     }
 

@@ -18,7 +18,7 @@ use arrayvec::ArrayVec;
 use glam::DVec2;
 
 use super::state::{EAST, FORCE, NORTH, Track};
-use super::strips::{Axis, MOST_STRIPS, Strip, Strips};
+use super::strips::{MOST_STRIPS, Strip, StripAxis, Strips};
 use super::{Cells, number_of};
 use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::contact::ContactId;
@@ -74,7 +74,7 @@ pub(super) fn place(
     }
     let ahead = way / way.length();
     // Strips without load within reach of the feet are observations too.
-    for axis in Axis::BOTH {
+    for axis in StripAxis::BOTH {
         for point in [from, from + ahead * 0.3] {
             let number = number_of(axis.along(point), cells.pitch);
             if cells.have(axis, number) {
@@ -207,7 +207,7 @@ impl Pair {
     /// Misfit of all strips, with the best half widths of the new foot; infinite from `limit` on.
     fn misfit(&self, lines: &[Line], middle: DVec2, pitch: f64, limit: f64) -> f64 {
         let mut all = 0.0;
-        for axis in Axis::BOTH {
+        for axis in StripAxis::BOTH {
             let mut best = f64::INFINITY;
             // Misfit of strips that the patch covers or misses at any width; NaN until computed.
             let mut same = [f64::NAN; MOST_STRIPS];
@@ -245,7 +245,7 @@ impl Pair {
     /// Mean squared normalised deviation of the strips' forces and moments from those of the pair, with the best half
     /// widths of the new foot.
     fn misfit_per_load(&self, lines: &[Line], middle: DVec2, pitch: f64) -> f64 {
-        let along = |axis: Axis| {
+        let along = |axis: StripAxis| {
             let fits = HALVES.map(|half| {
                 let unusual = (half - HALF_REST) / HALF_SPREAD_M;
                 let lines = lines.iter().filter(|line| line.strip.axis == axis);
@@ -254,7 +254,7 @@ impl Pair {
             });
             fits.into_iter().fold(f64::INFINITY, f64::min)
         };
-        Axis::BOTH.into_iter().map(along).sum::<f64>() / (3 * lines.len()) as f64
+        StripAxis::BOTH.into_iter().map(along).sum::<f64>() / (3 * lines.len()) as f64
     }
 
     /// Twice the negative log likelihood of one strip's load, up to a constant: the squares, and the variances of

@@ -17,7 +17,7 @@ use crate::wire::{ArgumentKind, COMMANDS, Prefix};
 /// Direction of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Direction {
+pub enum MessageDirection {
     /// To the floor's own port.
     In,
     /// From the floor to its listeners.
@@ -39,9 +39,9 @@ pub struct Argument {
 
 /// One address.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Entry {
+pub struct AddressEntry {
     /// Direction of its messages.
-    pub direction: Direction,
+    pub direction: MessageDirection,
     /// The address as it stands in messages.
     pub address: String,
     /// Its arguments, in order.
@@ -55,7 +55,7 @@ pub struct Entry {
 #[serde(transparent)]
 pub struct Reference {
     /// The addresses.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<AddressEntry>,
 }
 
 impl Reference {
@@ -76,32 +76,37 @@ struct Maker<'a> {
     prefix: &'a Prefix,
     layout: &'a Layout,
     floor: &'a Floor,
-    entries: Vec<Entry>,
+    entries: Vec<AddressEntry>,
 }
 
 impl Maker<'_> {
-    fn add(&mut self, direction: Direction, path: &str, arguments: Vec<Argument>, says: &str) {
+    fn add(&mut self, direction: MessageDirection, path: &str, arguments: Vec<Argument>, says: &str) {
         let address = self.prefix.address(path);
-        self.entries.push(Entry { direction, address, arguments, says: says.into() });
+        self.entries.push(AddressEntry { direction, address, arguments, says: says.into() });
     }
 
     /// Adds a message that goes to all listeners.
     fn report<T: Sent>(&mut self) {
-        self.add(Direction::Out, T::PATH, self.listed(T::FIELDS, Direction::Out), T::REPORT);
+        self.add(MessageDirection::Out, T::PATH, self.listed(T::FIELDS, MessageDirection::Out), T::REPORT);
     }
 
     /// Adds a message that answers a request.
     fn answer<T: Sent>(&mut self) {
-        self.add(Direction::Answer, T::PATH, self.listed(T::FIELDS, Direction::Answer), T::ANSWER);
+        self.add(
+            MessageDirection::Answer,
+            T::PATH,
+            self.listed(T::FIELDS, MessageDirection::Answer),
+            T::ANSWER,
+        );
     }
 
     /// Adds a message about the control `id` that answers a request.
     fn answer_of<T: Sent>(&mut self, id: &str) {
-        let arguments = self.listed(T::FIELDS, Direction::Answer);
-        self.add(Direction::Answer, &sent::path_of::<T>(id), arguments, T::ANSWER);
+        let arguments = self.listed(T::FIELDS, MessageDirection::Answer);
+        self.add(MessageDirection::Answer, &sent::path_of::<T>(id), arguments, T::ANSWER);
     }
 
-    fn listed(&self, fields: &[Field], direction: Direction) -> Vec<Argument> {
+    fn listed(&self, fields: &[Field], direction: MessageDirection) -> Vec<Argument> {
         let range = |field: &Field| match field.range {
             FieldRange::Text(text) => text.into(),
             FieldRange::OfValue => String::new(),
@@ -110,7 +115,7 @@ impl Maker<'_> {
                 let reasons = OffReason::ALL.map(OffReason::name).join(", ");
                 format!("{reasons}; empty if a foot can press it")
             }
-            FieldRange::Pages if direction == Direction::Answer => "empty without pages".into(),
+            FieldRange::Pages if direction == MessageDirection::Answer => "empty without pages".into(),
             FieldRange::Pages => pages(self.layout),
         };
         fields.iter().map(|field| argument(field.name, field.tag, &range(field))).collect()
@@ -131,7 +136,7 @@ impl Maker<'_> {
             ];
             let says = format!("Readings of board {number}, once a millisecond.");
             let address = board.address.clone();
-            self.entries.push(Entry { direction: Direction::In, address, arguments, says });
+            self.entries.push(AddressEntry { direction: MessageDirection::In, address, arguments, says });
         }
     }
 
@@ -141,7 +146,7 @@ impl Maker<'_> {
             // A layout without pages has none to show.
             if command.argument != ArgumentKind::Page || !layout.pages.is_empty() {
                 let arguments = taken(command, None, layout, &floor.geometry);
-                self.add(Direction::In, command.path, arguments, command.says);
+                self.add(MessageDirection::In, command.path, arguments, command.says);
             }
         }
         self.report::<sent::Contacts>();
@@ -177,7 +182,7 @@ impl Maker<'_> {
             };
             if suits {
                 let arguments = taken(command, Some(widget), layout, &floor.geometry);
-                self.add(Direction::In, &command.path_of(id), arguments, command.says);
+                self.add(MessageDirection::In, &command.path_of(id), arguments, command.says);
             }
         }
         let held = control.value().map(|value| values(&widget.behaviour, value)).unwrap_or_default();
@@ -187,17 +192,17 @@ impl Maker<'_> {
                 Some(Detail::Value(_)) => held.clone(),
                 Some(detail) => {
                     let fields = sent::arguments_of_detail(detail, &mut Vec::new());
-                    self.listed(fields, Direction::Out)
+                    self.listed(fields, MessageDirection::Out)
                 }
             };
-            arguments.extend(self.listed(sent::Place::FIELDS, Direction::Out));
-            self.add(Direction::Out, &sent::event_path(id, kind), arguments, says);
+            arguments.extend(self.listed(sent::Place::FIELDS, MessageDirection::Out));
+            self.add(MessageDirection::Out, &sent::event_path(id, kind), arguments, says);
         }
-        let repeated = self.listed(sent::Held::FIELDS, Direction::Out);
-        self.add(Direction::Out, &sent::path_of::<sent::Held>(id), repeated, sent::Held::REPORT);
+        let repeated = self.listed(sent::Held::FIELDS, MessageDirection::Out);
+        self.add(MessageDirection::Out, &sent::path_of::<sent::Held>(id), repeated, sent::Held::REPORT);
         if !held.is_empty() {
             let path = sent::path_of::<sent::ValueOfControl>(id);
-            self.add(Direction::Answer, &path, held.clone(), sent::ValueOfControl::ANSWER);
+            self.add(MessageDirection::Answer, &path, held.clone(), sent::ValueOfControl::ANSWER);
         }
         self.answer_of::<sent::State>(id);
         self.answer_of::<sent::Off>(id);

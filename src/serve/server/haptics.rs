@@ -9,7 +9,7 @@ use crate::engine::Step;
 use crate::feel::{Cue, CueSender, DeviceStatus, FeelCounters, Muted};
 use crate::floor::{Geometry, TileId};
 use crate::serve::Neighbours;
-use crate::serve::trial::Trial;
+use crate::serve::trial::EffectTrial;
 use crate::sink::{ActuatorSink, LatencyStages};
 use crate::units::Instant;
 
@@ -43,7 +43,7 @@ pub(super) struct Haptics {
     /// Cues received last from the neighbours.
     handed: Vec<Cue>,
     /// An effect on trial.
-    pub(super) trial: Option<Trial>,
+    pub(super) trial: Option<EffectTrial>,
     /// Records latency, if requested; the time is that of the last packet.
     pub(super) latency: Option<(LatencyStages, Instant)>,
     muted: Muted,

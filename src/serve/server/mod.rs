@@ -28,7 +28,7 @@ use self::outputs::Outputs;
 use self::requests::Answers;
 use self::sensors::SensorWatch;
 use super::cause::{CauseWatch, Facts};
-use super::trial::Trial;
+use super::trial::EffectTrial;
 use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
 use crate::floor::Floor;
@@ -448,7 +448,7 @@ impl Server {
                     let _ = to.try_send(is_measured.then(|| self.assembler.tare()));
                 }
                 Command::Audition { effect, gesture, tile } => {
-                    self.haptics.trial = Some(Trial::new(effect, *gesture, tile));
+                    self.haptics.trial = Some(EffectTrial::new(effect, *gesture, tile));
                 }
             }
         }

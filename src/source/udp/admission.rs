@@ -21,7 +21,7 @@ const REQUEST_BURST: u32 = 2000;
 
 /// The way in which OSC arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum OscArrival {
     /// On the sensors' port, directly from boards or apps.
     Plain,
     /// On the sensors' port, sealed by another computer of the floor.
@@ -32,7 +32,7 @@ pub(super) enum Way {
 
 /// Reasons to refuse a datagram of a known form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Refusal {
+pub(super) enum AdmissionRefusal {
     /// The sender is in no allowed network.
     Foreign,
     /// The sender may not send sensor packets.
@@ -45,7 +45,7 @@ pub(super) enum Refusal {
     TooMany,
 }
 
-impl Refusal {
+impl AdmissionRefusal {
     pub(super) fn count(self, counters: &mut LinkCounters) {
         match self {
             Self::TooMany => counters.limited += 1,
@@ -54,7 +54,7 @@ impl Refusal {
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for AdmissionRefusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Foreign | Self::Packets => {
@@ -148,8 +148,8 @@ impl Admission {
     }
 
     /// Accepts a sealed datagram from the floor's computers only.
-    pub(super) fn sealed(&self, sender: SocketAddr, on_own_port: bool) -> Result<(), Refusal> {
-        (!on_own_port && self.is_computer(sender.ip())).then_some(()).ok_or(Refusal::Foreign)
+    pub(super) fn sealed(&self, sender: SocketAddr, on_own_port: bool) -> Result<(), AdmissionRefusal> {
+        (!on_own_port && self.is_computer(sender.ip())).then_some(()).ok_or(AdmissionRefusal::Foreign)
     }
 
     /// Whether to examine a datagram from `sender` at all.
@@ -158,15 +158,15 @@ impl Admission {
         sender: SocketAddr,
         on_own_port: bool,
         now: Instant,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), AdmissionRefusal> {
         let takes_requests = on_own_port == self.has_own_port;
         let is_known = (!on_own_port && (self.is_board(sender.ip()) || self.is_computer(sender.ip())))
             || (takes_requests && self.is_app(sender.ip()));
         match (is_known, on_own_port) {
-            (false, true) => Err(Refusal::Requests),
-            (false, false) => Err(Refusal::Foreign),
+            (false, true) => Err(AdmissionRefusal::Requests),
+            (false, false) => Err(AdmissionRefusal::Foreign),
             (true, true) => Ok(()),
-            (true, false) => self.datagrams.take(sender, now).then_some(()).ok_or(Refusal::TooMany),
+            (true, false) => self.datagrams.take(sender, now).then_some(()).ok_or(AdmissionRefusal::TooMany),
         }
     }
 
@@ -174,28 +174,28 @@ impl Admission {
     pub(super) fn batch(
         &mut self,
         sender: SocketAddr,
-        way: Way,
+        way: OscArrival,
         batch: &mut Batch,
         now: Instant,
-    ) -> ArrayVec<Refusal, 3> {
+    ) -> ArrayVec<AdmissionRefusal, 3> {
         let mut refusals = ArrayVec::new();
         let takes_packets = match way {
-            Way::Plain => self.is_board(sender.ip()),
-            Way::Sealed => true,
-            Way::OwnPort => false,
+            OscArrival::Plain => self.is_board(sender.ip()),
+            OscArrival::Sealed => true,
+            OscArrival::OwnPort => false,
         };
         if !batch.packets.is_empty() && !takes_packets {
             batch.packets.clear();
-            refusals.push(Refusal::Packets);
+            refusals.push(AdmissionRefusal::Packets);
         }
         if !batch.controls.is_empty() && !self.is_answered(sender, way) {
             batch.controls.clear();
-            refusals.push(Refusal::Requests);
+            refusals.push(AdmissionRefusal::Requests);
         }
         let admitted = batch.controls.iter().take_while(|_| self.request(sender, now).is_ok()).count();
         if admitted < batch.controls.len() {
             batch.controls.truncate(admitted);
-            refusals.push(Refusal::TooMany);
+            refusals.push(AdmissionRefusal::TooMany);
         }
         let ip = sender.ip().to_canonical();
         let Some(homes) = &mut self.homes else { return refusals };
@@ -204,7 +204,7 @@ impl Admission {
             let Some(home) = homes.get_mut(usize::from(packet.board)) else { return true };
             let known = *home.get_or_insert(ip);
             if known != ip {
-                elsewhere = Some(Refusal::Elsewhere(packet.board, known));
+                elsewhere = Some(AdmissionRefusal::Elsewhere(packet.board, known));
             }
             known == ip
         });
@@ -213,13 +213,13 @@ impl Admission {
     }
 
     /// Counts one more request of `sender`, also an invalid one; an error if it exceeds the limit.
-    pub(super) fn request(&mut self, sender: SocketAddr, now: Instant) -> Result<(), Refusal> {
-        self.requests.take(sender, now).then_some(()).ok_or(Refusal::TooMany)
+    pub(super) fn request(&mut self, sender: SocketAddr, now: Instant) -> Result<(), AdmissionRefusal> {
+        self.requests.take(sender, now).then_some(()).ok_or(AdmissionRefusal::TooMany)
     }
 
     /// Whether `sender` may send requests that way and gets answers.
-    pub(super) fn is_answered(&self, sender: SocketAddr, way: Way) -> bool {
-        let is_port = way == if self.has_own_port { Way::OwnPort } else { Way::Plain };
+    pub(super) fn is_answered(&self, sender: SocketAddr, way: OscArrival) -> bool {
+        let is_port = way == if self.has_own_port { OscArrival::OwnPort } else { OscArrival::Plain };
         is_port && self.is_app(sender.ip())
     }
 }

@@ -3,7 +3,7 @@
 use std::net::{IpAddr, SocketAddr};
 use std::time::Duration;
 
-use super::admission::Refusal;
+use super::admission::AdmissionRefusal;
 use crate::rate_limit::RateLimit;
 use crate::units::Instant;
 use crate::wire::WireError;
@@ -68,7 +68,7 @@ impl RefusalLog {
         }
     }
 
-    pub(super) fn not_admitted(&mut self, now: Instant, sender: SocketAddr, refusal: Refusal) {
+    pub(super) fn not_admitted(&mut self, now: Instant, sender: SocketAddr, refusal: AdmissionRefusal) {
         let ip = sender.ip().to_canonical();
         let limit = match self.named.iter().position(|(named, _)| *named == ip) {
             Some(index) => self.named.get_mut(index).map(|(_, limit)| limit),

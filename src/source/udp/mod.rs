@@ -22,7 +22,7 @@ use std::time::{Duration, Instant as HostInstant, SystemTime};
 
 use rosc::OscTime;
 
-use self::admission::{Admission, Refusal, Way};
+use self::admission::{Admission, AdmissionRefusal, OscArrival};
 use self::drops::KernelDrops;
 pub use self::forward::ForwardCounters;
 use self::forward::Forwarder;
@@ -320,20 +320,20 @@ impl UdpSource {
         let is_osc = datagram.first().is_none_or(|first| b"/#".contains(first));
         match self.seal.as_mut().filter(|_| !is_osc) {
             Some(seal) => match self.admission.sealed(sender, on_own_port).map(|()| seal.open(datagram)) {
-                Ok(Sealed::Forwarded(range)) => self.sort_osc((sender, Way::Sealed), range, now),
+                Ok(Sealed::Forwarded(range)) => self.sort_osc((sender, OscArrival::Sealed), range, now),
                 // The owner of the seal counts these two.
                 Ok(Sealed::Taken | Sealed::Refused) => {}
                 Err(refusal) => self.turn_away(sender, refusal, now),
             },
             None => {
-                let way = if on_own_port { Way::OwnPort } else { Way::Plain };
+                let way = if on_own_port { OscArrival::OwnPort } else { OscArrival::Plain };
                 self.sort_osc((sender, way), 0..length, now);
             }
         }
     }
 
     /// Sorts the OSC datagram in these bytes of the buffer.
-    fn sort_osc(&mut self, from: (SocketAddr, Way), bytes: Range<usize>, now: Instant) {
+    fn sort_osc(&mut self, from: (SocketAddr, OscArrival), bytes: Range<usize>, now: Instant) {
         let (sender, way) = from;
         let datagram = self.reception.buffer.get(bytes.clone()).unwrap_or_default();
         if let Err(error) = self.decoder.decode(datagram, self.reception.received(), &mut self.batch) {
@@ -352,7 +352,7 @@ impl UdpSource {
         self.refuse_parts(from, now);
         let refusals = self.admission.batch(sender, way, &mut self.batch, now);
         // A packet is forwarded only once.
-        let is_forwarded = refusals.is_empty() && !self.batch.packets.is_empty() && way != Way::Sealed;
+        let is_forwarded = refusals.is_empty() && !self.batch.packets.is_empty() && way != OscArrival::Sealed;
         refusals.into_iter().for_each(|refusal| self.turn_away(sender, refusal, now));
         if let Some(forwarder) = self.forwarder.as_ref().filter(|_| is_forwarded) {
             let datagram = self.reception.buffer.get(bytes).unwrap_or_default();
@@ -372,22 +372,22 @@ impl UdpSource {
     }
 
     /// Counts and logs a refused datagram of `sender`.
-    fn turn_away(&mut self, sender: SocketAddr, refusal: Refusal, now: Instant) {
+    fn turn_away(&mut self, sender: SocketAddr, refusal: AdmissionRefusal, now: Instant) {
         refusal.count(&mut self.counters);
         self.log.not_admitted(now, sender, refusal);
         let why = || format!("{}: {refusal}", sender.ip().to_canonical());
         match refusal {
-            Refusal::Foreign | Refusal::Packets | Refusal::Elsewhere(..) => {
+            AdmissionRefusal::Foreign | AdmissionRefusal::Packets | AdmissionRefusal::Elsewhere(..) => {
                 self.note_refused(LinkCause::SenderRefused { why: why() }, now);
             }
-            Refusal::Requests | Refusal::TooMany => {
+            AdmissionRefusal::Requests | AdmissionRefusal::TooMany => {
                 self.note_refused(LinkCause::Unknown { last_refused: why() }, now);
             }
         }
     }
 
     /// Counts and logs a refused datagram or message, and answers its sender if it was a request to this floor.
-    fn refuse(&mut self, (sender, way): (SocketAddr, Way), error: &WireError, now: Instant) {
+    fn refuse(&mut self, (sender, way): (SocketAddr, OscArrival), error: &WireError, now: Instant) {
         error.count(&mut self.counters);
         if let Some(cause) = self.decoder.cause_of(error) {
             self.note_refused(cause, now);
@@ -397,7 +397,7 @@ impl UdpSource {
     }
 
     /// Refuses the unused messages of the batch. Skips those for other receivers if the rest of their bundle is used.
-    fn refuse_parts(&mut self, from: (SocketAddr, Way), now: Instant) {
+    fn refuse_parts(&mut self, from: (SocketAddr, OscArrival), now: Instant) {
         let mut refused = std::mem::take(&mut self.batch.refused);
         let is_used = self.batch.is_used();
         for error in refused.drain(..) {
@@ -435,7 +435,7 @@ impl UdpSource {
     }
 
     /// Reports to `sender` why its request was refused, if it may send requests and is within its rate limit.
-    fn answer_refusal(&mut self, sender: SocketAddr, way: Way, error: &WireError, now: Instant) {
+    fn answer_refusal(&mut self, sender: SocketAddr, way: OscArrival, error: &WireError, now: Instant) {
         let Some(address) = self.decoder.is_answered(error) else { return };
         if !self.admission.is_answered(sender, way) {
             return;

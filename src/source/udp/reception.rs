@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::stamped::{Received, Stamped};
 use crate::units::Instant;
-use crate::wire::Limits;
+use crate::wire::DatagramLimits;
 
 /// The receiving side of the sensors' socket, and the last datagram.
 #[derive(Debug)]
@@ -30,7 +30,7 @@ impl Reception {
             granted,
             patience: None,
             // One byte more than the maximum distinguishes a truncated datagram from one that just fits.
-            buffer: vec![0; Limits::SENSORS.bytes + 1],
+            buffer: vec![0; DatagramLimits::SENSORS.bytes + 1],
             received: Instant::START,
         }
     }

@@ -25,8 +25,10 @@ impl Bench {
     /// as on a floor tared in the morning.
     fn new(seed: u64, method: Method) -> Self {
         let wired = Floor::of(Geometry::of_paper_tiles(1, 1).unwrap());
-        let config =
-            SimConfig { sensing: sim::Sensing::Counts(PartConfig::default()), ..SimConfig::default() };
+        let config = SimConfig {
+            sensing: sim::SimulatedSensors::Counts(PartConfig::default()),
+            ..SimConfig::default()
+        };
         let mut sim = SimFloor::new(&wired, config, seed);
         let floor = sim::calibrated(&wired, &sim, seed).unwrap();
         let floor = sim::mapped(&floor, &sim, seed).unwrap();

@@ -10,7 +10,7 @@ use underfoot::sense::{Assembler, Contact, Method, Quality, Tare, TareRules};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::EventKind;
 use underfoot::wire::{Readings, SensorPacket};
-use underfoot_sim::{self as sim, Foot, Load, Sensing, SimConfig, SimFloor};
+use underfoot_sim::{self as sim, Foot, Load, SimConfig, SimFloor, SimulatedSensors};
 
 use crate::support::page;
 
@@ -29,12 +29,12 @@ pub struct Bench {
 }
 
 impl Bench {
-    pub fn new(sensing: Sensing) -> Self {
+    pub fn new(sensing: SimulatedSensors) -> Self {
         Self::new_seed(sensing, 3)
     }
 
     /// Like [`Bench::new`], with other random parts.
-    pub fn new_seed(sensing: Sensing, seed: u64) -> Self {
+    pub fn new_seed(sensing: SimulatedSensors, seed: u64) -> Self {
         let wired = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
         let sim = SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, seed);
         let floor = sim::calibrated(&wired, &sim, seed).unwrap();
@@ -42,7 +42,7 @@ impl Bench {
     }
 
     /// Like [`Bench::new`], with a tare that the assembler measures itself.
-    pub fn tared_at_start(sensing: Sensing) -> Self {
+    pub fn tared_at_start(sensing: SimulatedSensors) -> Self {
         let mut bench = Self::new(sensing);
         let mut floor = Floor::of(*bench.sim.geometry());
         floor = sim::calibrated(&floor, &bench.sim, 3).unwrap();

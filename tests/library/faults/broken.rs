@@ -5,7 +5,7 @@ use underfoot::glam::Vec2;
 use underfoot::sense::{Quality, Trouble};
 use underfoot::units::Newtons;
 use underfoot::widget::{Behaviour, EventKind};
-use underfoot_sim::{Load, Print, Sensing, SensorFault};
+use underfoot_sim::{Load, Print, SensorFault, SimulatedSensors};
 
 use super::bench::Bench;
 use super::desk::{at_the_map, clicks, middle, quality, sensor, tile_of, trouble};
@@ -218,7 +218,7 @@ fn a_person_who_stamps_about_breaks_no_sensor() {
 fn s1_a_sensor_found_stuck_under_a_standing_foot_neither_splits_nor_moves_it_at_once() {
     for corner in Corner::ALL {
         for at in [Vec2::splat(0.152), Vec2::new(0.13, 0.16), Vec2::new(0.165, 0.15)] {
-            let mut bench = Bench::new(Sensing::default());
+            let mut bench = Bench::new(SimulatedSensors::default());
             let part = sensor(TileId::new(0, 0), corner);
             bench.sim.set_fault(part, Some(SensorFault::Stuck));
             bench.press(at, 350.0);
@@ -260,7 +260,7 @@ fn loads_at_the_edges_of_plates_that_tip_break_no_sensor() {
     // of its range. Every 2.3 cm, from a light touch to a stamp.
     let place = |step: u8| (f32::from(step) + 0.5) * 0.304 / 13.0;
     for seed in FLOORS {
-        let mut bench = Bench::new_seed(Sensing::default(), seed);
+        let mut bench = Bench::new_seed(SimulatedSensors::default(), seed);
         for force in [30.0, 55.0, 90.0, 160.0, 320.0, 700.0, 1500.0] {
             for step in 0..169 {
                 let load = point(Vec2::new(place(step % 13), place(step / 13)), force);
@@ -294,7 +294,7 @@ fn short_stamps_beyond_the_range_leave_no_sensor_stuck() {
 #[test]
 fn a_load_that_sways_on_the_edge_of_a_plate_leaves_no_sensor_stuck() {
     for seed in FLOORS {
-        let mut bench = Bench::new_seed(Sensing::default(), seed);
+        let mut bench = Bench::new_seed(SimulatedSensors::default(), seed);
         for step in 0..12_u8 {
             let around = Vec2::from_angle(f32::from(step) * std::f32::consts::TAU / 12.0) * 0.2;
             let position = Vec2::splat(0.152) + around.clamp(Vec2::splat(-0.145), Vec2::splat(0.145));

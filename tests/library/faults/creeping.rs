@@ -4,7 +4,7 @@ use underfoot::floor::{Corner, SensorId, TileId};
 use underfoot::sense::Trouble;
 use underfoot::units::Newtons;
 use underfoot::widget::EventKind;
-use underfoot_sim::{PartConfig, Sensing, SensorFault};
+use underfoot_sim::{PartConfig, SensorFault, SimulatedSensors};
 
 use super::bench::{BUTTON, Bench};
 
@@ -24,7 +24,7 @@ fn drift(bench: &mut Bench, corners: &[Corner], total: f32, seconds: u64) {
 #[test]
 fn s4_drift_on_an_empty_floor_is_followed_and_presses_nothing() {
     for corners in [&Corner::ALL[..1], &Corner::ALL[..]] {
-        let mut bench = Bench::new(Sensing::default());
+        let mut bench = Bench::new(SimulatedSensors::default());
         drift(&mut bench, corners, 10.0, 600);
         assert_eq!(bench.events, []);
         let forces = bench.snapshot().tiles[0].forces;
@@ -37,7 +37,7 @@ fn s4_drift_on_an_empty_floor_is_followed_and_presses_nothing() {
 
 #[test]
 fn what_a_tare_leaves_is_gone_in_a_second_and_what_rests_there_is_not() {
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     let off = |bench: &mut Bench, offsets: [f32; 4]| {
         for (corner, offset) in Corner::ALL.into_iter().zip(offsets) {
             let fault = SensorFault::Offset(Newtons(offset));
@@ -56,7 +56,7 @@ fn what_a_tare_leaves_is_gone_in_a_second_and_what_rests_there_is_not() {
 
 #[test]
 fn s4_drift_too_fast_to_follow_presses_nothing_either() {
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     // The whole tile by 30 N a corner, twice the force of a press, in five minutes.
     drift(&mut bench, &Corner::ALL, 30.0, 300);
     assert_eq!(bench.events, []);
@@ -66,7 +66,7 @@ fn s4_drift_too_fast_to_follow_presses_nothing_either() {
 fn s5_a_foot_that_stands_and_creeps_is_neither_lost_nor_gained_nor_zeroed() {
     // Parts with a known law, so that only the creep crosses the threshold.
     let parts = PartConfig { creep: 0.05, deviation: 0.0, ..PartConfig::default() };
-    let mut bench = Bench::tared_at_start(Sensing::Counts(parts));
+    let mut bench = Bench::tared_at_start(SimulatedSensors::Counts(parts));
     // Below the threshold of 60 N at first, above it after some minutes of creep.
     bench.press(BUTTON, 52.0);
     bench.stay(BUTTON, 52.0, 600, |_, _, _| {});

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use underfoot::sense::Quality;
 use underfoot::widget::EventKind;
-use underfoot_sim::{PartConfig, Sensing};
+use underfoot_sim::{PartConfig, SimulatedSensors};
 
 use super::bench::{BUTTON, Bench};
 
@@ -15,7 +15,7 @@ use super::bench::{BUTTON, Bench};
 fn s7_hum_and_noise_make_no_event_in_ten_minutes() {
     for (mains_hz, seed) in [(50.0, 1), (60.0, 2)] {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
-        let mut bench = Bench::new(Sensing::Newtons(Default::default()));
+        let mut bench = Bench::new(SimulatedSensors::Newtons(Default::default()));
         // Hum that all sensors share, which is the worst case, and independent noise: 5 N together.
         let mut noise = move |ms: u64, _: (usize, usize), force: &mut f32| {
             let phase = (TAU * mains_hz * (ms % 1000) as f32 / 1000.0).sin();
@@ -34,7 +34,7 @@ fn s7_hum_and_noise_make_no_event_in_ten_minutes() {
 
 #[test]
 fn s7_a_noisy_sensor_is_named() {
-    let mut bench = Bench::new(Sensing::Newtons(Default::default()));
+    let mut bench = Bench::new(SimulatedSensors::Newtons(Default::default()));
     let mut rng = Pcg64Mcg::seed_from_u64(4);
     bench.run_with(10_000, |_, channel, force| {
         if channel == (0, 0) {
@@ -58,7 +58,7 @@ proptest! {
             1..20,
         ),
     ) {
-        let mut bench = Bench::new(Sensing::Newtons(PartConfig::default()));
+        let mut bench = Bench::new(SimulatedSensors::Newtons(PartConfig::default()));
         bench.hasten();
         let (mut nonsense_ms, mut clock_ms, mut worst) = (0, 0, Quality::Live);
         for (value, millis) in sent {

@@ -4,7 +4,7 @@ use underfoot::feel::{RendererConfig, renderer};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::widget::EventKind;
-use underfoot_sim::Sensing;
+use underfoot_sim::SimulatedSensors;
 
 use super::bench::{BUTTON, Bench};
 
@@ -13,7 +13,7 @@ const RATE: usize = 48_000;
 /// Plays the session's cues into the sensors of each tile, with `share` of the actuator's force on every one.
 fn session(share: f32) -> (Vec<EventKind>, usize, f32) {
     let floor = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
-    let mut bench = Bench::new(Sensing::Newtons(Default::default()));
+    let mut bench = Bench::new(SimulatedSensors::Newtons(Default::default()));
     let (mut sender, renderer) = renderer(RendererConfig::of(&floor, RATE as u32));
     let mut sink = ManualSink::new(renderer, bench.now());
     let mut peak: f32 = 0.0;

@@ -8,7 +8,7 @@ use underfoot::glam::Vec2;
 use underfoot::widget::EventKind::{self, Cancelled, Clicked, Pressed, Released};
 use underfoot::widget::OffReason;
 use underfoot::wire::Readings;
-use underfoot_sim::{PartConfig, Sensing};
+use underfoot_sim::{PartConfig, SimulatedSensors};
 
 use super::bench::{BUTTON, Bench, foot};
 
@@ -16,12 +16,12 @@ use super::bench::{BUTTON, Bench, foot};
 const SOON: Duration = Duration::from_millis(150);
 
 /// The formats of boards' readings.
-fn formats() -> [Sensing; 2] {
-    [Sensing::Counts(PartConfig::default()), Sensing::Newtons(PartConfig::default())]
+fn formats() -> [SimulatedSensors; 2] {
+    [SimulatedSensors::Counts(PartConfig::default()), SimulatedSensors::Newtons(PartConfig::default())]
 }
 
 /// A foot holds the dead man's pedal on the south-west tile.
-fn held(sensing: Sensing, seed: u64) -> Bench {
+fn held(sensing: SimulatedSensors, seed: u64) -> Bench {
     let mut bench = Bench::new_seed(sensing, seed);
     bench.run_pedal();
     bench.press(BUTTON, 150.0);
@@ -85,7 +85,7 @@ fn outlives(bench: &mut Bench, stuck: impl Fn(usize, u64, &[u32]) -> Option<u32>
 }
 
 /// The longest of some rounds, each on its own floor.
-fn longest(sensing: Sensing, stuck: impl Fn(usize, u64, &[u32]) -> Option<u32>) -> Duration {
+fn longest(sensing: SimulatedSensors, stuck: impl Fn(usize, u64, &[u32]) -> Option<u32>) -> Duration {
     let rounds = (1..=20).map(|seed| outlives(&mut held(sensing, seed), &stuck).unwrap_or(Duration::MAX));
     rounds.max().unwrap_or_default()
 }
@@ -130,8 +130,8 @@ fn a_hold_ends_soon_after_its_sensors_stand_still() {
     }
 }
 
-fn name(sensing: Sensing) -> &'static str {
-    if matches!(sensing, Sensing::Counts(_)) { "counts" } else { "newtons" }
+fn name(sensing: SimulatedSensors) -> &'static str {
+    if matches!(sensing, SimulatedSensors::Counts(_)) { "counts" } else { "newtons" }
 }
 
 /// One sensor alone may stand still; the others show that the foot has left.
@@ -184,7 +184,7 @@ fn sensors_that_stand_still_while_a_foot_lifts_end_the_hold() {
 
 #[test]
 fn a_plate_whose_sensors_move_again_works_after_the_foot_has_lifted() {
-    let mut bench = held(Sensing::default(), 4);
+    let mut bench = held(SimulatedSensors::default(), 4);
     outlives(&mut bench, |channel, _, past| [1, 2].contains(&channel).then(|| last(past)));
     assert_eq!(told(&bench), [Cancelled]);
     assert!(bench.assembler.repeating().1.next().is_some() && bench.assembler.counters().repeats == 1);
@@ -198,7 +198,7 @@ fn a_plate_whose_sensors_move_again_works_after_the_foot_has_lifted() {
 /// A button is cancelled as well, not clicked, when the readings resume without the foot.
 #[test]
 fn a_plate_that_stands_still_commits_nothing() {
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     bench.press(BUTTON, 120.0);
     bench.run(60);
     assert_eq!(told(&bench), [Pressed]);
@@ -244,7 +244,7 @@ fn a_foot_that_stands_very_still_for_minutes_keeps_its_hold() {
 #[test]
 fn a_coarse_converter_works_and_holds_no_pedal() {
     for bits in [8, 10] {
-        let mut bench = Bench::new(Sensing::default());
+        let mut bench = Bench::new(SimulatedSensors::default());
         bench.run_altered(1000, coarse(bits));
         bench.feet = vec![foot(BUTTON, 120.0)];
         stand(&mut bench, 50, coarse(bits));
@@ -278,7 +278,7 @@ fn a_converter_that_samples_twenty_times_a_second_works_and_holds_no_pedal() {
             readings.clone_from(kept);
         }
     };
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     bench.run_altered(1000, &mut slow);
     stand(&mut bench, 50, &mut slow);
     assert_eq!(told(&bench), [Pressed], "a button");
@@ -305,7 +305,7 @@ fn hum_on_a_coarse_converter_is_not_a_buffer_that_is_sent_again() {
             }
         }
     };
-    let mut bench = Bench::new(Sensing::Counts(parts));
+    let mut bench = Bench::new(SimulatedSensors::Counts(parts));
     bench.run_altered(3000, &mut hum);
     stand(&mut bench, 50, &mut hum);
     assert_eq!(bench.assembler.counters().repeats, 0);
@@ -332,7 +332,7 @@ fn boards_that_read_nothing_without_a_load_hold_a_pedal_once_a_foot_has_shown_th
 #[test]
 fn readings_without_noise_hold_a_pedal_where_the_floor_says_that_they_have_none() {
     let noiseless = PartConfig { noise_v: 0.0, ..PartConfig::default() };
-    for sensing in [Sensing::Exact, Sensing::Counts(noiseless)] {
+    for sensing in [SimulatedSensors::Exact, SimulatedSensors::Counts(noiseless)] {
         // The simulation declares this itself.
         let mut bench = Bench::new(sensing);
         bench.run_pedal();
@@ -347,7 +347,7 @@ fn readings_without_noise_hold_a_pedal_where_the_floor_says_that_they_have_none(
 
 #[test]
 fn readings_without_noise_hold_no_pedal_where_nobody_says_so() {
-    let sim = Bench::new(Sensing::Exact).sim;
+    let sim = Bench::new(SimulatedSensors::Exact).sim;
     let mut bench = Bench::with_floor(&Floor::of(*sim.geometry()), sim);
     bench.run_pedal();
     bench.press(BUTTON, 150.0);

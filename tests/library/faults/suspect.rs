@@ -5,7 +5,7 @@ use underfoot::glam::Vec2;
 use underfoot::sense::{Quality, Trouble};
 use underfoot::units::Newtons;
 use underfoot::widget::{EventKind, OffReason};
-use underfoot_sim::{Sensing, SensorFault, SimConfig, SimFloor};
+use underfoot_sim::{SensorFault, SimConfig, SimFloor, SimulatedSensors};
 
 use super::bench::{BUTTON, Bench, foot};
 use super::desk::{at_the_map, clicks, quality, sensor, tile_of, trouble};
@@ -32,7 +32,7 @@ fn s6_fifty_newtons_out_of_nowhere_are_suspect_at_once_and_press_nothing() {
 
 #[test]
 fn s6_without_a_dwell_to_wait_for_it_presses_nothing_either() {
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     bench.hasten();
     let part = SensorId { tile: TileId::new(0, 0), corner: Corner::NorthEast };
     bench.sim.set_fault(part, Some(SensorFault::Offset(Newtons(90.0))));
@@ -93,7 +93,7 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_runs_nothing_that_must_be_he
 
 #[test]
 fn s11_two_feet_on_one_tile_do_not_make_the_cursor_flicker() {
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     // Side by side on the south-west tile, each swaying by a twentieth against the other.
     let (left, right) = (BUTTON - Vec2::new(0.06, 0.0), BUTTON + Vec2::new(0.06, 0.0));
     for step in 1..=200_u8 {
@@ -120,7 +120,7 @@ fn s11_two_feet_on_one_tile_do_not_make_the_cursor_flicker() {
 fn s11_a_foot_over_four_tiles_is_one_contact_within_its_stated_bound() {
     let mut worst: f32 = 0.0;
     for step in 0..25_u8 {
-        let mut bench = Bench::new(Sensing::default());
+        let mut bench = Bench::new(SimulatedSensors::default());
         let at = Vec2::splat(0.304) + Vec2::new(f32::from(step % 5), f32::from(step / 5)) * 0.01 - 0.02;
         bench.press(at, 400.0);
         bench.run(100);

@@ -3,7 +3,7 @@
 use underfoot::sense::Quality;
 use underfoot::widget::EventKind::{Cancelled, Clicked, Pressed, Released};
 use underfoot::wire::{LinkState, Readings};
-use underfoot_sim::{PartConfig, Sensing};
+use underfoot_sim::{PartConfig, SimulatedSensors};
 
 use super::bench::{BUTTON, Bench};
 
@@ -21,7 +21,7 @@ fn freeze(bench: &mut Bench, millis: u64, which: impl Fn(u16) -> bool) {
 
 #[test]
 fn converters_that_stand_still_under_a_foot_are_noticed_within_a_tenth_of_a_second() {
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     // The noise of the sensors must be known.
     bench.run(200);
     bench.press(BUTTON, 120.0);
@@ -47,14 +47,14 @@ fn converters_that_stand_still_under_a_foot_are_noticed_within_a_tenth_of_a_seco
 
 #[test]
 fn an_empty_board_may_rest_and_so_may_newtons_that_nobody_disturbs() {
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     freeze(&mut bench, 1000, |_| true);
     assert_eq!(bench.assembler.counters().frozen, 0, "an empty floor");
     bench.press(BUTTON, 120.0);
     freeze(&mut bench, 1000, |board| board == 1);
     assert_eq!(bench.assembler.counters().frozen, 0, "the board beside");
     let noiseless = PartConfig { noise_v: 0.0, ..PartConfig::default() };
-    for sensing in [Sensing::Exact, Sensing::Counts(noiseless)] {
+    for sensing in [SimulatedSensors::Exact, SimulatedSensors::Counts(noiseless)] {
         let mut bench = Bench::new(sensing);
         bench.press(BUTTON, 120.0);
         bench.run(1000);
@@ -64,7 +64,7 @@ fn an_empty_board_may_rest_and_so_may_newtons_that_nobody_disturbs() {
 
 #[test]
 fn a_row_that_jumps_ends_a_press_at_once_and_starts_none() {
-    let mut bench = Bench::new(Sensing::default());
+    let mut bench = Bench::new(SimulatedSensors::default());
     bench.press(BUTTON, 120.0);
     bench.run(60);
     assert_eq!(bench.events, [Pressed]);

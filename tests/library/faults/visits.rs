@@ -10,7 +10,7 @@ use underfoot::sense::{Assembler, Quality, Tare, TareOutcome, TareRules, Trouble
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
 use underfoot_lab::experiment::{Rig, Visit};
-use underfoot_sim::{self as sim, PartConfig, Sensing, SensorFault, SimConfig, SimFloor};
+use underfoot_sim::{self as sim, PartConfig, SensorFault, SimConfig, SimFloor, SimulatedSensors};
 
 use super::scenes::{Break, Coupled, Hum, Visited, busiest_tile, offset, visited};
 
@@ -27,18 +27,18 @@ pub fn plain(seed: u64) -> Rig {
     Rig::of_calibrated_parts(Geometry::default(), seed).unwrap()
 }
 
-pub fn parts(sensing: Sensing, seed: u64) -> Rig {
+pub fn parts(sensing: SimulatedSensors, seed: u64) -> Rig {
     Rig::of_parts(Geometry::default(), SimConfig { sensing, ..SimConfig::default() }, seed).unwrap()
 }
 
 pub fn newtons(seed: u64) -> Rig {
-    parts(Sensing::Newtons(PartConfig::default()), seed)
+    parts(SimulatedSensors::Newtons(PartConfig::default()), seed)
 }
 
 /// Parts that end at 123 N: each step saturates some.
 pub fn weak(seed: u64) -> Rig {
     let nominal = Exponential { a_n: 0.5, b_per_volt: 1.1 };
-    parts(Sensing::Counts(PartConfig { nominal, ..PartConfig::default() }), seed)
+    parts(SimulatedSensors::Counts(PartConfig { nominal, ..PartConfig::default() }), seed)
 }
 
 /// Parts that creep by 5 % a decade, and tare themselves on an empty floor.
@@ -53,7 +53,7 @@ pub fn nominal(seed: u64) -> Rig {
 
 fn tared(parts: PartConfig, is_calibrated: bool, seed: u64) -> Rig {
     let mut floor = Floor::default();
-    let config = SimConfig { sensing: Sensing::Counts(parts), ..SimConfig::default() };
+    let config = SimConfig { sensing: SimulatedSensors::Counts(parts), ..SimConfig::default() };
     let mut sim = SimFloor::new(&floor, config, seed);
     if is_calibrated {
         floor = sim::calibrated(&floor, &sim, seed).unwrap();

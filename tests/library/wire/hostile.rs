@@ -7,8 +7,8 @@ use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::{Assembler, ForceFrame, Quality};
 use underfoot::units::Instant;
 use underfoot::wire::{
-    Batch, Decoder, Limits, LinkCounters, Malformed, Readings, SensorEncoder, SensorFormat, SensorPacket,
-    WireError, check,
+    Batch, DatagramLimits, Decoder, LinkCounters, Malformed, Readings, SensorEncoder, SensorFormat,
+    SensorPacket, WireError, check,
 };
 
 fn floor() -> Floor {
@@ -60,13 +60,13 @@ fn verdict(datagram: &[u8]) -> Result<(), WireError> {
 // P1, P2, P5, P11
 #[test]
 fn bombs_are_refused_for_what_they_are() {
-    let roomy = Limits { bytes: 65_507, tags: 65_507, address: 65_507, ..Limits::SENSORS };
+    let roomy = DatagramLimits { bytes: 65_507, tags: 65_507, address: 65_507, ..DatagramLimits::SENSORS };
     for bomb in [bundle_bomb(3000), tag_bomb(22_000), tag_bomb(60_000)] {
         assert!(matches!(check(&bomb, &roomy), Err(Malformed::TooDeep { .. })));
         assert!(matches!(verdict(&bomb), Err(WireError::Malformed(Malformed::TooLarge { .. }))));
     }
     for small in [bundle_bomb(400), tag_bomb(8000), tag_bomb(200)] {
-        assert!(small.len() <= Limits::SENSORS.bytes);
+        assert!(small.len() <= DatagramLimits::SENSORS.bytes);
         assert!(matches!(verdict(&small), Err(WireError::Malformed(_))));
     }
     assert!(matches!(verdict(&hostile_address(100)), Err(WireError::UnknownAddress { .. })));
@@ -121,7 +121,7 @@ fn as_osc(datagram: &[u8]) -> Option<OscPacket> {
 
 /// rosc must read datagrams that the guard passes completely: encoded again they have the same length.
 fn guard_and_rosc_agree(datagram: &[u8]) -> Result<(), TestCaseError> {
-    if check(datagram, &Limits::SENSORS).is_ok() {
+    if check(datagram, &DatagramLimits::SENSORS).is_ok() {
         let packet = as_osc(datagram);
         prop_assert!(packet.is_some(), "the guard passes what rosc refuses: {:?}", datagram);
         let again = encoder::encode(&packet.unwrap()).unwrap();
@@ -186,13 +186,14 @@ fn the_fragments_above_do_reach_the_decoder() {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let passed = (0..4000).filter(|_| {
         let bytes = fragments().new_tree(&mut runner).unwrap().current();
-        check(&bytes, &Limits::SENSORS).is_ok()
+        check(&bytes, &DatagramLimits::SENSORS).is_ok()
     });
     assert!(passed.count() > 20);
 }
 
 /// Limits that let a bomb of any size through to the depth checks.
-const ROOMY: Limits = Limits { bytes: 65_507, tags: 65_507, address: 65_507, ..Limits::SENSORS };
+const ROOMY: DatagramLimits =
+    DatagramLimits { bytes: 65_507, tags: 65_507, address: 65_507, ..DatagramLimits::SENSORS };
 
 #[test]
 fn bombs_are_well_formed_but_for_their_depth() {
@@ -207,7 +208,7 @@ fn bombs_are_well_formed_but_for_their_depth() {
 fn bombs_fit_their_datagram_and_are_refused_by_size_too() {
     for bomb in [bundle_bomb(3000), tag_bomb(60_000), hostile_address(60_000)] {
         assert!(bomb.len() <= 65_507);
-        assert!(matches!(check(&bomb, &Limits::SENSORS), Err(Malformed::TooLarge { .. })));
+        assert!(matches!(check(&bomb, &DatagramLimits::SENSORS), Err(Malformed::TooLarge { .. })));
     }
 }
 

@@ -11,7 +11,7 @@ use underfoot::outgoing::{TUIO_CONTACTS, TUIO_DATAGRAM, Tuio1, Tuio2, TuioProfil
 use underfoot::sense::{Contact, ContactId, TileLoad};
 use underfoot::sink::{EventSink, Report, TuioSink, TuioVersion};
 use underfoot::units::{Instant, Newtons};
-use underfoot::wire::{Limits, LinkState, check};
+use underfoot::wire::{DatagramLimits, LinkState, check};
 
 const CLOCK: OscTime = OscTime { seconds: 3_900_000_000, fractional: 0 };
 
@@ -36,7 +36,7 @@ fn foot(id: u32, x: f32, y: f32) -> Contact {
 /// The messages of one datagram, each as its address and arguments.
 fn messages(datagram: &[u8]) -> Vec<OscMessage> {
     assert!(datagram.len() <= TUIO_DATAGRAM, "{} bytes", datagram.len());
-    assert_eq!(check(datagram, &Limits::default()), Ok(()));
+    assert_eq!(check(datagram, &DatagramLimits::default()), Ok(()));
     let OscPacket::Bundle(bundle) = rosc::decoder::decode_udp(datagram).unwrap().1 else {
         panic!("no bundle")
     };

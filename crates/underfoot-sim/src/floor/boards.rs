@@ -2,8 +2,8 @@
 
 use rand_pcg::Pcg64Mcg;
 
-use super::config::Sensing;
-use crate::sensor::{Part, counts, normal};
+use super::config::SimulatedSensors;
+use crate::sensor::{SensorPart, counts, normal};
 use underfoot::floor::{Calibration, Floor, SensorId};
 use underfoot::wire::{MAX_CHANNELS, Readings};
 
@@ -14,7 +14,7 @@ const LEAST_NOISE_V: f32 = 0.5 * Calibration::FULL_SCALE_VOLTS / 65_535.0;
 /// The boards, and their current readings.
 #[derive(Clone, Debug)]
 pub(super) struct Boards {
-    sensing: Sensing,
+    sensing: SimulatedSensors,
     /// Tile and corner behind each channel of each board.
     channels: Vec<Vec<Option<(usize, usize)>>>,
     /// Tare that a board subtracts before it sends newtons.
@@ -25,7 +25,7 @@ pub(super) struct Boards {
 
 impl Boards {
     /// The boards of `floor` with a tare of zero; `noise` is the source of their readings' noise.
-    pub(super) fn new(floor: &Floor, sensing: Sensing, noise: Pcg64Mcg) -> Self {
+    pub(super) fn new(floor: &Floor, sensing: SimulatedSensors, noise: Pcg64Mcg) -> Self {
         let geometry = &floor.geometry;
         let place = |sensor: &SensorId| Some((geometry.index(sensor.tile)?, sensor.corner.index()));
         let channels = floor.boards.iter().map(|board| {
@@ -47,14 +47,14 @@ impl Boards {
     }
 
     /// Measures the tare from the `outputs` of these `parts` on the empty floor.
-    pub(super) fn tare(&mut self, outputs: &[[f32; 4]], parts: &[[Part; 4]]) {
+    pub(super) fn tare(&mut self, outputs: &[[f32; 4]], parts: &[[SensorPart; 4]]) {
         for ((tare, outputs), parts) in self.tare.iter_mut().zip(outputs).zip(parts) {
             *tare = std::array::from_fn(|corner| newtons(&parts[corner], outputs[corner]));
         }
     }
 
     /// Reads the `outputs` of these `parts`.
-    pub(super) fn read(&mut self, outputs: &[[f32; 4]], parts: &[[Part; 4]]) {
+    pub(super) fn read(&mut self, outputs: &[[f32; 4]], parts: &[[SensorPart; 4]]) {
         let noise_v = self.sensing.noise_v();
         let converter_v = noise_v.max(LEAST_NOISE_V);
         let full_scale = Calibration::FULL_SCALE_VOLTS;
@@ -75,7 +75,7 @@ impl Boards {
                     read.clear();
                     read.extend(outputs.map(|sensor| match sensor {
                         None => 0.0,
-                        Some((_, _, force)) if self.sensing == Sensing::Exact => force,
+                        Some((_, _, force)) if self.sensing == SimulatedSensors::Exact => force,
                         Some((tile, corner, volts)) => {
                             let volts = (volts + noise_v * normal(&mut self.noise)).clamp(0.0, full_scale);
                             newtons(&parts[tile][corner], volts) - self.tare[tile][corner]
@@ -88,6 +88,6 @@ impl Boards {
 }
 
 /// Force that a board computes from `volts` with the part's law.
-fn newtons(part: &Part, volts: f32) -> f32 {
+fn newtons(part: &SensorPart, volts: f32) -> f32 {
     part.law.newtons(volts)
 }

@@ -15,7 +15,7 @@ pub struct SimConfig {
     /// The seams between plates.
     pub seam: SeamConfig,
     /// The boards' sensors and readings.
-    pub sensing: Sensing,
+    pub sensing: SimulatedSensors,
 }
 
 impl SimConfig {
@@ -23,13 +23,13 @@ impl SimConfig {
     /// saturation, no tare.
     #[must_use]
     pub const fn ideal() -> Self {
-        Self { plate: PlateConfig::ideal(), seam: SeamConfig::even(), sensing: Sensing::Exact }
+        Self { plate: PlateConfig::ideal(), seam: SeamConfig::even(), sensing: SimulatedSensors::Exact }
     }
 }
 
 /// Sensors of a simulated floor, and the readings that its boards send.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sensing {
+pub enum SimulatedSensors {
     /// Raw counts of parts with these tolerances.
     Counts(PartConfig),
     /// Newtons from boards that know the exponential law of each part and have tared themselves on the empty floor.
@@ -39,14 +39,14 @@ pub enum Sensing {
     Exact,
 }
 
-impl Default for Sensing {
+impl Default for SimulatedSensors {
     /// Raw counts of the paper's parts.
     fn default() -> Self {
         Self::Counts(PartConfig::default())
     }
 }
 
-impl Sensing {
+impl SimulatedSensors {
     /// The tolerances of the parts; `None` with exact sensing.
     pub(super) const fn parts(&self) -> Option<&PartConfig> {
         match self {

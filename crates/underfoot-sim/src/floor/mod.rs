@@ -8,12 +8,12 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use smallvec::SmallVec;
 
-use super::foot::{Foot, Load, Part as Carried};
-use super::plate::{Plate, Press};
+use super::foot::{Foot, Load, TilePart as Carried};
+use super::plate::{Plate, PlatePress};
 use super::seam::Seams;
-use super::sensor::{Memory, Part, PartConfig, SensorFault};
+use super::sensor::{PartConfig, SensorFault, SensorMemory, SensorPart};
 use boards::Boards;
-pub use config::{Sensing, SimConfig};
+pub use config::{SimConfig, SimulatedSensors};
 use underfoot::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use underfoot::sense::TileLoad;
 use underfoot::units::Newtons;
@@ -26,10 +26,10 @@ use underfoot::wire::Readings;
 #[derive(Clone, Debug)]
 pub struct SimFloor {
     geometry: Geometry,
-    sensing: Sensing,
+    sensing: SimulatedSensors,
     plates: Vec<Plate>,
     seams: Seams,
-    parts: Vec<[Part; 4]>,
+    parts: Vec<[SensorPart; 4]>,
     /// Support forces on the empty floor.
     rest: Vec<[f32; 4]>,
     /// Current support forces.
@@ -38,7 +38,7 @@ pub struct SimFloor {
     rest_outputs: Vec<[f32; 4]>,
     outputs: Vec<[f32; 4]>,
     /// Memory of each sensor; empty for parts without memory.
-    memories: Vec<[Memory; 4]>,
+    memories: Vec<[SensorMemory; 4]>,
     /// Milliseconds since the last update of each tile's memories.
     behind_ms: Vec<u32>,
     /// Milliseconds since the start.
@@ -46,7 +46,7 @@ pub struct SimFloor {
     /// Tiles that were loaded a millisecond ago; empty for parts without memory.
     left: Vec<usize>,
     faults: Vec<Faulty>,
-    /// Load, first moment about the tile's centre and twist ([`Press`]), for the tiles in `loaded`.
+    /// Load, first moment about the tile's centre and twist ([`PlatePress`]), for the tiles in `loaded`.
     loads: Vec<(f32, Vec2, f32)>,
     loaded: Vec<usize>,
     boards: Boards,
@@ -73,14 +73,16 @@ impl SimFloor {
         let plates: Vec<_> =
             geometry.tiles().map(|_| Plate::new(&geometry, &config.plate, &mut rng)).collect();
         let part_config = match config.sensing {
-            Sensing::Counts(config) | Sensing::Newtons(config) => config,
-            Sensing::Exact => PartConfig::exact(),
+            SimulatedSensors::Counts(config) | SimulatedSensors::Newtons(config) => config,
+            SimulatedSensors::Exact => PartConfig::exact(),
         };
-        let parts: Vec<[Part; 4]> =
-            geometry.tiles().map(|_| std::array::from_fn(|_| Part::draw(&part_config, &mut rng))).collect();
-        let rest: Vec<[f32; 4]> = plates.iter().map(|plate| plate.supports(Press::default())).collect();
+        let parts: Vec<[SensorPart; 4]> = geometry
+            .tiles()
+            .map(|_| std::array::from_fn(|_| SensorPart::draw(&part_config, &mut rng)))
+            .collect();
+        let rest: Vec<[f32; 4]> = plates.iter().map(|plate| plate.supports(PlatePress::default())).collect();
         let memories = if part_config.has_memory() {
-            rest.iter().map(|supports| supports.map(Memory::settled)).collect()
+            rest.iter().map(|supports| supports.map(SensorMemory::settled)).collect()
         } else {
             Vec::new()
         };
@@ -145,7 +147,7 @@ impl SimFloor {
         }
         for &tile in &self.loaded {
             let (force, moment, twist) = self.loads[tile];
-            self.forces[tile] = self.plates[tile].supports(Press { force, at: moment / force, twist });
+            self.forces[tile] = self.plates[tile].supports(PlatePress { force, at: moment / force, twist });
         }
         self.seams.leak(&mut self.forces, &self.rest, &mut self.loaded);
         if self.memories.is_empty() {
@@ -201,7 +203,7 @@ impl SimFloor {
     }
 
     /// Returns the part of one sensor, and its force on the empty floor.
-    pub(super) fn bench(&self, tile: usize, corner: Corner) -> (&Part, f32) {
+    pub(super) fn bench(&self, tile: usize, corner: Corner) -> (&SensorPart, f32) {
         (&self.parts[tile][corner.index()], self.rest[tile][corner.index()])
     }
 
@@ -213,7 +215,7 @@ impl SimFloor {
     /// Returns the support forces of one tile under `force` at `at`, relative to its centre, including weight and
     /// mounting.
     pub(super) fn pressed(&self, tile: usize, at: Vec2, force: f32) -> [f32; 4] {
-        self.plates[tile].supports(Press::at(force, at))
+        self.plates[tile].supports(PlatePress::at(force, at))
     }
 
     /// Standard deviation of the noise (V).
@@ -229,7 +231,7 @@ impl SimFloor {
 
     /// Returns the sensing model of this floor.
     #[must_use]
-    pub const fn sensing(&self) -> Sensing {
+    pub const fn sensing(&self) -> SimulatedSensors {
         self.sensing
     }
 
@@ -273,7 +275,7 @@ impl SimFloor {
     fn output(&self, tile: usize, corner: usize, force: f32) -> f32 {
         let part = &self.parts[tile][corner];
         let rest = self.rest[tile][corner];
-        let exact = self.sensing == Sensing::Exact;
+        let exact = self.sensing == SimulatedSensors::Exact;
         let sound = |force: f32| if exact { force - rest } else { part.volts(force) };
         match self.faults.iter().find(|faulty| (faulty.tile, faulty.corner) == (tile, corner)) {
             None => sound(force),

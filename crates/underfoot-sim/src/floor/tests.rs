@@ -112,7 +112,8 @@ fn noise_is_two_millivolts_on_every_sensor() {
 #[test]
 fn boards_that_know_their_parts_send_tared_newtons_within_a_few_percent() {
     let floor = Floor::default();
-    let config = SimConfig { sensing: Sensing::Newtons(PartConfig::default()), ..SimConfig::default() };
+    let config =
+        SimConfig { sensing: SimulatedSensors::Newtons(PartConfig::default()), ..SimConfig::default() };
     let mut sim = SimFloor::new(&floor, config, 2);
     let (empty, _) = sensed(&floor, sim.step(&[]));
     // 144 sensors with 2 mV of noise at 11 N: about 0.03 N each.
@@ -153,8 +154,11 @@ fn broken_sensors_read_what_their_fault_says_until_repaired() {
 fn parts_with_memory_keep_a_trace_of_the_foot_that_left() {
     let floor = Floor::of(Geometry::of_paper_tiles(1, 1).unwrap());
     let parts = PartConfig { noise_v: 0.0, ..PartConfig::default() }.with_memory();
-    let mut sim =
-        SimFloor::new(&floor, SimConfig { sensing: Sensing::Counts(parts), ..SimConfig::default() }, 2);
+    let mut sim = SimFloor::new(
+        &floor,
+        SimConfig { sensing: SimulatedSensors::Counts(parts), ..SimConfig::default() },
+        2,
+    );
     let before = all_counts(sim.step(&[]));
     for _ in 0..3000 {
         sim.step(&[foot(Vec2::splat(0.152), 700.0)]);

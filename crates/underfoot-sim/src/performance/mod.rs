@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::person::{MoveError, PRESS_ROLL, Person, Standing};
+use super::person::{MoveError, PRESS_ROLL, Person, TwoFootStance};
 use super::rolling::RollingHabit;
 use super::slide::Slide;
 use super::sway::Sway;
-use super::track::{Pose, Profile, Track, turn_between};
+use super::track::{FootTrack, Pose, Profile, turn_between};
 use super::way::bend;
 use underfoot::units::Newtons;
 
@@ -18,12 +18,12 @@ use underfoot::units::Newtons;
 #[derive(Clone, Debug)]
 pub struct Performance {
     pub(super) person: Person,
-    pub(super) tracks: [Track; 2],
+    pub(super) tracks: [FootTrack; 2],
     pub(super) sway: Sway,
     /// The person's rolling pattern; `None` for the even roll of [`super::Print::Shoe`].
     pub(super) habit: Option<RollingHabit>,
     now_s: f64,
-    standing: Option<Standing>,
+    standing: Option<TwoFootStance>,
 }
 
 /// Roll of a standing foot: a little more than half of the load is on the heel.
@@ -47,7 +47,7 @@ impl Performance {
     pub fn new(person: Person, seed: u64) -> Self {
         Self {
             person,
-            tracks: [Track::default(), Track::default()],
+            tracks: [FootTrack::default(), FootTrack::default()],
             sway: Sway::new(seed),
             habit: None,
             now_s: 0.0,
@@ -157,7 +157,7 @@ impl Performance {
         let order = if turn > 0.0 { [0, 1] } else { [1, 0] };
         let parts = (1..=steps as usize)
             .map(|step| self.person.standing(standing.middle, standing.facing + turn * step as f32 / steps));
-        let parts: Vec<Standing> = parts.collect();
+        let parts: Vec<TwoFootStance> = parts.collect();
         self.shuffle(&parts, order);
         Ok(())
     }
@@ -176,7 +176,7 @@ impl Performance {
         }
         // The foot with the shorter way moves first, so that the feet never cross.
         let leading = standing.nearer_foot(to);
-        let parts: Vec<Standing> = (1..=steps as usize)
+        let parts: Vec<TwoFootStance> = (1..=steps as usize)
             .map(|step| self.person.standing(standing.middle + way * (step as f32 / steps), standing.facing))
             .collect();
         self.shuffle(&parts, [leading, 1 - leading]);
@@ -273,7 +273,7 @@ impl Performance {
 
     /// Poses of the shoe at both ends of a press with one foot; an error if the foot can't reach some part of the
     /// way.
-    fn reach(&self, standing: &Standing, side: usize, way: Slide) -> Result<[Pose; 2], MoveError> {
+    fn reach(&self, standing: &TwoFootStance, side: usize, way: Slide) -> Result<[Pose; 2], MoveError> {
         let (home, stance) = (standing.feet[side], standing.feet[1 - side]);
         let pose = |target| self.person.pose_pressing(target, home.heading);
         for part in 0..=WAY_PARTS {
@@ -283,7 +283,7 @@ impl Performance {
     }
 
     /// Moves the feet one after the other, in this order, to each of the stances in `parts`.
-    fn shuffle(&mut self, parts: &[Standing], order: [usize; 2]) {
+    fn shuffle(&mut self, parts: &[TwoFootStance], order: [usize; 2]) {
         self.leave_standing();
         let mut carried = 0.5;
         for part in parts {
@@ -319,7 +319,7 @@ impl Performance {
     }
 
     /// Starts standing and swaying now.
-    fn resume_standing(&mut self, standing: Standing) {
+    fn resume_standing(&mut self, standing: TwoFootStance) {
         self.sway.strength.rest(self.now_s - 0.1, 0.0);
         self.sway.strength.rest(self.now_s, 1.0);
         self.standing = Some(standing);

@@ -7,13 +7,13 @@ use crate::curve::Curve;
 use crate::gait::Gait;
 use crate::person::{MoveError, SIDES};
 use crate::rolling::Rolling;
-use crate::track::{Profile, Track, forward};
-use crate::way::Way;
+use crate::track::{FootTrack, Profile, forward};
+use crate::way::Polyline;
 
 impl Performance {
     /// Walks along a path without sharp bends.
     pub(super) fn walk_stretch(&mut self, points: &[Vec2]) -> Result<(), MoveError> {
-        let way = Way::new(points);
+        let way = Polyline::new(points);
         if way.length < SHORTEST_WAY_M {
             return Ok(());
         }
@@ -84,7 +84,7 @@ impl Performance {
         let stance_s = f64::from(gait.stance_s);
         let at = |share: f32| landing + stance_s * f64::from(share);
         let slope = gait.strike / gait.stance_s;
-        let Track { load, roll, stepping, .. } = &mut self.tracks[side];
+        let FootTrack { load, roll, stepping, .. } = &mut self.tracks[side];
         load.rest(landing, 0.0);
         if let Some(step) = step {
             stepping.rest(landing, 1.0);
@@ -108,7 +108,7 @@ impl Performance {
     /// Load of a foot from touchdown to standing on it alone, at the end of a walk.
     fn arrive(&mut self, side: usize, landing: f64, gait: &Gait) {
         let step = self.next_step(side, landing, gait);
-        let Track { load, roll, stepping, .. } = &mut self.tracks[side];
+        let FootTrack { load, roll, stepping, .. } = &mut self.tracks[side];
         load.rest(landing, 0.0);
         if let Some(step) = step {
             // Rolls as in a step until the foot stands.
@@ -135,7 +135,7 @@ impl Performance {
         let peak = off - f64::from(gait.stance_s * gait.peak_at);
         let now_s = self.now_s;
         let steps = self.next_step(side, now_s, gait).is_some();
-        let Track { load, roll, stepping, .. } = &mut self.tracks[side];
+        let FootTrack { load, roll, stepping, .. } = &mut self.tracks[side];
         if steps {
             stepping.rest(now_s, 0.0);
             stepping.rest(0.5 * (now_s + off), 1.0);

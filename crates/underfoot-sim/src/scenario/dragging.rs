@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::{Stage, Written};
-use crate::definition::{Drag, End};
+use crate::definition::{Drag, DragEnd};
 use crate::slide::Slide;
 use underfoot::floor::Rect;
 use underfoot::widget::Behaviour;
@@ -54,7 +54,7 @@ impl Stage<'_> {
         &self,
         step: &Drag,
         written: Written<'_>,
-        read: impl Fn(End) -> Option<T>,
+        read: impl Fn(DragEnd) -> Option<T>,
         what: &str,
         example: &str,
     ) -> Option<[(&'static str, T); 2]> {
@@ -69,10 +69,10 @@ impl Stage<'_> {
     }
 }
 
-fn shares(end: End) -> Option<f32> {
-    if let End::Share(share) = end { Some(share) } else { None }
+fn shares(end: DragEnd) -> Option<f32> {
+    if let DragEnd::Share(share) = end { Some(share) } else { None }
 }
 
-fn places(end: End) -> Option<Vec2> {
-    if let End::Place(place) = end { Some(place) } else { None }
+fn places(end: DragEnd) -> Option<Vec2> {
+    if let DragEnd::Place(place) = end { Some(place) } else { None }
 }

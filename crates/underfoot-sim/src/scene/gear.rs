@@ -4,7 +4,7 @@ use glam::Vec2;
 use rand::RngExt;
 
 use super::body::Body;
-use super::thing::{Sole, Thing};
+use super::thing::{SceneObject, Sole};
 use crate::gait::Gait;
 use crate::track::forward;
 use underfoot::floor::Rect;
@@ -12,7 +12,7 @@ use underfoot::floor::Rect;
 /// A person who walks straight over the floor, step by step.
 struct Stroll {
     /// The feet, in the order of their steps.
-    steps: Vec<Thing>,
+    steps: Vec<SceneObject>,
     /// Position of the body at each touchdown, and its time.
     landings: Vec<(Vec2, f64)>,
     step_s: f64,
@@ -43,7 +43,14 @@ fn stroll(body: &mut Body, (from, heading, length): (Vec2, f32, f32), speed: f32
         let landing_s = 0.2 + step_s * f64::from(step);
         let share = step_s as f32 / contact_s;
         let peak = |rolling: &crate::rolling::Rolling| weight_n * share / rolling.mean_force().max(0.2);
-        steps.push(Thing::step(body, (at, heading - turn_out * side), side, landing_s, gait.speed_m_s, peak));
+        steps.push(SceneObject::step(
+            body,
+            (at, heading - turn_out * side),
+            side,
+            landing_s,
+            gait.speed_m_s,
+            peak,
+        ));
         landings.push((middle, landing_s));
         side = -side;
     }
@@ -51,7 +58,7 @@ fn stroll(body: &mut Body, (from, heading, length): (Vec2, f32, f32), speed: f32
 }
 
 /// A stick of 15 mm radius on the far side, which lands with every other step and carries 6 to 25 % of the weight.
-pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let way = way(body, bounds);
     let speed = body.within(0.5, 1.0);
     let carried = body.within(0.06, 0.25);
@@ -62,7 +69,7 @@ pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     for (middle, landing_s) in landings.into_iter().step_by(2) {
         let ahead = forward(way.1) * body.within(0.10, 0.20) + right * body.within(0.26, 0.34);
         let half_m = Vec2::splat(0.015);
-        let mut tip = Thing::at(Sole::Round { half_m }, middle + ahead, way.1);
+        let mut tip = SceneObject::at(Sole::Round { half_m }, middle + ahead, way.1);
         let force = carried * weight;
         let begin = landing_s + f64::from(body.within(-0.05, 0.10)).max(-landing_s);
         tip.presses(begin, 0.0).presses(begin + 0.15, force);
@@ -78,7 +85,7 @@ pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 /// # Source
 /// Our assumption of usual sizes. Wheelchairs: some 0.42 m from axle to axle, 0.55 m wide, two thirds of the weight
 /// on the large rear wheels; trolleys: 0.6 m long and 0.4 m wide.
-pub(super) fn wheels(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn wheels(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let (from, heading, length) = way(body, bounds);
     let speed = body.within(0.4, 1.1);
     let weight = body.weight_n();
@@ -97,7 +104,7 @@ pub(super) fn wheels(body: &mut Body, bounds: Rect) -> Vec<Thing> {
         (base, 1.0, 0.5 * (1.0 - behind)),
     ] {
         let at = from + forward(heading) * ahead + right * (0.5 * wide * side);
-        let mut wheel = Thing::at(Sole::Round { half_m: Vec2::new(0.012, 0.02) }, at, heading);
+        let mut wheel = SceneObject::at(Sole::Round { half_m: Vec2::new(0.012, 0.02) }, at, heading);
         let velocity = forward(heading) * (length / took as f32);
         let end = 0.2 + took;
         wheel.presses(0.2, 0.0).presses(0.2, total * share).presses(end, total * share).presses(end, 0.0);

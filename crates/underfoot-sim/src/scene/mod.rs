@@ -16,7 +16,7 @@ use underfoot::floor::Geometry;
 use underfoot::units::Instant;
 
 pub use body::Body;
-use thing::Thing;
+use thing::SceneObject;
 
 /// Kind of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -99,7 +99,7 @@ impl SceneKind {
 #[derive(Clone, Debug)]
 pub struct Scene {
     script: Option<Script>,
-    things: Vec<Thing>,
+    things: Vec<SceneObject>,
     duration: Duration,
 }
 
@@ -152,8 +152,8 @@ impl Scene {
         Self { duration: script.duration(), script: Some(script), things: Vec::new() }
     }
 
-    fn acted(things: Vec<Thing>) -> Self {
-        let end_s = things.iter().map(Thing::end_s).fold(0.0, f64::max);
+    fn acted(things: Vec<SceneObject>) -> Self {
+        let end_s = things.iter().map(SceneObject::end_s).fold(0.0, f64::max);
         Self { script: None, things, duration: Duration::from_secs_f64(end_s + 0.3) }
     }
 }

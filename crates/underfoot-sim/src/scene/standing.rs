@@ -4,13 +4,13 @@ use glam::Vec2;
 use rand::RngExt;
 
 use super::body::Body;
-use super::thing::{STAND_ROLL, Sole, Thing, pair};
+use super::thing::{STAND_ROLL, SceneObject, Sole, pair};
 use crate::sway::Sway;
 use crate::track::forward;
 use underfoot::floor::Rect;
 
 /// Two feet of a standing, swaying person near the centre of the floor; left foot first, without force yet.
-fn two_feet(body: &mut Body, bounds: Rect, width_m: f32) -> [Thing; 2] {
+fn two_feet(body: &mut Body, bounds: Rect, width_m: f32) -> [SceneObject; 2] {
     let middle = body.place(bounds, 0.5);
     let facing = body.angle();
     let turn_out = body.habit.turn_out();
@@ -18,7 +18,7 @@ fn two_feet(body: &mut Body, bounds: Rect, width_m: f32) -> [Thing; 2] {
     sway.strength.rest(0.0, 1.0);
     let mut share = -1.0;
     pair(middle, facing, width_m, turn_out).map(|(at, heading)| {
-        let mut foot = Thing::foot(body, at, heading);
+        let mut foot = SceneObject::foot(body, at, heading);
         share = -share;
         foot.sway = Some((sway.clone(), share));
         foot
@@ -26,13 +26,13 @@ fn two_feet(body: &mut Body, bounds: Rect, width_m: f32) -> [Thing; 2] {
 }
 
 /// Moves the load of both feet to shares of the weight; the feet reach them at `at_s`.
-fn share_weight(feet: &mut [Thing; 2], at_s: f64, weight_n: f32, right: f32) {
+fn share_weight(feet: &mut [SceneObject; 2], at_s: f64, weight_n: f32, right: f32) {
     feet[0].presses(at_s, weight_n * (1.0 - right));
     feet[1].presses(at_s, weight_n * right);
 }
 
 /// The person steps onto the floor, one foot after the other, and stands on both after a second.
-fn step_on(body: &mut Body, feet: &mut [Thing; 2], weight_n: f32) {
+fn step_on(body: &mut Body, feet: &mut [SceneObject; 2], weight_n: f32) {
     let first = if body.sign() > 0.0 { 0.0 } else { 1.0 };
     share_weight(feet, 0.1, 0.0, 0.5);
     share_weight(feet, 0.35, weight_n, first);
@@ -41,7 +41,7 @@ fn step_on(body: &mut Body, feet: &mut [Thing; 2], weight_n: f32) {
 }
 
 /// One foot unloads to 10 to 20 %, in 0.2 or 1.2 s, and takes the weight back; twice.
-pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.within(0.14, 0.30));
     let mut feet = two_feet(body, bounds, width);
     step_on(body, &mut feet, weight);
@@ -68,11 +68,11 @@ pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 /// # Source
 /// Our assumption of a hopping person: a push of a quarter of a second with 1.6 to 2.2 body weights, 0.30 to 0.45 s
 /// in the air (11 to 25 cm high), a landing with 1.8 to 3 body weights within 60 ms.
-pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.within(0.16, 0.35));
     let mut stand = two_feet(body, bounds, width);
     step_on(body, &mut stand, weight);
-    let mut done: Vec<Thing> = Vec::new();
+    let mut done: Vec<SceneObject> = Vec::new();
     let mut now = 1.5 + f64::from(body.within(0.0, 0.5));
     for _ in 0..3 {
         let right = 0.5 + 0.04 * body.normal().clamp(-2.0, 2.0);
@@ -94,7 +94,7 @@ pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<Thing> {
         let down = off + flight;
         for (foot, late) in next.iter_mut().zip([0.0, f64::from(body.within(0.0, 0.015))]) {
             let (x, y, heading) = (foot.x.at(off), foot.y.at(off), foot.heading.at(off));
-            let mut landed = Thing::foot(body, Vec2::new(x, y) + hop, heading);
+            let mut landed = SceneObject::foot(body, Vec2::new(x, y) + hop, heading);
             landed.sway.clone_from(&foot.sway);
             landed.roll.rest(down, 0.75);
             landed.roll.rest(down + 0.25, STAND_ROLL);
@@ -114,7 +114,7 @@ pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 }
 
 /// Turns on one heel by 30 to 110 degrees, with the other foot lifted and put down afterwards; there and back.
-pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.person().stand_width_m);
     let mut feet = two_feet(body, bounds, width);
     step_on(body, &mut feet, weight);
@@ -154,7 +154,7 @@ pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<Thing> {
         // The other foot lands beside it, turned by the same angle.
         let was = Vec2::new(other.x.at(now), other.y.at(now));
         let placed = about + Vec2::from_angle(turn).rotate(was - about);
-        let mut next = Thing::foot(body, placed, other.heading.at(now) + turn);
+        let mut next = SceneObject::foot(body, placed, other.heading.at(now) + turn);
         next.sway.clone_from(&other.sway);
         let down = end + 0.1;
         next.presses(down, 0.0).presses(down + 0.4, 0.5 * weight);
@@ -174,19 +174,19 @@ pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 /// # Source
 /// Our assumption of the load distribution: on one knee, half of the weight stays on the front foot; on both, three
 /// quarters rest on the knees.
-pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.within(0.16, 0.26));
     let size = body.person().foot_length_m / 0.26;
     let mut feet = two_feet(body, bounds, width);
-    let knee = |body: &mut Body, foot: &Thing| {
+    let knee = |body: &mut Body, foot: &SceneObject| {
         let (at, heading) = (Vec2::new(foot.x.at(0.0), foot.y.at(0.0)), foot.heading.at(0.0));
         // Lower leg and foot bent up on the toes: 0.35 m from toes to knee.
         let knee = at + forward(heading) * (0.12 * size) + Vec2::from_angle(body.angle()) * 0.01;
         let toes = at - forward(heading) * (0.23 * size);
         let round = |half_m: Vec2| Sole::Round { half_m: half_m * size };
         (
-            Thing::at(round(Vec2::new(0.03, 0.04)), knee, heading),
-            Thing::at(round(Vec2::new(0.035, 0.02)), toes, heading),
+            SceneObject::at(round(Vec2::new(0.03, 0.04)), knee, heading),
+            SceneObject::at(round(Vec2::new(0.035, 0.02)), toes, heading),
         )
     };
     let (mut left, mut right) = (knee(body, &feet[0]), knee(body, &feet[1]));
@@ -201,7 +201,7 @@ pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     right.1.presses(2.6, 0.15 * weight);
     feet[0].presses(2.6, 0.5 * weight);
     let mut now = 2.6 + hold;
-    let hold_all = |things: &mut [(&mut Thing, f32)], from: f64, to: f64| {
+    let hold_all = |things: &mut [(&mut SceneObject, f32)], from: f64, to: f64| {
         for (thing, share) in things {
             thing.presses(from, *share * weight).presses(to, *share * weight);
         }
@@ -236,7 +236,7 @@ pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 }
 
 /// Two feet land within 20 ms of each other, 12 to 40 cm apart, stand for three seconds and leave.
-pub(super) fn landing(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn landing(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.within(0.12, 0.40));
     let mut feet = two_feet(body, bounds, width);
     let right = (0.5 + 0.03 * body.normal()).clamp(0.3, 0.7);

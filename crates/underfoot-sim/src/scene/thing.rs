@@ -25,7 +25,7 @@ pub(super) enum Sole {
 
 /// An object on the floor; it is present while its force is above zero.
 #[derive(Clone, Debug)]
-pub(super) struct Thing {
+pub(super) struct SceneObject {
     pub(super) sole: Sole,
     /// Force in newtons.
     pub(super) force: Curve,
@@ -41,7 +41,7 @@ pub(super) struct Thing {
     end_s: f64,
 }
 
-impl Thing {
+impl SceneObject {
     /// An object at a place, without force yet.
     pub(super) fn at(sole: Sole, at: Vec2, heading: f32) -> Self {
         let still = |value| {

@@ -6,15 +6,15 @@ use glam::Vec2;
 use rand::RngExt;
 
 use super::body::Body;
-use super::thing::{STAND_ROLL, Thing};
+use super::thing::{STAND_ROLL, SceneObject};
 use crate::sway::Sway;
 use crate::track::forward;
 use underfoot::floor::Rect;
 
 /// One foot that lands on a control and rests on it, perhaps beside a standing one.
 struct Work {
-    foot: Thing,
-    stands: Option<Thing>,
+    foot: SceneObject,
+    stands: Option<SceneObject>,
     /// Force of the working foot at rest (N).
     rests_n: f32,
     /// Start of the work (s).
@@ -30,7 +30,7 @@ impl Work {
         let rest = [0.0, 0.1, 0.3, 0.6, 1.5][body.rng.random_range(0..5_usize)];
         let at = body.place(bounds, 0.65);
         let heading = body.angle();
-        let mut foot = Thing::foot(body, at, heading);
+        let mut foot = SceneObject::foot(body, at, heading);
         let landing = if beside { 1.3 } else { 0.3 };
         foot.presses(landing, 0.0).presses(landing + 0.12, rests_n);
         let stands = beside.then(|| {
@@ -40,7 +40,7 @@ impl Work {
             };
             let aside = at + Vec2::from_angle(out) * body.within(0.3, 0.55);
             let turned = heading + body.within(-0.3, 0.3);
-            let mut stands = Thing::foot(body, aside, turned);
+            let mut stands = SceneObject::foot(body, aside, turned);
             let mut sway = Sway::new(body.rng.random());
             sway.strength.rest(0.0, 1.0);
             stands.sway = Some((sway, 1.0));
@@ -60,7 +60,7 @@ impl Work {
     }
 
     /// Rests again after the work ended at `at_s`, and leaves.
-    fn leave(mut self, body: &mut Body, at_s: f64) -> Vec<Thing> {
+    fn leave(mut self, body: &mut Body, at_s: f64) -> Vec<SceneObject> {
         let weight = body.weight_n();
         let off = at_s + f64::from(body.within(0.2, 0.8));
         self.presses(at_s, 0.0, weight);
@@ -74,7 +74,7 @@ impl Work {
 }
 
 /// Slides 10 to 60 cm at 0.1 to 1 m/s, rests there and slides back.
-pub(super) fn slide(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn slide(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let way = body.angle();
     let mut work = Work::of(body, bounds, Some(way));
     let start = Vec2::new(work.foot.x.at(0.0), work.foot.y.at(0.0));
@@ -93,7 +93,7 @@ pub(super) fn slide(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 }
 
 /// Presses three times with 50 to 250 N more, within 0.1 to 0.4 s, and leans a little.
-pub(super) fn press(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn press(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let mut work = Work::of(body, bounds, None);
     let weight = body.weight_n();
     let more = body.within(50.0, 250.0).min(0.45 * weight);
@@ -111,7 +111,7 @@ pub(super) fn press(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 }
 
 /// Rocks three times from heel to ball and back within 0.25 to 0.9 s, without lifting.
-pub(super) fn rock(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn rock(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let mut work = Work::of(body, bounds, None);
     let mut now = work.begin;
     work.foot.roll.rest(now, STAND_ROLL);
@@ -128,7 +128,7 @@ pub(super) fn rock(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 }
 
 /// Turns by 20 to 60 degrees about heel or ball within 0.3 to 1 s, and back.
-pub(super) fn turn(body: &mut Body, bounds: Rect) -> Vec<Thing> {
+pub(super) fn turn(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
     let mut work = Work::of(body, bounds, None);
     let length = body.person().foot_length_m;
     let about = length * if body.rng.random_bool(0.5) { -0.25 } else { 0.25 };

@@ -11,13 +11,13 @@ pub(super) const MOST_LAG: usize = KEPT - REPEATED;
 
 /// The last [`KEPT`] readings of each sensor of one plate.
 #[derive(Clone, Debug)]
-pub(super) struct History {
+pub(super) struct ReadingHistory {
     readings: [[u16; KEPT]; 4],
     /// Number of readings of each sensor, counted on beyond [`KEPT`].
     read: [usize; 4],
 }
 
-impl History {
+impl ReadingHistory {
     pub(super) const EMPTY: Self = Self { readings: [[0; KEPT]; 4], read: [0; 4] };
 
     /// Stores a reading of the sensor at `corner`.
@@ -46,8 +46,8 @@ impl History {
 mod tests {
     use super::*;
 
-    fn history(readings: impl Iterator<Item = u16>) -> History {
-        let mut history = History::EMPTY;
+    fn history(readings: impl Iterator<Item = u16>) -> ReadingHistory {
+        let mut history = ReadingHistory::EMPTY;
         readings.for_each(|raw| history.read(2, raw));
         history
     }

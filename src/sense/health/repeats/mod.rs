@@ -23,10 +23,10 @@ mod run;
 
 use std::ops::Range;
 
-use self::history::{History, MOST_LAG};
-use self::noise::{Grain, Noise, Seen, is_within};
+use self::history::{MOST_LAG, ReadingHistory};
+use self::noise::{ExaminedReadings, NoiseClass, SensorNoise, is_within};
 use self::run::{REPEATED_FOR, Run};
-use super::End;
+use super::RangeEnd;
 use super::trouble::Sensor;
 use crate::sense::{ForceFrame, HoldDoubt, Quality};
 use crate::units::Instant;
@@ -57,7 +57,7 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Repeats {
     /// Whether the readings have no noise of their own, so that repetitions are meaningless.
     noiseless: bool,
-    noise: Noise,
+    noise: SensorNoise,
     /// Whether each tile was nearly empty at its last visit.
     idle: Vec<[bool; 4]>,
     watched: Vec<Watch>,
@@ -71,7 +71,7 @@ pub(super) struct Repeats {
 struct Watch {
     tile: u32,
     runs: [Run; 4],
-    history: History,
+    history: ReadingHistory,
     /// Readings of its sensors at the last visit.
     raws: [u16; 4],
     newtons: [f32; 4],
@@ -86,7 +86,7 @@ struct Watch {
 pub(super) struct Heard<'a> {
     /// The readings as sent by the boards; 0 for a zero reading.
     pub raws: &'a [[u16; 4]],
-    pub ends: &'a [[End; 4]],
+    pub ends: &'a [[RangeEnd; 4]],
     /// Whether each reading arrived with this frame.
     pub news: &'a [[bool; 4]],
     pub sensors: &'a [[Sensor; 4]],
@@ -96,7 +96,7 @@ impl Repeats {
     pub(super) fn new(tiles: usize, noiseless: bool) -> Self {
         Self {
             noiseless,
-            noise: Noise::new(tiles),
+            noise: SensorNoise::new(tiles),
             idle: vec![[true; 4]; tiles],
             watched: Vec::with_capacity(tiles.min(MOST_WATCHED)),
             place: vec![NONE; tiles],
@@ -163,7 +163,8 @@ impl Repeats {
                 self.watch(tile, &frame.forces[tile], heard.raws[tile]);
             }
         }
-        let seen = Seen { raws: heard.raws, ends: heard.ends, news: heard.news, idle: &self.idle };
+        let seen =
+            ExaminedReadings { raws: heard.raws, ends: heard.ends, news: heard.news, idle: &self.idle };
         self.noise.look(tiles.clone(), seen, visit);
         for tile in tiles {
             if frame.hold_doubts[tile] != Some(HoldDoubt::Repeats) {
@@ -176,7 +177,7 @@ impl Repeats {
         if self.watched.len() < self.watched.capacity() {
             self.place[tile] = self.watched.len() as u32;
             let (tile, newtons) = (tile as u32, *newtons);
-            let (runs, history) = ([Run::default(); 4], History::EMPTY);
+            let (runs, history) = ([Run::default(); 4], ReadingHistory::EMPTY);
             self.watched.push(Watch { tile, runs, history, raws, newtons, empty: 0, until: None });
         }
     }
@@ -206,7 +207,7 @@ impl Repeats {
 }
 
 impl Watch {
-    fn read(&mut self, raws: [u16; 4], ends: [End; 4], news: [bool; 4], now: Instant) {
+    fn read(&mut self, raws: [u16; 4], ends: [RangeEnd; 4], news: [bool; 4], now: Instant) {
         for corner in (0..4).filter(|&corner| news[corner]) {
             self.runs[corner].read(raws[corner], now);
             if is_within(ends[corner], raws[corner]) {
@@ -220,7 +221,7 @@ impl Watch {
     }
 
     /// Whether two of its sensors, or all usable ones, repeat with an improbable run.
-    fn repeats(&self, noise: &Noise, ends: [End; 4], sensors: &[Sensor; 4], now: Instant) -> bool {
+    fn repeats(&self, noise: &SensorNoise, ends: [RangeEnd; 4], sensors: &[Sensor; 4], now: Instant) -> bool {
         let (mut told, mut repeated, mut nats) = (0, 0, 0.0);
         let tile = self.tile as usize;
         for corner in 0..4 {
@@ -240,14 +241,14 @@ impl Watch {
 
 /// The reason for which the sensors of this tile may not hold a control, from their noise: a tile needs three fine
 /// sensors, the minimum with which it continues.
-fn doubt(noise: &mut Noise, tile: usize, sensors: &[Sensor; 4]) -> Option<HoldDoubt> {
+fn doubt(noise: &mut SensorNoise, tile: usize, sensors: &[Sensor; 4]) -> Option<HoldDoubt> {
     let (mut fine, mut unknown) = (0, 0);
     for (corner, sensor) in sensors.iter().enumerate() {
         match noise.grain(tile, corner) {
             _ if sensor.is_out() => {}
-            Grain::Fine => fine += 1,
-            Grain::Unknown => unknown += 1,
-            Grain::Coarse => {}
+            NoiseClass::Fine => fine += 1,
+            NoiseClass::Unknown => unknown += 1,
+            NoiseClass::Coarse => {}
         }
     }
     match (fine, unknown) {

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use crate::sense::health::End;
+use crate::sense::health::RangeEnd;
 
 /// Maximum number of looks in the average: two seconds.
 const MOST_LOOKS: f32 = 256.0;
@@ -40,7 +40,7 @@ const STILL_SHARE: f32 = 0.02;
 
 /// Classification of one sensor's noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Grain {
+pub(super) enum NoiseClass {
     /// Too few looks.
     Unknown,
     /// It repeats too often by chance.
@@ -51,7 +51,7 @@ pub(super) enum Grain {
 
 /// The noise of all sensors, four to a tile.
 #[derive(Clone, Debug)]
-pub(super) struct Noise {
+pub(super) struct SensorNoise {
     near: Likeness,
     far: Likeness,
     /// Whether each reads zero while its tile is empty, so that only a load shows its noise.
@@ -73,15 +73,15 @@ struct Likeness {
 
 /// The readings to look at, of all sensors.
 #[derive(Clone, Copy)]
-pub(super) struct Seen<'a> {
+pub(super) struct ExaminedReadings<'a> {
     pub raws: &'a [[u16; 4]],
-    pub ends: &'a [[End; 4]],
+    pub ends: &'a [[RangeEnd; 4]],
     pub news: &'a [[bool; 4]],
     /// Whether each tile is nearly empty.
     pub idle: &'a [[bool; 4]],
 }
 
-impl Noise {
+impl SensorNoise {
     pub(super) fn new(tiles: usize) -> Self {
         let is_bare = vec![[false; 4]; tiles];
         Self {
@@ -93,7 +93,7 @@ impl Noise {
     }
 
     /// Looks at `tiles` for the time numbered `visit`.
-    pub(super) fn look(&mut self, tiles: Range<usize>, seen: Seen<'_>, visit: u32) {
+    pub(super) fn look(&mut self, tiles: Range<usize>, seen: ExaminedReadings<'_>, visit: u32) {
         self.near.look(tiles.clone(), seen);
         if visit.is_multiple_of(FAR) {
             self.far.look(tiles.clone(), seen);
@@ -126,16 +126,16 @@ impl Noise {
     }
 
     /// Classifies the sensor's noise: how strongly a repetition of its readings indicates a frozen converter.
-    pub(super) fn grain(&mut self, tile: usize, corner: usize) -> Grain {
+    pub(super) fn grain(&mut self, tile: usize, corner: usize) -> NoiseClass {
         let (looks, is_coarse) = (self.near.looks[tile][corner], &mut self.is_coarse[tile][corner]);
         if looks < FEWEST_LOOKS {
-            return Grain::Unknown;
+            return NoiseClass::Unknown;
         }
         *is_coarse = self.near.same[tile][corner] > if *is_coarse { FINE } else { COARSE };
         match *is_coarse {
-            false => Grain::Fine,
-            true if looks < ENOUGH_LOOKS => Grain::Unknown,
-            true => Grain::Coarse,
+            false => NoiseClass::Fine,
+            true if looks < ENOUGH_LOOKS => NoiseClass::Unknown,
+            true => NoiseClass::Coarse,
         }
     }
 
@@ -161,7 +161,7 @@ impl Likeness {
         }
     }
 
-    fn look(&mut self, tiles: Range<usize>, seen: Seen<'_>) {
+    fn look(&mut self, tiles: Range<usize>, seen: ExaminedReadings<'_>) {
         look(
             [&mut self.same, &mut self.looks].map(|all| all[tiles.clone()].as_flattened_mut()),
             self.last[tiles.clone()].as_flattened_mut(),
@@ -182,8 +182,8 @@ impl Likeness {
 
 /// Whether a reading is above zero and below the end of its range.
 #[inline(always)]
-pub(super) fn is_within(end: End, raw: u16) -> bool {
-    (end as u8 == End::Within as u8) & (raw != 0)
+pub(super) fn is_within(end: RangeEnd, raw: u16) -> bool {
+    (end as u8 == RangeEnd::Within as u8) & (raw != 0)
 }
 
 /// Without branches, over plain numbers, compiled for each vector instruction set.
@@ -193,7 +193,7 @@ fn look(
     last: &mut [u16],
     has_last: &mut [bool],
     raws: &[u16],
-    ends: &[End],
+    ends: &[RangeEnd],
     [news, idle]: [&[bool]; 2],
 ) {
     let sensors = raws.len();
@@ -216,13 +216,17 @@ mod tests {
     use super::*;
 
     /// The noise of a sensor after `looks` looks at these readings.
-    fn known(looks: u32, reading: impl Fn(u32) -> u16) -> (Noise, Grain) {
-        let mut noise = Noise::new(1);
-        let mut grain = Grain::Unknown;
+    fn known(looks: u32, reading: impl Fn(u32) -> u16) -> (SensorNoise, NoiseClass) {
+        let mut noise = SensorNoise::new(1);
+        let mut grain = NoiseClass::Unknown;
         for visit in 0..looks {
             let raws = [[reading(visit); 4]];
-            let seen =
-                Seen { raws: &raws, ends: &[[End::Within; 4]], news: &[[true; 4]], idle: &[[true; 4]] };
+            let seen = ExaminedReadings {
+                raws: &raws,
+                ends: &[[RangeEnd::Within; 4]],
+                news: &[[true; 4]],
+                idle: &[[true; 4]],
+            };
             noise.look(0..1, seen, visit);
             grain = noise.grain(0, 2);
         }
@@ -238,16 +242,16 @@ mod tests {
     #[test]
     fn a_noisy_sensor_is_trusted_after_a_tenth_of_a_second() {
         let noisy = |at| (chance(at) * 60.0) as u16 + 9000;
-        assert_eq!(known(8, noisy).1, Grain::Unknown);
-        assert_eq!(known(12, noisy).1, Grain::Fine);
+        assert_eq!(known(8, noisy).1, NoiseClass::Unknown);
+        assert_eq!(known(12, noisy).1, NoiseClass::Fine);
         assert!(known(600, noisy).0.same(0, 2)[0] < 0.05);
     }
 
     #[test]
     fn a_sensor_that_mostly_reads_one_value_is_coarse_after_half_a_second() {
         let quiet = |at| if chance(at) < 0.2 { 181 } else { 180 };
-        assert_eq!(known(60, quiet).1, Grain::Unknown);
-        assert_eq!(known(80, quiet).1, Grain::Coarse);
+        assert_eq!(known(60, quiet).1, NoiseClass::Unknown);
+        assert_eq!(known(80, quiet).1, NoiseClass::Coarse);
     }
 
     #[test]
@@ -262,14 +266,14 @@ mod tests {
     #[test]
     fn a_sensor_that_reads_nothing_without_a_load_shows_its_noise_under_one() {
         let (mut noise, grain) = known(400, |_| 0);
-        assert_eq!(grain, Grain::Unknown);
+        assert_eq!(grain, NoiseClass::Unknown);
         for at in 0..20 {
             noise.look_under_load((0, 2), [at, at + 1], [100.0, 140.0]);
         }
-        assert_eq!(noise.grain(0, 2), Grain::Unknown, "a foot that lands says nothing");
+        assert_eq!(noise.grain(0, 2), NoiseClass::Unknown, "a foot that lands says nothing");
         for at in 0..20 {
             noise.look_under_load((0, 2), [at, at + 1], [100.0, 100.3]);
         }
-        assert_eq!(noise.grain(0, 2), Grain::Fine);
+        assert_eq!(noise.grain(0, 2), NoiseClass::Fine);
     }
 }

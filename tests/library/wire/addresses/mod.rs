@@ -18,7 +18,7 @@ use underfoot::layout::Layout;
 use underfoot::outgoing::write_event;
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::Method;
-use underfoot::serve::{Argument, Direction, Entry, Reference, Server};
+use underfoot::serve::{AddressEntry, Argument, MessageDirection, Reference, Server};
 use underfoot::sink::SilentSink;
 use underfoot::source::UdpSource;
 use underfoot::units::{Instant, Newtons};
@@ -164,7 +164,9 @@ fn every_address_in_is_understood_and_does_what_it_says() {
     let mut desk = Desk::new(layout(EVERYTHING), &prefix);
     let reference = Reference::of(desk.server.engine().layout(), &Floor::default(), &prefix);
     let mut tried = BTreeMap::new();
-    let commands = |entry: &&Entry| entry.direction == Direction::In && prefix.path(&entry.address).is_some();
+    let commands = |entry: &&AddressEntry| {
+        entry.direction == MessageDirection::In && prefix.path(&entry.address).is_some()
+    };
     for entry in reference.entries.iter().filter(commands) {
         for which in 0..2 {
             let args: Vec<OscType> =
@@ -335,7 +337,7 @@ fn every_event_is_listed_and_every_listed_event_comes() {
     let listed: BTreeMap<&str, Vec<&str>> = reference
         .entries
         .iter()
-        .filter(|entry| entry.direction == Direction::Out && entry.address.contains("/widget/"))
+        .filter(|entry| entry.direction == MessageDirection::Out && entry.address.contains("/widget/"))
         // A repeated state, not an event.
         .filter(|entry| !entry.address.ends_with("/held"))
         .map(|entry| (entry.address.as_str(), entry.arguments.iter().map(|argument| argument.tag).collect()))
@@ -409,12 +411,10 @@ fn the_shipped_layouts_have_references_without_an_address_twice() {
             );
         }
         for widget in &page.widgets {
-            assert!(
-                seen.contains(&(
-                    format!("/underfoot/widget/{}/get", widget.id).as_str(),
-                    Direction::In as u8
-                ))
-            );
+            assert!(seen.contains(&(
+                format!("/underfoot/widget/{}/get", widget.id).as_str(),
+                MessageDirection::In as u8
+            )));
         }
     }
 }

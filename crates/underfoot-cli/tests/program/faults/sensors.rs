@@ -4,7 +4,7 @@ use underfoot::floor::{Corner, Exponential};
 use underfoot::glam::Vec2;
 use underfoot::units::Newtons;
 use underfoot::wire::{Readings, SensorPacket};
-use underfoot_sim::{PartConfig, Sensing, SensorFault};
+use underfoot_sim::{PartConfig, SensorFault, SimulatedSensors};
 
 use super::tape::{BUTTON, CLICK, MIDDLE, PEDAL, Tape, foot};
 use crate::end_to_end::{channels, underfoot};
@@ -54,9 +54,9 @@ fn s2_a_stamp_beyond_the_range_presses_nothing_while_it_lasts_or_lightens() {
 }
 
 /// Parts that end at 123 N.
-fn weak() -> Sensing {
+fn weak() -> SimulatedSensors {
     let nominal = Exponential { a_n: 0.5, b_per_volt: 1.1 };
-    Sensing::Counts(PartConfig { nominal, ..PartConfig::default() })
+    SimulatedSensors::Counts(PartConfig { nominal, ..PartConfig::default() })
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn s4_a_zero_that_drifts_presses_nothing_and_shows_no_foot() {
 #[test]
 fn s5_parts_that_creep_under_a_standing_foot_gain_no_press_and_lose_none() {
     let parts = PartConfig { creep: 0.05, deviation: 0.0, ..PartConfig::default() };
-    let mut tape = Tape::on_parts(BUTTON, Sensing::Counts(parts), true);
+    let mut tape = Tape::on_parts(BUTTON, SimulatedSensors::Counts(parts), true);
     // A minute below the press threshold (60 N), a minute far above.
     tape.press(MIDDLE, 50.0);
     tape.stay(MIDDLE, 50.0, 60);
@@ -145,7 +145,7 @@ fn s6_a_load_out_of_nowhere_presses_nothing() {
 /// 50 Hz of 5 N on every sensor, for a minute of which a foot stands for half.
 #[test]
 fn s7_hum_makes_no_event_of_its_own() {
-    let mut tape = Tape::on_parts(BUTTON, Sensing::Newtons(PartConfig::default()), true);
+    let mut tape = Tape::on_parts(BUTTON, SimulatedSensors::Newtons(PartConfig::default()), true);
     let mut hum = |ms: u64, mut packet: SensorPacket| {
         let hum = 5.0 * (ms as f32 * 0.05 * std::f32::consts::TAU).sin();
         if let Readings::Newtons(forces) = &mut packet.readings {
@@ -182,7 +182,7 @@ fn s8_a_click_that_its_own_sensors_feel_triggers_nothing() {
     assert!(peak > 0.2, "or nothing is shown: {peak} N per sensor");
 
     let tapped = |coupled: &[f32]| {
-        let mut tape = Tape::on_parts(BUTTON, Sensing::Newtons(PartConfig::default()), true);
+        let mut tape = Tape::on_parts(BUTTON, SimulatedSensors::Newtons(PartConfig::default()), true);
         tape.wait(500);
         tape.press(MIDDLE, 75.0);
         // Pressed after 20 ms above 60 N: the click begins with the press as the program detects it.
@@ -206,7 +206,7 @@ fn s8_a_click_that_its_own_sensors_feel_triggers_nothing() {
 #[test]
 fn s9_a_floor_without_calibration_runs_nothing_that_must_be_held_and_says_so() {
     let tapped = |page: &str, is_calibrated| {
-        let mut tape = Tape::on_parts(page, Sensing::default(), is_calibrated);
+        let mut tape = Tape::on_parts(page, SimulatedSensors::default(), is_calibrated);
         tape.wait(2000);
         tape.press(MIDDLE, 150.0);
         tape.wait(1000);

@@ -13,7 +13,7 @@ use underfoot::sense::Method;
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{LinkCounters, SensorPacket};
-use underfoot_sim::{self as sim, Foot, Sensing, SensorFault, SimConfig, SimFloor};
+use underfoot_sim::{self as sim, Foot, SensorFault, SimConfig, SimFloor, SimulatedSensors};
 
 use crate::end_to_end::{said, underfoot};
 
@@ -55,11 +55,11 @@ pub struct Tape {
 impl Tape {
     /// A calibrated floor with the paper's parts that has been empty for a tenth of a second.
     pub fn on(page: &str) -> Self {
-        Self::on_parts(page, Sensing::default(), true)
+        Self::on_parts(page, SimulatedSensors::default(), true)
     }
 
     /// Like [`Tape::on`], with other parts, calibrated or not.
-    pub fn on_parts(page: &str, sensing: Sensing, is_calibrated: bool) -> Self {
+    pub fn on_parts(page: &str, sensing: SimulatedSensors, is_calibrated: bool) -> Self {
         let wired = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
         let sim = SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, SEED);
         let floor = if is_calibrated { sim::calibrated(&wired, &sim, SEED).unwrap() } else { wired };

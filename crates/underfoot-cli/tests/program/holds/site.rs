@@ -14,7 +14,7 @@ use underfoot::glam::Vec2;
 use underfoot::schema::save_floor;
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
-use underfoot_sim::{self as sim, Foot, PartConfig, Sensing, SimConfig, SimFloor};
+use underfoot_sim::{self as sim, Foot, PartConfig, SimConfig, SimFloor, SimulatedSensors};
 
 use super::client::Client;
 use crate::end_to_end::underfoot;
@@ -55,7 +55,7 @@ impl Site {
         let wired = small_floor();
         let sim = match format {
             SensorFormat::Newtons => {
-                let sensing = Sensing::Newtons(PartConfig::default());
+                let sensing = SimulatedSensors::Newtons(PartConfig::default());
                 SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, 7)
             }
             SensorFormat::Counts | SensorFormat::Blob => simulated(&wired),
