@@ -22,6 +22,9 @@ MOST_FILES = 5
 # Plain public records of data, and the tracker's state until it is replaced.
 RECORDS = {"Snapshot", "LinkCounters", "Track", "Tracker"}
 
+# Names that many types may have: the arguments of each command, as the crate clap usually has them.
+SHARED = {"Args"}
+
 DEFINED = re.compile(r"^[ \t]*(?P<seen>pub(?:\([^)]*\))?\s+)?(?P<word>struct|enum|trait|union|type)\s+(?P<name>\w+)", re.MULTILINE)
 INHERENT = re.compile(r"^[ \t]*(?:unsafe\s+)?impl\b", re.MULTILINE)
 FIELD = re.compile(r"\s*(?:#\[[^\]]*\]\s*)*(?:pub(?:\([^)]*\))?\s+)?(?:r#)?\w+\s*:")
@@ -131,7 +134,7 @@ def main():
     print("files with methods of one type")
     for (crate, of), files in sorted(impls.items(), key=lambda row: (-len(row[1]), row[0]))[: arguments.list]:
         print(f"{len(files):5}  {of:28}{crate or '.'}")
-    twice = sorted((of, places) for of, places in names.items() if len(places) > 1)
+    twice = sorted((of, places) for of, places in names.items() if len(places) > 1 and of not in SHARED)
     print(f"names of more than one type: {len(twice)}")
     for of, places in twice:
         print(f"{len(places):5}  {of:28}{', '.join(places)}")

@@ -10,7 +10,7 @@ use arrayvec::ArrayVec;
 use glam::Vec2;
 
 use super::feet::FootHistory;
-use super::weight::Scale;
+use super::weight::WeighingScale;
 use crate::units::{Instant, Newtons};
 
 /// Maximum length of a step, in metres.
@@ -51,7 +51,7 @@ pub(super) struct Left {
 pub(super) struct TrackedPerson {
     pub(super) id: u32,
     left: ArrayVec<Left, 8>,
-    scale: Scale,
+    scale: WeighingScale,
     /// Sum of the person's contacts now.
     pub(super) sum: f32,
     seen: Instant,
@@ -59,7 +59,7 @@ pub(super) struct TrackedPerson {
 
 impl TrackedPerson {
     pub(super) fn new(id: u32, now: Instant) -> Self {
-        Self { id, left: ArrayVec::new(), scale: Scale::default(), sum: 0.0, seen: now }
+        Self { id, left: ArrayVec::new(), scale: WeighingScale::default(), sum: 0.0, seen: now }
     }
 
     /// The person's weight; `None` until it is known.

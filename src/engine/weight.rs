@@ -29,7 +29,7 @@ const BELIEVED: u8 = 3;
 
 /// One person's scale: its input is the sum of the person's contacts, frame by frame.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Scale {
+pub(super) struct WeighingScale {
     weight: Option<f32>,
     lighter: u8,
     since: Instant,
@@ -39,7 +39,7 @@ pub(super) struct Scale {
     count: u32,
 }
 
-impl Scale {
+impl WeighingScale {
     /// The person's weight; `None` until they have stood quietly for two seconds.
     pub(super) fn weight(&self) -> Option<Newtons> {
         self.weight.map(Newtons)
@@ -84,7 +84,12 @@ mod tests {
     use super::*;
 
     /// The weight after so many seconds; `sum` gives the sum at a time in seconds.
-    fn weighed(scale: &mut Scale, from_s: u64, seconds: u64, sum: impl Fn(f32) -> f32) -> Option<f32> {
+    fn weighed(
+        scale: &mut WeighingScale,
+        from_s: u64,
+        seconds: u64,
+        sum: impl Fn(f32) -> f32,
+    ) -> Option<f32> {
         for ms in from_s * 1000..(from_s + seconds) * 1000 {
             scale.weigh(sum(ms as f32 * 1e-3), Instant::from_millis(ms));
         }
@@ -93,7 +98,7 @@ mod tests {
 
     #[test]
     fn quiet_standing_gives_the_weight_and_walking_gives_none() {
-        let mut scale = Scale::default();
+        let mut scale = WeighingScale::default();
         let walking = |s: f32| 700.0 * (1.0 + 0.18 * (s * 11.0).sin());
         assert_eq!(weighed(&mut scale, 0, 20, walking), None);
         let swaying = |s: f32| 700.0 * (1.0 + 0.01 * (s * 1.3).sin());
@@ -104,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_foot_beside_the_floor_is_no_diet_unless_it_stays_there() {
-        let mut scale = Scale::default();
+        let mut scale = WeighingScale::default();
         weighed(&mut scale, 0, 3, |_| 700.0);
         assert_eq!(weighed(&mut scale, 3, 5, |_| 350.0), Some(700.0));
         assert_eq!(weighed(&mut scale, 8, 4, |_| 350.0), Some(350.0));
@@ -114,7 +119,7 @@ mod tests {
 
     #[test]
     fn bags_and_crowds_are_nobody() {
-        let mut scale = Scale::default();
+        let mut scale = WeighingScale::default();
         assert_eq!(weighed(&mut scale, 0, 10, |_| 120.0), None);
         assert_eq!(weighed(&mut scale, 10, 10, |_| 2400.0), None);
     }

@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 use glam::Vec2;
 
 use super::Spot;
-use super::mix::{FAINT, Output};
+use super::mix::{CueOutput, FAINT};
 use crate::floor::{Actuator, Loudspeaker};
 
 /// Maximum number of loudspeakers that play one cue.
@@ -17,13 +17,13 @@ pub(super) const PER_NEWTON: f32 = 1.0 / Actuator::nominal(0).full_scale.0;
 const NEAR_M: f32 = 0.1;
 
 /// The loudspeakers that play one cue, with the gain of each.
-pub(super) type Panned = ArrayVec<Output, NEAREST>;
+pub(super) type Panned = ArrayVec<CueOutput, NEAREST>;
 
 /// The loudspeakers around the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Loudspeakers {
     /// Place of each, and its output at full gain.
-    all: ArrayVec<(Vec2, Output), { Loudspeaker::MOST }>,
+    all: ArrayVec<(Vec2, CueOutput), { Loudspeaker::MOST }>,
     /// Centres of the tiles.
     centres: Box<[Vec2]>,
 }
@@ -36,7 +36,7 @@ impl Loudspeakers {
         });
         let all = playable.take(Loudspeaker::MOST).map(|one| {
             let per_newton = 10_f32.powf(one.gain_db / 20.0) * PER_NEWTON;
-            (one.at, Output { channel: one.channel.into(), per_newton })
+            (one.at, CueOutput { channel: one.channel.into(), per_newton })
         });
         Self { all: all.collect(), centres: centres.into() }
     }
@@ -69,7 +69,7 @@ impl Loudspeakers {
             return heard;
         }
         let place = at.filter(|at| at.is_finite()).unwrap_or(place / sum);
-        let mut near: ArrayVec<(f32, Output), { Loudspeaker::MOST }> =
+        let mut near: ArrayVec<(f32, CueOutput), { Loudspeaker::MOST }> =
             self.all.iter().map(|(at, output)| (at.distance(place).max(NEAR_M), *output)).collect();
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let beyond = near.get(NEAREST).map_or(0.0, |(distance, _)| distance.recip());
@@ -79,7 +79,7 @@ impl Loudspeakers {
         let loudness = level / power.sqrt();
         for (distance, output) in near.into_iter().take(NEAREST) {
             let per_newton = output.per_newton * loudness * share(distance);
-            heard.push(Output { per_newton, ..output });
+            heard.push(CueOutput { per_newton, ..output });
         }
         heard
     }

@@ -15,7 +15,7 @@ pub(super) const FAINT: f32 = 1e-5;
 
 /// The output for a tile's share of a cue.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Output {
+pub(super) struct CueOutput {
     pub(super) channel: usize,
     /// Full scales per newton.
     pub(super) per_newton: f32,
@@ -24,7 +24,7 @@ pub(super) struct Output {
 /// The channel of each tile.
 #[derive(Clone, Debug)]
 pub(super) struct TileChannels {
-    outputs: Box<[Option<Output>]>,
+    outputs: Box<[Option<CueOutput>]>,
 }
 
 impl TileChannels {
@@ -35,7 +35,7 @@ impl TileChannels {
             let channel = usize::from(actuator.channel);
             let full_scale = actuator.full_scale.0;
             (channel < channels && full_scale.is_finite() && full_scale > 0.0)
-                .then(|| Output { channel, per_newton: full_scale.recip() })
+                .then(|| CueOutput { channel, per_newton: full_scale.recip() })
         };
         Self { outputs: actuators.into_iter().map(|actuator| actuator.and_then(output)).collect() }
     }
@@ -46,7 +46,7 @@ impl TileChannels {
     }
 
     /// The output of tile number `tile`; `None` if it has none.
-    pub(super) fn output(&self, tile: u16) -> Option<Output> {
+    pub(super) fn output(&self, tile: u16) -> Option<CueOutput> {
         self.outputs.get(usize::from(tile)).copied().flatten()
     }
 }
@@ -174,7 +174,7 @@ mod tests {
             vec![actuator(1, 40.0), None, actuator(2, 40.0), actuator(0, 0.0), actuator(0, f32::NAN)],
             2,
         );
-        assert_eq!(wiring.output(0), Some(Output { channel: 1, per_newton: 0.025 }));
+        assert_eq!(wiring.output(0), Some(CueOutput { channel: 1, per_newton: 0.025 }));
         assert!((1..=5).all(|tile| wiring.output(tile).is_none()));
     }
 

@@ -10,7 +10,7 @@ use super::active_modes::ActiveModes;
 use super::click;
 use super::evicting_queue::evicting_queue;
 use super::loudspeakers::Loudspeakers;
-use super::mix::{MixBlock, Output, TileChannels};
+use super::mix::{CueOutput, MixBlock, TileChannels};
 use super::rack::{Rack, SampleFaults};
 use super::schedule::{Due, SampleClock, Schedule, WAITING};
 use super::scope::ScopeWriter;
@@ -325,7 +325,7 @@ impl Renderer {
                 felt = (started.unfelt as usize) < cue.spots.len();
                 note(&self.shared, started);
             }
-            let mut strike = |weight: f32, output: Output| {
+            let mut strike = |weight: f32, output: CueOutput| {
                 let bell = self.modes.strikable(output.channel, frame - first, &mut self.mix);
                 let gain = cue.click.level.0 * weight * output.per_newton;
                 let struck = click::strike(bell, &cue.click, gain);

@@ -10,12 +10,12 @@ use underfoot::layout::CursorRule;
 use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 use underfoot::sense::{ForceFrame, Method, Quality};
 use underfoot::units::Instant;
-use underfoot_lab::experiment::{Rig, Visit};
+use underfoot_lab::experiment::{DrawnVisit, Rig};
 use underfoot_sim::Foot;
 
 /// The frames of one person's visit, `times` as heavy, and its length in milliseconds.
 fn visit(geometry: Geometry, times: f32) -> (Vec<ForceFrame>, u64) {
-    let visit = Visit::of(3, &geometry).unwrap();
+    let visit = DrawnVisit::of(3, &geometry).unwrap();
     let mut rig = Rig::ideal(geometry);
     let (mut frames, mut feet) = (Vec::<ForceFrame>::new(), Vec::<Foot>::new());
     let length = visit.script().duration().as_millis() as u64;

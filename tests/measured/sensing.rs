@@ -15,7 +15,7 @@ use underfoot::sense::ForceFrame;
 use underfoot::sense::{Assembler, Method, Sensing};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::SensorPacket;
-use underfoot_lab::experiment::Visit;
+use underfoot_lab::experiment::DrawnVisit;
 use underfoot_sim::{self as sim, Foot, SensorFault, SimConfig, SimFloor};
 
 #[test]
@@ -23,7 +23,7 @@ fn people_on_a_mapped_floor_whose_sensors_break_allocate_nothing() {
     let wired = Floor::default();
     let mut sim = SimFloor::new(&wired, SimConfig::default(), 2);
     let floor = sim::mapped(&sim::calibrated(&wired, &sim, 2).unwrap(), &sim, 2).unwrap();
-    let visit = Visit::of(2, &Geometry::default()).unwrap();
+    let visit = DrawnVisit::of(2, &Geometry::default()).unwrap();
     let mut assembler = Assembler::new(&floor);
     let mut ways = [Method::Eq4, Method::Tracker]
         .map(|method| Sensing::new(floor.geometry, method).with_maps(&floor.position_maps));

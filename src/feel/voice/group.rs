@@ -27,7 +27,7 @@ impl Model {
 
 /// The present input of one voice.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Drive {
+pub(super) struct VoiceInput {
     /// Slip speed, in metres per second.
     pub(super) speed: f32,
     /// Normal force as a share of the full one, 0 to 1.
@@ -97,7 +97,7 @@ impl Group {
     }
 
     /// Sets the present input of a voice.
-    pub(super) fn tune(&mut self, lane: usize, effect: &Lasting, drive: Drive, band: Band, rate: f32) {
+    pub(super) fn tune(&mut self, lane: usize, effect: &Lasting, drive: VoiceInput, band: Band, rate: f32) {
         match effect {
             Lasting::Friction(_) => self.hiss.tune(lane, &mut self.chain, drive.hz, 1.0, band, rate),
             Lasting::Hum(hum) => self.hiss.tune(lane, &mut self.chain, drive.hz, hum.noise, band, rate),

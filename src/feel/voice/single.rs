@@ -3,10 +3,10 @@
 use arrayvec::ArrayVec;
 
 use super::duck::{Ducks, MAX_REACHES};
-use super::group::Drive;
+use super::group::VoiceInput;
 use super::{Row, within};
 use crate::feel::loudspeakers::{PER_NEWTON, Panned};
-use crate::feel::mix::{FAINT, MixBlock, Output, TileChannels};
+use crate::feel::mix::{CueOutput, FAINT, MixBlock, TileChannels};
 use crate::feel::{Friction, Hum, Lasting, Manner, Spots, SustainedCue, Tone};
 
 /// Time constant with which level, speed and pitch follow the foot: `y += (x - y) * dt / (FOLLOW_S + dt)`.
@@ -63,7 +63,7 @@ struct Wish {
 /// A channel under the foot, a channel that it has just left, or the channel of a loudspeaker nearby.
 #[derive(Clone, Copy, Debug)]
 struct Reach {
-    output: Output,
+    output: CueOutput,
     weight: f32,
     wanted: f32,
     /// The gain at the end of the last part.
@@ -160,14 +160,14 @@ impl Voice {
 
     /// Sets the targets for these loudspeakers as well; to be called after [`Voice::reach`].
     fn sound(&mut self, heard: &Panned) {
-        for Output { channel, per_newton } in heard {
+        for CueOutput { channel, per_newton } in heard {
             // The place of the sound changes as the foot moves: a weight expresses it, so that nothing jumps.
-            let output = Output { channel: *channel, per_newton: PER_NEWTON };
+            let output = CueOutput { channel: *channel, per_newton: PER_NEWTON };
             self.want(output, per_newton / PER_NEWTON);
         }
     }
 
-    fn want(&mut self, output: Output, weight: f32) {
+    fn want(&mut self, output: CueOutput, weight: f32) {
         if let Some(reach) = self.reaches.iter_mut().find(|reach| reach.output == output) {
             reach.wanted += weight;
             return;
@@ -192,7 +192,7 @@ impl Voice {
     }
 
     /// Advances by `seconds`; returns the present input of the model.
-    pub(super) fn step(&mut self, seconds: f32) -> Drive {
+    pub(super) fn step(&mut self, seconds: f32) -> VoiceInput {
         let pull = seconds / (FOLLOW_S + seconds);
         if let Some(tone) = &self.tone {
             self.clock_s += seconds;
@@ -213,7 +213,7 @@ impl Voice {
         for reach in &mut self.reaches {
             reach.weight += (reach.wanted - reach.weight) * pull;
         }
-        Drive { speed: self.now.speed, force: self.now.force, hz: self.now.hz }
+        VoiceInput { speed: self.now.speed, force: self.now.force, hz: self.now.hz }
     }
 
     /// Whether it can be freed.

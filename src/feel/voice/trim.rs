@@ -1,6 +1,6 @@
 //! Balances every model to the level set by its author, by measuring its output.
 
-use super::group::{Drive, Group, Model};
+use super::group::{Group, Model, VoiceInput};
 use super::{LANES, LOW_HZ};
 use crate::feel::{Band, Lasting};
 
@@ -29,7 +29,7 @@ impl Lasting {
             // A sole is loudest while it sticks and slips, not at its highest speed; all other models are loudest
             // there.
             let slower = if matches!(self, Self::StickSlip(_)) { number as f32 / LANES as f32 } else { 0.0 };
-            let drive = Drive { speed: full * (1.0 - slower), force: 1.0, hz: 0.0 };
+            let drive = VoiceInput { speed: full * (1.0 - slower), force: 1.0, hz: 0.0 };
             group.prepare(*lane, &self, band, LOW_HZ);
             group.tune(*lane, &self, drive, band, LOW_HZ);
         }

@@ -51,7 +51,7 @@ pub(super) enum SequenceVerdict {
 /// A packet cannot arrive before its sampling, so a number too large for the elapsed time is damaged: it "looks
 /// early".
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sequence {
+pub(super) struct PacketSequence {
     latest: Option<Latest>,
     jump: Option<Jump>,
 }
@@ -72,7 +72,7 @@ struct Jump {
     agreeing: u8,
 }
 
-impl Sequence {
+impl PacketSequence {
     /// Position in the stream of the furthest packet so far.
     pub(super) fn position(&self) -> Option<i64> {
         self.latest.map(|latest| latest.position)
@@ -146,22 +146,22 @@ mod tests {
     }
 
     /// Classifies numbers that all come in time.
-    fn judge(sequence: &mut Sequence, numbers: impl IntoIterator<Item = u32>) -> Vec<SequenceVerdict> {
+    fn judge(sequence: &mut PacketSequence, numbers: impl IntoIterator<Item = u32>) -> Vec<SequenceVerdict> {
         numbers.into_iter().map(|number| sequence.judge(number, |_| false)).collect()
     }
 
     #[test]
     fn numbers_wrap_without_a_seam() {
-        let verdicts = judge(&mut Sequence::default(), [u32::MAX - 1, u32::MAX, 0, 1]);
+        let verdicts = judge(&mut PacketSequence::default(), [u32::MAX - 1, u32::MAX, 0, 1]);
         assert_eq!(verdicts, [next(0), next(1), next(2), next(3)]);
-        let gap = judge(&mut Sequence::default(), [u32::MAX - 1, 1, u32::MAX]);
+        let gap = judge(&mut PacketSequence::default(), [u32::MAX - 1, 1, u32::MAX]);
         assert_eq!(gap[1], SequenceVerdict::Next { position: 3, skipped: 2 });
         assert_eq!(gap[2], SequenceVerdict::Straggler { position: 1, missed: true });
     }
 
     #[test]
     fn stragglers_count_once_and_only_inside_the_stream() {
-        let verdicts = judge(&mut Sequence::default(), [10, 13, 11, 11, 9, 13]);
+        let verdicts = judge(&mut PacketSequence::default(), [10, 13, 11, 11, 9, 13]);
         assert_eq!(verdicts[2], SequenceVerdict::Straggler { position: 1, missed: true });
         assert_eq!(verdicts[3], SequenceVerdict::Duplicate);
         assert_eq!(verdicts[4], SequenceVerdict::Straggler { position: -1, missed: false });
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn a_reboot_is_believed_at_its_third_packet_even_if_each_comes_twice() {
-        let mut sequence = Sequence::default();
+        let mut sequence = PacketSequence::default();
         judge(&mut sequence, 5000..5010);
         let verdicts = judge(&mut sequence, [0, 0, 1, 1, 2, 2, 3]);
         let [out_of_order, duplicate] = [SequenceVerdict::OutOfOrder, SequenceVerdict::Duplicate];
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn single_damaged_numbers_derail_nothing() {
-        let mut sequence = Sequence::default();
+        let mut sequence = PacketSequence::default();
         judge(&mut sequence, [1000]);
         for bit in 0..32 {
             let good = 1001 + bit;
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn early_numbers_are_believed_when_three_agree() {
-        let mut sequence = Sequence::default();
+        let mut sequence = PacketSequence::default();
         judge(&mut sequence, [100]);
         let verdicts: Vec<_> = [110, 111, 112].map(|number| sequence.judge(number, |_| true)).into();
         let ahead = SequenceVerdict::Next { position: 12, skipped: 11 };

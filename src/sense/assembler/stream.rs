@@ -3,7 +3,7 @@
 use super::clock::{LeastDelay, SLOT_NS, SlotClock};
 use super::pace::PacketPace;
 use super::presence::{LossMeter, Presence, SILENT_NS};
-use super::sequence::{Sequence, SequenceVerdict};
+use super::sequence::{PacketSequence, SequenceVerdict};
 use crate::wire::LinkCounters;
 
 /// Age beyond its board's usual delay above which a sample after silence is useless: it was held up on the way, and
@@ -28,7 +28,7 @@ pub(super) struct BoardStream {
     pub(super) loss: LossMeter,
     /// Whether frames wait for it.
     pub(super) awaited: bool,
-    sequence: Sequence,
+    sequence: PacketSequence,
     arrivals: LeastDelay,
     pace: PacketPace,
     /// Slot of stream position 0.

@@ -7,7 +7,7 @@ mod threshold;
 mod tile_set;
 
 use self::survey::Survey;
-use self::threshold::Thresholds;
+use self::threshold::LoadThresholds;
 pub(super) use self::tile_set::TileSet;
 use super::centroid::tile::{LoadedTile, PlacedTile, TileReading};
 use super::{ForceFrame, Quality};
@@ -44,7 +44,7 @@ impl Default for LoadThreshold {
 #[derive(Clone, Debug)]
 pub(super) struct LoadedTiles {
     geometry: Geometry,
-    thresholds: Thresholds,
+    thresholds: LoadThresholds,
     /// Tile of each index, and its centre.
     places: Vec<PlacedTile>,
     /// Per tile of the floor; none for the tiles past the end.
@@ -73,7 +73,7 @@ impl LoadedTiles {
         let tiles = geometry.tile_count();
         Self {
             geometry,
-            thresholds: Thresholds::new(tiles, threshold),
+            thresholds: LoadThresholds::new(tiles, threshold),
             places: (0..tiles).map(|index| PlacedTile::of(&geometry, index)).collect(),
             maps: Vec::new(),
             survey: Survey::new(&geometry),

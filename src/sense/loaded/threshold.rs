@@ -67,7 +67,7 @@ const NOTHING_N: f32 = 0.2;
 
 /// The thresholds of each tile, in tile-index order.
 #[derive(Clone, Debug)]
-pub(super) struct Thresholds {
+pub(super) struct LoadThresholds {
     base: LoadThreshold,
     /// Mean absolute difference of each tile's readings at two consecutive visits, idle at both (N).
     differences: Vec<f32>,
@@ -124,7 +124,7 @@ impl TileThreshold {
     }
 }
 
-impl Thresholds {
+impl LoadThresholds {
     pub(super) fn new(tiles: usize, base: LoadThreshold) -> Self {
         Self {
             base,

@@ -5,7 +5,7 @@ use std::time::Duration;
 use underfoot::floor::Geometry;
 use underfoot::sense::{Contact, Method};
 use underfoot::units::Instant;
-use underfoot_lab::experiment::{Rig, Visit};
+use underfoot_lab::experiment::{DrawnVisit, Rig};
 use underfoot_sim::{FloorQuality, Load};
 
 /// Force of a foot that stands alone, and the most that another may carry meanwhile, in newtons.
@@ -24,9 +24,9 @@ fn second_contacts(quality: FloorQuality, person: u64) -> (u64, u64) {
     let geometry = Geometry::default();
     let mut rig = Rig::of_quality(geometry, quality, person).unwrap();
     let visit = if quality.is_real() {
-        Visit::rolling_as_people_do(person, &geometry)
+        DrawnVisit::rolling_as_people_do(person, &geometry)
     } else {
-        Visit::of(person, &geometry)
+        DrawnVisit::of(person, &geometry)
     };
     let visit = visit.unwrap();
     let mut sensing = rig.sensing(Method::Tracker);

@@ -15,7 +15,7 @@ use underfoot::units::{Instant, Newtons};
 use underfoot::widget::EventKind;
 use underfoot::wire::Readings;
 use underfoot_lab::experiment::{
-    FaultHook, Followed, PeopleTable, Rig, Stance, TapScene, TapScore, TapTable, Visit,
+    DrawnVisit, FaultHook, Followed, HeavyFoot, PeopleTable, Rig, TapScene, TapScore, TapTable,
 };
 use underfoot_sim::{Foot, SensorFault};
 
@@ -87,7 +87,7 @@ impl std::fmt::Display for Visited {
 
 /// Runs the visit of `seed` on the floor of `rig`, with `fault`.
 pub fn visited(mut rig: Rig, seed: u64, fault: impl FaultHook) -> Visited {
-    let visit = Visit::of(seed, rig.geometry()).unwrap();
+    let visit = DrawnVisit::of(seed, rig.geometry()).unwrap();
     let geometry = *rig.geometry();
     let engine = rig.engine(page(ALL_BUTTON), Method::default());
     let mut watch = Watch {
@@ -117,7 +117,7 @@ pub fn visited(mut rig: Rig, seed: u64, fault: impl FaultHook) -> Visited {
 struct Watch<'a, M> {
     engine: Engine,
     geometry: Geometry,
-    visit: &'a Visit,
+    visit: &'a DrawnVisit,
     fault: M,
     loaded: Option<u64>,
     pressed: usize,
@@ -162,7 +162,7 @@ impl<M: FaultHook> FaultHook for Watch<'_, M> {
 
 /// The tile that carries most over the visit of `seed`.
 pub fn busiest_tile(seed: u64, geometry: &Geometry) -> TileId {
-    let visit = Visit::of(seed, geometry).unwrap();
+    let visit = DrawnVisit::of(seed, geometry).unwrap();
     let mut carried = vec![0.0; geometry.tile_count()];
     let mut feet = Vec::new();
     for milli in (0..visit.script().duration().as_millis() as u64).step_by(10) {
@@ -185,7 +185,7 @@ pub fn tapped<M: FaultHook>(
     let mut table = TapTable::default();
     let mut troubles = Vec::new();
     for seed in seeds {
-        for stance in Stance::ALL {
+        for stance in HeavyFoot::ALL {
             let geometry = Geometry::default();
             let scene = TapScene::of(seed, stance, &geometry).unwrap();
             let mut rig = rig(seed);

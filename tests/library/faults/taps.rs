@@ -4,7 +4,7 @@
 
 use underfoot::floor::{Geometry, SensorId};
 use underfoot::sense::Trouble;
-use underfoot_lab::experiment::{Stance, TapScene};
+use underfoot_lab::experiment::{HeavyFoot, TapScene};
 use underfoot_sim::SensorFault;
 
 use super::scenes::{Break, Coupled, Tapped, offset, tapped, under_the_stance, under_the_taps};
@@ -90,7 +90,7 @@ fn s3_open_and_short_circuits() {
 #[test]
 fn s4_a_sensor_that_has_drifted_by_ten_newtons() {
     let mut rig = plain(PEOPLE[0]);
-    let scene = TapScene::of(PEOPLE[0], Stance::Facing, rig.geometry()).unwrap();
+    let scene = TapScene::of(PEOPLE[0], HeavyFoot::Facing, rig.geometry()).unwrap();
     let part = under_the_taps(&scene, rig.geometry());
     for second in 0..600_u16 {
         rig.set_fault(part, Some(offset(f32::from(second) / 60.0)));

@@ -9,7 +9,7 @@ use underfoot::floor::{Corner, Exponential, Floor, Geometry, SensorId};
 use underfoot::sense::{Assembler, Quality, Tare, TareOutcome, TareRules, Trouble};
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
-use underfoot_lab::experiment::{Rig, Visit};
+use underfoot_lab::experiment::{DrawnVisit, Rig};
 use underfoot_sim::{self as sim, PartConfig, SensorFault, SimConfig, SimFloor, SimulatedSensors};
 
 use super::scenes::{Break, Coupled, Hum, Visited, busiest_tile, offset, visited};
@@ -148,7 +148,7 @@ fn s3_circuits_that_break_while_people_stand_on_them() {
     for fault in [SensorFault::Open, SensorFault::Short] {
         for seed in PEOPLE {
             let part = busiest(seed);
-            let visit = Visit::of(seed, &Geometry::default()).unwrap();
+            let visit = DrawnVisit::of(seed, &Geometry::default()).unwrap();
             let half = visit.script().duration().as_millis() as u64 / 2;
             let broken = Break { sensor: part, fault, from_ms: half, until_ms: half + 4000 };
             let visited = visited(plain(seed), seed, broken);
@@ -241,8 +241,8 @@ fn s9_people_on_a_floor_nobody_calibrated() {
 #[test]
 fn s11_people_whose_feet_share_tiles_and_lie_over_four() {
     // Persons standing with their feet 15 to 20 cm apart: often on one tile.
-    let narrow =
-        (1..60).filter(|&seed| Visit::of(seed, &Geometry::default()).unwrap().person().stand_width_m < 0.2);
+    let narrow = (1..60)
+        .filter(|&seed| DrawnVisit::of(seed, &Geometry::default()).unwrap().person().stand_width_m < 0.2);
     for seed in narrow.take(2) {
         let visited = visited(plain(seed), seed, ());
         println!("narrow, person {seed}: {visited}");

@@ -5,7 +5,7 @@ use underfoot::engine::Snapshot;
 use underfoot::glam::Vec2;
 use underfoot::ground::GroundState;
 use underfoot::units::Newtons;
-use underfoot_lab::experiment::{Manner, PondWalk};
+use underfoot_lab::experiment::{PondWalk, WalkManner};
 
 /// One foot of 70 kg.
 const WEIGHT: Newtons = Newtons(690.0);
@@ -45,15 +45,15 @@ fn careful_walking_cracks_at_most_a_third_of_what_stamping_does() {
     let walk = PondWalk::measure(3, 25).unwrap();
     println!("{walk}");
     let line = |manner| walk.line(manner).unwrap();
-    let (stamping, walking) = (line(Manner::Stamping), line(Manner::Walking));
-    for manner in [Manner::Careful, Manner::Lighter] {
+    let (stamping, walking) = (line(WalkManner::Stamping), line(WalkManner::Walking));
+    for manner in [WalkManner::Careful, WalkManner::Lighter] {
         assert!(line(manner).share <= 1.0 / 3.0, "{manner:?}: {}", line(manner).share);
     }
     // A slower rise to the same load cracks less too, and walking is audible.
-    assert!(line(Manner::Slower).share < 0.8, "{}", line(Manner::Slower).share);
+    assert!(line(WalkManner::Slower).share < 0.8, "{}", line(WalkManner::Slower).share);
     assert!(walking.events_per_step > 2.0 && walking.share < 0.5, "{walking:?}");
     assert!(stamping.events_per_step > 20.0, "{stamping:?}");
-    let ratio = line(Manner::Careful).rate_per_s / walking.rate_per_s;
+    let ratio = line(WalkManner::Careful).rate_per_s / walking.rate_per_s;
     assert!((ratio - 0.6).abs() < 0.01, "{ratio}");
 }
 

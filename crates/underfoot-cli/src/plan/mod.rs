@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use serde_json::json;
 use underfoot::schema;
 use underfoot::wire::SensorFormat;
-use underfoot_lab::plan::{Crowd, MOST_PEOPLE, Plan, PlanError, Size, plan_floor, plan_size};
+use underfoot_lab::plan::{Crowd, FloorSize, MOST_PEOPLE, Plan, PlanError, plan_floor, plan_size};
 
 use super::failure::Failure;
 use super::number::{number, patience};
@@ -106,7 +106,7 @@ fn made(args: &Args) -> Result<Plan, Failure> {
         Some(floor) => plan_floor(floor, &crowd, &machine),
         None => {
             let (columns, rows) = args.tiles;
-            plan_size(Size { columns, rows, actuators: !args.no_actuators }, &crowd, &machine)
+            plan_size(FloorSize { columns, rows, actuators: !args.no_actuators }, &crowd, &machine)
         }
     };
     plan.map_err(|error| match error {

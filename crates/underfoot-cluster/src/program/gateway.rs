@@ -23,7 +23,7 @@ use underfoot::wire::{Prefix, Request};
 use underfoot_cluster::auth::{MessageKind, Opened, Role};
 use underfoot_cluster::gateway::{Counters, Gateway, Output, RequestAnswer};
 use underfoot_cluster::message::{NodeMessage, ToNodes, decode, encode};
-use underfoot_cluster::transport::Transport;
+use underfoot_cluster::transport::TransportEnd;
 
 use super::key::{KeyArgs, session};
 use super::notices::Notices;
@@ -125,7 +125,7 @@ pub(crate) fn run(args: &Args) -> Result<(), ClusterFailure> {
     let areas: Vec<String> = floor.areas.iter().map(|area| area.id.clone()).collect();
     let transport = {
         let (dropped, session) = (Arc::clone(&dropped), Arc::clone(&session));
-        Transport::gateway(&listen, &areas, &key, move |bytes| {
+        TransportEnd::gateway(&listen, &areas, &key, move |bytes| {
             let at = now();
             let Ok(Opened { head, echo, body, .. }) = locked(&session).open(bytes, at) else { return };
             let message = bytes.get(body).and_then(|body| decode::<NodeMessage>(body).ok());

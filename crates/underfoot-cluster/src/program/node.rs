@@ -18,7 +18,7 @@ use underfoot::source::{FloorInput, UdpSource};
 use underfoot_cluster::auth::{Opened, Role};
 use underfoot_cluster::message::{LayoutName, NodeMessage, ToNodes, VERSION, decode, fingerprint};
 use underfoot_cluster::node::{GatewayGuard, NodeSink};
-use underfoot_cluster::transport::Transport;
+use underfoot_cluster::transport::TransportEnd;
 
 use super::key::{KeyArgs, session as session_of};
 use super::neighbourhood::Neighbourhood;
@@ -150,7 +150,7 @@ pub(crate) fn run(args: Args) -> Result<(), ClusterFailure> {
         let commander = Commander { session: session.clone(), notices: notices.clone() };
         let (guard, clock, refused) = (Arc::clone(&guard), Arc::clone(&clock), Arc::clone(&refused));
         let answering = Arc::clone(&answering);
-        Transport::node(&gateways, &args.area, &key, move |bytes| {
+        TransportEnd::node(&gateways, &args.area, &key, move |bytes| {
             let now = clock();
             let Ok(Opened { head, body, .. }) = locked(&answering).open(bytes, now) else { return };
             let message = match decode(bytes.get(body).unwrap_or_default())

@@ -11,7 +11,7 @@ use underfoot::wire::ControlMessage;
 use underfoot_cluster::auth::{AuthSession, MessageKind};
 use underfoot_cluster::message::{NodeMessage, NodeValue, encode};
 use underfoot_cluster::node::{Action, CancelReason, Draft, GatewayGuard, NeighbourSession};
-use underfoot_cluster::transport::Transport;
+use underfoot_cluster::transport::TransportEnd;
 
 use super::locked;
 use super::notices::Notices;
@@ -64,7 +64,7 @@ impl Commander {
 pub(super) struct Teller {
     /// The fields that all messages have in common.
     pub(super) head: NodeMessage,
-    pub(super) transport: Transport,
+    pub(super) transport: TransportEnd,
     pub(super) session: Arc<Mutex<AuthSession>>,
     pub(super) neighbours: NeighbourSession,
     /// For messages of gateways and datagrams of neighbours.

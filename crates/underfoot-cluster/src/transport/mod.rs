@@ -44,7 +44,7 @@ pub enum TransportError {
 
 /// One end: a node's or a gateway's. Dropping it closes it.
 #[derive(Debug)]
-pub struct Transport {
+pub struct TransportEnd {
     session: zenoh::Session,
     key: String,
 }
@@ -61,7 +61,7 @@ fn node_key(area: &str) -> String {
     format!("{NODES}/{area}")
 }
 
-impl Transport {
+impl TransportEnd {
     /// A gateway's end, which listens on `endpoints` for the nodes of `areas` that have the same `key`; it calls
     /// `hear` with their messages, on threads of its own.
     ///
@@ -149,14 +149,14 @@ mod tests {
         (move |bytes: &[u8]| _ = to.send(bytes.to_vec()), received)
     }
 
-    fn gateway(endpoint: &str) -> (Transport, Received) {
+    fn gateway(endpoint: &str) -> (TransportEnd, Received) {
         let (hear, received) = listener();
-        (Transport::gateway(&[endpoint.into()], &["west".into()], &key(), hear).unwrap(), received)
+        (TransportEnd::gateway(&[endpoint.into()], &["west".into()], &key(), hear).unwrap(), received)
     }
 
-    fn node(endpoint: &str, area: &str, key: &Key) -> (Transport, Received) {
+    fn node(endpoint: &str, area: &str, key: &Key) -> (TransportEnd, Received) {
         let (hear, received) = listener();
-        (Transport::node(&[endpoint.into()], area, key, hear).unwrap(), received)
+        (TransportEnd::node(&[endpoint.into()], area, key, hear).unwrap(), received)
     }
 
     /// The first message that arrives while `send` is called repeatedly.
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn what_is_no_endpoint_is_refused_with_how_to_write_one() {
-        let refused = Transport::gateway(&["somewhere".into()], &[], &key(), |_| ()).unwrap_err();
+        let refused = TransportEnd::gateway(&["somewhere".into()], &[], &key(), |_| ()).unwrap_err();
         assert!(refused.to_string().contains("Endpoints are written like tcp/"), "{refused}");
     }
 

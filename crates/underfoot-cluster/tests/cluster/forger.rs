@@ -11,7 +11,7 @@ use underfoot_cluster::auth::{AuthSession, Key, MessageKind, Role};
 use underfoot_cluster::message::{
     AreaStanding, GatewayMessage, NodeMessage, NodeRequest, ToNodes, VERSION, encode, fingerprint,
 };
-use underfoot_cluster::transport::Transport;
+use underfoot_cluster::transport::TransportEnd;
 use zenoh::Wait;
 
 use crate::faults::holding;
@@ -38,7 +38,7 @@ const OTHER: Key = Key::new([8; 32]);
 struct Tapped {
     hall: Hall,
     nodes: Vec<Program>,
-    recorder: Transport,
+    recorder: TransportEnd,
     recorded: Arc<Mutex<Vec<Vec<u8>>>>,
     endpoint: String,
     boards: Option<Boards>,
@@ -53,7 +53,7 @@ impl Tapped {
         let record = move |bytes: &[u8]| heard.lock().unwrap().push(bytes.to_vec());
         let areas = AREAS.map(str::to_owned);
         let recorder =
-            Transport::gateway(std::slice::from_ref(&endpoint), &areas, &hall.key(), record).unwrap();
+            TransportEnd::gateway(std::slice::from_ref(&endpoint), &areas, &hall.key(), record).unwrap();
         let boards = Some(hall.boards(hall.script(scenario), &[]));
         let mut tapped = Self { hall, nodes: Vec::new(), recorder, recorded, endpoint, boards };
         tapped.nodes = AREAS.map(|area| tapped.node(area)).into();
@@ -98,8 +98,8 @@ impl Tapped {
     }
 
     /// A session with the real gateway for a forger that knows Zenoh's password.
-    fn way_in(&self) -> Transport {
-        let way = Transport::node(&[self.hall.endpoint()], "se", &self.hall.key(), |_| ()).unwrap();
+    fn way_in(&self) -> TransportEnd {
+        let way = TransportEnd::node(&[self.hall.endpoint()], "se", &self.hall.key(), |_| ()).unwrap();
         // Time to connect.
         thread::sleep(Duration::from_millis(500));
         way
@@ -107,7 +107,7 @@ impl Tapped {
 }
 
 /// Sends each message, as often as a node would.
-fn send(way: &Transport, messages: impl IntoIterator<Item = Vec<u8>>) {
+fn send(way: &TransportEnd, messages: impl IntoIterator<Item = Vec<u8>>) {
     for message in messages {
         assert!(way.send(message));
         thread::sleep(EVERY);
@@ -348,7 +348,7 @@ fn a_forger_changes_no_event_of_a_foot() {
 
 /// A program with the floor's key that poses as the node of an area.
 struct Impostor {
-    transport: Transport,
+    transport: TransportEnd,
     session: Arc<Mutex<AuthSession>>,
     started: Instant,
 }
@@ -361,7 +361,7 @@ impl Impostor {
         let hear = move |bytes: &[u8]| {
             let _ = hearing.lock().unwrap().open(bytes, now(started));
         };
-        let transport = Transport::node(&[hall.endpoint()], area, &key, hear).unwrap();
+        let transport = TransportEnd::node(&[hall.endpoint()], area, &key, hear).unwrap();
         Self { transport, session, started }
     }
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Distances between estimated and true positions, in metres.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Errors(Vec<f32>);
+pub struct PositionErrors(Vec<f32>);
 
 /// Errors summarised in three numbers, in centimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -21,7 +21,7 @@ pub struct Summary {
     pub worst_cm: f32,
 }
 
-impl Errors {
+impl PositionErrors {
     /// Adds one error, in metres.
     pub fn push(&mut self, error_m: f32) {
         self.0.push(error_m);
@@ -64,7 +64,7 @@ impl Errors {
 }
 
 /// Writes median, 95th percentile and maximum in centimetres with two decimals, in three columns of eight characters.
-impl fmt::Display for Errors {
+impl fmt::Display for PositionErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.summary() {
             Some(Summary { median_cm, p95_cm, worst_cm, .. }) => {
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn quantiles_are_errors_that_occurred() {
-        let mut errors = Errors::default();
+        let mut errors = PositionErrors::default();
         assert_eq!((errors.summary(), errors.to_string().trim()), (None, "-       -       -"));
         // A hundred and one errors from 0 to 1 m, out of order.
         (0..=100).for_each(|step| errors.push((step * 37 % 101) as f32 / 100.0));

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use smallvec::SmallVec;
 
-use super::errors::Errors;
+use super::errors::PositionErrors;
 use super::rig::Rig;
 use underfoot::sense::{Contact, ContactId};
 use underfoot_sim::Load;
@@ -43,9 +43,9 @@ impl Truth {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Followed {
     /// Error of each found foot while two or more are down.
-    pub two_feet: Errors,
+    pub two_feet: PositionErrors,
     /// Error of each found foot while it is down alone.
-    pub one_foot: Errors,
+    pub one_foot: PositionErrors,
     /// Number of feet of `one_foot` and of `two_feet` inside the 95 % ellipse of their contacts.
     pub inside: [usize; 2],
     /// Number of feet to find: one for each foot that is down in a sample.

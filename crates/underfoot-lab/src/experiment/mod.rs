@@ -52,23 +52,23 @@ mod two_feet;
 mod wilson;
 
 pub use effect::EffectSheet;
-pub use errors::{Errors, Summary};
+pub use errors::{PositionErrors, Summary};
 pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
 pub use goodness::Goodness;
 pub use intent::{Guarded, IntentEffort, IntentLine, IntentScore, IntentTable};
 pub use intent_sweep::{IntentSweep, SweepCell};
 pub use orientation::{Orientation, OrientationRow};
-pub use people::{Activity, PeopleLine, PeopleTable, Visit};
+pub use people::{Activity, DrawnVisit, PeopleLine, PeopleTable};
 pub use place::{PlaceLine, PlaceTable};
 pub use pond::{PondLaw, PondLaws};
-pub use pond_walk::{Manner, MannerLine, PondWalk};
+pub use pond_walk::{MannerLine, PondWalk, WalkManner};
 pub use rig::{ExperimentError, FaultHook, OFFSET_N, Rig};
-pub use scan::{Scan, ScanPoint, TileScan};
+pub use scan::{ScanPoint, TileScan, TileSweep};
 pub use scenes::{SceneLine, SceneTable};
 pub use seam_object::{SeamObject, SeamObjectRow};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
-pub use taps::{Stance, TapLine, TapScene, TapScore, TapTable};
+pub use taps::{HeavyFoot, TapLine, TapScene, TapScore, TapTable};
 pub use two_feet::TwoFeet;
 pub use wilson::Counted;
 

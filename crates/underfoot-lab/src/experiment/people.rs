@@ -44,14 +44,14 @@ impl Activity {
 
 /// A person drawn from a seed, and the person's visit to a 6 x 6 floor.
 #[derive(Clone, Debug)]
-pub struct Visit {
+pub struct DrawnVisit {
     person: Person,
     script: Script,
     /// End of each activity, in order.
     parts: Vec<(Duration, Activity)>,
 }
 
-impl Visit {
+impl DrawnVisit {
     /// Draws a person of 45 to 120 kg with feet of 22 to 30 cm, who walks at 0.8 to 1.8 m/s and stands with the feet
     /// 15 to 60 cm apart: onto the floor, turning there, to another place and off again.
     ///
@@ -64,7 +64,7 @@ impl Visit {
     /// The same visit by a person with feet that roll like those of recorded people.
     ///
     /// # Errors
-    /// The same as [`Visit::of`].
+    /// The same as [`DrawnVisit::of`].
     pub fn rolling_as_people_do(seed: u64, geometry: &Geometry) -> Result<Self, ExperimentError> {
         Self::made_up(seed, geometry, true)
     }
@@ -188,16 +188,16 @@ impl PeopleTable {
     /// Simulates the person drawn from `seed` on a floor with parts drawn from `seed` too.
     ///
     /// # Errors
-    /// Errors of [`Rig::of_quality`] and [`Visit::of`].
+    /// Errors of [`Rig::of_quality`] and [`DrawnVisit::of`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let mut rig = Rig::of_quality(Geometry::default(), self.floor, seed)?;
-        let visit = Visit::made_up(seed, rig.geometry(), self.floor.is_real())?;
+        let visit = DrawnVisit::made_up(seed, rig.geometry(), self.floor.is_real())?;
         self.add_visit(&mut rig, &visit, &mut ());
         Ok(())
     }
 
     /// Simulates `visit` on the floor of `rig`, with the faults of `fault`.
-    pub fn add_visit(&mut self, rig: &mut Rig, visit: &Visit, fault: &mut impl FaultHook) {
+    pub fn add_visit(&mut self, rig: &mut Rig, visit: &DrawnVisit, fault: &mut impl FaultHook) {
         let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), ContactMatcher::default()));
         let mut loads: Vec<Load> = Vec::new();
         let mut truth: Vec<Truth> = Vec::new();
@@ -325,7 +325,7 @@ mod tests {
     fn people_come_stand_on_the_floor_and_leave() {
         let geometry = Geometry::default();
         for seed in 0..40 {
-            let visit = Visit::of(seed, &geometry).unwrap();
+            let visit = DrawnVisit::of(seed, &geometry).unwrap();
             let end = visit.script.duration().as_millis() as u64;
             let mut both = 0;
             let mut feet = Vec::new();
@@ -347,7 +347,7 @@ mod tests {
     #[test]
     fn people_are_as_different_as_the_table_says() {
         let people: Vec<Person> =
-            (0..200).map(|seed| *Visit::of(seed, &Geometry::default()).unwrap().person()).collect();
+            (0..200).map(|seed| *DrawnVisit::of(seed, &Geometry::default()).unwrap().person()).collect();
         let range = |measure: fn(&Person) -> f32| {
             people.iter().map(measure).fold((f32::MAX, f32::MIN), |(low, high), m| (low.min(m), high.max(m)))
         };
@@ -363,7 +363,7 @@ mod tests {
 
     #[test]
     fn activities_follow_each_other() {
-        let visit = Visit::of(4, &Geometry::default()).unwrap();
+        let visit = DrawnVisit::of(4, &Geometry::default()).unwrap();
         let end = visit.script.duration();
         let mut doing: Vec<Activity> =
             (0..end.as_millis() as u64).map(|ms| visit.activity(Duration::from_millis(ms))).collect();

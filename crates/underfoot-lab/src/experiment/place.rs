@@ -5,7 +5,7 @@ use std::fmt;
 use glam::Vec2;
 use serde::Serialize;
 
-use super::errors::{Errors, Summary};
+use super::errors::{PositionErrors, Summary};
 use super::rig::ExperimentError;
 use super::spot::{Bench, Thing, Way, geometry, spread};
 use underfoot::floor::{Rect, TileId};
@@ -27,7 +27,7 @@ pub struct PlaceTable {
 struct Row {
     zone: Zone,
     force: Newtons,
-    errors: [Errors; WAYS.len()],
+    errors: [PositionErrors; WAYS.len()],
 }
 
 impl PlaceTable {

@@ -21,7 +21,7 @@ use underfoot_sim::{Foot, FootDriver, Gait, PREFERRED_M_S, Scenario};
 /// Manner of putting a foot down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Manner {
+pub enum WalkManner {
     /// Full force within 50 ms.
     Stamping,
     /// Ordinary walking.
@@ -34,7 +34,7 @@ pub enum Manner {
     Slower,
 }
 
-impl Manner {
+impl WalkManner {
     /// All manners, in the order of the table.
     pub const ALL: [Self; 5] = [Self::Stamping, Self::Slower, Self::Lighter, Self::Walking, Self::Careful];
 
@@ -76,7 +76,7 @@ impl Manner {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MannerLine {
     /// The manner.
-    pub manner: Manner,
+    pub manner: WalkManner,
     /// Number of steps.
     pub steps: u64,
     /// Maximum loading rate, in body weights per second.
@@ -111,7 +111,7 @@ impl PondWalk {
     /// [`ExperimentError`] if the floor can't be calibrated or the layout is rejected.
     pub fn measure(seed: u64, steps: u64) -> Result<Self, ExperimentError> {
         let mut lines: Vec<MannerLine> = Vec::new();
-        for manner in Manner::ALL {
+        for manner in WalkManner::ALL {
             let mut pond = Pond::new(seed)?;
             let (mut events, mut energy) = (0_usize, 0.0);
             for _ in 0..steps {
@@ -139,7 +139,7 @@ impl PondWalk {
 
     /// Returns the line of one manner.
     #[must_use]
-    pub fn line(&self, manner: Manner) -> Option<&MannerLine> {
+    pub fn line(&self, manner: WalkManner) -> Option<&MannerLine> {
         self.lines.iter().find(|line| line.manner == manner)
     }
 
@@ -172,7 +172,7 @@ impl PondWalk {
         pictures.push(("pond_stroll", pond.picture(&[])));
         let mut pond = Pond::new(seed)?;
         for _ in 0..24 {
-            pond.step(Manner::Stamping);
+            pond.step(WalkManner::Stamping);
         }
         pictures.push(("pond_stamped", pond.picture(&[])));
         Ok(pictures)
@@ -245,7 +245,7 @@ impl Pond {
     }
 
     /// Takes one step at a random place and returns its events.
-    fn step(&mut self, manner: Manner) -> Vec<GroundEvent> {
+    fn step(&mut self, manner: WalkManner) -> Vec<GroundEvent> {
         self.events.clear();
         let room = self.geometry.bounds().grown(-0.2);
         let share = Vec2::new(self.rng.random(), self.rng.random());

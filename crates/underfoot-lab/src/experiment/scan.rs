@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::Vec2;
 
 use super::chart::{ChartAxis, ChartPage, LegendSymbol, MARGIN_M, Plot, THEME, Type};
-use super::errors::Errors;
+use super::errors::PositionErrors;
 use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Corner, Geometry, Rect, TileId};
@@ -25,18 +25,18 @@ pub struct ScanPoint {
 
 /// A scan of a whole tile with one kind of calibration.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scan {
+pub struct TileSweep {
     /// Name of the calibration: "without position map", "with position map".
     pub name: &'static str,
     /// Row by row from the south-west.
     pub points: Vec<ScanPoint>,
 }
 
-impl Scan {
+impl TileSweep {
     /// Returns the distances between true and estimated positions.
     #[must_use]
-    pub fn errors(&self) -> Errors {
-        let mut errors = Errors::default();
+    pub fn errors(&self) -> PositionErrors {
+        let mut errors = PositionErrors::default();
         self.points.iter().for_each(|point| errors.push(point.truth.distance(point.found)));
         errors
     }
@@ -49,7 +49,7 @@ impl Scan {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileScan {
     /// One entry for each kind of calibration.
-    pub scans: Vec<Scan>,
+    pub scans: Vec<TileSweep>,
 }
 
 /// Number of points along each line, and of lines, per tile.
@@ -78,7 +78,7 @@ impl TileScan {
             ("without position map", Rig::of_calibrated_parts(geometry, seed)?),
             ("with position map", Rig::of_mapped_parts(geometry, seed)?),
         ];
-        let scans = rigs.into_iter().map(|(name, rig)| Scan { name, points: scan(rig) });
+        let scans = rigs.into_iter().map(|(name, rig)| TileSweep { name, points: scan(rig) });
         Ok(Self { scans: scans.collect() })
     }
 }
@@ -164,7 +164,7 @@ impl Figure for TileScan {
     }
 }
 
-fn draw_scan(page: &mut ChartPage, area: Rect, scan: &Scan) {
+fn draw_scan(page: &mut ChartPage, area: Rect, scan: &TileSweep) {
     let geometry = Geometry::of_paper_tiles(1, 1).unwrap_or_default();
     let centimetres = |label| ChartAxis { from: 0.0, to: 30.4, tick: 5.0, label };
     let plot = Plot::draw(page, area, &capitalised(scan.name), centimetres("x, cm"), centimetres("y, cm"));
@@ -217,7 +217,8 @@ mod tests {
 
     #[test]
     fn an_exact_tile_is_scanned_exactly() {
-        let scan = Scan { name: "exact", points: scan(Rig::ideal(Geometry::of_paper_tiles(1, 1).unwrap())) };
+        let scan =
+            TileSweep { name: "exact", points: scan(Rig::ideal(Geometry::of_paper_tiles(1, 1).unwrap())) };
         assert!(scan.errors().quantile(1.0).unwrap() < 1e-4);
     }
 }

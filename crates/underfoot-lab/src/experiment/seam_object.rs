@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::Vec2;
 
 use super::chart::{ChartAxis, ChartPage, LegendSymbol, MARGIN_M, Map, Plot, THEME, Type, whole};
-use super::errors::Errors;
+use super::errors::PositionErrors;
 use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Geometry, Rect, TileId};
@@ -162,7 +162,7 @@ impl Figure for SeamObject {
     }
 
     fn summary(&self) -> String {
-        let mut errors = Errors::default();
+        let mut errors = PositionErrors::default();
         let mut text = String::from(
             "centroid of the west tile under an object of 51 N over the seam, cm from the seam's middle\n\
              angle     true x       y   found x       y     error   difference vector\n",

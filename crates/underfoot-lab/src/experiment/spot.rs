@@ -5,7 +5,7 @@ use std::fmt;
 use glam::Vec2;
 use serde::Serialize;
 
-use super::errors::{Errors, Summary};
+use super::errors::{PositionErrors, Summary};
 use super::follow::ELLIPSE_95;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Geometry, TileId};
@@ -174,7 +174,7 @@ pub struct SpotRow {
     /// Way of locating the object.
     pub way: Way,
     /// Distances from the true centre of pressure.
-    pub errors: Errors,
+    pub errors: PositionErrors,
     /// Number of places without a contact.
     pub missed: usize,
     /// Number of places with the true centre of pressure inside the contact's 95 % ellipse.
@@ -206,7 +206,7 @@ impl SpotTable {
             thing,
             force: Newtons(force),
             way,
-            errors: Errors::default(),
+            errors: PositionErrors::default(),
             missed: 0,
             inside: 0,
         };
@@ -262,9 +262,9 @@ impl fmt::Display for SpotTable {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeamRow {
     /// Errors in the middle of a tile: centre of pressure within 5 cm of the tile's centre.
-    pub middle: Errors,
+    pub middle: PositionErrors,
     /// Errors at a seam: centre of pressure within 2 cm of it, and not near a corner.
-    pub seam: Errors,
+    pub seam: PositionErrors,
 }
 
 impl SeamRow {

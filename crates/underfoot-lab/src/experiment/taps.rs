@@ -11,7 +11,7 @@ use serde::Serialize;
 use smallvec::SmallVec;
 
 use super::METHODS;
-use super::errors::{Errors, Summary};
+use super::errors::{PositionErrors, Summary};
 use super::follow::DOWN_N;
 use super::people::quality_note;
 use super::rig::{ExperimentError, FaultHook, Rig};
@@ -28,14 +28,14 @@ use underfoot_sim::{FloorQuality, Foot, shoe_size};
 /// Stance of the heavy foot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Stance {
+pub enum HeavyFoot {
     /// The toes point at the region, as those of a person who looks at it.
     Facing,
     /// The foot stands alongside the region's edge.
     Beside,
 }
 
-impl Stance {
+impl HeavyFoot {
     /// Both stances, in the order of the table.
     pub const ALL: [Self; 2] = [Self::Facing, Self::Beside];
 
@@ -60,7 +60,7 @@ struct Touch {
 #[derive(Clone, Debug)]
 pub struct TapScene {
     layout: Layout,
-    way: Stance,
+    way: HeavyFoot,
     stance: Foot,
     touching: Foot,
     press: Newtons,
@@ -92,7 +92,7 @@ impl TapScene {
     ///
     /// # Errors
     /// [`ExperimentError::Layout`], which no seed should cause.
-    pub fn of(seed: u64, stance: Stance, geometry: &Geometry) -> Result<Self, ExperimentError> {
+    pub fn of(seed: u64, stance: HeavyFoot, geometry: &Geometry) -> Result<Self, ExperimentError> {
         let layout = layout(REGION_TILES[usize::from(seed % 2 == 1)], geometry)?;
         let region = layout.regions.first().map_or_else(Rect::default, |region| region.area);
         let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x7a95);
@@ -103,8 +103,8 @@ impl TapScene {
         let along = region.min.x + region.size().x * rng.random_range(0.35..0.65);
         let shoe = shoe_size(length_m);
         let (heading, reach) = match stance {
-            Stance::Facing => (rng.random_range(-0.2..0.2_f32), 0.5 * shoe.y),
-            Stance::Beside => (FRAC_PI_2, 0.5 * shoe.x),
+            HeavyFoot::Facing => (rng.random_range(-0.2..0.2_f32), 0.5 * shoe.y),
+            HeavyFoot::Beside => (FRAC_PI_2, 0.5 * shoe.x),
         };
         let position = Vec2::new(along, region.min.y - gap - reach);
         let standing = Foot { position, heading, length_m, force: heavy, roll: 0.4, left: false };
@@ -195,7 +195,7 @@ fn ease(share: f32) -> f32 {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TapScore {
     /// Distance of the cursor from the centre of pressure of the foot that works in the region.
-    pub cursor: Errors,
+    pub cursor: PositionErrors,
     /// Number of samples in which the foot pressed with more than 10 N.
     pub samples: usize,
     /// Number of these samples without a cursor.
@@ -234,7 +234,7 @@ impl TapScore {
 /// The whole region is one button, so that a press anywhere in it counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TapTable {
-    /// One entry per method ([`METHODS`]) and stance ([`Stance::ALL`]).
+    /// One entry per method ([`METHODS`]) and stance ([`HeavyFoot::ALL`]).
     pub scores: [[TapScore; 2]; 2],
     floor: FloorQuality,
     people: usize,
@@ -263,7 +263,7 @@ impl TapTable {
     /// # Errors
     /// Errors of [`Rig::of_quality`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
-        for stance in Stance::ALL {
+        for stance in HeavyFoot::ALL {
             let geometry = Geometry::default();
             let scene = TapScene::of(seed, stance, &geometry)?;
             self.add_scene(&mut Rig::of_quality(geometry, self.floor, seed)?, &scene, &mut ());
@@ -311,7 +311,7 @@ impl TapTable {
 
     fn named(&self) -> impl Iterator<Item = (&'static str, &'static str, &TapScore)> + '_ {
         METHODS.into_iter().zip(&self.scores).flat_map(|((_, method), scores)| {
-            Stance::ALL.into_iter().zip(scores).map(move |(stance, score)| (method, stance.name(), score))
+            HeavyFoot::ALL.into_iter().zip(scores).map(move |(stance, score)| (method, stance.name(), score))
         })
     }
 
@@ -434,7 +434,7 @@ mod tests {
     fn scenes() -> impl Iterator<Item = (Rect, TapScene)> {
         let geometry = Geometry::default();
         (0..60_u64).flat_map(move |seed| {
-            Stance::ALL.map(|stance| {
+            HeavyFoot::ALL.map(|stance| {
                 let scene = TapScene::of(seed, stance, &geometry).unwrap();
                 (scene.layout.regions[0].area, scene)
             })

@@ -44,7 +44,7 @@ pub const MOST_PEOPLE: u32 = 10_000_000;
 /// A floor given by its size alone: the paper's tiles, boards for eight tiles of a row, an actuator under each tile
 /// or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Size {
+pub struct FloorSize {
     /// Number of tiles from west to east, 1 to [`MOST_SIDE`].
     pub columns: u32,
     /// Number of tiles from south to north, 1 to [`MOST_SIDE`].
@@ -133,7 +133,7 @@ pub enum PlanError {
 ///
 /// # Errors
 /// [`PlanError`] if a number is out of its range, or if even single tiles do not fit.
-pub fn plan_size(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Plan, PlanError> {
+pub fn plan_size(size: FloorSize, crowd: &Crowd, machine: &Machine) -> Result<Plan, PlanError> {
     check(crowd, machine)?;
     if !(1..=MOST_SIDE).contains(&size.columns) || !(1..=MOST_SIDE).contains(&size.rows) {
         return Err(PlanError::Range { what: "a floor's side", expected: "1 to 4096 tiles" });
@@ -170,7 +170,11 @@ pub fn plan_floor(floor: &Floor, crowd: &Crowd, machine: &Machine) -> Result<Pla
     if first(&plan.limits).share <= 1.0 {
         return Ok(plan);
     }
-    plan_size(Size { columns, rows, actuators: floor.actuators.iter().any(Option::is_some) }, crowd, machine)
+    plan_size(
+        FloorSize { columns, rows, actuators: floor.actuators.iter().any(Option::is_some) },
+        crowd,
+        machine,
+    )
 }
 
 fn check(crowd: &Crowd, machine: &Machine) -> Result<(), PlanError> {
@@ -235,7 +239,7 @@ mod tests {
     #[test]
     fn a_hall_by_hand() {
         // Sensing is the only limit and people are spread evenly: 500 us, of which 20 are the same for all.
-        let size = Size { columns: 100, rows: 100, actuators: false };
+        let size = FloorSize { columns: 100, rows: 100, actuators: false };
         let crowd = Crowd { crowding: 1.0, ..Crowd::of(400) };
         let plan = plan_size(size, &crowd, &ROUND).unwrap();
         assert!(plan.fits, "{plan:?}");
@@ -256,7 +260,7 @@ mod tests {
 
     #[test]
     fn more_computers_do_not_help_an_app_that_hears_everything() {
-        let size = Size { columns: 1000, rows: 1000, actuators: false };
+        let size = FloorSize { columns: 1000, rows: 1000, actuators: false };
         let plan = plan_size(size, &Crowd::of(30_000), &Machine { person_us: 1.0, ..ROUND }).unwrap();
         assert!(!plan.fits);
         // 125 boards in each of 1000 rows, of 65,536 board numbers; 1000 tiles of 256 along a side.
@@ -276,7 +280,7 @@ mod tests {
     fn of_areas_with_as_many_channels_the_one_that_senses_most_is_the_fullest() {
         // Nine areas of 8 x 8 use all channels of their cards; the one in the middle senses four more tiles on every
         // side.
-        let size = Size { columns: 24, rows: 24, actuators: true };
+        let size = FloorSize { columns: 24, rows: 24, actuators: true };
         let plan = plan_size(size, &Crowd::of(4), &ROUND).unwrap();
         assert_eq!(plan.split, Some(Split { across: 3, up: 3 }));
         assert_eq!((plan.fullest.sensed_columns, plan.fullest.sensed_rows), (16, 16));
@@ -304,7 +308,7 @@ mod tests {
     fn a_crowd_denser_than_measured_is_told() {
         let said = |people| {
             let plan =
-                plan_size(Size { columns: 12, rows: 12, actuators: false }, &Crowd::of(people), &ROUND);
+                plan_size(FloorSize { columns: 12, rows: 12, actuators: false }, &Crowd::of(people), &ROUND);
             plan.unwrap().assumptions.iter().any(|said| said.contains("share tiles"))
         };
         assert!(!said(8));
@@ -313,12 +317,12 @@ mod tests {
 
     #[test]
     fn numbers_out_of_their_range_are_refused() {
-        let size = Size { columns: 6, rows: 6, actuators: true };
+        let size = FloorSize { columns: 6, rows: 6, actuators: true };
         let what = |size, crowd: Crowd| match plan_size(size, &crowd, &ROUND) {
             Err(PlanError::Range { what, .. }) => what,
             other => panic!("{other:?}"),
         };
-        assert_eq!(what(Size { rows: 0, ..size }, Crowd::of(2)), "a floor's side");
+        assert_eq!(what(FloorSize { rows: 0, ..size }, Crowd::of(2)), "a floor's side");
         assert_eq!(what(size, Crowd::of(MOST_PEOPLE + 1)), "the number of people");
         assert_eq!(what(size, Crowd { usable: f64::NAN, ..Crowd::of(2) }), "the share that may be used");
         assert_eq!(what(size, Crowd { crowding: 0.5, ..Crowd::of(2) }), "the crowding of the fullest area");

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::area_demand::Extent;
 use super::datagram::{on_wire, sensor_packet};
 use super::limit::{first, limits};
-use super::{AreaDemand, Crowd, Machine, PlanError, Size};
+use super::{AreaDemand, Crowd, FloorSize, Machine, PlanError};
 use underfoot::floor::SENSED_BEYOND_M;
 use underfoot::wire::SensorFormat;
 
@@ -35,7 +35,7 @@ impl Split {
     }
 
     /// Returns the demand of each area, row by row from the south-west.
-    pub(super) fn areas(&self, size: Size, crowd: &Crowd) -> Vec<AreaDemand> {
+    pub(super) fn areas(&self, size: FloorSize, crowd: &Crowd) -> Vec<AreaDemand> {
         let boards = Boards::of(size, crowd.format);
         let columns = boards.along(size.columns, self.across);
         let rows = rows(size.rows, self.up);
@@ -52,7 +52,7 @@ struct Span {
 }
 
 /// Returns the number of boards of a floor of this size.
-pub(super) fn boards(size: Size) -> u32 {
+pub(super) fn boards(size: FloorSize) -> u32 {
     size.columns.div_ceil(BOARD_TILES).saturating_mul(size.rows)
 }
 
@@ -130,7 +130,7 @@ struct Boards {
 }
 
 impl Boards {
-    fn of(size: Size, format: SensorFormat) -> Self {
+    fn of(size: FloorSize, format: SensorFormat) -> Self {
         let number = boards(size);
         let letters =
             "/underfoot/board/".len() as u32 + number.saturating_sub(1).checked_ilog10().unwrap_or(0) + 1;
@@ -186,7 +186,7 @@ impl Boards {
     }
 }
 
-fn demand(column: &Along, row: &Along, size: Size, crowd: &Crowd) -> AreaDemand {
+fn demand(column: &Along, row: &Along, size: FloorSize, crowd: &Crowd) -> AreaDemand {
     let extent = Extent {
         columns: column.own,
         rows: row.own,
@@ -226,7 +226,7 @@ fn most(all: &[Along]) -> Along {
 ///
 /// # Errors
 /// [`PlanError::TooMuch`] if single tiles do not fit.
-pub(super) fn fewest(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Split, PlanError> {
+pub(super) fn fewest(size: FloorSize, crowd: &Crowd, machine: &Machine) -> Result<Split, PlanError> {
     let boards = Boards::of(size, crowd.format);
     let rows: Vec<Along> = (1..=size.rows).map(|up| most(&rows(size.rows, up))).collect();
     let mut best: Option<(u32, u32, Split)> = None;
@@ -263,13 +263,13 @@ mod tests {
     use super::*;
     use underfoot::floor::{Area, Floor, Geometry, TileBlock, TileId};
 
-    const HALL: Size = Size { columns: 24, rows: 12, actuators: true };
+    const HALL: FloorSize = FloorSize { columns: 24, rows: 12, actuators: true };
 
     #[test]
     fn areas_by_size_ask_as_much_as_areas_by_a_file() {
         // Includes sides that the number of areas or boards does not divide evenly.
         for (columns, rows, across, up) in [(24, 12, 2, 2), (24, 12, 3, 1), (23, 13, 3, 2), (9, 5, 9, 1)] {
-            let size = Size { columns, rows, actuators: true };
+            let size = FloorSize { columns, rows, actuators: true };
             let crowd = Crowd::of(40);
             let split = Split { across, up };
             let cut = |parts, length, part| part * length / parts;
@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn a_floor_that_fits_is_not_cut() {
         assert_eq!(
-            fewest(Size { columns: 6, rows: 6, actuators: true }, &Crowd::of(2), &ROUND),
+            fewest(FloorSize { columns: 6, rows: 6, actuators: true }, &Crowd::of(2), &ROUND),
             Ok(Split::WHOLE)
         );
     }
@@ -314,14 +314,14 @@ mod tests {
         let split = fewest(HALL, &Crowd::of(2), &ROUND).unwrap();
         assert_eq!(split.areas_count(), 5);
         assert_eq!(split, Split { across: 5, up: 1 }, "five columns of 12 tiles are 60 channels");
-        let silent = Size { actuators: false, ..HALL };
+        let silent = FloorSize { actuators: false, ..HALL };
         assert_eq!(fewest(silent, &Crowd::of(2), &ROUND), Ok(Split::WHOLE));
     }
 
     #[test]
     fn people_decide_where_there_are_many() {
         // 500 us less the fixed 20 + 36 x 1 + 288 x 0.2 us leave room for 38 people on the whole floor.
-        let silent = Size { actuators: false, ..HALL };
+        let silent = FloorSize { actuators: false, ..HALL };
         let even = |people| Crowd { crowding: 1.0, ..Crowd::of(people) };
         assert_eq!(fewest(silent, &even(38), &ROUND).unwrap().areas_count(), 1);
         // With one more person: two halves of 12 x 12, and each senses 15 x 12.

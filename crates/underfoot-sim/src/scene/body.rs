@@ -15,7 +15,7 @@ use underfoot::floor::Rect;
 
 /// A person drawn from a seed, from a child of 20 kg to an adult of 140 kg.
 #[derive(Clone, Debug)]
-pub struct Body {
+pub struct RandomPerson {
     person: Person,
     pub(super) habit: RollingHabit,
     pub(super) rng: Pcg64Mcg,
@@ -29,7 +29,7 @@ pub struct Body {
 /// hardly longer.
 const FEET_M: [(f32, f32); 4] = [(20.0, 0.18), (45.0, 0.235), (75.0, 0.262), (140.0, 0.285)];
 
-impl Body {
+impl RandomPerson {
     /// Draws a person from a seed. Masses are spread evenly over their logarithm, so that one in five weighs less
     /// than 30 kg and one in four more than 86. People of 45 to 90 kg wear heels one time in four; the others wear
     /// shoes, boots or nothing.
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn people_are_children_and_heavy_and_wear_everything() {
-        let people: Vec<Person> = (0..400).map(|seed| *Body::of(seed).person()).collect();
+        let people: Vec<Person> = (0..400).map(|seed| *RandomPerson::of(seed).person()).collect();
         let share =
             |holds: fn(&Person) -> bool| people.iter().filter(|person| holds(person)).count() as f32 / 400.0;
         assert!((0.12..0.3).contains(&share(|person| person.mass_kg < 30.0)));

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use rand::RngExt;
 
-use super::body::Body;
+use super::body::RandomPerson;
 use super::thing::{SceneObject, Sole};
 use crate::gait::Gait;
 use crate::track::forward;
@@ -19,7 +19,7 @@ struct Stroll {
 }
 
 /// A straight path over the floor through a point: start, heading and length.
-fn way(body: &mut Body, bounds: Rect) -> (Vec2, f32, f32) {
+fn way(body: &mut RandomPerson, bounds: Rect) -> (Vec2, f32, f32) {
     let through = body.place(bounds, 0.5);
     let heading = body.angle();
     let half = 0.5 * bounds.size().length() + 0.4;
@@ -27,7 +27,12 @@ fn way(body: &mut Body, bounds: Rect) -> (Vec2, f32, f32) {
 }
 
 /// Walks the path at a speed in metres per second, with the weight `weight_n`.
-fn stroll(body: &mut Body, (from, heading, length): (Vec2, f32, f32), speed: f32, weight_n: f32) -> Stroll {
+fn stroll(
+    body: &mut RandomPerson,
+    (from, heading, length): (Vec2, f32, f32),
+    speed: f32,
+    weight_n: f32,
+) -> Stroll {
     let gait = Gait::at_speed(speed);
     let contact_s = body.habit.contact_s(gait.speed_m_s);
     // Step duration at which stances of that contact time overlap by a quarter of a step.
@@ -58,7 +63,7 @@ fn stroll(body: &mut Body, (from, heading, length): (Vec2, f32, f32), speed: f32
 }
 
 /// A stick of 15 mm radius on the far side, which lands with every other step and carries 6 to 25 % of the weight.
-pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn stick(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let way = way(body, bounds);
     let speed = body.within(0.5, 1.0);
     let carried = body.within(0.06, 0.25);
@@ -85,7 +90,7 @@ pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
 /// # Source
 /// Our assumption of usual sizes. Wheelchairs: some 0.42 m from axle to axle, 0.55 m wide, two thirds of the weight
 /// on the large rear wheels; trolleys: 0.6 m long and 0.4 m wide.
-pub(super) fn wheels(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn wheels(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let (from, heading, length) = way(body, bounds);
     let speed = body.within(0.4, 1.1);
     let weight = body.weight_n();

@@ -15,7 +15,7 @@ use super::script::Script;
 use underfoot::floor::Geometry;
 use underfoot::units::Instant;
 
-pub use body::Body;
+pub use body::RandomPerson;
 use thing::SceneObject;
 
 /// Kind of a scene.
@@ -95,7 +95,7 @@ impl SceneKind {
 /// A scene: the loads on the floor, moment by moment.
 ///
 /// People have 20 to 140 kg, are barefoot or wear shoes, heels or boots, and roll their feet like recorded people
-/// ([`super::RollingHabit`]); see [`Body`].
+/// ([`super::RollingHabit`]); see [`RandomPerson`].
 #[derive(Clone, Debug)]
 pub struct Scene {
     script: Option<Script>,
@@ -111,13 +111,13 @@ impl Scene {
     /// # Errors
     /// [`MoveError`] if a move is impossible, which no seed should cause.
     pub fn of(kind: SceneKind, seed: u64, geometry: &Geometry) -> Result<Self, MoveError> {
-        let mut body = Body::of(seed);
+        let mut body = RandomPerson::of(seed);
         let bounds = geometry.bounds();
         match kind {
             SceneKind::Walking => walking::walk(&mut body, bounds).map(Self::scripted),
             SceneKind::SideSteps => walking::sidesteps(&mut body, bounds).map(Self::scripted),
             SceneKind::FaceToFace => {
-                walking::face_to_face(&mut body, &mut Body::of(seed ^ 0x000f_ace5), bounds)
+                walking::face_to_face(&mut body, &mut RandomPerson::of(seed ^ 0x000f_ace5), bounds)
                     .map(Self::scripted)
             }
             SceneKind::Shifting => Ok(Self::acted(standing::shifting(&mut body, bounds))),

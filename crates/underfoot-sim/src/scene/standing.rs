@@ -3,14 +3,14 @@
 use glam::Vec2;
 use rand::RngExt;
 
-use super::body::Body;
+use super::body::RandomPerson;
 use super::thing::{STAND_ROLL, SceneObject, Sole, pair};
 use crate::sway::Sway;
 use crate::track::forward;
 use underfoot::floor::Rect;
 
 /// Two feet of a standing, swaying person near the centre of the floor; left foot first, without force yet.
-fn two_feet(body: &mut Body, bounds: Rect, width_m: f32) -> [SceneObject; 2] {
+fn two_feet(body: &mut RandomPerson, bounds: Rect, width_m: f32) -> [SceneObject; 2] {
     let middle = body.place(bounds, 0.5);
     let facing = body.angle();
     let turn_out = body.habit.turn_out();
@@ -32,7 +32,7 @@ fn share_weight(feet: &mut [SceneObject; 2], at_s: f64, weight_n: f32, right: f3
 }
 
 /// The person steps onto the floor, one foot after the other, and stands on both after a second.
-fn step_on(body: &mut Body, feet: &mut [SceneObject; 2], weight_n: f32) {
+fn step_on(body: &mut RandomPerson, feet: &mut [SceneObject; 2], weight_n: f32) {
     let first = if body.sign() > 0.0 { 0.0 } else { 1.0 };
     share_weight(feet, 0.1, 0.0, 0.5);
     share_weight(feet, 0.35, weight_n, first);
@@ -41,7 +41,7 @@ fn step_on(body: &mut Body, feet: &mut [SceneObject; 2], weight_n: f32) {
 }
 
 /// One foot unloads to 10 to 20 %, in 0.2 or 1.2 s, and takes the weight back; twice.
-pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn shifting(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.within(0.14, 0.30));
     let mut feet = two_feet(body, bounds, width);
     step_on(body, &mut feet, weight);
@@ -68,7 +68,7 @@ pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
 /// # Source
 /// Our assumption of a hopping person: a push of a quarter of a second with 1.6 to 2.2 body weights, 0.30 to 0.45 s
 /// in the air (11 to 25 cm high), a landing with 1.8 to 3 body weights within 60 ms.
-pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn jumping(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.within(0.16, 0.35));
     let mut stand = two_feet(body, bounds, width);
     step_on(body, &mut stand, weight);
@@ -114,7 +114,7 @@ pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
 }
 
 /// Turns on one heel by 30 to 110 degrees, with the other foot lifted and put down afterwards; there and back.
-pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn heel_pivot(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.person().stand_width_m);
     let mut feet = two_feet(body, bounds, width);
     step_on(body, &mut feet, weight);
@@ -174,11 +174,11 @@ pub(super) fn heel_pivot(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
 /// # Source
 /// Our assumption of the load distribution: on one knee, half of the weight stays on the front foot; on both, three
 /// quarters rest on the knees.
-pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn kneeling(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.within(0.16, 0.26));
     let size = body.person().foot_length_m / 0.26;
     let mut feet = two_feet(body, bounds, width);
-    let knee = |body: &mut Body, foot: &SceneObject| {
+    let knee = |body: &mut RandomPerson, foot: &SceneObject| {
         let (at, heading) = (Vec2::new(foot.x.at(0.0), foot.y.at(0.0)), foot.heading.at(0.0));
         // Lower leg and foot bent up on the toes: 0.35 m from toes to knee.
         let knee = at + forward(heading) * (0.12 * size) + Vec2::from_angle(body.angle()) * 0.01;
@@ -236,7 +236,7 @@ pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
 }
 
 /// Two feet land within 20 ms of each other, 12 to 40 cm apart, stand for three seconds and leave.
-pub(super) fn landing(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn landing(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.within(0.12, 0.40));
     let mut feet = two_feet(body, bounds, width);
     let right = (0.5 + 0.03 * body.normal()).clamp(0.3, 0.7);

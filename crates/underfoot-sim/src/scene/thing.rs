@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::body::Body;
+use super::body::RandomPerson;
 use crate::curve::Curve;
 use crate::foot::Load;
 use crate::footprint::Print;
@@ -62,7 +62,7 @@ impl SceneObject {
     }
 
     /// A standing foot of a person.
-    pub(super) fn foot(body: &Body, at: Vec2, heading: f32) -> Self {
+    pub(super) fn foot(body: &RandomPerson, at: Vec2, heading: f32) -> Self {
         let person = body.person();
         let sole = Sole::Foot { length_m: person.foot_length_m, footwear: person.footwear };
         Self::at(sole, at, heading)
@@ -70,7 +70,7 @@ impl SceneObject {
 
     /// One step of a walking person, from `landing_s` on, with the peak `peak_n`.
     pub(super) fn step(
-        body: &mut Body,
+        body: &mut RandomPerson,
         (at, heading): (Vec2, f32),
         side: f32,
         landing_s: f64,

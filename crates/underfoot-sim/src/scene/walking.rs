@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::body::Body;
+use super::body::RandomPerson;
 use crate::person::MoveError;
 use crate::script::Script;
 use underfoot::floor::Rect;
@@ -15,7 +15,7 @@ fn outside(bounds: Rect, angle: f32) -> Vec2 {
     bounds.centre() + Vec2::from_angle(angle) * (0.5 * bounds.size().length() + 0.45)
 }
 
-fn seconds(body: &mut Body, low: f32, high: f32) -> Duration {
+fn seconds(body: &mut RandomPerson, low: f32, high: f32) -> Duration {
     Duration::from_secs_f32(body.within(low, high))
 }
 
@@ -25,7 +25,7 @@ fn heading(way: Vec2) -> f32 {
 }
 
 /// Walks onto the floor, stops, and walks off it.
-pub(super) fn walk(body: &mut Body, bounds: Rect) -> Result<Script, MoveError> {
+pub(super) fn walk(body: &mut RandomPerson, bounds: Rect) -> Result<Script, MoveError> {
     let stop = body.place(bounds, 0.45);
     let from = outside(bounds, body.angle());
     let to = outside(bounds, body.angle());
@@ -39,7 +39,7 @@ pub(super) fn walk(body: &mut Body, bounds: Rect) -> Result<Script, MoveError> {
 }
 
 /// Two or three steps aside and back.
-pub(super) fn sidesteps(body: &mut Body, bounds: Rect) -> Result<Script, MoveError> {
+pub(super) fn sidesteps(body: &mut RandomPerson, bounds: Rect) -> Result<Script, MoveError> {
     let middle = bounds.centre() + Vec2::new(body.within(-0.2, 0.2), body.within(-0.2, 0.2));
     let way = body.angle();
     let (from, to) = (outside(bounds, way), outside(bounds, body.angle()));
@@ -58,7 +58,11 @@ pub(super) fn sidesteps(body: &mut Body, bounds: Rect) -> Result<Script, MoveErr
 }
 
 /// Two people come from opposite sides, stand toe to toe, shift their weight, and go back.
-pub(super) fn face_to_face(one: &mut Body, other: &mut Body, bounds: Rect) -> Result<Script, MoveError> {
+pub(super) fn face_to_face(
+    one: &mut RandomPerson,
+    other: &mut RandomPerson,
+    bounds: Rect,
+) -> Result<Script, MoveError> {
     let way = one.angle();
     let middle = bounds.centre() + Vec2::new(one.within(-0.15, 0.15), one.within(-0.15, 0.15));
     // 8 to 25 cm from toes to toes.

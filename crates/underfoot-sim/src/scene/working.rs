@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use glam::Vec2;
 use rand::RngExt;
 
-use super::body::Body;
+use super::body::RandomPerson;
 use super::thing::{STAND_ROLL, SceneObject};
 use crate::sway::Sway;
 use crate::track::forward;
@@ -23,7 +23,7 @@ struct Work {
 
 impl Work {
     /// Lands, and rests for up to 1.5 s; `way` is the direction of the later slide, if any.
-    fn of(body: &mut Body, bounds: Rect, way: Option<f32>) -> Self {
+    fn of(body: &mut RandomPerson, bounds: Rect, way: Option<f32>) -> Self {
         let beside = body.rng.random_bool(0.5);
         let weight = body.weight_n();
         let rests_n = body.within(80.0, 250.0).min(0.4 * weight);
@@ -60,7 +60,7 @@ impl Work {
     }
 
     /// Rests again after the work ended at `at_s`, and leaves.
-    fn leave(mut self, body: &mut Body, at_s: f64) -> Vec<SceneObject> {
+    fn leave(mut self, body: &mut RandomPerson, at_s: f64) -> Vec<SceneObject> {
         let weight = body.weight_n();
         let off = at_s + f64::from(body.within(0.2, 0.8));
         self.presses(at_s, 0.0, weight);
@@ -74,7 +74,7 @@ impl Work {
 }
 
 /// Slides 10 to 60 cm at 0.1 to 1 m/s, rests there and slides back.
-pub(super) fn slide(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn slide(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let way = body.angle();
     let mut work = Work::of(body, bounds, Some(way));
     let start = Vec2::new(work.foot.x.at(0.0), work.foot.y.at(0.0));
@@ -93,7 +93,7 @@ pub(super) fn slide(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
 }
 
 /// Presses three times with 50 to 250 N more, within 0.1 to 0.4 s, and leans a little.
-pub(super) fn press(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn press(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let mut work = Work::of(body, bounds, None);
     let weight = body.weight_n();
     let more = body.within(50.0, 250.0).min(0.45 * weight);
@@ -111,7 +111,7 @@ pub(super) fn press(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
 }
 
 /// Rocks three times from heel to ball and back within 0.25 to 0.9 s, without lifting.
-pub(super) fn rock(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn rock(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let mut work = Work::of(body, bounds, None);
     let mut now = work.begin;
     work.foot.roll.rest(now, STAND_ROLL);
@@ -128,7 +128,7 @@ pub(super) fn rock(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
 }
 
 /// Turns by 20 to 60 degrees about heel or ball within 0.3 to 1 s, and back.
-pub(super) fn turn(body: &mut Body, bounds: Rect) -> Vec<SceneObject> {
+pub(super) fn turn(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let mut work = Work::of(body, bounds, None);
     let length = body.person().foot_length_m;
     let about = length * if body.rng.random_bool(0.5) { -0.25 } else { 0.25 };
