@@ -103,6 +103,7 @@ fn size_of_all(entries: &Entries) -> usize {
     entries.iter().map(|entry| ENTRY_BYTES + text(entry)).sum()
 }
 
+#[cfg(any(feature = "web", test))]
 impl MirrorInput {
     /// Sets the layout of the server; the same one again changes nothing.
     pub(super) fn put_layout(&self, text: String) {
