@@ -15,7 +15,7 @@
 //! Serde's derive cannot do this: it stops at the first problem, has neither places nor ranges, and cannot read over
 //! a base. With schemars, every record would need a second struct for the file format and a conversion of the units;
 //! here the record is the type that the program uses. Towards apps the records are values like any other
-//! ([`filed`]): `ron` writes them through [`serde::Serialize`] and reads them through [`serde::Deserialize`].
+//! ([`mod@filed`]): `ron` writes them through [`serde::Serialize`] and reads them through [`serde::Deserialize`].
 
 pub mod codec;
 mod complaint;

@@ -182,7 +182,7 @@ impl Line {
     }
 }
 
-/// Returns one event as [`crate::sink::JsonSink`] writes it, without the end of the line.
+/// Returns one event as the sink of JSON lines writes it, without the end of the line.
 #[must_use]
 pub fn event_line(event: &WidgetEvent) -> String {
     Line::new(event.at, Message::Control(event.into())).text()
