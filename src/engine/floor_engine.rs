@@ -63,7 +63,7 @@ struct PageTurns {
 
 /// The results of one frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Step<'a> {
+pub struct FrameResults<'a> {
     /// Events of the controls, in order.
     pub events: &'a [WidgetEvent],
     /// The page that has replaced another since the last frame.
@@ -134,17 +134,17 @@ impl Engine {
     /// Processes one frame; frames must come in time order and be of this floor's size.
     ///
     /// A frame with missing tiles counts as an unsensed floor: every control is cancelled.
-    pub fn step(&mut self, frame: &ForceFrame) -> Step<'_> {
+    pub fn step(&mut self, frame: &ForceFrame) -> FrameResults<'_> {
         self.sensing.update(frame);
         self.respond(frame, None)
     }
 
     /// As [`Engine::step`] with given contacts: one sensing for many layouts on the same floor.
-    pub fn step_given<'a>(&'a mut self, frame: &ForceFrame, contacts: &'a [Contact]) -> Step<'a> {
+    pub fn step_given<'a>(&'a mut self, frame: &ForceFrame, contacts: &'a [Contact]) -> FrameResults<'a> {
         self.respond(frame, Some(contacts))
     }
 
-    fn respond<'a>(&'a mut self, frame: &ForceFrame, given: Option<&'a [Contact]>) -> Step<'a> {
+    fn respond<'a>(&'a mut self, frame: &ForceFrame, given: Option<&'a [Contact]>) -> FrameResults<'a> {
         let contacts = given.unwrap_or_else(|| self.sensing.contacts());
         self.cues.clear();
         self.sustained.clear();
@@ -168,7 +168,7 @@ impl Engine {
         self.take_waiting_layout();
         self.take_waiting_page();
         self.pages.reported = self.pages.shown.take();
-        Step {
+        FrameResults {
             events: &self.events,
             page: self.pages.reported.as_ref(),
             cues: &self.cues,
@@ -226,7 +226,7 @@ impl Engine {
         self.layout.pages.get(self.interaction.page()).map(|page| page.id.as_str())
     }
 
-    /// Shows the page named `id`; [`Step::page`] reports the change.
+    /// Shows the page named `id`; [`FrameResults::page`] reports the change.
     ///
     /// While a foot is engaged, the page waits until every foot has let go; a later call replaces the waiting page.
     /// Feet that stand where a control appears must lift before it works.

@@ -26,7 +26,7 @@ mod still;
 mod weight;
 
 pub use control_state::{ControlState, Off, ValueRange};
-pub use floor_engine::{Engine, Step};
+pub use floor_engine::{Engine, FrameResults};
 pub use ignored::{AnsweredPress, Ignored, IgnoredPress};
 pub use page::PageShown;
 pub use snapshot::{FootRole, FootState, Snapshot, TileState, WidgetState};

@@ -1,10 +1,10 @@
 //! The state of one ground, of any material.
 
-use super::grains::Grains;
+use super::grains::GrainBed;
 use super::ice::Ice;
 use super::tile::{Stride, TileEvent};
 use super::wood::Wood;
-use super::{GroundState, Material};
+use super::{GroundMaterial, GroundState};
 use crate::floor::Rect;
 use crate::units::Instant;
 
@@ -12,16 +12,16 @@ use crate::units::Instant;
 #[derive(Clone, Debug)]
 pub(super) enum Bed {
     Ice(Box<Ice>),
-    Grains(Box<Grains>),
+    Grains(Box<GrainBed>),
     Wood(Box<Wood>),
 }
 
 impl Bed {
-    pub(super) fn new(material: &Material, area: Rect, seed: u32, tiles: usize) -> Self {
+    pub(super) fn new(material: &GroundMaterial, area: Rect, seed: u32, tiles: usize) -> Self {
         match material {
-            Material::Ice(spec) => Self::Ice(Box::new(Ice::new(*spec, area, seed, tiles))),
-            Material::Grain(spec) => Self::Grains(Box::new(Grains::new(*spec, area, seed, tiles))),
-            Material::Wood(spec) => Self::Wood(Box::new(Wood::new(*spec, area, seed, tiles))),
+            GroundMaterial::Ice(spec) => Self::Ice(Box::new(Ice::new(*spec, area, seed, tiles))),
+            GroundMaterial::Grain(spec) => Self::Grains(Box::new(GrainBed::new(*spec, area, seed, tiles))),
+            GroundMaterial::Wood(spec) => Self::Wood(Box::new(Wood::new(*spec, area, seed, tiles))),
         }
     }
 

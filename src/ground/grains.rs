@@ -5,7 +5,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::relief::Recovery;
 use super::tile::{Stride, TileEvent};
-use super::{Grain, GrainSpec, Onsets, Relief, Resonance};
+use super::{Grain, GrainSpec, Onsets, PlaceModes, Relief};
 use crate::floor::Rect;
 
 /// The state of snow, gravel or sand.
@@ -16,7 +16,7 @@ use crate::floor::Rect;
 /// energy. Here the input is the power that the bed under the foot dissipates, and the rate follows the root of the
 /// energy, as speeds do.
 #[derive(Clone, Debug)]
-pub(super) struct Grains {
+pub(super) struct GrainBed {
     spec: GrainSpec,
     rng: Pcg64Mcg,
     pub(super) relief: Relief,
@@ -30,7 +30,7 @@ struct Bed {
     /// Energy of the moving grains, in joules.
     energy_j: f64,
     /// The resonances of different stones; each collision uses one of them.
-    stones: [Resonance; STONES],
+    stones: [PlaceModes; STONES],
 }
 
 /// Number of different resonances of the grains of one tile.
@@ -39,13 +39,13 @@ const STONES: usize = 4;
 /// Below this share of the full energy no motion can be felt.
 const STILL: f64 = 1e-4;
 
-impl Grains {
+impl GrainBed {
     pub(super) fn new(spec: GrainSpec, area: Rect, seed: u32, tiles: usize) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed.into());
         let bed = |_| Bed {
             onsets: Onsets::new(&mut rng),
             energy_j: 0.0,
-            stones: std::array::from_fn(|_| Resonance::draw(&spec.ring, &mut rng)),
+            stones: std::array::from_fn(|_| PlaceModes::draw(&spec.ring, &mut rng)),
         };
         let tiles = (0..tiles).map(bed).collect();
         let recovery = Recovery { seconds: spec.renew_s, is_ice: false };

@@ -5,7 +5,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::relief::Recovery;
 use super::tile::{Stride, TileEvent};
-use super::{Fracture, IceSpec, Onsets, Relief, Resonance};
+use super::{Fracture, IceSpec, Onsets, PlaceModes, Relief};
 use crate::floor::Rect;
 use crate::units::Instant;
 
@@ -20,7 +20,7 @@ pub(super) struct Ice {
     pub(super) fracture: Fracture,
     pub(super) relief: Relief,
     /// For each tile of the floor: its process and its resonance.
-    tiles: Vec<(Onsets, Resonance)>,
+    tiles: Vec<(Onsets, PlaceModes)>,
 }
 
 /// Factor of the pitch of ice that is nearly broken through: a plate's pitch is proportional to its thickness.
@@ -30,7 +30,7 @@ impl Ice {
     pub(super) fn new(spec: IceSpec, area: Rect, seed: u32, tiles: usize) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed.into());
         let tiles =
-            (0..tiles).map(|_| (Onsets::new(&mut rng), Resonance::draw(&spec.ring, &mut rng))).collect();
+            (0..tiles).map(|_| (Onsets::new(&mut rng), PlaceModes::draw(&spec.ring, &mut rng))).collect();
         let recovery = Recovery { seconds: spec.sheet.refreeze_s, is_ice: true };
         Self {
             spec,

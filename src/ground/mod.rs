@@ -33,8 +33,8 @@ pub use elastic::Body;
 pub use energy::EnergyLaw;
 pub use fracture::{CrackRules, Seed};
 pub use relief::Relief;
-pub use resonance::{Resonance, Ring};
-pub use spec::{Grain, GrainSpec, GroundSpec, IceSpec, Material, Sheet, WoodSpec};
+pub use resonance::{PlaceModes, Ring};
+pub use spec::{Grain, GrainSpec, GroundMaterial, GroundSpec, IceSpec, Sheet, WoodSpec};
 pub use state::{GroundCounters, GroundEvent, GroundState};
 
 pub use elastic::{Elastic, Motion};

@@ -37,12 +37,12 @@ record! {
 
 /// The modes of one place, excited by every event there.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Resonance {
+pub struct PlaceModes {
     /// Frequency in hertz and time to 1/e in seconds, low modes first.
     modes: ArrayVec<(f32, f32), MAX_MODES>,
 }
 
-impl Resonance {
+impl PlaceModes {
     /// Modes drawn from `ring`: one in each of equal parts (in octaves) of the band, so that no place has only high
     /// or only low ones; low modes ring longer, as those of every plate do.
     ///
@@ -109,7 +109,7 @@ mod tests {
     fn modes_keep_to_their_band_and_spread_over_it() {
         for seed in 0..200 {
             let mut rng = Pcg64Mcg::seed_from_u64(seed);
-            let resonance = Resonance::draw(&RING, &mut rng);
+            let resonance = PlaceModes::draw(&RING, &mut rng);
             let click = resonance.strike(&RING, 1.0, 1.0, &mut rng);
             assert_eq!(click.modes.len(), 6);
             assert!(click.modes.iter().all(|mode| (70.0..=700.0).contains(&mode.frequency_hz)));
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn four_times_the_energy_is_twice_the_force_and_darker() {
         let mut rng = Pcg64Mcg::seed_from_u64(1);
-        let resonance = Resonance::draw(&RING, &mut rng);
+        let resonance = PlaceModes::draw(&RING, &mut rng);
         let mut tone = |share: f32| {
             let mut centre = 0.0;
             let mut level = 0.0;

@@ -16,7 +16,7 @@ pub struct GroundSpec {
     /// Start of the random numbers: the same seed and the same feet give the same ground.
     pub seed: u32,
     /// Its material.
-    pub material: Material,
+    pub material: GroundMaterial,
 }
 
 impl GroundSpec {
@@ -29,7 +29,7 @@ impl GroundSpec {
 
 /// The material of a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Material {
+pub enum GroundMaterial {
     /// A frozen pond that cracks.
     Ice(IceSpec),
     /// Many small grains.
@@ -38,7 +38,7 @@ pub enum Material {
     Wood(WoodSpec),
 }
 
-impl Material {
+impl GroundMaterial {
     /// Its name in layouts.
     #[must_use]
     pub const fn name(&self) -> &'static str {

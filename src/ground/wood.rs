@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::tile::{Stride, TileEvent};
-use super::{Resonance, WoodSpec};
+use super::{PlaceModes, WoodSpec};
 use crate::floor::Rect;
 use crate::units::Newtons;
 use crate::widget::Axis;
@@ -19,7 +19,7 @@ pub(super) struct Wood {
     area: Rect,
     rng: Pcg64Mcg,
     joints: Vec<Joint>,
-    planks: Vec<Resonance>,
+    planks: Vec<PlaceModes>,
 }
 
 /// The joint of one tile's part of a plank.
@@ -39,7 +39,7 @@ impl Wood {
         let mut rng = Pcg64Mcg::seed_from_u64(seed.into());
         let across = if spec.along == Axis::East { area.size().y } else { area.size().x };
         let count = ((across / spec.plank_m).ceil() as usize).clamp(1, MOST_PLANKS);
-        let planks = (0..count).map(|_| Resonance::draw(&spec.ring, &mut rng)).collect();
+        let planks = (0..count).map(|_| PlaceModes::draw(&spec.ring, &mut rng)).collect();
         let joints =
             (0..tiles).map(|_| Joint { rest_m: 0.0, strength_n: strength(&spec, &mut rng) }).collect();
         Self { spec, area, rng, joints, planks }

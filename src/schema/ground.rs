@@ -15,7 +15,7 @@ use super::number::plain;
 use super::problem::Problem;
 use super::units::Units;
 use crate::floor::Geometry;
-use crate::ground::{GrainSpec, GroundSpec, IceSpec, Material, WoodSpec};
+use crate::ground::{GrainSpec, GroundMaterial, GroundSpec, IceSpec, WoodSpec};
 use crate::layout::{Colour, Ground, HEX};
 use underfoot_format::codec::By;
 use underfoot_format::describe::{Description, FieldDescription, FieldType};
@@ -34,7 +34,7 @@ pub(super) struct GroundDefinition {
     place: Option<Option<Placed>>,
     page: Option<usize>,
     seed: Option<u32>,
-    material: Option<Material>,
+    material: Option<GroundMaterial>,
     colours: Option<[Colour; 2]>,
     pub(super) at: Range<usize>,
 }
@@ -70,9 +70,13 @@ impl GroundDefinition {
         let surface = fields.read("surface", Some(surface), |node| HEX.read(node, None));
         let deep = fields.read("deep", Some(deep), |node| HEX.read(node, None));
         let material = match standard {
-            Material::Ice(base) => Material::Ice(IceSpec::read_fields(&mut fields, Some(&base))),
-            Material::Grain(base) => Material::Grain(GrainSpec::read_fields(&mut fields, Some(&base))),
-            Material::Wood(base) => Material::Wood(WoodSpec::read_fields(&mut fields, Some(&base))),
+            GroundMaterial::Ice(base) => GroundMaterial::Ice(IceSpec::read_fields(&mut fields, Some(&base))),
+            GroundMaterial::Grain(base) => {
+                GroundMaterial::Grain(GrainSpec::read_fields(&mut fields, Some(&base)))
+            }
+            GroundMaterial::Wood(base) => {
+                GroundMaterial::Wood(WoodSpec::read_fields(&mut fields, Some(&base)))
+            }
         };
         let material = fields.are_read().then_some(material);
         fields.finish();
@@ -141,13 +145,13 @@ pub(super) fn check(grounds: &[GroundDefinition], units: Units, floor: &Area, re
     }
 }
 
-fn standard(name: &str) -> Material {
+fn standard(name: &str) -> GroundMaterial {
     match name {
-        "Snow" => Material::Grain(GrainSpec::SNOW),
-        "Gravel" => Material::Grain(GrainSpec::GRAVEL),
-        "Sand" => Material::Grain(GrainSpec::SAND),
-        "Wood" => Material::Wood(WoodSpec::PLANKS),
-        _ => Material::Ice(IceSpec::POND),
+        "Snow" => GroundMaterial::Grain(GrainSpec::SNOW),
+        "Gravel" => GroundMaterial::Grain(GrainSpec::GRAVEL),
+        "Sand" => GroundMaterial::Grain(GrainSpec::SAND),
+        "Wood" => GroundMaterial::Wood(WoodSpec::PLANKS),
+        _ => GroundMaterial::Ice(IceSpec::POND),
     }
 }
 
@@ -163,15 +167,15 @@ pub(super) fn describe() -> Vec<Description> {
     let described = NAMES.map(|name| {
         let mut usual = Vec::new();
         let description = match standard(name) {
-            Material::Ice(spec) => {
+            GroundMaterial::Ice(spec) => {
                 spec.write_fields(&mut usual);
                 IceSpec::describe()
             }
-            Material::Grain(spec) => {
+            GroundMaterial::Grain(spec) => {
                 spec.write_fields(&mut usual);
                 GrainSpec::describe()
             }
-            Material::Wood(spec) => {
+            GroundMaterial::Wood(spec) => {
                 spec.write_fields(&mut usual);
                 WoodSpec::describe()
             }
@@ -200,7 +204,7 @@ fn colours(name: &str) -> (Colour, Colour) {
 #[cfg(test)]
 mod tests {
     use crate::floor::Geometry;
-    use crate::ground::Material;
+    use crate::ground::GroundMaterial;
     use crate::schema::{Kinds, parse_layout};
 
     fn read(grounds: &str) -> Result<crate::schema::Loaded, String> {
@@ -231,7 +235,7 @@ mod tests {
             cracks: (apart_m: 0.3, growth_m_per_j: 0.02, turn: 0.1, branch: 0, branch_deg: 30, pieces: 500),
             sheet: (depth_per_j: 0.1, reach_m: 0.2, weakening: 0, refreeze_s: None))";
         let layout = read(text).unwrap().layout;
-        let Material::Ice(ice) = layout.grounds[0].spec.material else { panic!("ice") };
+        let GroundMaterial::Ice(ice) = layout.grounds[0].spec.material else { panic!("ice") };
         assert_eq!((ice.body.mass_kg, ice.calm_j, ice.energy.gamma), (50.0, 0.0, -2.0));
         assert_eq!((ice.ring.modes, ice.ring.longest_s), (4, 0.09));
         assert_eq!((ice.cracks.per_j_m, ice.cracks.most, ice.cracks.refreeze_s), (0.02, 500, None));

@@ -4,7 +4,7 @@ use super::page::LayoutRecord;
 use super::units::Units;
 use super::version::FORMAT_VERSION;
 use crate::floor::Rect;
-use crate::ground::Material;
+use crate::ground::GroundMaterial;
 use crate::layout::{Ground, HEX, Layout, Widget};
 use underfoot_format::text::{Entry, Text};
 use underfoot_format::{Codec, Name, Rec, Record, Variants};
@@ -101,9 +101,9 @@ fn ground(ground: &Ground) -> Text {
     entries.push(("surface", HEX.write(&ground.surface)));
     entries.push(("deep", HEX.write(&ground.deep)));
     match &ground.spec.material {
-        Material::Ice(spec) => spec.write_fields(&mut entries),
-        Material::Grain(spec) => spec.write_fields(&mut entries),
-        Material::Wood(spec) => spec.write_fields(&mut entries),
+        GroundMaterial::Ice(spec) => spec.write_fields(&mut entries),
+        GroundMaterial::Grain(spec) => spec.write_fields(&mut entries),
+        GroundMaterial::Wood(spec) => spec.write_fields(&mut entries),
     }
     Text::Variant(ground.spec.material.name(), entries)
 }

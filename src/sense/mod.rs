@@ -39,8 +39,8 @@ mod track;
 
 pub use assembler::{Assembler, BoardStatus, Tare, TareOutcome, TareRules};
 pub use calibration::{
-    Candidate, Comparison, Errors, Fit, FitError, Judgement, LoadPoint, LoadTable, MapError, MapFit, Press,
-    PressTable, SensorLoads, Sighting, TilePoints, Verdict,
+    Candidate, Comparison, Errors, Fit, FitError, Judgement, LoadPoint, LoadTable, MapError, MapFit,
+    PressTable, PressedPoint, SensorLoads, Sighting, TilePoints, Verdict,
 };
 pub use centroid::{LoadedTile, SensorUncertainty, TileReading, Wrench, known_corners};
 pub use contact::{Contact, ContactId, Covariance, Cursor, CursorPicker, Stickiness, TileLoad};

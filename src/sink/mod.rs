@@ -63,7 +63,7 @@ pub use tuio::{TuioSink, TuioVersion};
 pub use watchdog::Watchdog;
 #[cfg(feature = "wav")]
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
-pub use within::Within;
+pub use within::ContactsWithin;
 #[cfg(feature = "net")]
 pub(crate) use worker::Worker;
 

@@ -8,7 +8,7 @@ use crate::sink::{EventSink, Report};
 use crate::units::Instant;
 
 /// Passes on all reports, except contacts beyond an area: the computer that serves the next area reports those.
-pub struct Within<S> {
+pub struct ContactsWithin<S> {
     inner: S,
     area: Area,
     /// The whole floor.
@@ -16,14 +16,14 @@ pub struct Within<S> {
     contacts: Vec<Contact>,
 }
 
-impl<S: EventSink> Within<S> {
+impl<S: EventSink> ContactsWithin<S> {
     /// Reports to `inner` the contacts whose centroid is in `area` of the floor of this `geometry`.
     pub fn new(inner: S, area: Area, geometry: Geometry) -> Self {
         Self { inner, area, geometry, contacts: Vec::new() }
     }
 }
 
-impl<S: EventSink> EventSink for Within<S> {
+impl<S: EventSink> EventSink for ContactsWithin<S> {
     fn report(&mut self, report: &Report<'_>) {
         let Report::Contacts(at, contacts) = report else { return self.inner.report(report) };
         let own = contacts.iter().filter(|contact| self.area.holds(&self.geometry, contact.centroid));
@@ -41,8 +41,8 @@ impl<S: EventSink> EventSink for Within<S> {
     }
 }
 
-impl<S> std::fmt::Debug for Within<S> {
+impl<S> std::fmt::Debug for ContactsWithin<S> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Within").field("area", &self.area).finish_non_exhaustive()
+        f.debug_struct("ContactsWithin").field("area", &self.area).finish_non_exhaustive()
     }
 }

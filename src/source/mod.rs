@@ -9,7 +9,7 @@ mod shared;
 #[cfg(feature = "net")]
 mod udp;
 
-pub use fault::{BadFault, Bursts, FaultInjector, Faults, Outage, Stall};
+pub use fault::{BadFault, Bursts, FaultInjector, LinkFaults, Outage, Stall};
 pub use input::FloorInput;
 pub use journal::{Incoming, Journal, Replay};
 pub use port::Port;

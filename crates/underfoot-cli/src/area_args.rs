@@ -5,7 +5,7 @@ use std::net::{IpAddr, SocketAddr};
 use clap::Args;
 use underfoot::floor::{Area, Floor, Forwarding, Geometry};
 use underfoot::layout::Layout;
-use underfoot::sink::{Fanout, Within};
+use underfoot::sink::{ContactsWithin, Fanout};
 use underfoot::source::UdpSource;
 
 use super::failure::Failure;
@@ -91,7 +91,7 @@ impl Served {
     pub(crate) fn outputs(&self, outputs: Fanout) -> Fanout {
         let Some(area) = &self.area else { return outputs };
         let mut own = Fanout::new();
-        own.push(Within::new(outputs, area.clone(), self.geometry));
+        own.push(ContactsWithin::new(outputs, area.clone(), self.geometry));
         own
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Layout;
-use underfoot::source::Faults;
+use underfoot::source::LinkFaults;
 use underfoot_sim::{self as sim, Scenario, Script, SimConfig, SimFloor};
 
 use super::failure::Failure;
@@ -61,19 +61,19 @@ pub(crate) fn script(
     file: Option<&Path>,
     layout: &Layout,
     geometry: &Geometry,
-) -> Result<(Script, Faults), Failure> {
+) -> Result<(Script, LinkFaults), Failure> {
     let scenario = match file {
         Some(path) => Scenario::load(path)?,
         None if layout.widgets.is_empty() => Scenario::parse("the built-in stroll", Scenario::STROLL)?,
         None => {
             let session = Scenario::parse("the built-in session", Scenario::SESSION)?;
             let script = session.resolve(layout, geometry).unwrap_or_else(|_| made_for(layout, geometry));
-            return Ok((script, Faults::default()));
+            return Ok((script, LinkFaults::default()));
         }
     };
-    let mut faults = Faults::default();
+    let mut faults = LinkFaults::default();
     for written in scenario.faults() {
-        let fault: Faults = written.parse().map_err(|error| {
+        let fault: LinkFaults = written.parse().map_err(|error| {
             let file = file.unwrap_or(Path::new("the built-in scenario")).display();
             Failure::Other(format!("{file}: {error}"))
         })?;

@@ -11,7 +11,7 @@ use std::time::Duration;
 use tracing::info;
 use underfoot::feel::FeelCounters;
 use underfoot::floor::read_address;
-use underfoot::ground::{GroundCounters, GroundState, Material};
+use underfoot::ground::{GroundCounters, GroundMaterial, GroundState};
 use underfoot::layout::Layout;
 use underfoot::recording::{Recorded, Recorder, WhenBehind};
 use underfoot::runtime::{EndReason, Event, Kind, Session, Snapshot};
@@ -19,7 +19,7 @@ use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
 #[cfg(unix)]
 use underfoot::sink::Watchdog;
-use underfoot::source::Faults;
+use underfoot::source::LinkFaults;
 use underfoot::wire::LinkCounters;
 
 use super::actuate::ActuateArgs;
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = source.with_prefix(prefix.clone());
     let source = args.commands.open(source)?;
     let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
-    let input = args.faults.wrap(source, Faults::default());
+    let input = args.faults.wrap(source, LinkFaults::default());
     let method = if args.eq4 { Method::Eq4 } else { Method::default() };
     let path = args.record.as_deref();
     let Recorded { recorder, input, floor, layout } =
@@ -247,12 +247,12 @@ fn grounds(layout: &Layout, states: &[GroundState]) -> Vec<String> {
         .map(|(ground, state)| {
             let GroundCounters { events, unfelt, evicted } = state.counters;
             let cracks = match ground.spec.material {
-                Material::Ice(_) => format!(
+                GroundMaterial::Ice(_) => format!(
                     "; pieces of crack {}, seeds {}, evicted {evicted}",
                     state.cracks.len(),
                     state.seeds.len()
                 ),
-                Material::Grain(_) | Material::Wood(_) => String::new(),
+                GroundMaterial::Grain(_) | GroundMaterial::Wood(_) => String::new(),
             };
             format!(
                 "{}: events {events}, too thick to be felt {unfelt}{cracks}.",

@@ -12,7 +12,7 @@ use super::floor::SimFloor;
 use super::loadcell::{CELL_ERROR, read};
 use super::sensor::{counts, normal};
 use underfoot::floor::{Calibration, Corner, Floor, TileId};
-use underfoot::sense::{MapError, MapFit, Press};
+use underfoot::sense::{MapError, MapFit, PressedPoint};
 use underfoot::wire::Readings;
 
 /// Number of points along each side of a tile.
@@ -83,7 +83,7 @@ pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
     }
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     for (index, tile) in sim.geometry().tiles().enumerate() {
-        for Press { at, forces: [sw, se, nw, ne], force } in press(floor, sim, index, &mut rng) {
+        for PressedPoint { at, forces: [sw, se, nw, ne], force } in press(floor, sim, index, &mut rng) {
             let Vec2 { x, y } = sim.geometry().centre(tile) + at;
             let (column, row) = (tile.column, tile.row);
             // Writing to a string does not fail.
@@ -98,7 +98,7 @@ pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
 }
 
 /// Forces measured by the sensors of one tile while its points are pressed.
-fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<Press> {
+fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<PressedPoint> {
     let (Some(laws), Some(tares)) = (floor.calibration.get(tile), floor.tare.get(tile)) else {
         return Vec::new();
     };
@@ -130,7 +130,11 @@ fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<
                 sum / READINGS as f32 + crept - tares[corner.index()].0
             });
             if !saturated {
-                presses.push(Press { at, forces, force: Some(force * (1.0 + CELL_ERROR * normal(rng))) });
+                presses.push(PressedPoint {
+                    at,
+                    forces,
+                    force: Some(force * (1.0 + CELL_ERROR * normal(rng))),
+                });
             }
         }
     }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::sensor::SensorFault;
 use super::simulated::SimulatedSource;
 use underfoot::floor::SensorId;
-use underfoot::source::{FaultInjector, Faults, SensorSource, SourceError};
+use underfoot::source::{FaultInjector, LinkFaults, SensorSource, SourceError};
 use underfoot::units::Instant;
 use underfoot::wire::{LinkCounters, SensorPacket};
 
@@ -19,7 +19,7 @@ pub struct FaultSwitch(SyncSender<Change>);
 
 #[derive(Debug)]
 enum Change {
-    Packets(Faults),
+    Packets(LinkFaults),
     Sensor(SensorId, Option<SensorFault>),
 }
 
@@ -27,7 +27,7 @@ impl FaultSwitch {
     /// Replaces the packet faults of the last call by these from now on; false if the floor has ended or stands
     /// still.
     #[must_use]
-    pub fn set_packets(&self, faults: Faults) -> bool {
+    pub fn set_packets(&self, faults: LinkFaults) -> bool {
         self.0.try_send(Change::Packets(faults)).is_ok()
     }
 
@@ -44,7 +44,7 @@ impl FaultSwitch {
 pub struct RehearsalSource {
     injector: FaultInjector<SimulatedSource>,
     /// The initial faults.
-    planned: Faults,
+    planned: LinkFaults,
     changes: Receiver<Change>,
 }
 
@@ -52,7 +52,7 @@ impl RehearsalSource {
     /// `inner` with the faults of `planned`, which stay regardless of the switch; `seed` determines the affected
     /// packets.
     #[must_use]
-    pub fn new(inner: SimulatedSource, planned: Faults, seed: u64) -> (Self, FaultSwitch) {
+    pub fn new(inner: SimulatedSource, planned: LinkFaults, seed: u64) -> (Self, FaultSwitch) {
         let (sender, changes) = sync_channel(CHANGES_WAITING);
         let injector = FaultInjector::new(inner, planned.clone(), seed);
         (Self { injector, planned, changes }, FaultSwitch(sender))
@@ -100,14 +100,14 @@ mod tests {
         let sim = SimFloor::new(&floor, SimConfig::default(), 1);
         let (_handle, nobody) = feet_by_hand();
         let inner = SimulatedSource::new(sim, Box::new(nobody), Pace::FreeRunning);
-        let (mut source, switch) = RehearsalSource::new(inner, Faults::default(), 1);
+        let (mut source, switch) = RehearsalSource::new(inner, LinkFaults::default(), 1);
         let from_three = |packets: &[SensorPacket]| packets.iter().filter(|packet| packet.board == 3).count();
         assert!(from_three(&heard(&mut source)) > 10, "six boards");
 
         let outage = Outage { board: Some(3), from: Instant::START, until: Instant::from_micros(u64::MAX) };
-        assert!(switch.set_packets(Faults { outages: vec![outage], ..Faults::default() }));
+        assert!(switch.set_packets(LinkFaults { outages: vec![outage], ..LinkFaults::default() }));
         assert_eq!(from_three(&heard(&mut source)), 0);
-        assert!(switch.set_packets(Faults::default()));
+        assert!(switch.set_packets(LinkFaults::default()));
         assert!(from_three(&heard(&mut source)) > 10);
 
         // An open line reads nothing; the plate and the part's own weight press on all working sensors.

@@ -12,7 +12,7 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::{Session, SessionBuilder};
 use underfoot::schema;
-use underfoot::source::{BadFault, FaultInjector, Faults, FloorInput};
+use underfoot::source::{BadFault, FaultInjector, FloorInput, LinkFaults};
 use underfoot::units::HostClock;
 use underfoot_format::diagnostic::Diagnostics;
 
@@ -44,13 +44,13 @@ pub enum SimulationError {
 /// [`SimulationError`] has the problems of the scenario on this layout.
 pub fn session(layout: Layout, scenario: &Scenario) -> Result<SessionBuilder, SimulationError> {
     let floor = Floor::default();
-    let mut faults = Faults::default();
+    let mut faults = LinkFaults::default();
     for fault in scenario.faults() {
         faults = faults.and(fault.parse()?);
     }
     let script = scenario.resolve(&layout, &floor.geometry)?;
     let (source, clock, floor) = simulated(&floor, Box::new(script))?;
-    let input: FloorInput = if faults == Faults::default() {
+    let input: FloorInput = if faults == LinkFaults::default() {
         source.into()
     } else {
         FaultInjector::new(source, faults, SEED).into()

@@ -27,7 +27,7 @@ use underfoot::floor::{self, Floor};
 use underfoot::layout::Layout;
 use underfoot::runtime::{Session, SessionBuilder};
 use underfoot::schema::{self, Kinds};
-use underfoot::source::{FaultInjector, Faults};
+use underfoot::source::{FaultInjector, LinkFaults};
 use underfoot::widget::Guard;
 use underfoot_egui::FootInput;
 use underfoot_sim::{
@@ -190,7 +190,7 @@ fn played(path: &Path, wired: &Floor, layout: &Layout) -> Result<SessionBuilder,
     /// Seed of the simulated floor.
     const SEED: u64 = 1;
     let scenario = Scenario::load(path)?;
-    let mut faults = Faults::default();
+    let mut faults = LinkFaults::default();
     for fault in scenario.faults() {
         faults = faults.and(fault.parse().map_err(|error| format!("{}: {error}", path.display()))?);
     }

@@ -4,7 +4,7 @@ use super::file::{DynamicParameter, ParameterCurve};
 
 /// Course of one control over time, for all events: straight lines between points in order of time.
 #[derive(Clone, Debug)]
-pub(super) struct Control {
+pub(super) struct ControlCurve {
     points: Vec<Point>,
     /// Value before the first point.
     neutral: f32,
@@ -39,7 +39,7 @@ pub(super) const JUMP_S: f32 = 0.001;
 /// tolerance with any limit.
 const LONGEST_LINE: usize = 256;
 
-impl Control {
+impl ControlCurve {
     /// Reads all curves and parameters of this `id`, with values clamped to `range`.
     pub(super) fn of(
         id: &str,

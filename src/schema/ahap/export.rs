@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use serde_json::json;
 
 use super::file::{
-    ControlPoint, DynamicParameter, Entry, Event, EventParameter, File, Number, ParameterCurve,
+    ControlPoint, DynamicParameter, EventParameter, File, JsonNumber, ParameterCurve, PatternEntry,
+    PatternEvent,
 };
 use super::{
     AhapError, CONTINUOUS_HZ, CONTINUOUS_N, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness,
@@ -85,7 +86,7 @@ fn within(share: f32, lost: &mut Lost, what: &'static str) -> f32 {
 }
 
 fn parameter(id: &str, value: f32) -> EventParameter {
-    EventParameter { id: id.to_owned(), value: Number::Number(rounded(value)) }
+    EventParameter { id: id.to_owned(), value: JsonNumber::Number(rounded(value)) }
 }
 
 /// Rounds to six decimals, finer than perception and than a float of this size.
@@ -93,7 +94,7 @@ fn rounded(value: f32) -> f64 {
     (f64::from(value) * 1e6).round() / 1e6
 }
 
-fn transient(at_s: f32, click: &Click, lost: &mut Lost) -> Entry {
+fn transient(at_s: f32, click: &Click, lost: &mut Lost) -> PatternEntry {
     let strongest = click.modes.iter().max_by(|a, b| a.amplitude.abs().total_cmp(&b.amplitude.abs()));
     let mode = strongest.copied().unwrap_or(Mode { frequency_hz: 0.0, decay_s: 0.01, amplitude: 0.0 });
     lost.note(click.modes.len() > 1, "all but the strongest mode of a click");
@@ -104,8 +105,8 @@ fn transient(at_s: f32, click: &Click, lost: &mut Lost) -> Entry {
     lost.note((mode.decay_s / usual - 1.0).abs() > 0.01, "how long a click rings");
     let level = click.level.0 * mode.amplitude.abs() / TRANSIENT_N;
     let intensity = within(level, lost, "what a click is stronger than 20 N");
-    Entry {
-        event: Some(Event {
+    PatternEntry {
+        event: Some(PatternEvent {
             time: rounded(at_s),
             event_type: "HapticTransient".to_owned(),
             event_duration: None,
@@ -115,11 +116,11 @@ fn transient(at_s: f32, click: &Click, lost: &mut Lost) -> Entry {
             ],
             other: serde_json::Map::new(),
         }),
-        ..Entry::default()
+        ..PatternEntry::default()
     }
 }
 
-fn continuous(at_s: f32, tone: &Tone, follows: bool, pattern: &mut Vec<Entry>, lost: &mut Lost) {
+fn continuous(at_s: f32, tone: &Tone, follows: bool, pattern: &mut Vec<PatternEntry>, lost: &mut Lost) {
     const BEYOND: &str = "a tone's pitch beyond 70 to 280 Hz";
     lost.note(tone.noise > 0.0, "noise");
     lost.note(tone.sustain > 0.0 && tone.sustain < 1.0 && tone.decay_s > 0.0, "a decay to part of the level");
@@ -141,15 +142,15 @@ fn continuous(at_s: f32, tone: &Tone, follows: bool, pattern: &mut Vec<Entry>, l
         parameters.push(parameter("DecayTime", time(tone.decay_s, lost)));
     }
     parameters.push(parameter("Sustained", f32::from(u8::from(sustained))));
-    pattern.push(Entry {
-        event: Some(Event {
+    pattern.push(PatternEntry {
+        event: Some(PatternEvent {
             time: rounded(at_s),
             event_type: "HapticContinuous".to_owned(),
             event_duration: Some(rounded(tone.length_s)),
             event_parameters: parameters,
             other: serde_json::Map::new(),
         }),
-        ..Entry::default()
+        ..PatternEntry::default()
     });
     if tone.curve.is_empty() {
         return;
@@ -171,12 +172,12 @@ fn continuous(at_s: f32, tone: &Tone, follows: bool, pattern: &mut Vec<Entry>, l
             .iter()
             .map(|&(time, value)| ControlPoint { time: rounded(time), parameter_value: rounded(value) });
         let curve = ParameterCurve { id: id.to_owned(), time: rounded(at_s), points: points.collect() };
-        pattern.push(Entry { parameter_curve: Some(curve), ..Entry::default() });
+        pattern.push(PatternEntry { parameter_curve: Some(curve), ..PatternEntry::default() });
         // Controls affect all later events, so the level of the following parts is restored.
         if follows {
             let time = rounded(at_s + tone.whole_s());
             let back = DynamicParameter { id: id.to_owned(), value: neutral, time };
-            pattern.push(Entry { parameter: Some(back), ..Entry::default() });
+            pattern.push(PatternEntry { parameter: Some(back), ..PatternEntry::default() });
         }
     }
 }

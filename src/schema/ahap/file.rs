@@ -20,15 +20,15 @@ pub(super) struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) metadata: Option<Value>,
     #[serde(default)]
-    pub(super) pattern: Vec<Entry>,
+    pub(super) pattern: Vec<PatternEntry>,
 }
 
 /// One entry of a pattern, with exactly one of its fields.
 #[derive(Debug, Default, Deserialize, Serialize)]
 #[serde(rename_all = "PascalCase")]
-pub(super) struct Entry {
+pub(super) struct PatternEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) event: Option<Event>,
+    pub(super) event: Option<PatternEvent>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) parameter: Option<DynamicParameter>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -39,7 +39,7 @@ pub(super) struct Entry {
 
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(rename_all = "PascalCase")]
-pub(super) struct Event {
+pub(super) struct PatternEvent {
     #[serde(default)]
     pub(super) time: f64,
     pub(super) event_type: String,
@@ -56,18 +56,18 @@ pub(super) struct EventParameter {
     #[serde(rename = "ParameterID")]
     pub(super) id: String,
     #[serde(rename = "ParameterValue")]
-    pub(super) value: Number,
+    pub(super) value: JsonNumber,
 }
 
 /// A number, or a boolean in its place.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(untagged)]
-pub(super) enum Number {
+pub(super) enum JsonNumber {
     Number(f64),
     Truth(bool),
 }
 
-impl Number {
+impl JsonNumber {
     pub(super) fn value(self) -> f64 {
         match self {
             Self::Number(number) => number,

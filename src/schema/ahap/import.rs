@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 
-use super::control::Control;
-use super::file::{Entry, Event, File, ParameterCurve};
+use super::control::ControlCurve;
+use super::file::{File, ParameterCurve, PatternEntry, PatternEvent};
 use super::long_tone::{self, Course};
-use super::warnings::Warnings;
+use super::warnings::ImportNotes;
 use super::{AhapError, CONTINUOUS_HZ, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness};
 use crate::feel::{
     Click, Clicks, Effect, EffectKind, Impulse, MAX_PARTS, Manner, Mode, Part, PartKind, Sequence,
@@ -30,9 +30,9 @@ pub(super) const SHORTEST_S: f32 = 0.001;
 /// [`AhapError`]: the text is not a pattern, one of its times is negative or beyond a day, or no event can be played.
 pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapError> {
     let file = File::parse(text, name)?;
-    let mut warnings = Warnings::default();
+    let mut warnings = ImportNotes::default();
     let (mut events, mut curves, mut parameters) = (Vec::new(), Vec::new(), Vec::new());
-    for Entry { event, parameter, parameter_curve, other } in file.pattern {
+    for PatternEntry { event, parameter, parameter_curve, other } in file.pattern {
         events.extend(event);
         curves.extend(parameter_curve);
         parameters.extend(parameter);
@@ -43,8 +43,8 @@ pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapEr
         warnings.lost(format!("the control {}", shown(id)));
     }
     let controls = Controls {
-        intensity: Control::of(INTENSITY, 1.0, (0.0, 1.0), &curves, &parameters),
-        sharpness: Control::of(SHARPNESS, 0.0, (-1.0, 1.0), &curves, &parameters),
+        intensity: ControlCurve::of(INTENSITY, 1.0, (0.0, 1.0), &curves, &parameters),
+        sharpness: ControlCurve::of(SHARPNESS, 0.0, (-1.0, 1.0), &curves, &parameters),
     };
     warn_of_values(&controls, &curves, &mut warnings);
     let events = felt(events, &mut warnings);
@@ -69,8 +69,8 @@ const SHARPNESS: &str = "HapticSharpnessControl";
 
 /// The controls over time for all events.
 pub(super) struct Controls {
-    pub(super) intensity: Control,
-    pub(super) sharpness: Control,
+    pub(super) intensity: ControlCurve,
+    pub(super) sharpness: ControlCurve,
 }
 
 /// Prepares a name from the file for messages: bounded length, no control characters.
@@ -82,7 +82,7 @@ fn shown(name: &str) -> String {
     shown
 }
 
-fn warn_of_values(controls: &Controls, curves: &[ParameterCurve], warnings: &mut Warnings) {
+fn warn_of_values(controls: &Controls, curves: &[ParameterCurve], warnings: &mut ImportNotes) {
     for (id, control) in [(INTENSITY, &controls.intensity), (SHARPNESS, &controls.sharpness)] {
         if control.limited() > 0 {
             warnings.note(format!(
@@ -98,7 +98,7 @@ fn warn_of_values(controls: &Controls, curves: &[ParameterCurve], warnings: &mut
 }
 
 /// Returns the playable events in order of time.
-fn felt(events: Vec<Event>, warnings: &mut Warnings) -> Vec<Event> {
+fn felt(events: Vec<PatternEvent>, warnings: &mut ImportNotes) -> Vec<PatternEvent> {
     let (mut felt, mut late) = (Vec::new(), Vec::new());
     for event in events {
         if !matches!(event.event_type.as_str(), TRANSIENT | CONTINUOUS) {
@@ -130,7 +130,7 @@ fn felt(events: Vec<Event>, warnings: &mut Warnings) -> Vec<Event> {
 }
 
 /// Drops parts of split events beyond the maximum parts of a sequence.
-fn limit_split(parts: &mut Vec<Part>, warnings: &mut Warnings) {
+fn limit_split(parts: &mut Vec<Part>, warnings: &mut ImportNotes) {
     let in_time = parts.iter().filter(|part| part.at_s <= LONGEST_S).count();
     let room = in_time.min(MAX_PARTS);
     if let Some(first) = parts.get(room) {
@@ -156,7 +156,7 @@ pub(super) struct Parameters {
 }
 
 impl Parameters {
-    fn of(event: &Event, warnings: &mut Warnings) -> Self {
+    fn of(event: &PatternEvent, warnings: &mut ImportNotes) -> Self {
         // Apple's defaults for parameters that are not written.
         let mut parameters = Self {
             intensity: 1.0,
@@ -196,7 +196,12 @@ impl Parameters {
 }
 
 /// Makes the click or the tones of one event.
-fn parts(event: &Event, controls: &Controls, course: &mut Course<'_>, warnings: &mut Warnings) -> Vec<Part> {
+fn parts(
+    event: &PatternEvent,
+    controls: &Controls,
+    course: &mut Course<'_>,
+    warnings: &mut ImportNotes,
+) -> Vec<Part> {
     let at_s = event.time as f32;
     let parameters = Parameters::of(event, warnings);
     if event.event_type == TRANSIENT {

@@ -3,9 +3,9 @@
 use arrayvec::ArrayVec;
 
 use super::CONTINUOUS_N;
-use super::control::{Control, SAME_S};
+use super::control::{ControlCurve, SAME_S};
 use super::import::{Controls, Parameters, SHORTEST_S, pitch_hz};
-use super::warnings::Warnings;
+use super::warnings::ImportNotes;
 use crate::feel::{MAX_PARTS, MAX_POINTS, Part, PartKind, Tone, TonePoint};
 use crate::units::Newtons;
 
@@ -47,7 +47,7 @@ pub(super) fn tones(
     length_s: f32,
     parameters: &Parameters,
     course: &mut Course<'_>,
-    warnings: &mut Warnings,
+    warnings: &mut ImportNotes,
 ) -> Vec<Part> {
     let event = Span { at_s, length_s, parameters };
     let exact = event.times(course.exact);
@@ -94,7 +94,7 @@ impl Span<'_> {
         let (from, to) = (self.at_s, self.end_s());
         let mut times: Vec<f32> =
             controls.intensity.bends(from, to).chain(controls.sharpness.bends(from, to)).collect();
-        let differs = |control: &Control| (control.at(from) - control.until(to)).abs() > 1e-4;
+        let differs = |control: &ControlCurve| (control.at(from) - control.until(to)).abs() > 1e-4;
         if times.is_empty() && !differs(&controls.intensity) && !differs(&controls.sharpness) {
             return times;
         }
@@ -107,7 +107,7 @@ impl Span<'_> {
     /// Returns intensity and pitch at `t`; at the end of the event, a control that begins there does not count.
     fn at(&self, controls: &Controls, t: f32) -> (f32, f32) {
         let is_end = t >= self.end_s() - SAME_S;
-        let of = |control: &Control| if is_end { control.until(t) } else { control.at(t) };
+        let of = |control: &ControlCurve| if is_end { control.until(t) } else { control.at(t) };
         (of(&controls.intensity), pitch_hz(self.parameters.sharpness + of(&controls.sharpness)))
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// Notes, each with the number of its occurrences.
 #[derive(Debug, Default)]
-pub(super) struct Warnings {
+pub(super) struct ImportNotes {
     notes: BTreeMap<String, usize>,
     /// Notes beyond [`MOST`].
     more: usize,
@@ -13,7 +13,7 @@ pub(super) struct Warnings {
 /// Maximum number of different notes; a file of 4 MB could cause a hundred thousand.
 const MOST: usize = 40;
 
-impl Warnings {
+impl ImportNotes {
     /// Notes that `it` has no counterpart.
     pub(super) fn lost(&mut self, it: String) {
         self.note(it + LOST);

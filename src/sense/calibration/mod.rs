@@ -12,5 +12,5 @@ mod press_table;
 pub use law_choice::{Candidate, Comparison};
 pub use law_fit::{Fit, FitError, LoadPoint};
 pub use load_table::{Judgement, LoadTable, SensorLoads, Verdict};
-pub use position_map::{Errors, MapError, MapFit, Press, Sighting};
+pub use position_map::{Errors, MapError, MapFit, PressedPoint, Sighting};
 pub use press_table::{PressTable, TilePoints};

@@ -9,7 +9,7 @@ use crate::sense::Wrench;
 
 /// One known point, pressed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Press {
+pub struct PressedPoint {
     /// True place, in metres from the tile's centre.
     pub at: Vec2,
     /// Readings of the tile's sensors, calibrated and tared, in newtons ([`Corner::ALL`] order).
@@ -18,7 +18,7 @@ pub struct Press {
     pub force: Option<f32>,
 }
 
-impl Press {
+impl PressedPoint {
     /// Place by Eq. 3 alone, in metres from the tile's centre.
     fn estimate(&self, geometry: &Geometry) -> Vec2 {
         Wrench::of_corners(self.forces, geometry.sensor_reach_m()).arm(0.5 * geometry.pitch_m())
@@ -110,19 +110,19 @@ impl MapFit {
     /// # Source
     /// Balance of moments of each point, `Σ gᵢ(fᵢ) (xᵢ − x) = 0`, linear in the trims of `gᵢ`, and a cubic polynomial
     /// for the remaining error, both by ridge regression; five-fold cross-validation selects trims, bends or both.
-    pub fn of_presses(presses: &[Press], geometry: &Geometry) -> Result<Self, MapError> {
-        let usable = |press: &Press| {
+    pub fn of_presses(presses: &[PressedPoint], geometry: &Geometry) -> Result<Self, MapError> {
+        let usable = |press: &PressedPoint| {
             press.at.is_finite() && press.forces.iter().chain(&press.force).all(|force| force.is_finite())
         };
         if let Some(index) = presses.iter().position(|press| !usable(press)) {
             return Err(MapError::NotFinite { index });
         }
-        let pressed: Vec<Press> =
+        let pressed: Vec<PressedPoint> =
             presses.iter().copied().filter(|press| press.forces.iter().sum::<f32>() > LEAST_N).collect();
-        let found = |map: &PositionMap, press: &Press| placed(map, press, geometry);
-        let candidates = |presses: &[Press]| {
+        let found = |map: &PositionMap, press: &PressedPoint| placed(map, press, geometry);
+        let candidates = |presses: &[PressedPoint]| {
             let bent = |map: PositionMap| {
-                let sighting = |press: &Press| Sighting { at: press.at, estimate: found(&map, press) };
+                let sighting = |press: &PressedPoint| Sighting { at: press.at, estimate: found(&map, press) };
                 let sightings: Vec<_> = presses.iter().map(sighting).collect();
                 PositionMap { bends: bends(&sightings, geometry), ..map }
             };
@@ -164,9 +164,9 @@ impl Errors {
 const LEAST_N: f32 = 10.0;
 
 /// Place of a press by a map.
-fn placed(map: &PositionMap, press: &Press, geometry: &Geometry) -> Vec2 {
+fn placed(map: &PositionMap, press: &PressedPoint, geometry: &Geometry) -> Vec2 {
     let forces = map.trimmed(press.forces);
-    map.unbent(Press { forces, ..*press }.estimate(geometry), geometry)
+    map.unbent(PressedPoint { forces, ..*press }.estimate(geometry), geometry)
 }
 
 /// The best of the maps that `candidates` fits to points, each kind evaluated on points outside of the fit.
@@ -249,7 +249,7 @@ fn spread(places: impl Iterator<Item = Vec2>, geometry: &Geometry) -> Result<(),
 }
 
 /// The trims that balance the moments of all presses best, by least squares.
-fn trims(presses: &[Press], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 4] {
+fn trims(presses: &[PressedPoint], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 4] {
     const COUNT: usize = 4 * PositionMap::TRIMS;
     let reach = geometry.sensor_reach_m();
     let mut sums = Normal::new(COUNT);
@@ -378,7 +378,7 @@ mod tests {
     const REACH: f32 = 0.132;
 
     /// A raster of 9 x 9 points, each pressed with some forces; `gain` is the gain of each sensor at a force.
-    fn presses(share: f32, gain: impl Fn(usize, f32) -> f32) -> Vec<Press> {
+    fn presses(share: f32, gain: impl Fn(usize, f32) -> f32) -> Vec<PressedPoint> {
         let mut presses = Vec::new();
         for step in 0..81_u8 {
             let at = Vec2::new(f32::from(step % 9) - 4.0, f32::from(step / 9) - 4.0) * (share * 0.152 / 4.0);
@@ -387,13 +387,13 @@ mod tests {
                     let load = 0.25 * force * (1.0 + corner.direction().dot(at / REACH));
                     load * gain(corner.index(), load)
                 });
-                presses.push(Press { at, forces, force: None });
+                presses.push(PressedPoint { at, forces, force: None });
             }
         }
         presses
     }
 
-    fn fit(presses: &[Press]) -> Result<MapFit, MapError> {
+    fn fit(presses: &[PressedPoint]) -> Result<MapFit, MapError> {
         MapFit::of_presses(presses, &Geometry::default())
     }
 
@@ -411,7 +411,7 @@ mod tests {
             let load = 0.25 * 140.0 * (1.0 + corner.direction().dot(at / REACH));
             load * gain(corner.index(), load)
         });
-        let seen = placed(&found.map, &Press { at, forces, force: None }, &Geometry::default());
+        let seen = placed(&found.map, &PressedPoint { at, forces, force: None }, &Geometry::default());
         assert!(seen.distance(at) < 0.003, "{seen}");
     }
 

@@ -4,7 +4,7 @@ use std::io::BufRead;
 
 use glam::Vec2;
 
-use super::position_map::{MapError, MapFit, Press, Sighting};
+use super::position_map::{MapError, MapFit, PressedPoint, Sighting};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId, TileId};
 use crate::sense::table::{TableError, TableNotes, TableReader, TableRow};
 
@@ -25,7 +25,7 @@ pub struct TilePoints {
     /// The tile.
     pub tile: TileId,
     /// Points with the readings of the sensors; empty if the table has places only.
-    pub presses: Vec<Press>,
+    pub presses: Vec<PressedPoint>,
     /// Points with their measured places; empty if the table has the sensors' forces.
     pub sightings: Vec<Sighting>,
 }
@@ -104,7 +104,7 @@ fn press<R: BufRead>(
     table: &mut TableReader<R>,
     row: &TableRow,
     geometry: &Geometry,
-) -> Option<(TileId, Press)> {
+) -> Option<(TileId, PressedPoint)> {
     let [x, y] = std::array::from_fn(|field| place(table, row, field));
     let [sw, se, nw, ne] =
         std::array::from_fn(|corner| table.number(row, 4 + corner, -1e4..=1e5).map(|force| force as f32));
@@ -127,7 +127,7 @@ fn press<R: BufRead>(
             table.report(row, field, format!("expected a point of tile {tile}, {least:.3} to {most:.3}"));
         }
     }
-    is_on_tile.then_some((tile, Press { at, forces, force }))
+    is_on_tile.then_some((tile, PressedPoint { at, forces, force }))
 }
 
 fn points(tiles: &mut Vec<Option<TilePoints>>, index: Option<usize>, tile: TileId) -> &mut TilePoints {

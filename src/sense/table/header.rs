@@ -13,7 +13,7 @@ const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 
 /// A header that fits one of the expected ones.
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct TableHeader {
     /// Index of the expected header.
     pub(super) which: usize,
     pub(super) separator: u8,
@@ -25,7 +25,7 @@ pub(super) struct Header {
     pub(super) unread: Vec<String>,
 }
 
-impl Header {
+impl TableHeader {
     /// Reads up to the header. `lines` then returns the first row.
     ///
     /// A header may be in a comment, as `numpy.savetxt` writes it.

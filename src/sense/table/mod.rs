@@ -20,7 +20,7 @@ use std::ops::{Range, RangeInclusive};
 use thiserror::Error;
 
 pub use force_table::ForceTable;
-use header::{Header, unquoted};
+use header::{TableHeader, unquoted};
 use lines::{TableLine, TableLines};
 pub use problems::{TableNotes, TableProblem, TableProblems};
 use record::{LineFields, Splitter};
@@ -47,7 +47,7 @@ pub enum TableError {
 pub(super) struct TableReader<R> {
     lines: TableLines<R>,
     splitter: Splitter,
-    header: Header,
+    header: TableHeader,
     names: &'static [&'static str],
     problems: TableProblems,
 }
@@ -63,7 +63,7 @@ impl<R: BufRead> TableReader<R> {
     /// The table in `reader`, whose header must have the columns of one of `expected`, in any order.
     pub(super) fn new(reader: R, expected: &[&'static [&'static str]]) -> Result<Self, TableError> {
         let mut lines = TableLines::new(reader);
-        let header = Header::read(&mut lines, expected)?;
+        let header = TableHeader::read(&mut lines, expected)?;
         let names = expected.get(header.which).copied().unwrap_or_default();
         let splitter = Splitter::new(header.separator);
         Ok(Self { lines, splitter, header, names, problems: TableProblems::default() })

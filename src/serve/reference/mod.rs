@@ -8,7 +8,7 @@ use serde::Serialize;
 use self::arguments::{argument, indicators, pages, taken, values};
 use self::events::events;
 use crate::floor::Floor;
-use crate::ground::Material;
+use crate::ground::GroundMaterial;
 use crate::layout::{Layout, Widget};
 use crate::widget::{Behaviour, Control, Detail, OffReason};
 use crate::wire::sent::{self, Arguments, Field, FieldRange, Sent};
@@ -157,7 +157,7 @@ impl Maker<'_> {
             self.report::<sent::Area>();
         }
         self.report::<sent::Device>();
-        if layout.grounds.iter().any(|ground| matches!(ground.spec.material, Material::Ice(_))) {
+        if layout.grounds.iter().any(|ground| matches!(ground.spec.material, GroundMaterial::Ice(_))) {
             self.report::<sent::Crack>();
         }
         if !layout.pages.is_empty() {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use thiserror::Error;
 use tracing::warn;
 
-use crate::engine::Step;
+use crate::engine::FrameResults;
 use crate::feel::{Cue, CueSender, DeviceStatus, FeelCounters, Muted};
 use crate::floor::{Geometry, TileId};
 use crate::serve::Neighbours;
@@ -68,7 +68,7 @@ impl Haptics {
     }
 
     /// Sends the cues of a frame of time `at`; `now` is the present.
-    pub(super) fn send(&mut self, step: &Step<'_>, at: Instant, now: Instant) {
+    pub(super) fn send(&mut self, step: &FrameResults<'_>, at: Instant, now: Instant) {
         let Some(feel) = &mut self.feel else { return };
         if let Some((stages, taken)) = self.latency.as_ref().filter(|_| !step.cues.is_empty()) {
             feel.note_time(now);

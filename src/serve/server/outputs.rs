@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::heartbeat::Heartbeat;
-use crate::engine::Step;
+use crate::engine::FrameResults;
 use crate::serve::changes::ChangeLimiter;
 use crate::sink::{EventSink, Report};
 use crate::units::Instant;
@@ -26,7 +26,7 @@ impl Outputs {
     }
 
     /// Reports the results of a frame of time `at`.
-    pub(super) fn step(&mut self, step: &Step<'_>, at: Instant) {
+    pub(super) fn step(&mut self, step: &FrameResults<'_>, at: Instant) {
         let Some(sink) = &mut self.sink else { return };
         let events = self.changes.thin(step.events, at).iter().map(lent(Report::Event));
         let page = step.page.into_iter().map(lent(Report::Page));

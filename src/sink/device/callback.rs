@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 use cpal::{Error, ErrorKind, FromSample, SizedSample};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-use super::choice::Choice;
-use super::player::Player;
+use super::choice::DeviceConfig;
+use super::player::DevicePlayer;
 use super::priority::Promotion;
 use crate::feel::Priority;
 
@@ -48,14 +48,14 @@ impl CallbackStats {
 
 /// Returns the player to the supervisor.
 #[expect(clippy::disallowed_types, reason = "gone only when the device has let go")]
-type Home = std::sync::mpsc::Sender<Player>;
+type Home = std::sync::mpsc::Sender<DevicePlayer>;
 
 /// The callback that a device calls for samples.
 ///
 /// When the device drops it, it returns the player to the supervisor for another stream.
 pub(super) struct Callback {
     /// `None` only while being dropped.
-    player: Option<Player>,
+    player: Option<DevicePlayer>,
     home: Home,
     stats: Arc<CallbackStats>,
     promotion: Promotion,
@@ -67,8 +67,8 @@ pub(super) struct Callback {
 
 impl Callback {
     pub(super) fn new(
-        player: Player,
-        choice: Choice,
+        player: DevicePlayer,
+        choice: DeviceConfig,
         home: Home,
         stats: Arc<CallbackStats>,
         promotion: Promotion,

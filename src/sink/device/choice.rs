@@ -8,14 +8,14 @@ use crate::sink::{ChannelMap, SinkError};
 
 /// The configuration in which a device is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Choice {
+pub(super) struct DeviceConfig {
     pub(super) channels: u16,
     pub(super) sample_rate: u32,
     pub(super) format: SampleFormat,
     pub(super) buffer_size: BufferSize,
 }
 
-impl Choice {
+impl DeviceConfig {
     pub(super) fn stream_config(self) -> StreamConfig {
         StreamConfig { channels: self.channels, sample_rate: self.sample_rate, buffer_size: self.buffer_size }
     }
@@ -50,7 +50,7 @@ pub(super) fn choose(
     ranges: &[SupportedStreamConfigRange],
     floor: &Floor,
     options: &DeviceOptions,
-) -> Result<Choice, SinkError> {
+) -> Result<DeviceConfig, SinkError> {
     let needed = floor.channel_count();
     let refuse = |message: String| Err(SinkError::Device { message });
     let playable = || ranges.iter().filter(|range| FORMATS.contains(&range.sample_format()));
@@ -99,7 +99,7 @@ pub(super) fn choose(
         }
         _ => BufferSize::Default,
     };
-    Ok(Choice { channels, sample_rate, format: range.sample_format(), buffer_size })
+    Ok(DeviceConfig { channels, sample_rate, format: range.sample_format(), buffer_size })
 }
 
 /// Returns the requested rate, or else the preferred one; `None` if the device has no such rate.
@@ -142,7 +142,11 @@ mod tests {
         SupportedStreamConfigRange::new(channels, low, high, buffer, format)
     }
 
-    fn chosen(ranges: &[SupportedStreamConfigRange], mix: Mix, rate: Option<u32>) -> Result<Choice, String> {
+    fn chosen(
+        ranges: &[SupportedStreamConfigRange],
+        mix: Mix,
+        rate: Option<u32>,
+    ) -> Result<DeviceConfig, String> {
         let options = DeviceOptions { mix, sample_rate: rate, block: Some(32), ..DeviceOptions::default() };
         choose("Test", ranges, &Floor::default(), &options).map_err(|error| error.to_string())
     }

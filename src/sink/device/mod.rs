@@ -24,9 +24,9 @@ use std::time::{Duration, Instant as HostInstant};
 
 use self::cards::{Card, Cards, System, trouble};
 pub use self::cards::{DeviceEntry, output_devices};
-use self::choice::Choice;
+use self::choice::DeviceConfig;
 pub use self::options::{DeviceOptions, Mix};
-use self::player::Player;
+use self::player::DevicePlayer;
 use self::priority::Ask;
 use self::supervisor::{Supervisor, SupervisorConfig};
 use super::{ActuatorSink, SinkError};
@@ -41,7 +41,7 @@ pub struct OutputDevice {
     cards: Arc<dyn Cards>,
     card: Card,
     name: String,
-    choice: Choice,
+    choice: DeviceConfig,
     floor: Floor,
     options: DeviceOptions,
     block_is_asked: bool,
@@ -128,7 +128,7 @@ impl OutputDevice {
         }
         // The renderer stays the same when the device comes back.
         self.options.sample_rate = Some(renderer.sample_rate());
-        let player = Player::new(renderer, &self.floor, &self.options, self.choice);
+        let player = DevicePlayer::new(renderer, &self.floor, &self.options, self.choice);
         let Self { cards, card, choice, floor, options, block_is_asked, ask, .. } = self;
         Supervisor::begin(
             SupervisorConfig { cards, card, choice, floor, options, block_is_asked, ask },

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use cpal::{BufferSize, Error, ErrorKind, SampleFormat, SupportedBufferSize, SupportedStreamConfigRange};
 
 use super::callback::Callback;
-use super::choice::Choice;
+use super::choice::DeviceConfig;
 
 /// The device name that selects it.
 pub(super) const PACED: &str = "paced";
@@ -43,7 +43,7 @@ pub(super) struct PacedStream {
 
 impl PacedStream {
     pub(super) fn start(
-        choice: Choice,
+        choice: DeviceConfig,
         mut callback: Callback,
         mut trouble: impl FnMut(Error) + Send + 'static,
     ) -> Result<Self, Error> {

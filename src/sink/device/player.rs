@@ -7,7 +7,7 @@ use std::time::Duration;
 use cpal::{FromSample, Sample};
 
 use super::block_clock::BlockClock;
-use super::choice::Choice;
+use super::choice::DeviceConfig;
 use super::mixdown::Mixdown;
 use super::options::DeviceOptions;
 use super::resample::Resampler;
@@ -17,7 +17,7 @@ use crate::sink::{HandedOn, LatencyProbe};
 use crate::units::{HostClock, Instant};
 
 /// Runs in the device's callback and survives a change of the stream.
-pub(super) struct Player {
+pub(super) struct DevicePlayer {
     renderer: Renderer,
     mixdown: Mixdown,
     steady: Option<(HostClock, BlockClock)>,
@@ -29,8 +29,13 @@ pub(super) struct Player {
     resampled: Vec<f32>,
 }
 
-impl Player {
-    pub(super) fn new(renderer: Renderer, floor: &Floor, options: &DeviceOptions, choice: Choice) -> Self {
+impl DevicePlayer {
+    pub(super) fn new(
+        renderer: Renderer,
+        floor: &Floor,
+        options: &DeviceOptions,
+        choice: DeviceConfig,
+    ) -> Self {
         let samples = renderer.max_block() * renderer.channels();
         let mut player = Self {
             mixdown: Mixdown::new(floor, options.mix, renderer.channels(), choice.channels.into()),
@@ -46,7 +51,7 @@ impl Player {
     }
 
     /// Adapts to another stream; not called while one plays.
-    pub(super) fn fit(&mut self, floor: &Floor, options: &DeviceOptions, choice: Choice) {
+    pub(super) fn fit(&mut self, floor: &Floor, options: &DeviceOptions, choice: DeviceConfig) {
         let width = self.renderer.channels();
         self.mixdown = Mixdown::new(floor, options.mix, width, choice.channels.into());
         let (from, to) = (self.renderer.sample_rate(), choice.sample_rate);

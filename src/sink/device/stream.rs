@@ -7,7 +7,7 @@ use cpal::{Error, FromSample, I24, OutputCallbackInfo, SampleFormat, SizedSample
 
 use super::callback::{Callback, ErrorForwarder};
 use super::cards::Card;
-use super::choice::Choice;
+use super::choice::DeviceConfig;
 use super::paced::PacedStream;
 
 /// A running device; dropping it stops the device.
@@ -19,7 +19,7 @@ pub(super) enum Stream {
 /// Opens a card and starts it.
 pub(super) fn open(
     card: &Card,
-    choice: Choice,
+    choice: DeviceConfig,
     callback: Callback,
     mut forwarder: ErrorForwarder,
 ) -> Result<Stream, Error> {
@@ -51,7 +51,7 @@ const OPENING: Duration = Duration::from_secs(5);
 
 fn build<T: SizedSample + FromSample<f32>>(
     device: &cpal::Device,
-    choice: Choice,
+    choice: DeviceConfig,
     mut callback: Callback,
     mut forwarder: ErrorForwarder,
 ) -> Result<cpal::Stream, Error> {

@@ -10,9 +10,9 @@ use rtrb::Consumer;
 
 use super::callback::{Callback, CallbackStats, ErrorForwarder};
 use super::cards::{Card, Cards, trouble};
-use super::choice::{self, Choice};
+use super::choice::{self, DeviceConfig};
 use super::options::DeviceOptions;
-use super::player::Player;
+use super::player::DevicePlayer;
 use super::priority::{Ask, FIX, Promotion};
 use super::stream::{self, Stream};
 use super::watch::{Alarm, Watch};
@@ -44,8 +44,8 @@ pub(super) struct Supervisor {
     watch: Watch,
     open: Option<Open>,
     /// The player while no stream is open; `None` also until a closed stream has returned it.
-    parked: Option<Player>,
-    home: (Sender<Player>, Receiver<Player>),
+    parked: Option<DevicePlayer>,
+    home: (Sender<DevicePlayer>, Receiver<DevicePlayer>),
     retry_at: Duration,
     status: Arc<Mutex<DeviceStatus>>,
     /// The status to publish next.
@@ -59,7 +59,7 @@ pub(super) struct Supervisor {
 struct Open {
     stream: Stream,
     reports: Consumer<Error>,
-    choice: Choice,
+    choice: DeviceConfig,
     /// Block count when it was opened.
     blocks: u64,
 }
@@ -68,7 +68,7 @@ struct Open {
 pub(super) struct SupervisorConfig {
     pub(super) cards: Arc<dyn Cards>,
     pub(super) card: Card,
-    pub(super) choice: Choice,
+    pub(super) choice: DeviceConfig,
     pub(super) floor: Floor,
     pub(super) options: DeviceOptions,
     pub(super) block_is_asked: bool,
@@ -77,7 +77,7 @@ pub(super) struct SupervisorConfig {
 
 impl Supervisor {
     /// Opens the device for the first time.
-    pub(super) fn begin(config: SupervisorConfig, player: Player) -> Result<Self, SinkError> {
+    pub(super) fn begin(config: SupervisorConfig, player: DevicePlayer) -> Result<Self, SinkError> {
         let SupervisorConfig { cards, card, choice, floor, options, block_is_asked, ask } = config;
         let now = DeviceStatus {
             name: card.name(),
@@ -159,7 +159,7 @@ impl Supervisor {
     }
 
     /// Reopens the device with blocks of twice the length, if it supports them.
-    fn enlarge(&mut self, now: Duration, choice: Choice, frames: u32) {
+    fn enlarge(&mut self, now: Duration, choice: DeviceConfig, frames: u32) {
         let name = &self.now.name;
         let wanted = DeviceOptions { block: Some(frames.saturating_mul(2)), ..self.options.clone() };
         let larger = self.cards.by_id(&self.id).and_then(|card| self.choose(&card, &wanted).ok());
@@ -246,13 +246,19 @@ impl Supervisor {
     }
 
     /// Chooses a configuration of `card` at the renderer's rate.
-    fn choose(&self, card: &Card, options: &DeviceOptions) -> Result<Choice, SinkError> {
+    fn choose(&self, card: &Card, options: &DeviceOptions) -> Result<DeviceConfig, SinkError> {
         let ranges = card.ranges().map_err(|error| trouble(&card.name(), &error))?;
         choice::choose(&card.name(), &ranges, &self.floor, options)
     }
 
     /// Opens the device; `is_back` if it was away.
-    fn start(&mut self, card: &Card, choice: Choice, now: Duration, is_back: bool) -> Result<(), Error> {
+    fn start(
+        &mut self,
+        card: &Card,
+        choice: DeviceConfig,
+        now: Duration,
+        is_back: bool,
+    ) -> Result<(), Error> {
         let Some(mut player) = self.parked.take() else { return Ok(()) };
         player.fit(&self.floor, &self.options, choice);
         let (forwarder, reports) = ErrorForwarder::new(Arc::clone(&self.stats));

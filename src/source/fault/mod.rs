@@ -1,4 +1,4 @@
-//! Faults between the boards and the floor program: lost, duplicated, delayed and damaged packets, and outages.
+//! LinkFaults between the boards and the floor program: lost, duplicated, delayed and damaged packets, and outages.
 
 mod nemesis;
 mod spec;
@@ -22,7 +22,7 @@ pub use self::spec::BadFault;
 ///
 /// Shares are between 0 (never) and 1 (always); values outside are clamped, and NaN counts as 0.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Faults {
+pub struct LinkFaults {
     /// Share of packets lost, independently of each other.
     pub loss: f64,
     /// Repeated intervals in which all packets are lost.
@@ -80,7 +80,7 @@ pub struct Stall {
 #[derive(Debug)]
 pub struct FaultInjector<S> {
     inner: S,
-    faults: Faults,
+    faults: LinkFaults,
     rng: Pcg64Mcg,
     /// Packets on the way, the next to arrive first.
     on_the_way: BinaryHeap<Reverse<OnTheWay>>,
@@ -93,7 +93,7 @@ pub struct FaultInjector<S> {
 impl<S: SensorSource> FaultInjector<S> {
     /// `inner` with these faults.
     #[must_use]
-    pub fn new(inner: S, faults: Faults, seed: u64) -> Self {
+    pub fn new(inner: S, faults: LinkFaults, seed: u64) -> Self {
         let rng = Pcg64Mcg::seed_from_u64(seed);
         Self {
             inner,
@@ -107,7 +107,7 @@ impl<S: SensorSource> FaultInjector<S> {
     }
 
     /// Replaces the faults from now on; packets on the way arrive as already decided.
-    pub fn set_faults(&mut self, faults: Faults) {
+    pub fn set_faults(&mut self, faults: LinkFaults) {
         self.faults = faults;
     }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use super::{Bursts, Faults, Outage, Stall};
+use super::{Bursts, LinkFaults, Outage, Stall};
 use crate::units::Instant;
 
 /// Average time between two events.
@@ -15,7 +15,7 @@ const EVERY: Duration = Duration::from_secs(4);
 /// sides of these limits.
 const LONGEST: Duration = Duration::from_secs(2);
 
-impl Faults {
+impl LinkFaults {
     /// Losses, duplicates, delays and damage with random shares all the time, and every few seconds of `length` an
     /// outage, a frozen board or a stall, on a floor of `boards` boards (with 0, no event affects a single board).
     /// The same seed gives the same faults.

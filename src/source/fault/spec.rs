@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use super::{Bursts, Faults, Outage, Stall};
+use super::{Bursts, LinkFaults, Outage, Stall};
 use crate::units::Instant;
 
 /// The error for a text that is not a fault: the text, the reason, and the correct forms.
@@ -22,7 +22,7 @@ pub struct BadFault {
 /// Maximum time in a fault: a day.
 const LONGEST_S: f64 = 86_400.0;
 
-impl FromStr for Faults {
+impl FromStr for LinkFaults {
     type Err = BadFault;
 
     /// Parses one fault:
@@ -42,7 +42,7 @@ impl FromStr for Faults {
     /// | `swapped=0:1` | two boards use each other's address |
     /// | `nemesis=7:60s:6` | most of these, chosen by seed 7, for a minute, on a floor of six boards |
     ///
-    /// Times are on the source's clock, 0 at its start. Use [`Faults::and`] to combine several.
+    /// Times are on the source's clock, 0 at its start. Use [`LinkFaults::and`] to combine several.
     fn from_str(text: &str) -> Result<Self, BadFault> {
         let bad = |why| BadFault { written: text.escape_debug().to_string(), why };
         let (name, value) = text.split_once('=').ok_or_else(|| bad("it has no `=`"))?;
@@ -91,7 +91,7 @@ impl FromStr for Faults {
     }
 }
 
-impl Faults {
+impl LinkFaults {
     /// Combines two sets of faults: the greater of each share and delay; bursts and panic of `other` replace those of
     /// `self`.
     #[must_use]
@@ -160,11 +160,12 @@ mod tests {
 
     #[test]
     fn every_fault_can_be_written() {
-        let read = |text: &str| text.parse::<Faults>().unwrap();
+        let read = |text: &str| text.parse::<LinkFaults>().unwrap();
         let at = |ms| Instant::from_millis(ms);
-        assert_eq!(read("loss=5%"), Faults { loss: 0.05, ..Faults::default() });
+        assert_eq!(read("loss=5%"), LinkFaults { loss: 0.05, ..LinkFaults::default() });
         assert_eq!(read("loss=0.05"), read("loss=5%"));
-        let delayed = Faults { delay: 0.1, delay_up_to: Duration::from_millis(20), ..Faults::default() };
+        let delayed =
+            LinkFaults { delay: 0.1, delay_up_to: Duration::from_millis(20), ..LinkFaults::default() };
         assert_eq!(read("delay=10%:20ms"), delayed);
         let lost = Outage { board: Some(3), from: at(10_000), until: at(12_500) };
         assert_eq!(read("board=3:10s..12.5s").outages, [lost]);
@@ -198,7 +199,7 @@ mod tests {
             "stall=1s..1e300s",
             "loss=5%\u{1b}[2J",
         ] {
-            let error = text.parse::<Faults>().unwrap_err().to_string();
+            let error = text.parse::<LinkFaults>().unwrap_err().to_string();
             assert!(error.contains("write loss=5%") && !error.contains('\u{1b}'), "{text}: {error}");
         }
     }

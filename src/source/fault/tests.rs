@@ -32,7 +32,7 @@ impl SensorSource for Boards {
 }
 
 /// All packets that get through, and the number of calls that found none within 10 ms.
-fn through(faults: Faults, seed: u64) -> (Vec<SensorPacket>, usize) {
+fn through(faults: LinkFaults, seed: u64) -> (Vec<SensorPacket>, usize) {
     let mut source = FaultInjector::new(boards(), faults, seed);
     let (mut packets, mut silences) = (Vec::new(), 0);
     loop {
@@ -47,14 +47,14 @@ fn through(faults: Faults, seed: u64) -> (Vec<SensorPacket>, usize) {
 
 #[test]
 fn without_faults_nothing_changes() {
-    let (packets, silences) = through(Faults::default(), 1);
+    let (packets, silences) = through(LinkFaults::default(), 1);
     assert_eq!(packets, boards().0.collect::<Vec<_>>());
     assert_eq!(silences, 0);
 }
 
 #[test]
 fn a_fifth_is_lost_and_another_seed_loses_others() {
-    let lossy = Faults { loss: 0.2, ..Faults::default() };
+    let lossy = LinkFaults { loss: 0.2, ..LinkFaults::default() };
     let (packets, _) = through(lossy.clone(), 1);
     assert!((1520..1680).contains(&packets.len()), "{}", packets.len());
     assert_eq!(packets, through(lossy.clone(), 1).0);
@@ -63,7 +63,7 @@ fn a_fifth_is_lost_and_another_seed_loses_others() {
 
 #[test]
 fn delayed_packets_are_overtaken_and_stamped_when_they_arrive() {
-    let slow = Faults { delay: 0.3, delay_up_to: Duration::from_millis(5), ..Faults::default() };
+    let slow = LinkFaults { delay: 0.3, delay_up_to: Duration::from_millis(5), ..LinkFaults::default() };
     let (packets, _) = through(slow, 1);
     assert_eq!(packets.len(), 2000);
     assert!(packets.is_sorted_by_key(|packet| packet.received));
@@ -74,9 +74,9 @@ fn delayed_packets_are_overtaken_and_stamped_when_they_arrive() {
 
 #[test]
 fn an_unplugged_board_leaves_the_other_and_an_unplugged_floor_silence() {
-    let during = |board| Faults {
+    let during = |board| LinkFaults {
         outages: vec![Outage { board, from: Instant::from_millis(100), until: Instant::from_millis(300) }],
-        ..Faults::default()
+        ..LinkFaults::default()
     };
     let (packets, silences) = through(during(Some(1)), 1);
     assert_eq!((packets.len(), silences), (1800, 0));
@@ -88,8 +88,10 @@ fn an_unplugged_board_leaves_the_other_and_an_unplugged_floor_silence() {
 #[test]
 fn a_stall_holds_everything_back_and_lets_it_go_at_once() {
     let until = Instant::from_millis(300);
-    let faults =
-        Faults { stalls: vec![Stall { from: Instant::from_millis(100), until }], ..Faults::default() };
+    let faults = LinkFaults {
+        stalls: vec![Stall { from: Instant::from_millis(100), until }],
+        ..LinkFaults::default()
+    };
     let (packets, _) = through(faults, 1);
     assert_eq!(packets.len(), 2000);
     assert_eq!(packets.iter().filter(|packet| packet.received == until).count(), 402);
@@ -98,9 +100,9 @@ fn a_stall_holds_everything_back_and_lets_it_go_at_once() {
 #[test]
 fn bursts_doubles_and_damage_do_what_they_say() {
     let bursts = Some(Bursts { every: Duration::from_millis(100), length: Duration::from_millis(20) });
-    assert_eq!(through(Faults { bursts, ..Faults::default() }, 1).0.len(), 2000 - 9 * 2 * 20);
-    assert_eq!(through(Faults { duplicate: 1.0, ..Faults::default() }, 1).0.len(), 4000);
-    let (damaged, _) = through(Faults { damage: 1.0, ..Faults::default() }, 1);
+    assert_eq!(through(LinkFaults { bursts, ..LinkFaults::default() }, 1).0.len(), 2000 - 9 * 2 * 20);
+    assert_eq!(through(LinkFaults { duplicate: 1.0, ..LinkFaults::default() }, 1).0.len(), 4000);
+    let (damaged, _) = through(LinkFaults { damage: 1.0, ..LinkFaults::default() }, 1);
     let whole: Vec<_> = boards().0.collect();
     assert!(damaged.iter().zip(&whole).all(|(damaged, whole)| damaged != whole));
 }
@@ -109,7 +111,7 @@ fn bursts_doubles_and_damage_do_what_they_say() {
 fn a_frozen_board_repeats_what_it_read_and_goes_on_as_it_is() {
     let (from, until) = (Instant::from_millis(100), Instant::from_millis(300));
     let frozen = vec![Outage { board: Some(1), from, until }];
-    let mut source = FaultInjector::new(counting(), Faults { frozen, ..Faults::default() }, 1);
+    let mut source = FaultInjector::new(counting(), LinkFaults { frozen, ..LinkFaults::default() }, 1);
     let mut seen = Vec::new();
     while let Ok(packet) = source.next(Duration::from_millis(10)) {
         seen.extend(packet);
@@ -133,7 +135,7 @@ fn counting() -> Boards {
 
 #[test]
 fn swapped_boards_have_each_others_address() {
-    let (packets, _) = through(Faults { swapped: vec![(0, 1)], ..Faults::default() }, 1);
+    let (packets, _) = through(LinkFaults { swapped: vec![(0, 1)], ..LinkFaults::default() }, 1);
     let boards: Vec<u16> = packets.iter().take(4).map(|packet| packet.board).collect();
     assert_eq!(boards, [1, 0, 1, 0]);
 }

@@ -8,7 +8,7 @@ use underfoot::layout::Layout;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
 use underfoot::sink::{EventSink, Report};
-use underfoot::source::{FaultInjector, Faults};
+use underfoot::source::{FaultInjector, LinkFaults};
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, WidgetEvent};
 use underfoot::wire::LinkState;
@@ -56,7 +56,7 @@ fn serve(
     sim: &SimFloor,
     page: &Layout,
     feet: Box<dyn FootDriver>,
-    faults: Faults,
+    faults: LinkFaults,
 ) -> Vec<Told> {
     let notes = Notes::default();
     let source = SimulatedSource::new(sim.clone(), feet, Pace::FreeRunning);
@@ -166,7 +166,7 @@ fn whatever_goes_wrong_at_once_presses_nothing_by_itself_and_every_press_ends() 
             break;
         }
         simulated += script.duration();
-        let faults = Faults::nemesis(seed, script.duration(), floor.boards.len() as u16);
+        let faults = LinkFaults::nemesis(seed, script.duration(), floor.boards.len() as u16);
         let told = serve(&floor, &sim, &page, Box::new(script.clone()), faults);
         presses += check(&told, &script, &page, seed);
     }
@@ -179,7 +179,7 @@ fn whatever_goes_wrong_at_once_on_an_empty_floor_is_no_event() {
     let page = layout("map");
     let length = Duration::from_secs(30);
     for seed in 100..104 {
-        let faults = Faults::nemesis(seed, length, floor.boards.len() as u16);
+        let faults = LinkFaults::nemesis(seed, length, floor.boards.len() as u16);
         let told = serve(&floor, &sim, &page, Box::new(Nobody(Instant::START + length)), faults);
         let events: Vec<_> = told.iter().filter(|told| matches!(told, Told::Event(_))).collect();
         assert!(events.is_empty(), "seed {seed}: {events:?}");

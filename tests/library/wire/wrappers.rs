@@ -15,7 +15,7 @@ use underfoot::mirror::MirrorFeed;
 use underfoot::recording::{Recorder, Recording, Speed, TappedPackets, WhenBehind};
 use underfoot::sense::Method;
 use underfoot::serve::Server;
-use underfoot::source::{FaultInjector, Faults, FloorInput, Incoming, UdpSource};
+use underfoot::source::{FaultInjector, FloorInput, Incoming, LinkFaults, UdpSource};
 use underfoot::wire::{ControlMessage, Request};
 
 type Wrap = Box<dyn Fn(FloorInput) -> FloorInput>;
@@ -32,7 +32,7 @@ fn wrappers(file: &Path) -> Vec<(&'static str, Wrap)> {
         (
             "faults",
             Box::new(|mut input| {
-                let faults = Faults { loss: 1.0, ..Faults::default() };
+                let faults = LinkFaults { loss: 1.0, ..LinkFaults::default() };
                 input.source = Box::new(FaultInjector::new(input.source, faults, 1));
                 input
             }),

@@ -25,7 +25,7 @@ use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
-use underfoot::source::{Faults, FloorInput};
+use underfoot::source::{FloorInput, LinkFaults};
 use underfoot::units::HostClock;
 use underfoot_sim::{
     ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
@@ -349,7 +349,7 @@ impl Args {
                 people: None,
             });
         }
-        let mut faults = Faults::default();
+        let mut faults = LinkFaults::default();
         let (driver, name, feet): (Box<dyn FootDriver>, _, Option<Box<dyn FootSink>>) =
             if self.session || self.scenario.is_some() {
                 let (script, rehearsed) = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;

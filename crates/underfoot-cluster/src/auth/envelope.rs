@@ -54,7 +54,7 @@ pub struct Echo {
 
 /// Sender, number and time of a message.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Head {
+pub struct EnvelopeHead {
     /// The sender's nonce.
     pub from: u64,
     /// The message's number, from 1.
@@ -66,7 +66,7 @@ pub struct Head {
 /// The parts of a message.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EnvelopeParts<'m> {
-    pub(super) head: Head,
+    pub(super) head: EnvelopeHead,
     answers: &'m [u8],
     /// Start and end of the body among the bytes.
     pub(super) body: (usize, usize),
@@ -85,7 +85,7 @@ impl EnvelopeParts<'_> {
 /// Writes a message into `out`, replacing its content.
 pub(super) fn write(
     (kind, key): (MessageKind, &[u8; TAG]),
-    head: &Head,
+    head: &EnvelopeHead,
     answers: impl Iterator<Item = (u64, Echo)>,
     body: &[u8],
     out: &mut Vec<u8>,
@@ -135,7 +135,7 @@ pub(super) fn parts(bytes: &[u8]) -> Option<EnvelopeParts<'_>> {
     let (count, rest) = rest.split_first_chunk::<2>()?;
     let (answers, body) = rest.split_at_checked(usize::from(u16::from_be_bytes(*count)) * ANSWER)?;
     Some(EnvelopeParts {
-        head: Head { from, counter, sent },
+        head: EnvelopeHead { from, counter, sent },
         answers,
         body: (content.len() - body.len(), content.len()),
     })
@@ -157,7 +157,7 @@ mod tests {
 
     fn written(answers: &[(u64, Echo)], body: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
-        let head = Head { from: 1, counter: 2, sent: 3 };
+        let head = EnvelopeHead { from: 1, counter: 2, sent: 3 };
         write((MessageKind::Note, &KEY), &head, answers.iter().copied(), body, &mut out);
         out
     }
@@ -169,7 +169,7 @@ mod tests {
         assert_eq!(kind(&bytes), Some(MessageKind::Note));
         assert!(is_genuine(&bytes, &KEY));
         let parts = parts(&bytes).unwrap();
-        assert_eq!(parts.head, Head { from: 1, counter: 2, sent: 3 });
+        assert_eq!(parts.head, EnvelopeHead { from: 1, counter: 2, sent: 3 });
         assert_eq!(&bytes[parts.body.0..parts.body.1], b"body");
         assert_eq!(parts.answer_to(5), Some(Echo { sent: 50, received: 500 }));
         assert_eq!(parts.answer_to(6), None);

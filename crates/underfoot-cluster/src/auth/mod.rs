@@ -27,7 +27,7 @@ mod refusals;
 mod session;
 mod window;
 
-pub use envelope::{Echo, Head, MessageKind};
+pub use envelope::{Echo, EnvelopeHead, MessageKind};
 pub use key::{Key, KeyError};
 pub use refusals::{AuthRefusal, AuthRefusals};
 pub use session::{AuthSession, Opened, Role};

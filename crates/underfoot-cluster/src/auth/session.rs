@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use underfoot::units::Instant;
 
-use super::envelope::{self, Echo, Head, MessageKind};
+use super::envelope::{self, Echo, EnvelopeHead, MessageKind};
 use super::key::Key;
 use super::refusals::{AuthRefusal, AuthRefusals};
 use super::window::{Novelty, ReplayWindow};
@@ -60,7 +60,7 @@ pub struct Opened {
     /// Its purpose.
     pub kind: MessageKind,
     /// Its sender, number and time.
-    pub head: Head,
+    pub head: EnvelopeHead,
     /// The message that it answers; `None` for a packet of a board.
     pub echo: Option<Echo>,
     /// The place of its body among its bytes.
@@ -128,7 +128,7 @@ impl AuthSession {
     /// no answers.
     pub fn seal(&mut self, kind: MessageKind, body: &[u8], now: Instant, out: &mut Vec<u8>) {
         self.counter += 1;
-        let head = Head { from: self.nonce, counter: self.counter, sent: now.micros() };
+        let head = EnvelopeHead { from: self.nonce, counter: self.counter, sent: now.micros() };
         let heard =
             self.peers.iter().filter(|peer| kind != MessageKind::Packet && now.since(peer.heard) <= FRESH);
         let answers = heard.map(|peer| (peer.nonce, peer.echo));
@@ -176,7 +176,7 @@ impl AuthSession {
     }
 
     /// The sender of a message with this `head`, which is added if it is new.
-    fn peer(&mut self, head: &Head, now: Instant) -> Result<&mut Peer, AuthRefusal> {
+    fn peer(&mut self, head: &EnvelopeHead, now: Instant) -> Result<&mut Peer, AuthRefusal> {
         self.peers.retain(|peer| now.since(peer.heard) <= REMEMBERED);
         let known = self.peers.iter().position(|peer| peer.nonce == head.from);
         let index = match known {
@@ -205,7 +205,7 @@ impl AuthSession {
 
 impl Peer {
     /// The sender of a first message; `None` if its counter is beyond that of any sender.
-    fn met(head: &Head, now: Instant) -> Option<Self> {
+    fn met(head: &EnvelopeHead, now: Instant) -> Option<Self> {
         Some(Self {
             nonce: head.from,
             // `note` adds the message itself.
@@ -219,7 +219,7 @@ impl Peer {
     }
 
     /// Checks the counter of a message, and adds it; `proof` is from its answer, if it has one.
-    fn note(&mut self, head: &Head, proof: Option<Proof>, now: Instant) -> Result<(), AuthRefusal> {
+    fn note(&mut self, head: &EnvelopeHead, proof: Option<Proof>, now: Instant) -> Result<(), AuthRefusal> {
         let mut novelty = self.window.look(head.counter);
         if novelty == Novelty::Jumped {
             let is_new = self.jumped.zip(proof).is_some_and(|(jumped, proof)| proof.answered > jumped);
@@ -265,7 +265,7 @@ mod tests {
         out
     }
 
-    fn opened(by: &mut AuthSession, bytes: &[u8], ms: u64) -> Result<Head, AuthRefusal> {
+    fn opened(by: &mut AuthSession, bytes: &[u8], ms: u64) -> Result<EnvelopeHead, AuthRefusal> {
         by.open(bytes, at(ms)).map(|opened| {
             assert_eq!(&bytes[opened.body], b"body");
             opened.head

@@ -19,7 +19,7 @@ use thiserror::Error;
 use underfoot::floor::Floor;
 use underfoot::sink::AreaState;
 
-use crate::auth::{Echo, Head};
+use crate::auth::{Echo, EnvelopeHead};
 
 pub use contact::NodeContact;
 pub use event::{NodeEvent, NodeValue};
@@ -93,8 +93,8 @@ pub struct NodeFrame {
 impl NodeMessage {
     /// The message with the contents of its envelope.
     #[must_use]
-    pub fn in_envelope(self, head: &Head, echo: Option<Echo>) -> Self {
-        let Head { from, counter, sent } = *head;
+    pub fn in_envelope(self, head: &EnvelopeHead, echo: Option<Echo>) -> Self {
+        let EnvelopeHead { from, counter, sent } = *head;
         Self { node: from, sequence: counter, sent, echo, ..self }
     }
 }
@@ -112,8 +112,8 @@ pub enum ToNodes {
 impl ToNodes {
     /// The message with the contents of its envelope.
     #[must_use]
-    pub fn in_envelope(self, head: &Head) -> Self {
-        let Head { from: gateway, sent, .. } = *head;
+    pub fn in_envelope(self, head: &EnvelopeHead) -> Self {
+        let EnvelopeHead { from: gateway, sent, .. } = *head;
         match self {
             Self::Beat(message) => Self::Beat(GatewayMessage { gateway, sent, ..message }),
             Self::Layout(message) => Self::Layout(LayoutMessage { gateway, ..message }),
@@ -228,7 +228,8 @@ mod tests {
             ..NodeMessage::default()
         };
         assert_eq!(decode::<NodeMessage>(&encode(&message)).unwrap(), message);
-        let (head, echo) = (Head { from: 1, counter: 2, sent: 3 }, Some(Echo { sent: 4, received: 5 }));
+        let (head, echo) =
+            (EnvelopeHead { from: 1, counter: 2, sent: 3 }, Some(Echo { sent: 4, received: 5 }));
         let filled = decode::<NodeMessage>(&encode(&message)).unwrap().in_envelope(&head, echo);
         assert_eq!((filled.node, filled.sequence, filled.sent, filled.echo), (1, 2, 3, echo));
         assert_eq!(decode::<NodeMessage>(&encode(&filled)).unwrap(), message, "these are in the envelope");

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use underfoot::feel::{Click, Cue, Lasting, Manner, Spot, SustainedCue, Tone};
 use underfoot::units::{Instant, Newtons};
 
-use crate::auth::{Echo, Head};
+use crate::auth::{Echo, EnvelopeHead};
 
 /// A tile by its column and row on the whole floor, and the weight of the cue there.
 pub type NoteSpot = (u16, u16, f32);
@@ -73,8 +73,8 @@ pub struct NoteLasting {
 impl Note {
     /// The note with the contents of its envelope.
     #[must_use]
-    pub fn in_envelope(self, head: &Head, echo: Option<Echo>) -> Self {
-        let Head { from, counter, sent } = *head;
+    pub fn in_envelope(self, head: &EnvelopeHead, echo: Option<Echo>) -> Self {
+        let EnvelopeHead { from, counter, sent } = *head;
         Self { node: from, sequence: counter, sent, echo, ..self }
     }
 }

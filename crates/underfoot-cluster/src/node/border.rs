@@ -17,7 +17,7 @@ use underfoot::floor::{Area, Floor, Geometry, TileBlock, TileId};
 use underfoot::serve::Neighbours;
 use underfoot::units::Instant;
 
-use crate::auth::{Echo, Head};
+use crate::auth::{Echo, EnvelopeHead};
 use crate::gateway::NodeClock;
 use crate::message::{Note, NoteCue, NoteLasting, NoteSpot, VERSION, decode, encode, fingerprint};
 
@@ -41,7 +41,7 @@ pub type SendNote = Box<dyn FnMut(usize, &[u8]) -> bool + Send>;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReceivedNote {
     /// Its sender, number and time.
-    pub head: Head,
+    pub head: EnvelopeHead,
     /// The message that it answers.
     pub echo: Option<Echo>,
     /// The content of the note.

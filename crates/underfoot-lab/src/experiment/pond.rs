@@ -11,7 +11,9 @@ use smallvec::smallvec;
 
 use super::goodness::{Goodness, normal_share};
 use underfoot::floor::{Geometry, Rect};
-use underfoot::ground::{CrackRules, EnergyLaw, Fracture, GroundSpec, Grounds, IceSpec, Material, Sheet};
+use underfoot::ground::{
+    CrackRules, EnergyLaw, Fracture, GroundMaterial, GroundSpec, Grounds, IceSpec, Sheet,
+};
 use underfoot::layout::{Colour, Ground};
 use underfoot::sense::{Contact, ContactId, ForceFrame, TileLoad};
 use underfoot::units::{Instant, Newtons};
@@ -231,7 +233,7 @@ impl fmt::Display for PondLaws {
 /// Ice with these parameters over `area`.
 pub(super) fn pond(spec: IceSpec, seed: u32, area: Rect) -> Ground {
     let (surface, deep) = (Colour::rgb(0x9f, 0xd3, 0xd6), Colour::rgb(0x0b, 0x3a, 0x47));
-    let spec = GroundSpec { area, page: None, seed, material: Material::Ice(spec) };
+    let spec = GroundSpec { area, page: None, seed, material: GroundMaterial::Ice(spec) };
     Ground { spec, surface, deep }
 }
 

@@ -15,7 +15,7 @@ use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::Server;
 use underfoot::sink::{EventSink, Report};
-use underfoot::source::{FaultInjector, Faults};
+use underfoot::source::{FaultInjector, LinkFaults};
 use underfoot::units::Instant;
 use underfoot::widget::{Behaviour, EventKind, Value, WidgetEvent};
 use underfoot::wire::LinkState;
@@ -91,7 +91,7 @@ struct Table {
 }
 
 impl Table {
-    fn of(layout: &Layout, frames_per_s: f32, faults: Faults) -> Self {
+    fn of(layout: &Layout, frames_per_s: f32, faults: LinkFaults) -> Self {
         let floor = Floor::default();
         let sim = SimFloor::new(&floor, SimConfig::default(), 1);
         let floor = calibrated(&floor, &sim, 1).unwrap();
@@ -212,7 +212,7 @@ fn drag_all(frames_per_s: f32) {
             if widget.page.is_some_and(|page| page != 0) {
                 continue;
             }
-            let mut table = Table::of(&layout, frames_per_s, Faults::default());
+            let mut table = Table::of(&layout, frames_per_s, LinkFaults::default());
             for (count, speed) in [0.2, 0.35, 0.5, 0.75, 1.0].into_iter().enumerate() {
                 let (from, to) = if count % 2 == 0 { (0.15, 0.85) } else { (0.85, 0.15) };
                 let before = number(table.snapshot.widgets[index].value);
@@ -268,7 +268,7 @@ fn sliders_follow_the_mouse_at_sixty_frames_a_second() {
 fn a_machine_that_stands_still_for_seconds_loses_no_link_and_cancels_no_press() {
     let map = layout("map");
     let zoom = map.widgets.iter().position(|widget| widget.id == "zoom").unwrap();
-    let mut table = Table::of(&map, 60.0, Faults::default());
+    let mut table = Table::of(&map, 60.0, LinkFaults::default());
     table.press(place(&map.widgets[zoom], 0.2));
     table.rest(0.3);
     for pause_s in [0.05, 0.1, 0.3, 1.0, 5.0] {
@@ -291,7 +291,8 @@ fn a_fault_that_cuts_the_link_still_cancels_the_press() {
     let map = layout("map");
     let zoom = map.widgets.iter().find(|widget| widget.id == "zoom").unwrap();
     let boards: Vec<String> = (0..6).map(|board| format!("board={board}:2s..2.3s")).collect();
-    let cut = boards.iter().fold(Faults::default(), |faults, written| faults.and(written.parse().unwrap()));
+    let cut =
+        boards.iter().fold(LinkFaults::default(), |faults, written| faults.and(written.parse().unwrap()));
     let mut table = Table::of(&map, 60.0, cut);
     table.press(place(zoom, 0.2));
     table.rest(2.0);

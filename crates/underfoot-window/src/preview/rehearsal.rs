@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 
 use underfoot::floor::{Floor, SensorId};
-use underfoot::source::{Faults, Outage};
+use underfoot::source::{LinkFaults, Outage};
 use underfoot::units::Instant;
 use underfoot_sim::{FaultSwitch, SensorFault};
 
@@ -68,7 +68,7 @@ impl Rehearsal {
 
     /// Applies the chosen faults of packets.
     pub(super) fn apply(&self) {
-        tell(self.switch.set_packets(Faults::from(&self.packets)));
+        tell(self.switch.set_packets(LinkFaults::from(&self.packets)));
     }
 
     /// Clears all faults.
@@ -87,7 +87,7 @@ fn tell(heard: bool) {
     }
 }
 
-impl From<&PacketFaults> for Faults {
+impl From<&PacketFaults> for LinkFaults {
     fn from(chosen: &PacketFaults) -> Self {
         let always = |board| Outage { board, from: Instant::START, until: Instant::from_micros(u64::MAX) };
         let outages = chosen.silent.then(|| always(None)).into_iter();

@@ -12,7 +12,7 @@ use super::{Scene, View};
 use noise::TerrainNoise;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
-use underfoot::ground::{GroundState, Material, Relief};
+use underfoot::ground::{GroundMaterial, GroundState, Relief};
 use underfoot::layout::{Colour, Ground};
 use underfoot::units::Instant;
 
@@ -38,9 +38,9 @@ pub(super) fn draw(scene: &mut Scene, view: &View<'_>) {
         }
         let land = Land::new(view, ground, view.snapshot.grounds.get(index), view.snapshot);
         match &ground.spec.material {
-            Material::Ice(spec) => ice::draw(scene, &land, spec),
-            Material::Grain(spec) => loose::draw(scene, &land, spec.grain),
-            Material::Wood(spec) => wood::draw(scene, &land, spec),
+            GroundMaterial::Ice(spec) => ice::draw(scene, &land, spec),
+            GroundMaterial::Grain(spec) => loose::draw(scene, &land, spec.grain),
+            GroundMaterial::Wood(spec) => wood::draw(scene, &land, spec),
         }
         land.seams(scene, view);
     }

@@ -5,7 +5,7 @@ use eframe::egui::{CollapsingHeader, Ui};
 
 use super::link::{figure, grouped};
 use underfoot::engine::Snapshot;
-use underfoot::ground::{GroundState, Material};
+use underfoot::ground::{GroundMaterial, GroundState};
 use underfoot::layout::Layout;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -29,28 +29,28 @@ pub(super) fn grounds_part(ui: &mut Ui, theme: &Theme, layout: &Layout, snapshot
 }
 
 /// A summary in one line.
-fn headline(material: &Material, state: &GroundState) -> String {
+fn headline(material: &GroundMaterial, state: &GroundState) -> String {
     let (count, what) = match material {
-        Material::Ice(_) => (state.cracks.len() as u64, "pieces"),
-        Material::Grain(_) => (state.counters.events, "grains"),
-        Material::Wood(_) => (state.counters.events, "creaks"),
+        GroundMaterial::Ice(_) => (state.cracks.len() as u64, "pieces"),
+        GroundMaterial::Grain(_) => (state.counters.events, "grains"),
+        GroundMaterial::Wood(_) => (state.counters.events, "creaks"),
     };
     format!("{}: {} {what}", material.name(), grouped(count))
 }
 
 /// Names and counts.
-fn lines(material: &Material, state: &GroundState) -> Vec<(&'static str, u64)> {
+fn lines(material: &GroundMaterial, state: &GroundState) -> Vec<(&'static str, u64)> {
     let counters = &state.counters;
     let mut lines = match material {
-        Material::Ice(spec) => vec![
+        GroundMaterial::Ice(spec) => vec![
             ("pieces of crack", state.cracks.len() as u64),
             ("at most", spec.cracks.most as u64),
             ("seeds", state.seeds.len() as u64),
             ("evicted by new pieces", counters.evicted),
             ("events", counters.events),
         ],
-        Material::Grain(_) => vec![("grain events", counters.events)],
-        Material::Wood(_) => vec![("creaks", counters.events)],
+        GroundMaterial::Grain(_) => vec![("grain events", counters.events)],
+        GroundMaterial::Wood(_) => vec![("creaks", counters.events)],
     };
     lines.push(("too thick to be felt one by one", counters.unfelt));
     lines
@@ -63,7 +63,7 @@ mod tests {
     use underfoot::ground::{Crack, GroundCounters};
     use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 
-    fn materials(layout: &str) -> Vec<Material> {
+    fn materials(layout: &str) -> Vec<GroundMaterial> {
         let text = builtin_layout(layout).unwrap();
         let loaded = parse_layout(text, layout, &Kinds::builtin(), &Geometry::default()).unwrap();
         loaded.layout.grounds.iter().map(|ground| ground.spec.material).collect()
@@ -79,7 +79,7 @@ mod tests {
         let lines = lines(&ice, &state);
         assert!(lines.contains(&("evicted by new pieces", 296)) && lines.contains(&("events", 1500)));
         let loose = materials("winter_walk");
-        let loose = loose.iter().find(|material| matches!(material, Material::Grain(_))).unwrap();
+        let loose = loose.iter().find(|material| matches!(material, GroundMaterial::Grain(_))).unwrap();
         assert!(headline(loose, &state).ends_with(": 1\u{a0}500 grains"));
     }
 }

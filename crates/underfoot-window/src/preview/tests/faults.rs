@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use super::Room;
 use crate::preview::rehearsal::Rehearsal;
 use underfoot::floor::Floor;
-use underfoot::source::{Faults, SensorSource};
+use underfoot::source::{LinkFaults, SensorSource};
 use underfoot_sim::{FootHandle, Pace, RehearsalSource, SimConfig, SimFloor, SimulatedSource, feet_by_hand};
 
 /// A window on a simulated floor, with that floor's source; the floor ends with the handle.
@@ -16,7 +16,7 @@ fn room() -> (Room, RehearsalSource, FootHandle) {
     let sim = SimFloor::new(&floor, SimConfig::default(), 1);
     let (handle, nobody) = feet_by_hand();
     let inner = SimulatedSource::new(sim, Box::new(nobody), Pace::FreeRunning);
-    let (source, switch) = RehearsalSource::new(inner, Faults::default(), 1);
+    let (source, switch) = RehearsalSource::new(inner, LinkFaults::default(), 1);
     let mut room = Room::simulated();
     room.window.state_mut().rehearsal = Some(Rehearsal::new(switch, &floor));
     room.run(2);
