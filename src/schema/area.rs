@@ -26,8 +26,7 @@ pub(super) struct Area {
 
 impl Area {
     /// Reads the area from the fields `at` and `size`.
-    pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
-        let units = Units::of(fields.reader());
+    pub(super) fn read(fields: &mut Fields<'_>, units: Units) -> Option<Self> {
         let (least, most) = (units.shortest(), units.furthest());
         let at = fields.read("at", None, |node| node.pair(-most..=most));
         let size = fields.read("size", None, |node| node.pair(least..=most));
@@ -148,8 +147,8 @@ pub(super) struct Placed {
 }
 
 impl Placed {
-    pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
-        let area = Area::read(fields)?;
+    pub(super) fn read(fields: &mut Fields<'_>, units: Units) -> Option<Self> {
+        let area = Area::read(fields, units)?;
         Some(Self { area, at: fields.span("at") })
     }
 }
@@ -158,7 +157,9 @@ impl Placed {
 pub(super) struct Place;
 
 impl Codec<Option<Placed>> for Place {
-    fn read(&self, _: Node<'_>, base: Option<&Option<Placed>>) -> Option<Option<Placed>> {
+    type Context = Units;
+
+    fn read(&self, _: Node<'_>, base: Option<&Option<Placed>>, _: &Units) -> Option<Option<Placed>> {
         base.cloned()
     }
 
@@ -180,8 +181,9 @@ impl Codec<Option<Placed>> for Place {
         name: &'static str,
         _: Option<&Option<Placed>>,
         _: Option<Option<Placed>>,
+        units: &Units,
     ) -> Option<Placed> {
-        let place = Placed::read(fields);
+        let place = Placed::read(fields, *units);
         if place.is_none() {
             fields.fail(name);
         }

@@ -8,9 +8,9 @@ use std::ops::Range;
 
 use super::area::{Area, Placed};
 use super::chain::Chains;
+use super::context::LayoutContext;
 use super::control::{Control, Grid, Size};
-use super::inherit::Choice;
-use super::lists::{MAX_WIDGETS, Room};
+use super::lists::MAX_WIDGETS;
 use super::node::Node;
 use super::place::{Beside, Placing, Spot};
 use super::problem::Problem;
@@ -20,11 +20,11 @@ use underfoot_format::describe::FieldType;
 use underfoot_format::text::Text;
 
 /// Reads the entries of `widgets` into controls.
-pub(super) const WIDGETS: By<Vec<Control>> = By {
+pub(super) const WIDGETS: By<Vec<Control>, LayoutContext> = By {
     shape: || FieldType::Words(WIDGET),
-    read: |node| {
-        let (kinds, room) = (node.reader.known(), node.reader.known());
-        Some(read(node, &kinds, &room))
+    read: |node, context| {
+        let mut room = context.room;
+        Some(read(node, context, &mut room))
     },
     write: |_| Text::List(Vec::new()),
     stand_in: Vec::new,
@@ -35,11 +35,11 @@ const WIDGET: &str = "a list of controls, each with `id`, `kind`, a place, `size
     overrides of its kind, and of Group(...)s with `id`, a place and `widgets`; a place is `at`, or one of `right_of`, \
     `left_of`, `above` and `below` with `gap` and `align`";
 
-/// Reads the controls of the list at `node`, in its own coordinates.
-fn read(node: Node<'_>, kinds: &Choice, room: &Room) -> Vec<Control> {
+/// Reads the controls of the list at `node`, in its own coordinates, and takes their number off the `room`.
+fn read(node: Node<'_>, context: &LayoutContext, room: &mut usize) -> Vec<Control> {
     let nodes = node.list("widget", MAX_WIDGETS).unwrap_or_default();
     let entries: Vec<Entry<'_>> =
-        nodes.into_iter().filter_map(|node| Entry::read(node, kinds, room)).collect();
+        nodes.into_iter().filter_map(|node| Entry::read(node, context, room)).collect();
     arrange(entries)
 }
 
@@ -58,22 +58,22 @@ enum EntryContent<'r> {
 }
 
 impl<'r> Entry<'r> {
-    fn read(node: Node<'r>, kinds: &Choice, room: &Room) -> Option<Self> {
+    fn read(node: Node<'r>, context: &LayoutContext, room: &mut usize) -> Option<Self> {
         if node.is_called("Group") || node.peek("Group", "widgets").is_some() {
-            return Self::group(node, kinds, room);
+            return Self::group(node, context, room);
         }
-        let mut grid = Grid::read(node, kinds, room.left())?;
-        room.take(grid.controls.len());
+        let mut grid = Grid::read(node, context, *room)?;
+        *room = room.saturating_sub(grid.controls.len());
         let placing =
             std::mem::replace(&mut grid.placing, Placing { spot: None, at: 0..0, is_relative: false });
         Some(Self { placing, name: None, body: EntryContent::Grid(grid) })
     }
 
-    fn group(node: Node<'r>, kinds: &Choice, room: &Room) -> Option<Self> {
+    fn group(node: Node<'r>, context: &LayoutContext, room: &mut usize) -> Option<Self> {
         let mut fields = node.fields("Group")?;
         let name = fields.read("id", Some(None), |node| node.id().map(Some)).flatten();
-        let placing = Placing::read(&mut fields);
-        let inside = fields.read("widgets", None, |node| Some(read(node, kinds, room)));
+        let placing = Placing::read(&mut fields, context.units);
+        let inside = fields.read("widgets", None, |node| Some(read(node, context, room)));
         fields.finish();
         let controls = inside.unwrap_or_default();
         let areas = controls.iter().filter_map(|control| Some(control.place.as_ref()?.area));

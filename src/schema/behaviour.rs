@@ -12,7 +12,7 @@ const STEP: Duration = Duration::from_millis(250);
 
 /// Reads the settings over `base`.
 pub(super) fn read_over(fields: &mut Fields<'_>, base: &Behaviour) -> Option<Behaviour> {
-    let behaviour = Behaviour::read_fields(base.variant(), fields, Some(base))?;
+    let behaviour = Behaviour::read_fields(base.variant(), fields, Some(base), &())?;
     check_guard(fields, &behaviour);
     fields.are_read().then_some(behaviour)
 }

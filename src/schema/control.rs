@@ -4,14 +4,15 @@ use std::ops::Range;
 
 use super::area::Placed;
 use super::behaviour;
+use super::context::LayoutContext;
 use super::fields::Fields;
-use super::inherit::Choice;
 use super::kind::Kind;
 use super::node::{Node, is_id};
 use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
 use super::units::Units;
+use crate::feel::Effects;
 use crate::layout::Icon;
 use underfoot_format::codec::{At, Written};
 use underfoot_format::{Codec, Id};
@@ -69,13 +70,15 @@ pub(super) struct Grid<'r> {
 
 impl<'r> Grid<'r> {
     /// Reads the entry at `node`, with at most `room` controls.
-    pub(super) fn read(node: Node<'r>, kinds: &Choice, room: usize) -> Option<Self> {
+    pub(super) fn read(node: Node<'r>, context: &LayoutContext, room: usize) -> Option<Self> {
+        let LayoutContext { units, kinds, .. } = context;
         let mut fields = node.fields("Widget")?;
-        let repeat = fields.read("repeat", Some(Some(None)), |node| Some(Repeat::read(node).map(Some)));
+        let repeat =
+            fields.read("repeat", Some(Some(None)), |node| Some(Repeat::read(node, *units).map(Some)));
         let base = fields.read("kind", None, |node| kinds.named(node));
-        let placing = Placing::read(&mut fields);
-        let size = size(&mut fields, placing.is_relative);
-        let goto: Option<Written<String>> = fields.take("goto").and_then(|node| At(Id).read(node, None));
+        let placing = Placing::read(&mut fields, *units);
+        let size = size(&mut fields, placing.is_relative, *units);
+        let goto: Option<Written<String>> = fields.take("goto").and_then(|node| At(Id).read(node, None, &()));
         let repeat_at = fields.value_span("repeat");
         // If the grid is unreadable, its ids are not checked, since they may be patterns.
         let names = match &repeat {
@@ -107,7 +110,7 @@ impl<'r> Grid<'r> {
         let kind = match base {
             Some(base) => {
                 fields.set_noun(format!("widget of the kind \"{}\"", base.name));
-                let kind = overridden(&mut fields, base);
+                let kind = overridden(&mut fields, base, kinds.effects());
                 fields.finish();
                 kind
             }
@@ -128,8 +131,7 @@ impl<'r> Grid<'r> {
     }
 }
 
-fn size(fields: &mut Fields<'_>, is_relative: bool) -> Option<Size> {
-    let units = Units::of(fields.reader());
+fn size(fields: &mut Fields<'_>, is_relative: bool, units: Units) -> Option<Size> {
     let (least, most) = (units.shortest(), units.furthest());
     fields.read("size", is_relative.then_some(Size::Neighbours), |node| {
         node.pair(least..=most).map(Size::Fixed)
@@ -236,10 +238,10 @@ fn is_fit(node: Node<'_>, id: &str) -> bool {
     fits
 }
 
-/// Reads the fields that this widget overrides, over `base`.
-fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
+/// Reads the fields that this widget overrides, over `base`; its feel may name `effects`.
+fn overridden(fields: &mut Fields<'_>, base: &Kind, effects: &Effects) -> Option<Kind> {
     let behaviour = behaviour::read_over(fields, &base.behaviour);
-    let look = fields.read("look", Some(base.look), |node| node.record(Some(&base.look)));
+    let look = fields.read("look", Some(base.look), |node| node.record(Some(&base.look), &()));
     if let (Some(behaviour), Some(look), Some(span)) = (&behaviour, &look, fields.value_span("look"))
         && look.icon.is_some()
         && base.look.icon != look.icon
@@ -250,6 +252,6 @@ fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
             problem.expected("its face shows its value").help("buttons, holds and switches show icons"),
         );
     }
-    let feel = fields.read("feel", Some(base.feel.clone()), |node| node.record(Some(&base.feel)));
+    let feel = fields.read("feel", Some(base.feel.clone()), |node| node.record(Some(&base.feel), effects));
     Some(Kind { name: base.name.clone(), behaviour: behaviour?, look: look?, feel: feel? })
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 use super::builtin;
 use super::diagnostic::{Diagnostic, Diagnostics};
@@ -112,17 +112,16 @@ pub fn parse_effect(
 ) -> Result<(NamedEffect, Diagnostics), Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = Reader::new(&source, "Effect", Limits::LAYOUT);
-    reader.know(Arc::new(effects.clone()));
     if let Some(newer) = version::newer(&reader, "Effect") {
         return Err(newer);
     }
-    let read: Option<EffectFile> = reader.root("effect").and_then(|node| node.record(None));
+    let read: Option<EffectFile> = reader.root("effect").and_then(|node| node.record(None, effects));
     reader.conclude(read.map(|read| read.effect))
 }
 
 record! {
     /// An effect with a name: a file in `effects/`, or an entry of `effects` in a layout.
-    pub(super) struct EffectFile = "Effect";
+    pub(super) struct EffectFile = "Effect" with Effects;
     /// The version of the format.
     version: u32 = "version", VERSION => FORMAT_VERSION;
     /// The effect.
@@ -130,29 +129,30 @@ record! {
 }
 
 /// A layout's own effects; each may be made of the ones before it.
-pub(super) const OWN_EFFECTS: By<()> = By {
+pub(super) const OWN_EFFECTS: By<Vec<NamedEffect>, Effects> = By {
     shape: || FieldType::List {
         count: (0, MAX_WIDGETS),
         each: Box::new(FieldType::Record(EffectFile::describe)),
     },
-    read: |node| {
-        let mut known = (*node.reader.known::<Effects>()).clone();
+    read: |node, effects| {
+        let mut known = effects.clone();
+        let mut own = Vec::new();
         let mut here: BTreeMap<String, usize> = BTreeMap::new();
         for node in node.list("effect", MAX_WIDGETS).unwrap_or_default() {
-            let Some(EffectFile { effect, .. }) = node.record(None) else { continue };
+            let Some(EffectFile { effect, .. }) = node.record(None, &known) else { continue };
             let line = node.reader.line(&node.span());
             if let Some(first) = here.insert(effect.name.clone(), line) {
                 let span = node.peek("Effect", "name").map_or(node.span(), |name| name.span());
                 let problem = Problem::error(span, format!("two effects are called \"{}\"", effect.name));
                 node.report(problem.expected(format!("the first is on line {first}")));
             }
-            known.insert(effect);
-            node.reader.know(Arc::new(known.clone()));
+            known.insert(effect.clone());
+            own.push(effect);
         }
-        Some(())
+        Some(own)
     },
-    write: |()| Text::List(Vec::new()),
-    stand_in: || (),
+    write: |_| Text::List(Vec::new()),
+    stand_in: Vec::new,
 };
 
 /// Writes the file that describes `effect`; [`parse_effect`] reads the same effect from it.

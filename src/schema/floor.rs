@@ -4,8 +4,9 @@ use std::net::SocketAddr;
 use std::path::Path;
 
 use super::diagnostic::Diagnostics;
+use super::fields::Fields;
 use super::floor_areas::{self, AREAS, AreaRecord};
-use super::floor_codecs::Measures;
+use super::floor_codecs::{Measures, ValidTiles};
 use super::floor_parts::{
     ActuatorRecord, BoardRecord, LoudspeakerRecord, MapEntry, ResponseRecord, SensorRecord, all_actuators,
 };
@@ -19,6 +20,8 @@ use crate::floor::{
     ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
 };
 use underfoot_format::codec::{Distinct, Text};
+use underfoot_format::describe::Description;
+use underfoot_format::text::Entry;
 use underfoot_format::{Flag, Flat, Opt, Rec, Record, list, record};
 
 /// Reads the floor that the file at `path` describes.
@@ -48,25 +51,36 @@ pub fn parse_floor(text: &str, name: &str) -> Result<Floor, Diagnostics> {
 
 fn floor(node: Node<'_>) -> Option<Floor> {
     let mut fields = node.fields(FloorRecord::NAME)?;
-    let record = FloorRecord::read_fields(&mut fields, None);
+    let record = FloorRecord::read(&mut fields);
     let good = fields.are_read();
     fields.finish();
     let floor = record.floor();
     record.check_channels(node.reader, &floor);
     if good {
-        floor_areas::check(node.reader, &floor.geometry, &record.areas);
+        floor_areas::check(node.reader, &floor.geometry, &record.parts.areas);
     }
     good.then_some(floor)
+}
+
+/// A floor as written. Its parts stand on the tiles of its head, which are read first.
+pub(super) struct FloorRecord {
+    head: FloorHeadRecord,
+    pub(super) parts: FloorPartsRecord,
 }
 
 record! {
     /// A floor: the places of its tiles and the hardware wired to them. Lengths are in metres, tiles are (column,
     /// row) from the south-west.
-    pub(super) struct FloorRecord = "Floor";
+    struct FloorHeadRecord = "Floor";
     /// The version of the format.
-    pub(super) version: u32 = "version", VERSION => FORMAT_VERSION;
+    version: u32 = "version", VERSION => FORMAT_VERSION;
     /// Places of tiles and sensors.
-    pub(super) geometry: Geometry = "", Measures;
+    geometry: Geometry = "", Measures;
+}
+
+record! {
+    /// The hardware of a floor.
+    pub(super) struct FloorPartsRecord = "FloorParts" with ValidTiles;
     /// The parts of the floor with a computer of their own; one computer serves the whole floor if there are none.
     pub(super) areas: Vec<AreaRecord> = "areas", AREAS => Vec::new();
     /// Address on which the gateway that joins these computers listens.
@@ -150,31 +164,60 @@ const LOUDSPEAKERS: Distinct<LoudspeakerRecord> = Distinct {
 };
 
 impl FloorRecord {
+    /// Its name in files.
+    pub(super) const NAME: &'static str = FloorHeadRecord::NAME;
+
+    /// Reads the floor from `fields`.
+    ///
+    /// As in [`Record::read_fields`], a stand-in replaces an unreadable field. After an unreadable head, tiles are not
+    /// checked.
+    fn read(fields: &mut Fields<'_>) -> Self {
+        let head = FloorHeadRecord::read_fields(fields, None, &());
+        let valid = ValidTiles(fields.are_read().then_some(head.geometry));
+        Self { head, parts: FloorPartsRecord::read_fields(fields, None, &valid) }
+    }
+
+    /// Returns the fields of the file that describes the floor.
+    pub(super) fn written(&self) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        self.head.write_fields(&mut entries);
+        self.parts.write_fields(&mut entries);
+        entries
+    }
+
+    /// Describes a floor and its fields.
+    pub(super) fn describe() -> Description {
+        let mut floor = FloorHeadRecord::describe();
+        floor.fields.extend(FloorPartsRecord::describe().fields);
+        floor
+    }
+
     /// Makes the floor that the record describes.
     fn floor(&self) -> Floor {
+        let parts = &self.parts;
         let mut floor =
-            Floor::of(self.geometry).with_areas(self.areas.iter().map(AreaRecord::area).collect());
-        if let Some(boards) = &self.boards {
+            Floor::of(self.head.geometry).with_areas(parts.areas.iter().map(AreaRecord::area).collect());
+        if let Some(boards) = &parts.boards {
             floor.boards = boards.iter().enumerate().map(|(number, board)| board.board(number)).collect();
         }
-        self.sensors.iter().for_each(|sensor| sensor.apply(&mut floor));
-        self.maps.iter().for_each(|map| map.apply(&mut floor));
-        if let Some(actuators) = &self.actuators {
+        parts.sensors.iter().for_each(|sensor| sensor.apply(&mut floor));
+        parts.maps.iter().for_each(|map| map.apply(&mut floor));
+        if let Some(actuators) = &parts.actuators {
             floor.actuators.fill(None);
             actuators.iter().for_each(|actuator| actuator.apply(&mut floor));
         }
         for (own, actuator) in floor.responses.iter_mut().zip(&floor.actuators) {
             if let (None, Some(actuator)) = (&own, actuator) {
-                *own = self.response.of(actuator.full_scale);
+                *own = parts.response.of(actuator.full_scale);
             }
         }
-        floor.gateway = self.gateway;
-        floor.key.clone_from(&self.key);
-        floor.noiseless = self.noiseless;
-        floor.tared = self.tared;
-        floor.allow.clone_from(&self.allow);
-        floor.drive = self.drive;
-        floor.loudspeakers = self.loudspeakers.iter().map(LoudspeakerRecord::loudspeaker).collect();
+        floor.gateway = parts.gateway;
+        floor.key.clone_from(&parts.key);
+        floor.noiseless = parts.noiseless;
+        floor.tared = parts.tared;
+        floor.allow.clone_from(&parts.allow);
+        floor.drive = parts.drive;
+        floor.loudspeakers = parts.loudspeakers.iter().map(LoudspeakerRecord::loudspeaker).collect();
         floor
     }
 
@@ -187,9 +230,8 @@ impl FloorRecord {
         let (response, actuators) = all_actuators(floor);
         let is_usual =
             floor.actuators == usual.actuators && actuators.iter().all(|one| one.response.is_empty());
-        Self {
-            version: FORMAT_VERSION,
-            geometry: floor.geometry,
+        let head = FloorHeadRecord { version: FORMAT_VERSION, geometry: floor.geometry };
+        let parts = FloorPartsRecord {
             areas: floor.areas.iter().map(AreaRecord::of).collect(),
             gateway: floor.gateway,
             key: floor.key.clone(),
@@ -203,12 +245,13 @@ impl FloorRecord {
             response,
             actuators: (!is_usual).then_some(actuators),
             loudspeakers: floor.loudspeakers.iter().map(LoudspeakerRecord::of).collect(),
-        }
+        };
+        Self { head, parts }
     }
 
     /// Reports loudspeakers on the channels of actuators.
     fn check_channels(&self, reader: &Reader<'_>, floor: &Floor) {
-        for loudspeaker in self.loudspeakers.iter().filter(|one| !one.channel.at.is_empty()) {
+        for loudspeaker in self.parts.loudspeakers.iter().filter(|one| !one.channel.at.is_empty()) {
             let channel = &loudspeaker.channel;
             let area = floor.areas.iter().find(|area| area.holds(&floor.geometry, loudspeaker.at));
             let with_it = |tile| area.is_none_or(|area| area.tiles.contains(tile));

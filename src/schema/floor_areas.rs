@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 
 use super::fields::Fields;
-use super::floor_codecs::{TILE, TILES};
+use super::floor_codecs::{TILE, TILES, ValidTiles};
 use super::problem::Problem;
 use super::reader::Reader;
 use crate::floor::{ADDRESS, Area, Geometry, TileBlock, TileId};
@@ -12,7 +12,7 @@ use underfoot_format::{Id, Opt, record};
 
 record! {
     /// The tiles of a large floor that one computer serves.
-    pub(super) struct AreaRecord = "Area";
+    pub(super) struct AreaRecord = "Area" with ValidTiles;
     /// Unique among the floor's areas.
     id: Written<String> = "id", At(Id);
     /// Its tile in the south-west corner.

@@ -1,7 +1,6 @@
 //! Tiles, channels and tables in floor files.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use super::fields::Fields;
 use super::node::Node;
@@ -10,7 +9,7 @@ use crate::floor::{Corner, Geometry, GeometryError, Response, SensorId, TileId};
 use underfoot_format::codec::By;
 use underfoot_format::describe::{FieldDescription, FieldType};
 use underfoot_format::text::{Entry, Text};
-use underfoot_format::{Codec, Follow, Name, Num, Opt, Record, num, record};
+use underfoot_format::{Codec, Follow, Includes, Name, Num, Opt, Record, num, record};
 
 record! {
     /// Places of tiles and sensors.
@@ -34,16 +33,17 @@ record! {
 /// The south-west corner of a part of a larger floor.
 const FIRST: By<TileId> = By {
     shape: || FieldType::Words("(column, row), each a whole number from 0 to 4095"),
-    read: |node| {
+    read: |node, ()| {
         node.tuple("(column, row)").and_then(|[column, row]| tile(column, row, [0..FIRST_END, 0..FIRST_END]))
     },
-    ..TILE
+    write: TILE.write,
+    stand_in: TILE.stand_in,
 };
 
 /// Columns and rows of the larger floor.
 const WHOLE: By<[u16; 2]> = By {
     shape: || FieldType::Words("(columns, rows), each a whole number from 1 to 4351"),
-    read: |node| {
+    read: |node, ()| {
         let sides = node.tuple::<2>("(columns, rows)")?;
         let [columns, rows] = sides.map(|side| side.whole(1..=WHOLE_MOST.into()));
         Some([columns? as u16, rows? as u16])
@@ -57,12 +57,14 @@ const FIRST_END: u16 = Geometry::FARTHEST + 1;
 
 const SIDE: Num = num(1.0..=Geometry::MAX_SIDE as f64).explicit();
 
-/// The measures of a floor among its fields; later tiles must be on that floor.
+/// The measures of a floor among its fields.
 pub(super) struct Measures;
 
 impl Codec<Geometry> for Measures {
-    fn read(&self, node: Node<'_>, _: Option<&Geometry>) -> Option<Geometry> {
-        node.record(None).map(|record: MeasuresRecord| record.built().unwrap_or_default())
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&Geometry>, context: &()) -> Option<Geometry> {
+        node.record(None, context).map(|record: MeasuresRecord| record.built().unwrap_or_default())
     }
 
     fn write(&self, geometry: &Geometry) -> Text {
@@ -85,9 +87,10 @@ impl Codec<Geometry> for Measures {
         name: &'static str,
         _: Option<&Geometry>,
         _: Option<Geometry>,
+        context: &(),
     ) -> Geometry {
-        let record = MeasuresRecord::read_fields(fields, None);
-        let known = fields.are_read().then(|| record.built()).and_then(|built| {
+        let record = MeasuresRecord::read_fields(fields, None, context);
+        let built = fields.are_read().then(|| record.built()).and_then(|built| {
             built
                 .map_err(|error| {
                     let field = match error {
@@ -102,9 +105,8 @@ impl Codec<Geometry> for Measures {
                 })
                 .ok()
         });
-        // After invalid measures, reading continues with those of the paper, but tiles are not checked against them.
-        fields.reader().know(Arc::new(Grid { known }));
-        known.unwrap_or_default()
+        // After invalid measures, reading continues with those of the paper.
+        built.unwrap_or_default()
     }
 
     fn write_field(
@@ -145,15 +147,19 @@ impl MeasuresRecord {
     }
 }
 
-/// The tiles that are valid in a file; all if its geometry could not be read.
-#[derive(Clone, Copy, Default)]
-struct Grid {
-    known: Option<Geometry>,
+/// The tiles that are valid in a file: those on the floor, or all if its geometry could not be read.
+#[derive(Clone, Copy)]
+pub(super) struct ValidTiles(pub(super) Option<Geometry>);
+
+impl Includes<Self> for ValidTiles {
+    fn included(&self) -> &Self {
+        self
+    }
 }
 
-impl Grid {
+impl ValidTiles {
     fn tile(self, column: Node<'_>, row: Node<'_>) -> Option<TileId> {
-        let block = self.known.map(|known| known.block());
+        let block = self.0.map(|geometry| geometry.block());
         let any = 0..FIRST_END + Geometry::MAX_SIDE;
         tile(column, row, block.map_or([any.clone(), any], |block| [block.column_range(), block.row_range()]))
     }
@@ -169,11 +175,11 @@ fn tile(column: Node<'_>, row: Node<'_>, [columns, rows]: [Range<u16>; 2]) -> Op
 }
 
 /// A tile, as `(column, row)`.
-pub(super) const TILE: By<TileId> = By {
+pub(super) const TILE: By<TileId, ValidTiles> = By {
     shape: || FieldType::Words("(column, row), each a whole number from 0"),
-    read: |node| {
+    read: |node, valid| {
         let [column, row] = node.tuple("(column, row)")?;
-        node.reader.known::<Grid>().tile(column, row)
+        valid.tile(column, row)
     },
     write: |tile| Text::Tuple(whole([tile.column, tile.row])),
     stand_in: TileId::default,
@@ -186,7 +192,7 @@ fn whole(numbers: [u16; 2]) -> Vec<Text> {
 /// Width and depth in tiles, as `(columns, rows)`.
 pub(super) const TILES: By<[u16; 2]> = By {
     shape: || FieldType::Words("(columns, rows), each a whole number from 1"),
-    read: |node| {
+    read: |node, ()| {
         let sides = node.tuple::<2>("(columns, rows)")?;
         let [columns, rows] = sides.map(|side| side.whole(1..=Geometry::MAX_SIDE.into()));
         Some([columns? as u16, rows? as u16])
@@ -196,15 +202,15 @@ pub(super) const TILES: By<[u16; 2]> = By {
 };
 
 /// The sensor on a channel, as `(column, row, corner)`, or `None`.
-pub(super) const CHANNEL: By<Option<SensorId>> = By {
+pub(super) const CHANNEL: By<Option<SensorId>, ValidTiles> = By {
     shape: || FieldType::Words("(column, row, Sw), or None for a channel without a sensor"),
-    read: |node| {
+    read: |node, valid| {
         if node.is_none() {
             return Some(None);
         }
         let [column, row, name] = node.tuple("(column, row, corner)")?;
-        let tile = node.reader.known::<Grid>().tile(column, row);
-        let corner: Option<Corner> = Name.read(Node { name: "corner", ..name }, None);
+        let tile = valid.tile(column, row);
+        let corner: Option<Corner> = Name.read(Node { name: "corner", ..name }, None, &());
         Some(Some(SensorId { tile: tile?, corner: corner? }))
     },
     write: |sensor| {
@@ -221,7 +227,14 @@ pub(super) const CHANNEL: By<Option<SensorId>> = By {
 pub(super) struct Table(pub(super) f32);
 
 impl<const ROWS: usize, const COLUMNS: usize> Codec<[[f32; COLUMNS]; ROWS]> for Table {
-    fn read(&self, node: Node<'_>, _: Option<&[[f32; COLUMNS]; ROWS]>) -> Option<[[f32; COLUMNS]; ROWS]> {
+    type Context = ();
+
+    fn read(
+        &self,
+        node: Node<'_>,
+        _: Option<&[[f32; COLUMNS]; ROWS]>,
+        (): &(),
+    ) -> Option<[[f32; COLUMNS]; ROWS]> {
         let most = f64::from(self.0);
         let number = |node: Node<'_>| node.number(-most..=most).map(|number| number.single);
         exactly(node, |row| exactly(row, number))
@@ -260,7 +273,9 @@ fn exactly<'r, T, const COUNT: usize>(
 pub(super) struct Points(pub(super) f64, pub(super) f64);
 
 impl Codec<Vec<(f32, f32)>> for Points {
-    fn read(&self, node: Node<'_>, _: Option<&Vec<(f32, f32)>>) -> Option<Vec<(f32, f32)>> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&Vec<(f32, f32)>>, (): &()) -> Option<Vec<(f32, f32)>> {
         let nodes = node.list("point", Response::MOST_POINTS)?;
         if nodes.len() < 2 {
             let problem = Problem::error(node.span(), format!("`{}` has too few points", node.name));

@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::fields::Fields;
-use super::floor_codecs::{CHANNEL as SENSOR_OF_CHANNEL, Points, TILE, Table};
+use super::floor_codecs::{CHANNEL as SENSOR_OF_CHANNEL, Points, TILE, Table, ValidTiles};
 use crate::floor::{
     Actuator, Board, Calibration, CalibrationRecord, Corner, DAY, Day, Floor, Loudspeaker, MapRecord,
     PositionMap, Response, SensorId, TileId,
@@ -15,7 +15,7 @@ use underfoot_format::{Faults, Flat, Name, Num, Opt, Pair, list, num, record};
 
 record! {
     /// A board and its sensors, as whole tiles or sensor by sensor.
-    pub(super) struct BoardRecord = "Board" => BoardRecord::rules;
+    pub(super) struct BoardRecord = "Board" with ValidTiles => BoardRecord::rules;
     /// OSC address of its packets; by default `/underfoot/board/` and its number, from 0.
     address: Option<String> = "address", Opt(ADDRESS) => None;
     /// Tiles, each with four channels in the order sw, se, nw, ne.
@@ -113,7 +113,7 @@ impl BoardRecord {
 
 record! {
     /// Calibration and tare of one sensor.
-    pub(super) struct SensorRecord = "Sensor" => |it, faults| {
+    pub(super) struct SensorRecord = "Sensor" with ValidTiles => |it, faults| {
         faults.together(&["calibrated", "residual"], [it.calibrated.is_some(), it.residual.is_some()]);
     };
     /// The tile above it.
@@ -178,7 +178,7 @@ impl SensorRecord {
 
 record! {
     /// The position map of one tile: measured, not edited.
-    pub(super) struct MapEntry = "Map" => |it, faults| {
+    pub(super) struct MapEntry = "Map" with ValidTiles => |it, faults| {
         faults.together(&["mapped", "residual_m"], [it.mapped.is_some(), it.residual_m.is_some()]);
     };
     /// The tile.
@@ -245,7 +245,7 @@ impl ResponseRecord {
 
 record! {
     /// The actuator under one tile.
-    pub(super) struct ActuatorRecord = "Actuator";
+    pub(super) struct ActuatorRecord = "Actuator" with ValidTiles;
     /// The tile.
     pub(super) tile: TileId = "tile", TILE;
     /// Output channel, from 0.

@@ -2,7 +2,6 @@
 
 use super::floor::FloorRecord;
 use crate::floor::{Floor, LawKind};
-use underfoot_format::Record;
 use underfoot_format::text::Text;
 
 /// Comments above each field, and the comment in place of a field that is not written.
@@ -57,10 +56,9 @@ const ON_ONE_LINE: [&str; 2] = ["allow", "response_db"];
 #[must_use]
 pub fn write_floor(floor: &Floor) -> String {
     let record = FloorRecord::of(floor);
-    let mut entries = Vec::new();
-    record.write_fields(&mut entries);
     let is_told = |name: &str| COMMENTS.iter().any(|(told, ..)| *told == name);
-    let (told, measures): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(name, _)| is_told(name));
+    let (told, measures): (Vec<_>, Vec<_>) =
+        record.written().into_iter().partition(|(name, _)| is_told(name));
     let mut text = "// A floor: where its tiles are and what is wired to them.\n\
          // Tiles are (column, row) from the south-west, lengths in metres, forces in newtons.\nFloor(\n"
         .to_owned();
@@ -74,7 +72,7 @@ pub fn write_floor(floor: &Floor) -> String {
             continue;
         };
         comments.iter().for_each(|comment| text.push_str(&format!("    // {comment}\n")));
-        let has = |kind| record.sensors.iter().any(|sensor| sensor.law().kind() == kind);
+        let has = |kind| record.parts.sensors.iter().any(|sensor| sensor.law().kind() == kind);
         for kind in LawKind::ALL.into_iter().filter(|kind| name == "sensors" && has(*kind)) {
             text.push_str(meaning(kind));
         }

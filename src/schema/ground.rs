@@ -40,22 +40,22 @@ pub(super) struct GroundDefinition {
 }
 
 /// The grounds of a layout or of one of its pages.
-pub(super) const GROUNDS: By<Vec<GroundDefinition>> = By {
+pub(super) const GROUNDS: By<Vec<GroundDefinition>, Units> = By {
     shape: || FieldType::Variants(describe),
-    read: |node| Some(read(node)),
+    read: |node, units| Some(read(node, *units)),
     write: |_| Text::List(Vec::new()),
     stand_in: Vec::new,
 };
 
-fn read(node: Node<'_>) -> Vec<GroundDefinition> {
+fn read(node: Node<'_>, units: Units) -> Vec<GroundDefinition> {
     let Some(nodes) = node.list("ground", MOST) else { return Vec::new() };
     // A ground that could not be read has been reported; its stand-in keeps the layout incomplete.
     let unreadable = || GroundDefinition::unreadable(node.span());
-    nodes.into_iter().map(|node| GroundDefinition::read(node).unwrap_or_else(unreadable)).collect()
+    nodes.into_iter().map(|node| GroundDefinition::read(node, units).unwrap_or_else(unreadable)).collect()
 }
 
 impl GroundDefinition {
-    fn read(node: Node<'_>) -> Option<Self> {
+    fn read(node: Node<'_>, units: Units) -> Option<Self> {
         let (name, mut fields) = node.variant(&NAMES)?;
         let standard = standard(name);
         let (surface, deep) = colours(name);
@@ -64,18 +64,20 @@ impl GroundDefinition {
             let _ = (fields.take("at"), fields.take("size"));
             Some(None)
         } else {
-            Placed::read(&mut fields).map(Some)
+            Placed::read(&mut fields, units).map(Some)
         };
         let seed = fields.read("seed", Some(1), |node| node.whole(0..=u32::MAX));
-        let surface = fields.read("surface", Some(surface), |node| HEX.read(node, None));
-        let deep = fields.read("deep", Some(deep), |node| HEX.read(node, None));
+        let surface = fields.read("surface", Some(surface), |node| HEX.read(node, None, &()));
+        let deep = fields.read("deep", Some(deep), |node| HEX.read(node, None, &()));
         let material = match standard {
-            GroundMaterial::Ice(base) => GroundMaterial::Ice(IceSpec::read_fields(&mut fields, Some(&base))),
+            GroundMaterial::Ice(base) => {
+                GroundMaterial::Ice(IceSpec::read_fields(&mut fields, Some(&base), &()))
+            }
             GroundMaterial::Grain(base) => {
-                GroundMaterial::Grain(GrainSpec::read_fields(&mut fields, Some(&base)))
+                GroundMaterial::Grain(GrainSpec::read_fields(&mut fields, Some(&base), &()))
             }
             GroundMaterial::Wood(base) => {
-                GroundMaterial::Wood(WoodSpec::read_fields(&mut fields, Some(&base)))
+                GroundMaterial::Wood(WoodSpec::read_fields(&mut fields, Some(&base), &()))
             }
         };
         let material = fields.are_read().then_some(material);

@@ -7,7 +7,6 @@
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
-use std::sync::Arc;
 
 use super::chain::Chains;
 use super::diagnostic::Diagnostics;
@@ -20,6 +19,7 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::suggest::did_you_mean;
 use super::version;
+use crate::feel::Effects;
 use underfoot_format::Record;
 use underfoot_format::codec::By;
 use underfoot_format::describe::FieldType;
@@ -73,7 +73,7 @@ pub(super) fn layer(nodes: &[Node<'_>], below: &Kinds) -> Vec<Option<Kind>> {
             },
             Parent::Unusable => continue,
         };
-        kinds[index] = kind::read(nodes[index], parent.as_deref());
+        kinds[index] = kind::read(nodes[index], parent.as_deref(), below.effects());
     }
     kinds
 }
@@ -171,15 +171,17 @@ pub(super) fn read_files<P: AsRef<Path>>(
 /// Every problem of the text.
 pub(super) fn read_one(text: &str, name: &str, below: &Kinds) -> Result<(Kind, Diagnostics), Diagnostics> {
     let source = Source::new(name, text)?;
-    let reader = reader_of(&source, below)?;
+    let reader = reader_of(&source)?;
     let kind = reader.root("kind").and_then(|node| layer(&[node], below).pop().flatten());
     reader.conclude(kind)
 }
 
-/// Returns the reader of a kind made of those `below`.
-fn reader_of<'t>(source: &'t Source<'t>, below: &Kinds) -> Result<Reader<'t>, Diagnostics> {
+/// Returns the reader of a kind.
+///
+/// # Errors
+/// The kind is of a newer version.
+fn reader_of<'t>(source: &'t Source<'t>) -> Result<Reader<'t>, Diagnostics> {
     let reader = Reader::new(source, Kind::NAME, Limits::LAYOUT);
-    reader.know(Arc::clone(below.effects()));
     version::newer(&reader, Kind::NAME).map_or(Ok(reader), Err)
 }
 
@@ -199,7 +201,7 @@ fn read_texts(texts: &[(&str, &str)], below: &Kinds) -> Result<(Vec<Kind>, Diagn
     }
     let mut readers = Vec::new();
     for source in &sources {
-        match reader_of(source, below) {
+        match reader_of(source) {
             Ok(reader) => readers.push(reader),
             Err(newer) => problems.append(newer),
         }
@@ -231,42 +233,54 @@ fn read_texts(texts: &[(&str, &str)], below: &Kinds) -> Result<(Vec<Kind>, Diagn
 }
 
 /// The kinds available to the controls of a layout.
-#[derive(Default)]
 pub(super) struct Choice {
     kinds: Kinds,
     /// Names of unusable kinds of the layout itself, which have been reported.
     unusable: HashSet<String>,
 }
 
-/// A layout's own kinds, available to its controls besides the known ones.
-pub(super) const OWN_KINDS: By<()> = By {
+/// A layout's own kinds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct OwnKinds {
+    kinds: Vec<Kind>,
+    /// Names of unusable kinds, which have been reported.
+    unusable: HashSet<String>,
+}
+
+/// A layout's own kinds, made of those below.
+pub(super) const OWN_KINDS: By<OwnKinds, Kinds> = By {
     shape: || FieldType::List {
         count: (0, MAX_WIDGETS),
         each: Box::new(FieldType::Record(KindFile::describe)),
     },
-    read: |node| {
-        let known = node.reader.known::<Choice>();
-        let mut choice = Choice::of(&known.kinds);
+    read: |node, below| {
+        let mut own = OwnKinds::default();
         let nodes = node.list("kind", MAX_WIDGETS).unwrap_or_default();
-        for (node, kind) in nodes.iter().zip(layer(&nodes, &known.kinds)) {
+        for (node, kind) in nodes.iter().zip(layer(&nodes, below)) {
             match kind {
-                Some(kind) => choice.kinds.insert(kind),
-                None => choice
+                Some(kind) => own.kinds.push(kind),
+                None => own
                     .unusable
                     .extend(node.peek("Kind", "name").and_then(|name| name.peek_text()).map(str::to_owned)),
             }
         }
-        node.reader.know(Arc::new(choice));
-        Some(())
+        Some(own)
     },
-    write: |()| Text::List(Vec::new()),
-    stand_in: || (),
+    write: |_| Text::List(Vec::new()),
+    stand_in: OwnKinds::default,
 };
 
 impl Choice {
-    /// Makes a choice of those in `kinds`.
-    pub(super) fn of(kinds: &Kinds) -> Self {
-        Self { kinds: kinds.clone(), unusable: HashSet::new() }
+    /// Makes a choice of the kinds `below` and a layout's `own`, which replace others of their names.
+    pub(super) fn of(below: Kinds, own: OwnKinds) -> Self {
+        let mut kinds = below;
+        own.kinds.into_iter().for_each(|kind| kinds.insert(kind));
+        Self { kinds, unusable: own.unusable }
+    }
+
+    /// Returns the effects that controls may name.
+    pub(super) fn effects(&self) -> &Effects {
+        self.kinds.effects()
     }
 
     /// Returns the kind that `node` names; `None` if it is unusable, which has been reported.

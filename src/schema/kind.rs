@@ -11,15 +11,15 @@ use super::inherit;
 use super::node::Node;
 use super::problem::Problem;
 use super::version::{FORMAT_VERSION, VERSION};
-use crate::feel::{Effects, Feel};
+use crate::feel::{Effects, Feel, NamedEffect};
 use crate::layout::Look;
 use crate::widget::Behaviour;
 use underfoot_format::codec::Beside;
-use underfoot_format::{Flat, Id, Opt, Rec, Record, Text, record};
+use underfoot_format::{Flat, Id, Includes, Opt, Rec, Record, Text, record};
 
 record! {
     /// One kind of control: behaviour, feel and look of its widgets, which they may override.
-    pub struct Kind = "Kind";
+    pub struct Kind = "Kind" with Effects;
     /// Its name in layouts.
     pub name: String = "name", Id;
     /// Its behaviour, with all settings.
@@ -32,7 +32,7 @@ record! {
 
 record! {
     /// A kind of control: a file in `widgets/`, or an entry of `kinds` in a layout.
-    pub(super) struct KindFile = "Kind";
+    pub(super) struct KindFile = "Kind" with Effects;
     /// The version of the format.
     version: u32 = "version", VERSION => FORMAT_VERSION;
     /// The kind that it is made from; all fields that are not written come from that one.
@@ -108,6 +108,16 @@ impl Kinds {
         &self.effects
     }
 
+    /// Returns these kinds, with `own` among the effects in place of any others of their names.
+    pub(super) fn with_effects(&self, own: Vec<NamedEffect>) -> Self {
+        let mut all = self.clone();
+        if !own.is_empty() {
+            let effects = Arc::make_mut(&mut all.effects);
+            own.into_iter().for_each(|effect| effects.insert(effect));
+        }
+        all
+    }
+
     /// Adds `kind`, replacing any other of the same name.
     pub(super) fn insert(&mut self, kind: Kind) {
         self.kinds.insert(kind.name.clone(), kind);
@@ -130,8 +140,14 @@ impl Kinds {
     }
 }
 
-/// Reads the kind at `node`; with a `parent`, fields that are not written come from the parent.
-pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
+impl Includes<Self> for Kinds {
+    fn included(&self) -> &Self {
+        self
+    }
+}
+
+/// Reads the kind at `node`, which may name `effects`; with a `parent`, fields that are not written come from the parent.
+pub(super) fn read(node: Node<'_>, parent: Option<&Kind>, effects: &Effects) -> Option<Kind> {
     let mut fields = node.fields(KindFile::NAME)?;
     let base = parent.map(|kind| KindFile { version: FORMAT_VERSION, from: None, kind: kind.clone() });
     if let (Some(parent), Some(span)) = (parent, fields.value_span("behaviour")) {
@@ -146,7 +162,7 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
         fields.lack("name");
         fields.fail("name");
     }
-    let read = KindFile::read_fields(&mut fields, base.as_ref());
+    let read = KindFile::read_fields(&mut fields, base.as_ref(), effects);
     if !fields.have_failed(&["behaviour"]) {
         check_guard(&fields, &read.kind.behaviour);
     }

@@ -2,32 +2,27 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use super::area::{Area, Place, Placed};
-use super::arrange::WIDGETS;
+use super::area::{Area, Placed};
 use super::checks;
 use super::control::Control;
 use super::diagnostic::Diagnostics;
-use super::effect::OWN_EFFECTS;
-use super::ground::{GROUNDS, GroundDefinition};
-use super::inherit::{Choice, OWN_KINDS};
+use super::ground::GroundDefinition;
 use super::kind::Kinds;
-use super::lists::{MAX_WIDGETS, Room};
+use super::layout_record::{ControlsRecord, LayoutHeadRecord, LayoutRecord, ZonesRecord};
 use super::node::Node;
-use super::pages::{self, PAGES, PageRecord};
+use super::pages::{self, PageRecord};
 use super::pairs::Limits;
 use super::places::Places;
 use super::reader::Reader;
 use super::source::{Source, read_text};
-use super::units::{UNITS, Units};
-use super::version::{self, VERSION};
+use super::units::Units;
+use super::version;
 use crate::feel::Effects;
 use crate::floor::Geometry;
 use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
-use underfoot_format::codec::{At, Distinct, Written};
-use underfoot_format::{Id, Name, Record, Text, record};
+use underfoot_format::codec::Written;
 
 /// A valid layout, with its warnings.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,13 +102,11 @@ pub fn parse_layout(
 ) -> Result<Loaded, Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = Reader::new(&source, "Layout", Limits::LAYOUT);
-    reader.know(Arc::clone(kinds.effects()));
     if let Some(newer) = version::newer(&reader, "Layout") {
         return Err(newer);
     }
-    reader.know(Arc::new(Choice::of(kinds)));
-    reader.know(Arc::new(Room::default()));
-    let layout = reader.root("layout").and_then(Page::read).and_then(|(page, good)| {
+    let page = reader.root("layout").and_then(|node| Page::read(node, kinds));
+    let layout = page.and_then(|(page, good)| {
         checks::check(&reader, &page, geometry);
         let layout = page.placed_on(geometry).filter(|_| good)?;
         Some((layout, page.controls.into_iter().map(|control| control.written).collect()))
@@ -121,57 +114,6 @@ pub fn parse_layout(
     let ((layout, written), warnings) = reader.conclude(layout)?;
     Ok(Loaded { layout, warnings, places: Places::new(name, text, written) })
 }
-
-record! {
-    /// A page of controls placed on the floor: a file in `layouts/`.
-    pub(super) struct LayoutRecord = "Layout";
-    /// The version of the format.
-    version: u32 = "version", VERSION;
-    /// The unit of places, sizes and gaps.
-    units: Units = "units", UNITS => Units::Tiles;
-    /// Its title for people.
-    title: String = "title", Text(200) => String::new();
-    /// The active parts of the floor, each with a cursor of its own.
-    regions: Vec<RegionRecord> = "regions", REGIONS => Vec::new();
-    /// The places of people while they use the controls.
-    stances: Vec<StanceRecord> = "stances", STANCES => Vec::new();
-    /// The layout's own effects.
-    effects: () = "effects", OWN_EFFECTS => ();
-    /// The layout's own kinds.
-    kinds: () = "kinds", OWN_KINDS => ();
-    /// The controls that are on every page.
-    widgets: Vec<Control> = "widgets", WIDGETS => Vec::new();
-    /// The simulated grounds on every page.
-    grounds: Vec<GroundDefinition> = "grounds", GROUNDS => Vec::new();
-    /// The pages, of which one is shown at a time.
-    pages: Vec<PageRecord> = "pages", PAGES => Vec::new();
-}
-
-record! {
-    /// An active part of the floor.
-    struct RegionRecord = "Region";
-    /// Unique among the layout's regions.
-    id: Written<String> = "id", At(Id);
-    /// Its place.
-    place: Option<Placed> = "at", Place;
-    /// The contacts in it that operate its controls.
-    cursor: CursorRule = "cursor", Name => CursorRule::default();
-}
-
-record! {
-    /// A place to stand while using the controls.
-    struct StanceRecord = "Stance";
-    /// The text on it.
-    label: Written<String> = "label", At(Text(64)) => Written::default();
-    /// Its place.
-    place: Option<Placed> = "at", Place;
-}
-
-const REGIONS: Distinct<RegionRecord> =
-    Distinct { entry: "region", most: MAX_WIDGETS, about: |_, _, _, _| {} };
-
-const STANCES: Distinct<StanceRecord> =
-    Distinct { entry: "stance", most: MAX_WIDGETS, about: |_, _, _, _| {} };
 
 /// A layout as written; its problems have been reported.
 pub(super) struct Page {
@@ -198,19 +140,20 @@ pub(super) struct Zone {
 }
 
 impl Page {
-    /// Reads the layout at `node`; the flag says whether all of it could be read.
-    fn read(node: Node<'_>) -> Option<(Self, bool)> {
+    /// Reads the layout at `node`, made of `kinds`; the flag says whether all of it could be read.
+    fn read(node: Node<'_>, kinds: &Kinds) -> Option<(Self, bool)> {
         let mut fields = node.fields(LayoutRecord::NAME)?;
-        Units::default().apply_to(node.reader);
-        let record = LayoutRecord::read_fields(&mut fields, None);
+        let record = LayoutRecord::read(&mut fields, kinds);
         let good = fields.are_read();
         let regions_at = fields.value_span("regions").unwrap_or_else(|| node.span());
         let widgets_at = fields.span("widgets");
         fields.finish();
-        let LayoutRecord { title, units, regions, stances, mut pages, mut grounds, .. } = record;
+        let LayoutRecord { head, zones, controls, mut pages } = record;
+        let LayoutHeadRecord { units, title, .. } = head;
+        let ZonesRecord { regions, stances } = zones;
+        let ControlsRecord { widgets: mut controls, mut grounds } = controls;
         let regions_known =
             regions.iter().all(|region| region.place.is_some()) && !node.reader.is_broken(&regions_at);
-        let mut controls = record.widgets;
         for (number, page) in pages.iter_mut().enumerate() {
             let own = page.widgets.drain(..);
             controls.extend(own.map(|control| Control { page: Some(number), ..control }));

@@ -9,6 +9,7 @@
 //! ```
 
 use super::arrange::WIDGETS;
+use super::context::LayoutContext;
 use super::control::Control;
 use super::ground::{GROUNDS, GroundDefinition};
 use super::lists::MAX_WIDGETS;
@@ -22,7 +23,7 @@ use underfoot_format::{Id, Text, record};
 
 record! {
     /// One of the pages of a layout; one is shown at a time.
-    pub(super) struct PageRecord = "Page";
+    pub(super) struct PageRecord = "Page" with LayoutContext;
     /// Unique among the layout's pages.
     pub(super) id: Written<String> = "id", At(Id);
     /// Its title for people.

@@ -66,13 +66,13 @@ pub(super) struct Placing<'r> {
 
 impl<'r> Placing<'r> {
     /// Reads the place in `at`, or in one of `right_of`, `left_of`, `above` and `below` with `gap` and `align`.
-    pub(super) fn read(fields: &mut Fields<'r>) -> Self {
+    pub(super) fn read(fields: &mut Fields<'r>, units: Units) -> Self {
         let mut sides = SIDES
             .into_iter()
             .filter_map(|(name, side)| Some((name, side, fields.take(name)?)))
             .collect::<Vec<_>>();
         sides.sort_by_key(|(_, _, node)| node.span().start);
-        let far = Units::of(fields.reader()).furthest();
+        let far = units.furthest();
         let gap = fields.read("gap", Some(0.0), |node| node.number(0.0..=far).map(|number| number.value));
         let align = fields.read("align", Some(Align::Middle), |node| node.choice(&ALIGNS));
         let Some(&(name, side, node)) = sides.first() else {

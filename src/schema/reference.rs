@@ -59,7 +59,7 @@ pub fn reference() -> Vec<Chapter> {
         Chapter::new(
             "layouts",
             "A page of controls on a floor: a file in `layouts/`.",
-            vec![super::page::LayoutRecord::describe()],
+            vec![super::layout_record::LayoutRecord::describe()],
         ),
         Chapter::new(
             "kinds",

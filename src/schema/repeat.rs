@@ -32,9 +32,9 @@ pub(super) struct Cell {
 }
 
 impl<'r> Repeat<'r> {
-    pub(super) fn read(node: Node<'r>) -> Option<Self> {
+    pub(super) fn read(node: Node<'r>, units: Units) -> Option<Self> {
         let mut fields = node.fields("Repeat")?;
-        let far = Units::of(fields.reader()).furthest();
+        let far = units.furthest();
         let rows = fields.read("rows", Some(1), |node| node.whole(1..=MOST));
         // One of the two must be written, otherwise there is no repetition.
         let alone = fields.value_span("rows").map(|_| 1);

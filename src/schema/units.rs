@@ -1,10 +1,7 @@
 //! Units of layouts: tiles or metres.
 
-use super::reader::Reader;
 use crate::floor::Geometry;
-use std::sync::Arc;
-use underfoot_format::codec::By;
-use underfoot_format::{Codec, Name, Named};
+use underfoot_format::{Includes, Named};
 
 /// The unit of the places, sizes and gaps of a layout.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,27 +59,8 @@ impl Named for Units {
     const ALL: &'static [(&'static str, Self)] = &[("Tiles", Self::Tiles), ("Metres", Self::Metres)];
 }
 
-/// The unit of all places and sizes that follow in the file.
-pub(super) const UNITS: By<Units> = By {
-    shape: || Codec::<Units>::shape(&Name),
-    read: |node| {
-        let units: Units = Name.read(node, None)?;
-        units.apply_to(node.reader);
-        Some(units)
-    },
-    write: |units| Name.write(units),
-    stand_in: Units::default,
-};
-
-impl Units {
-    /// Returns the unit of places and sizes in the file that `reader` reads.
-    pub(super) fn of(reader: &Reader<'_>) -> Self {
-        *reader.known()
-    }
-
-    /// Sets the unit of the places and sizes that `reader` reads from now on.
-    pub(super) fn apply_to(self, reader: &Reader<'_>) {
-        reader.know(Arc::new(self));
-        reader.show_lengths_in(self.suffix());
+impl Includes<Self> for Units {
+    fn included(&self) -> &Self {
+        self
     }
 }

@@ -9,7 +9,7 @@ use super::effect::{EffectFile, parse_effect};
 use super::floor::{FloorRecord, parse_floor};
 use super::inherit;
 use super::kind::{Kind, Kinds};
-use super::page::LayoutRecord;
+use super::layout_record::LayoutRecord;
 use super::pairs::Limits;
 use super::reader::Reader;
 use super::source::Source;
@@ -17,7 +17,6 @@ use super::write;
 use crate::feel::{Effect, Effects, Feel, NamedEffect};
 use crate::floor::{Floor, FloorFile};
 use crate::layout::{Layout, Look};
-use std::sync::Arc;
 use underfoot_format::filed::{Filed, read_record};
 use underfoot_format::text::Text;
 use underfoot_format::{Codec, Rec, Record, filed};
@@ -33,8 +32,7 @@ impl Filed for Effect {
     fn read(text: &str) -> Result<Self, Diagnostics> {
         let source = Source::new(EffectFile::NAME, text)?;
         let reader = Reader::new(&source, EffectFile::NAME, Limits::LAYOUT);
-        know_effects(&reader);
-        let effect = reader.root("effect").and_then(Self::read);
+        let effect = reader.root("effect").and_then(|node| Self::read(node, &Effects::builtin()));
         reader.conclude(effect).map(|(effect, _)| effect)
     }
 }
@@ -57,7 +55,7 @@ impl Filed for Feel {
     }
 
     fn read(text: &str) -> Result<Self, Diagnostics> {
-        read_record(text, know_effects)
+        read_record(text, &Effects::builtin())
     }
 }
 
@@ -68,7 +66,7 @@ impl Filed for Look {
     }
 
     fn read(text: &str) -> Result<Self, Diagnostics> {
-        read_record(text, |_| {})
+        read_record(text, &())
     }
 }
 
@@ -86,7 +84,7 @@ impl Filed for Kind {
 /// A floor file. A floor that an app has read has no file ([`FloorFile::NONE`]).
 impl Filed for Floor {
     fn written(&self) -> Text {
-        Rec.write(&FloorRecord::of(self))
+        Text::Record(FloorRecord::NAME, FloorRecord::of(self).written())
     }
 
     fn read(text: &str) -> Result<Self, Diagnostics> {
@@ -99,8 +97,4 @@ impl Serialize for Layout {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Text::Record(LayoutRecord::NAME, write::written(self)).serialize(serializer)
     }
-}
-
-fn know_effects(reader: &Reader<'_>) {
-    reader.know(Arc::new(Effects::builtin()));
 }

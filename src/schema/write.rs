@@ -1,6 +1,6 @@
 //! Writing of layouts made in code.
 
-use super::page::LayoutRecord;
+use super::layout_record::LayoutRecord;
 use super::units::Units;
 use super::version::FORMAT_VERSION;
 use crate::floor::Rect;

@@ -23,11 +23,13 @@ pub(super) struct Stage {
 }
 
 impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for Stage {
-    fn read(&self, node: Node<'_>, _: Option<&Option<T>>) -> Option<Option<T>> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&Option<T>>, context: &()) -> Option<Option<T>> {
         if node.is_none() {
             return Some(None);
         }
-        let press: f32 = self.press.read(node, None)?;
+        let press: f32 = self.press.read(node, None, context)?;
         Some(Some([press, press * self.follows].into()))
     }
 
@@ -49,6 +51,7 @@ impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for
         name: &'static str,
         base: Option<&Option<T>>,
         _: Option<Option<T>>,
+        context: &(),
     ) -> Option<T> {
         let base: Option<[f32; 2]> = base.copied().flatten().map(T::into);
         let release_name = self.names[1];
@@ -58,7 +61,7 @@ impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for
             if node.is_none() && name != release_name {
                 return Some(None);
             }
-            let number: Option<f32> = codec.read(node, None);
+            let number: Option<f32> = codec.read(node, None, context);
             if number.is_none() {
                 fields.fail(name);
                 failed = true;

@@ -48,11 +48,13 @@ const FIELDS: [(&str, &str); 3] = [
 ];
 
 impl Codec<Track> for TrackFields {
-    fn read(&self, node: Node<'_>, _: Option<&Track>) -> Option<Track> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&Track>, context: &()) -> Option<Track> {
         match node.name {
-            "angle_deg" => ANGLE.read(node, None).map(|degrees| Track::Line { degrees }),
+            "angle_deg" => ANGLE.read(node, None, context).map(|degrees| Track::Line { degrees }),
             "arc_deg" => {
-                let [from_degrees, to_degrees]: [f32; 2] = ARC.read(node, None)?;
+                let [from_degrees, to_degrees]: [f32; 2] = ARC.read(node, None, context)?;
                 if (20.0..=340.0).contains(&(to_degrees - from_degrees).abs()) {
                     return Some(Track::Arc { from_degrees, to_degrees });
                 }
@@ -87,11 +89,12 @@ impl Codec<Track> for TrackFields {
         _: &'static str,
         base: Option<&Track>,
         default: Option<Track>,
+        context: &(),
     ) -> Track {
         let mut written: Vec<(Node<'_>, Option<Track>)> = Vec::new();
         for (name, _) in FIELDS {
             let Some(node) = fields.take(name) else { continue };
-            let track = self.read(node, None);
+            let track = self.read(node, None, context);
             if track.is_none() {
                 fields.fail(name);
             }

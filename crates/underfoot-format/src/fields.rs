@@ -5,7 +5,7 @@ use std::ops::Range;
 use ron2::ast::StructField;
 
 use super::fault::{Fault, Faults};
-use super::node::Node;
+use super::node::{Node, Within};
 use super::problem::Problem;
 use super::reader::{Reader, bytes};
 use super::suggest::{did_you_mean, listed, nearest};
@@ -16,11 +16,10 @@ use super::words::example;
 /// Each field that the reader asks for is valid; [`Fields::finish`] then reports the others.
 #[must_use = "unknown and missing fields are only reported by finish()"]
 pub struct Fields<'r> {
-    reader: &'r Reader<'r>,
+    /// The whole record.
+    record: Node<'r>,
     /// Name of the record in messages.
     noun: String,
-    /// Bytes of the whole record.
-    extent: Range<usize>,
     /// Place that messages about missing fields point at.
     open: Range<usize>,
     /// The name, if nothing else is written.
@@ -46,9 +45,8 @@ impl<'r> Fields<'r> {
     pub fn new(node: Node<'r>, name: &str, open: Range<usize>, fields: &'r [StructField<'r>]) -> Self {
         let written = fields.iter().map(|field| FieldUse { field, taken: false }).collect();
         Self {
-            reader: node.reader,
+            record: node,
             noun: name.to_lowercase(),
-            extent: node.span(),
             open,
             bare: None,
             written,
@@ -68,6 +66,16 @@ impl<'r> Fields<'r> {
     /// Sets the name of the record in messages.
     pub fn set_noun(&mut self, noun: String) {
         self.noun = noun;
+    }
+
+    /// Limits the bounded numbers of the fields that are read from now on.
+    pub fn keep_within(&mut self, within: Within) {
+        self.record.within = Some(within);
+    }
+
+    /// Sets the unit in which messages show places and sizes of the fields that are read from now on.
+    pub fn show_lengths_in(&mut self, unit: &'static str) {
+        self.record.length_unit = unit;
     }
 
     /// Reads the field `name` with `read`; returns `otherwise` if it is not written.
@@ -99,14 +107,14 @@ impl<'r> Fields<'r> {
             match found {
                 None => found = Some(written.field),
                 Some(first) => {
-                    let line = self.reader.line(&bytes(&first.name.span));
+                    let line = self.record.reader.line(&bytes(&first.name.span));
                     let message = format!("`{name}` is given twice");
                     let problem = Problem::error(bytes(&written.field.name.span), message);
-                    self.reader.report(problem.expected(format!("the first is on line {line}")));
+                    self.record.report(problem.expected(format!("the first is on line {line}")));
                 }
             }
         }
-        found.map(|field| Node { reader: self.reader, expr: &field.value, name }.inside())
+        found.map(|field| Node { expr: &field.value, name, ..self.record }.inside())
     }
 
     /// Treats the field `name` as not written, after its problem has been reported.
@@ -163,7 +171,7 @@ impl<'r> Fields<'r> {
 
     /// Returns the reader of the file.
     pub fn reader(&self) -> &'r Reader<'r> {
-        self.reader
+        self.record.reader
     }
 
     /// Returns the place where the fields begin.
@@ -184,12 +192,12 @@ impl<'r> Fields<'r> {
 
     /// Whether the text has a syntax error among the fields.
     pub fn are_broken(&self) -> bool {
-        self.reader.is_broken(&self.extent)
+        self.record.reader.is_broken(&self.record.span())
     }
 
     /// Reports a problem.
     pub fn report(&self, problem: Problem) {
-        self.reader.report(problem);
+        self.record.report(problem);
     }
 
     /// Reports unknown fields, and requested fields that are missing.
@@ -216,7 +224,7 @@ impl<'r> Fields<'r> {
         let name = &written.field.name;
         let problem = Problem::error(bytes(&name.span), format!("unknown field `{}`", name.name));
         let article = if self.noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-        self.reader
+        self.record
             .report(problem.expected(format!("{article} {} has no such field", self.noun)).help_if(help));
     }
 
@@ -244,6 +252,6 @@ impl<'r> Fields<'r> {
             _ => None,
         };
         let problem = Problem::error(self.open.clone(), message).expected(expected).help_if(help);
-        self.reader.report(Problem { missing: Some(first), ..problem });
+        self.record.report(Problem { missing: Some(first), ..problem });
     }
 }

@@ -28,15 +28,14 @@ pub trait Filed: Sized {
     fn read(text: &str) -> Result<Self, Diagnostics>;
 }
 
-/// Reads the record that `text` holds; `prepare` gives the reader what the text may refer to.
+/// Reads the record that `text` holds; `context` holds the values that the text may refer to.
 ///
 /// # Errors
 /// Every problem of the text.
-pub fn read_record<T: Record>(text: &str, prepare: impl FnOnce(&Reader<'_>)) -> Result<T, Diagnostics> {
+pub fn read_record<T: Record>(text: &str, context: &T::Context) -> Result<T, Diagnostics> {
     let source = Source::new(T::NAME, text)?;
     let reader = Reader::new(&source, T::NAME, Limits::LAYOUT);
-    prepare(&reader);
-    let record = reader.root(T::NAME).and_then(|node| node.record(None));
+    let record = reader.root(T::NAME).and_then(|node| node.record(None, context));
     reader.conclude(record).map(|(record, _)| record)
 }
 
@@ -112,7 +111,7 @@ mod tests {
         }
 
         fn read(text: &str) -> Result<Self, Diagnostics> {
-            read_record(text, |_| {})
+            read_record(text, &())
         }
     }
 

@@ -47,7 +47,7 @@ pub use codec::{
     Codec, Flag, Flat, Follow, Id, List, Name, Named, Num, OneOf, Opt, Own, Pair, Rec, Text, list, num,
 };
 pub use fault::Faults;
-pub use record::{Record, Variants};
+pub use record::{Includes, Record, Variants};
 
 // Public signatures contain types of this crate.
 pub use ron2;

@@ -51,6 +51,10 @@ pub struct Node<'r> {
     pub expr: &'r Expr<'r>,
     /// The field that holds the value, or the name for entries of its list.
     pub name: &'static str,
+    /// Limits of the numbers that are marked as bounded.
+    pub within: Option<Within>,
+    /// The unit of places and sizes in messages, with a space before it; may be empty.
+    pub length_unit: &'static str,
 }
 
 impl<'r> Node<'r> {
@@ -107,7 +111,7 @@ impl<'r> Node<'r> {
     /// Returns the unit of the number, with a space before it; empty if it has none.
     fn unit(&self) -> &'static str {
         match self.name {
-            "at" | "size" | "gap" => self.reader.length_unit(),
+            "at" | "size" | "gap" => self.length_unit,
             name => unit(name),
         }
     }
@@ -170,8 +174,7 @@ impl<'r> Node<'r> {
     /// A finite number within `range` and within the limits of the surrounding record.
     pub fn bounded(&self, range: RangeInclusive<f64>) -> Option<Number> {
         let number = self.number(range)?;
-        let within = self.reader.within();
-        within.is_none_or(|within| within.holds(self, f64::from(number.single))).then_some(number)
+        self.within.is_none_or(|within| within.holds(self, f64::from(number.single))).then_some(number)
     }
 
     /// `true` or `false`.

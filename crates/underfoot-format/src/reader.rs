@@ -3,16 +3,13 @@
 //! A read returns `None` after it has reported the reason. Callers read on with the values they have, and build a
 //! result only if nothing was `None`.
 
-use std::any::{Any, TypeId};
-use std::cell::{Cell, RefCell};
-use std::collections::HashMap;
+use std::cell::RefCell;
 use std::ops::Range;
-use std::sync::Arc;
 
 use ron2::ast::{Expr, StructBody};
 
 use super::diagnostic::{Diagnostic, Diagnostics, Severity};
-use super::node::{Node, Within};
+use super::node::Node;
 use super::pairs::Limits;
 use super::problem::Problem;
 use super::source::Source;
@@ -23,12 +20,6 @@ pub struct Reader<'t> {
     source: &'t Source<'t>,
     syntax: Syntax<'t>,
     problems: RefCell<Vec<Problem>>,
-    /// Limits of the numbers that are marked as bounded.
-    within: Cell<Option<Within>>,
-    /// The unit of places and sizes, with a space before it.
-    length_unit: Cell<&'static str>,
-    /// Other context for reads, one value of each type.
-    known: RefCell<HashMap<TypeId, Arc<dyn Any + Send + Sync>>>,
 }
 
 impl<'t> Reader<'t> {
@@ -36,14 +27,7 @@ impl<'t> Reader<'t> {
     pub fn new(source: &'t Source<'t>, kind: &str, limits: Limits) -> Self {
         let mut syntax = syntax::parse(source.text(), kind, limits);
         let problems = RefCell::new(std::mem::take(&mut syntax.problems));
-        Self {
-            source,
-            syntax,
-            problems,
-            within: Cell::default(),
-            length_unit: Cell::default(),
-            known: RefCell::default(),
-        }
+        Self { source, syntax, problems }
     }
 
     /// The text of the file.
@@ -53,38 +37,8 @@ impl<'t> Reader<'t> {
 
     /// Returns the root value of the file.
     pub fn root(&self, name: &'static str) -> Option<Node<'_>> {
-        self.syntax.root.as_ref().map(|expr| Node { reader: self, expr, name })
-    }
-
-    /// Makes `what` available to later reads.
-    pub fn know<T: Any + Send + Sync>(&self, what: Arc<T>) {
-        self.known.borrow_mut().insert(TypeId::of::<T>(), what);
-    }
-
-    /// Returns the context of this type, or its default if there is none.
-    pub fn known<T: Any + Default + Send + Sync>(&self) -> Arc<T> {
-        let known = self.known.borrow().get(&TypeId::of::<T>()).cloned();
-        known.and_then(|known| known.downcast().ok()).unwrap_or_default()
-    }
-
-    /// The unit of places and sizes, with a space before it.
-    pub fn length_unit(&self) -> &'static str {
-        self.length_unit.get()
-    }
-
-    /// Sets the unit in which messages show places and sizes.
-    pub fn show_lengths_in(&self, unit: &'static str) {
-        self.length_unit.set(unit);
-    }
-
-    /// Returns the limits of bounded numbers, if any.
-    pub fn within(&self) -> Option<Within> {
-        self.within.get()
-    }
-
-    /// Sets the limits of bounded numbers from now on and returns the previous ones.
-    pub fn keep_within(&self, within: Option<Within>) -> Option<Within> {
-        self.within.replace(within)
+        let root = |expr| Node { reader: self, expr, name, within: None, length_unit: "" };
+        self.syntax.root.as_ref().map(root)
     }
 
     /// Returns the name of the file in diagnostics.

@@ -7,16 +7,33 @@ use super::hand::Hand;
 use super::node::Node;
 use super::text::Entry;
 
+/// A context of readings that includes the smaller context `C`: that of a record within the record being read.
+///
+/// Every context includes the empty one.
+pub trait Includes<C> {
+    /// Returns the smaller context.
+    fn included(&self) -> &C;
+}
+
+impl<C> Includes<()> for C {
+    fn included(&self) -> &() {
+        &()
+    }
+}
+
 /// A type that files write as named fields in round brackets. [`record!`](crate::record!) implements it.
 pub trait Record: Clone + PartialEq + 'static {
     /// Its name in files.
     const NAME: &'static str;
 
+    /// The values that a reading refers to; `()` if it needs none.
+    type Context;
+
     /// Reads the record from `fields`; fields that are not written come from `base`.
     ///
     /// An unreadable field is noted in `fields` ([`Fields::are_read`]) and replaced by a stand-in, so that conflicts
     /// between the other fields are found too.
-    fn read_fields(fields: &mut Fields<'_>, base: Option<&Self>) -> Self;
+    fn read_fields(fields: &mut Fields<'_>, base: Option<&Self>, context: &Self::Context) -> Self;
 
     /// Appends the fields that differ from their defaults.
     fn write_fields(&self, entries: &mut Vec<Entry>);
@@ -36,6 +53,9 @@ pub trait Variants: Clone + PartialEq + 'static {
     /// The names of all variants.
     const NAMES: &'static [&'static str];
 
+    /// As [`Record::Context`].
+    type Context;
+
     /// The name of this variant.
     fn variant(&self) -> &'static str;
 
@@ -43,7 +63,12 @@ pub trait Variants: Clone + PartialEq + 'static {
     /// name.
     ///
     /// `None` if there is no variant of this name.
-    fn read_fields(name: &str, fields: &mut Fields<'_>, base: Option<&Self>) -> Option<Self>;
+    fn read_fields(
+        name: &str,
+        fields: &mut Fields<'_>,
+        base: Option<&Self>,
+        context: &Self::Context,
+    ) -> Option<Self>;
 
     /// As [`Record::write_fields`].
     fn write_fields(&self, entries: &mut Vec<Entry>);
@@ -60,9 +85,9 @@ pub trait Variants: Clone + PartialEq + 'static {
 
 impl Node<'_> {
     /// Reads the record at this node over `base`.
-    pub fn record<T: Record>(self, base: Option<&T>) -> Option<T> {
+    pub fn record<T: Record>(self, base: Option<&T>, context: &T::Context) -> Option<T> {
         let mut fields = self.fields(T::NAME)?;
-        let read = T::read_fields(&mut fields, base);
+        let read = T::read_fields(&mut fields, base, context);
         let all = fields.are_read();
         fields.finish();
         all.then_some(read)
@@ -76,12 +101,13 @@ pub type Rules<T> = fn(&mut T, &mut Faults);
 ///
 /// Each field is one entry `field: Type = "name in files", codec => default;` below its documentation. The codec
 /// defines the written form (see [`codec`](crate::codec)); the codec and the end of the name give the range and unit of a
-/// number. A field without a default must be written, unless there is a base.
+/// number. A field without a default must be written, unless there is a base. `with Context` names the type of
+/// [`Record::Context`], which includes the contexts of all codecs.
 #[macro_export]
 macro_rules! record {
     (
         $(#[doc = $doc:expr])*
-        $vis:vis struct $Type:ident = $ron:literal $(, $derive:ident)* $(=> $rules:expr)? ;
+        $vis:vis struct $Type:ident = $ron:literal $(, $derive:ident)* $(with $Context:ty)? $(=> $rules:expr)? ;
         $(
             $(#[doc = $about:expr])*
             $fvis:vis $field:ident: $ty:ty = $name:literal, $codec:expr $(=> $default:expr)?;
@@ -96,10 +122,13 @@ macro_rules! record {
         impl $crate::Record for $Type {
             const NAME: &'static str = $ron;
 
+            type Context = $crate::__context!($($Context)?);
+
             #[allow(unused_mut)]
             fn read_fields(
                 fields: &mut $crate::fields::Fields<'_>,
                 base: Option<&Self>,
+                context: &Self::Context,
             ) -> Self {
                 let mut it = Self {
                     $($field: $crate::Codec::<$ty>::read_field(
@@ -108,6 +137,7 @@ macro_rules! record {
                         $name,
                         base.map(|base| &base.$field),
                         $crate::__default!($($default)?),
+                        $crate::record::Includes::included(context),
                     ),)*
                 };
                 $(
@@ -154,12 +184,12 @@ macro_rules! record {
 
 /// Defines an enum. Each variant holds the record that is written under its name, or nothing.
 ///
-/// `=` gives the default variant, if there is one.
+/// `with` names a context as in [`record!`](crate::record!); `=` gives the default variant, if there is one.
 #[macro_export]
 macro_rules! choices {
     (
         $(#[doc = $doc:expr])*
-        $vis:vis enum $Type:ident $(: $($derive:ident),*)? $(= $default:ident)? ;
+        $vis:vis enum $Type:ident $(: $($derive:ident),*)? $(with $Context:ty)? $(= $default:ident)? ;
         $(
             $(#[doc = $about:expr])*
             $variant:ident $(($record:ident))?,
@@ -180,6 +210,8 @@ macro_rules! choices {
         impl $crate::Variants for $Type {
             const NAMES: &'static [&'static str] = &[$(stringify!($variant)),*];
 
+            type Context = $crate::__context!($($Context)?);
+
             fn variant(&self) -> &'static str {
                 match self {
                     $(Self::$variant { .. } => stringify!($variant),)*
@@ -191,6 +223,7 @@ macro_rules! choices {
                 name: &str,
                 fields: &mut $crate::fields::Fields<'_>,
                 base: Option<&Self>,
+                context: &Self::Context,
             ) -> Option<Self> {
                 match name {
                     $(stringify!($variant) => Some(Self::$variant $(({
@@ -198,7 +231,8 @@ macro_rules! choices {
                             Some(Self::$variant(base)) => Some(base),
                             _ => None,
                         };
-                        <$record as $crate::Record>::read_fields(fields, base)
+                        let context = $crate::record::Includes::included(context);
+                        <$record as $crate::Record>::read_fields(fields, base, context)
                     }))?),)*
                     _ => None,
                 }
@@ -243,6 +277,18 @@ macro_rules! __fields_of {
     };
     ($record:ident) => {
         <$record as $crate::Record>::describe().fields
+    };
+}
+
+/// The context of a record; the empty one if it names none.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __context {
+    () => {
+        ()
+    };
+    ($Context:ty) => {
+        $Context
     };
 }
 

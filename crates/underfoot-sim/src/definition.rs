@@ -204,9 +204,9 @@ pub(super) enum DragEnd {
 /// The check of the range of a share follows when the control is known.
 const END: By<DragEnd> = By {
     shape: || FieldType::Words("a number from 0 to 1, or (east, north)"),
-    read: |node| match node.peek_number() {
-        Some(_) => SHARE.read(node, None).map(DragEnd::Share),
-        None => PLACE.read(node, None).map(DragEnd::Place),
+    read: |node, context| match node.peek_number() {
+        Some(_) => SHARE.read(node, None, context).map(DragEnd::Share),
+        None => PLACE.read(node, None, context).map(DragEnd::Place),
     },
     write: |end: &DragEnd| match end {
         DragEnd::Share(share) => SHARE.write(share),

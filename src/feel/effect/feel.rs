@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::click::SHARE;
-use super::reading::Played;
+use super::reading::{Effects, Played};
 use super::{Effect, Use};
 use underfoot_format::{Opt, record};
 
 record! {
     /// The effects of a control; each may be absent.
-    pub struct Feel = "Feel", Default;
+    pub struct Feel = "Feel", Default with Effects;
     /// Felt when the control engages.
     pub press: Option<Arc<Effect>> = "press", Opt(Played(Use::Once)) => None;
     /// Felt when the control releases.

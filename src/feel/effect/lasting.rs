@@ -124,8 +124,10 @@ struct Resonances;
 const RESONANCES: List<Rec> = list("resonance", 2, Rec).at_least(1, "a material needs a resonance");
 
 impl Codec<[Resonance; 2]> for Resonances {
-    fn read(&self, node: Node<'_>, _: Option<&[Resonance; 2]>) -> Option<[Resonance; 2]> {
-        let read: ArrayVec<Resonance, 2> = RESONANCES.read(node, None)?;
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&[Resonance; 2]>, context: &()) -> Option<[Resonance; 2]> {
+        let read: ArrayVec<Resonance, 2> = RESONANCES.read(node, None, context)?;
         let mut both = [Resonance::NONE; 2];
         both.iter_mut().zip(read).for_each(|(resonance, read)| *resonance = read);
         Some(both)

@@ -43,7 +43,7 @@ pub struct Effect {
 
 choices! {
     /// The kinds of effects.
-    pub enum EffectKind;
+    pub enum EffectKind with Effects;
     /// Modes struck once, and optionally others at the release.
     Click(Clicks),
     /// A tone or a band of noise under an envelope.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::reading::Played;
+use super::reading::{Effects, Played};
 use super::{Clicks, Effect, EffectKind, MAX_PARTS, Manner, Part, PartKind, Tone, TonePoint, Use};
 use crate::feel::MODE_HZ;
 use underfoot_format::describe::FieldType;
@@ -14,7 +14,7 @@ use underfoot_format::{Codec, List, Rec, list, num, record};
 
 record! {
     /// One part of a sequence.
-    struct PartRecord = "Part";
+    struct PartRecord = "Part" with Effects;
     /// Start time, from the sequence's start.
     at_s: f32 = "at_ms", super::tone::TIME;
     /// Factor of its level.
@@ -31,10 +31,12 @@ const PARTS: List<Rec> = list("part", MAX_PARTS, Rec).at_least(1, "a sequence ne
 pub(super) struct Parts;
 
 impl Codec<Arc<[Part]>> for Parts {
-    fn read(&self, node: Node<'_>, _: Option<&Arc<[Part]>>) -> Option<Arc<[Part]>> {
-        let within = node.reader.within();
-        let written: Vec<PartRecord> = PARTS.read(node, None)?;
-        let mut parts: Vec<Part> = written.into_iter().flat_map(|part| part.into_parts(within)).collect();
+    type Context = Effects;
+
+    fn read(&self, node: Node<'_>, _: Option<&Arc<[Part]>>, effects: &Effects) -> Option<Arc<[Part]>> {
+        let written: Vec<PartRecord> = PARTS.read(node, None, effects)?;
+        let parts = written.into_iter().flat_map(|part| part.into_parts(node.within));
+        let mut parts: Vec<Part> = parts.collect();
         if parts.len() > MAX_PARTS {
             let problem = Problem::error(node.span(), "this sequence has too many parts");
             let expected = format!("expected at most {MAX_PARTS} clicks and tones, found {}", parts.len());

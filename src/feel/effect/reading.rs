@@ -14,11 +14,11 @@ use underfoot_format::number::plain;
 use underfoot_format::problem::Problem;
 use underfoot_format::suggest::{did_you_mean, listed, nearest};
 use underfoot_format::text::{Entry, Text};
-use underfoot_format::{Codec, Id, Num, Pair, Record, Variants, num, record};
+use underfoot_format::{Codec, Id, Includes, Num, Pair, Record, Variants, num, record};
 
 record! {
     /// An effect with a name.
-    pub struct NamedEffect = "Effect";
+    pub struct NamedEffect = "Effect" with Effects;
     /// Its name in layouts and kinds.
     pub name: String = "name", Id;
     /// Its purpose, in a sentence; may be empty.
@@ -28,14 +28,14 @@ record! {
 }
 
 /// An effect that is written out.
-const WRITTEN_OUT: By<Arc<Effect>> = By {
+const WRITTEN_OUT: By<Arc<Effect>, Effects> = By {
     shape: || FieldType::Variants(EffectKind::describe),
-    read: |node| Effect::read(node).map(Arc::new),
+    read: |node, effects| Effect::read(node, effects).map(Arc::new),
     write: |effect| effect.to_ron(),
     stand_in: || Arc::new(Click::default().into()),
 };
 
-/// Effects by their names.
+/// Effects by their names; in a reading, those that may be named.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effects {
     effects: BTreeMap<String, NamedEffect>,
@@ -59,17 +59,25 @@ impl Effects {
     }
 }
 
+impl Includes<Self> for Effects {
+    fn included(&self) -> &Self {
+        self
+    }
+}
+
 /// An effect for this use.
 pub(crate) struct Played(pub(crate) Use);
 
 impl Codec<Arc<Effect>> for Played {
-    fn read(&self, node: Node<'_>, base: Option<&Arc<Effect>>) -> Option<Arc<Effect>> {
+    type Context = Effects;
+
+    fn read(&self, node: Node<'_>, base: Option<&Arc<Effect>>, effects: &Effects) -> Option<Arc<Effect>> {
         let effect = match node.expr {
-            Expr::String(_) => named(node)?,
+            Expr::String(_) => named(node, effects)?,
             Expr::Struct(_) | Expr::AnonStruct(_) | Expr::Unit(_) => {
                 let released = base.filter(|_| node.name == "release").and_then(|base| released(base));
                 let base = released.as_ref().or(base.map(|base| &**base));
-                Arc::new(effect_at(node, base, self.0)?)
+                Arc::new(effect_at(node, base, self.0, effects)?)
             }
             _ => return node.mismatch("an effect, by its name or written out"),
         };
@@ -109,9 +117,8 @@ fn released(effect: &Effect) -> Option<Effect> {
 }
 
 /// The effect that `node` names.
-fn named(node: Node<'_>) -> Option<Arc<Effect>> {
+fn named(node: Node<'_>, effects: &Effects) -> Option<Arc<Effect>> {
     let name = node.text(64)?;
-    let effects = node.reader.known::<Effects>();
     effects.get(name).map(|found| Arc::clone(&found.effect)).or_else(|| {
         let known: Vec<&str> = effects.iter().map(|effect| effect.name.as_str()).collect();
         let problem = Problem::error(node.span(), format!("unknown effect \"{name}\""));
@@ -123,12 +130,13 @@ fn named(node: Node<'_>) -> Option<Arc<Effect>> {
 /// The effect that is written out at `node`; missing fields come from `base` if that is of the same kind.
 ///
 /// Fields without a kind's name belong to the kind of the base, or to the most common kind for `used`.
-fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect> {
+fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use, effects: &Effects) -> Option<Effect> {
     let name = match node.expr {
         Expr::Struct(variant) => {
             let written = &*variant.name.name;
             let Some(known) = EffectKind::NAMES.iter().find(|name| **name == written) else {
-                report_unknown(node, written, variant.body.is_none(), used);
+                let is_named = variant.body.is_none() && effects.get(written).is_some();
+                report_unknown(node, written, is_named, used);
                 return None;
             };
             known
@@ -139,7 +147,7 @@ fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect>
     let mut fields = node.fields(name)?;
     let from = match fields.take("from") {
         Some(node) => {
-            let from = named(node)?;
+            let from = named(node, effects)?;
             if from.kind.name() != name {
                 let message = format!("\"{}\" is {}", node.peek_text()?, a(from.kind.name()));
                 let problem = Problem::error(node.span(), message);
@@ -151,11 +159,10 @@ fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect>
         None => None,
     };
     let base = from.as_deref().or(base).filter(|base| base.kind.name() == name);
-    let manner = Manner::read_fields(&mut fields, base.map(|base| &base.manner));
+    let manner = Manner::read_fields(&mut fields, base.map(|base| &base.manner), &());
     // An unusable band is reported; the search for other faults uses the usual band.
-    let outer = node.reader.keep_within(Some(manner.band.as_bounds()));
-    let kind = EffectKind::read_fields(name, &mut fields, base.map(|base| &base.kind));
-    node.reader.keep_within(outer);
+    fields.keep_within(manner.band.as_bounds());
+    let kind = EffectKind::read_fields(name, &mut fields, base.map(|base| &base.kind), effects);
     let all = fields.are_read();
     fields.finish();
     let mut effect = Effect { kind: kind?, manner };
@@ -165,9 +172,8 @@ fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect>
     all.then_some(effect)
 }
 
-fn report_unknown(node: Node<'_>, written: &str, stands_alone: bool, used: Use) {
-    let is_name = stands_alone && node.reader.known::<Effects>().get(written).is_some();
-    let help = if is_name {
+fn report_unknown(node: Node<'_>, written: &str, is_named: bool, used: Use) {
+    let help = if is_named {
         Some(format!("names of effects stand in quotes: \"{written}\""))
     } else {
         let near = nearest(written, EffectKind::NAMES.iter().copied());
@@ -185,9 +191,9 @@ fn a(name: &str) -> String {
 }
 
 impl Effect {
-    /// The effect that is written out at `node`.
-    pub(crate) fn read(node: Node<'_>) -> Option<Self> {
-        effect_at(node, None, Use::Once)
+    /// The effect that is written out at `node`, made of those in `effects`.
+    pub(crate) fn read(node: Node<'_>, effects: &Effects) -> Option<Self> {
+        effect_at(node, None, Use::Once, effects)
     }
 
     /// Its text at the place of use.
@@ -207,8 +213,10 @@ const BAND: Pair = Pair { each: HERTZ, pattern: "(lowest, highest)", parts: ["lo
 const HERTZ: Num = num(20.0..=1000.0);
 
 impl Codec<Band> for BandFields {
-    fn read(&self, node: Node<'_>, _: Option<&Band>) -> Option<Band> {
-        let [low_hz, high_hz] = BAND.read(node, None)?;
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&Band>, context: &()) -> Option<Band> {
+        let [low_hz, high_hz] = BAND.read(node, None, context)?;
         if high_hz < 1.5 * low_hz {
             let found = format!("{} to {} Hz", plain(low_hz.into()), plain(high_hz.into()));
             let expected = format!("expected 1.5 times the lowest as the highest, found {found}");

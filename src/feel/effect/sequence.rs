@@ -6,6 +6,7 @@ use std::sync::Arc;
 use arrayvec::ArrayVec;
 
 use super::parts::Parts;
+use super::reading::Effects;
 use super::tone::{STRENGTH, TIME, check_order};
 use super::{EffectTimeline, MAX_POINTS, Tone, TonePoint};
 use crate::feel::Click;
@@ -17,7 +18,7 @@ pub const MAX_PARTS: usize = 240;
 
 record! {
     /// Clicks and tones one after the other, or at once.
-    pub struct Sequence = "Sequence" => |it, faults| {
+    pub struct Sequence = "Sequence" with Effects => |it, faults| {
         check_order(it.curve.iter().map(|point| point.at_s), faults);
     };
     /// The parts, in order of time.

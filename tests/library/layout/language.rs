@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use underfoot::feel::EffectKind;
 use underfoot::floor::{Geometry, Rect};
 use underfoot::glam::Vec2;
 use underfoot::layout::{Colour, Icon, Layout};
@@ -213,4 +214,57 @@ fn as_many_controls_as_there_may_be_and_not_one_more() {
         problems.iter().all(|problem| problem.message.ends_with("reaches beyond the floor")),
         "{problems}"
     );
+}
+
+#[test]
+fn controls_of_groups_and_of_all_pages_share_one_limit() {
+    let grid = |id: &str, columns: u32, rows: u32| {
+        format!(
+            "(id: \"{id}_{{n}}\", kind: \"button\", at: (0, 0), size: (0.05, 0.05), repeat: (columns: {columns}, rows: {rows}, gap: 0.01)),"
+        )
+    };
+    let with_last = |count: u32| {
+        let (common, group, last) = (grid("a", 10, 4), grid("b", 63, 64), grid("c", count, 1));
+        // Controls of different pages may lie on each other, those of every page may not.
+        read(&format!(
+            "widgets: [Group(at: (4, 4), widgets: [{common}])], pages: [
+                (id: \"one\", widgets: [Group(at: (0, 0), widgets: [{group}])]), (id: \"two\", widgets: [{last}])]"
+        ))
+    };
+    let layout = with_last(24).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(layout.widgets.len(), 4096);
+    let problems = with_last(25).unwrap_err();
+    let problem = problems.iter().next().unwrap();
+    assert_eq!(
+        (problem.message.as_str(), problem.field.as_str(), problem.expected.as_str()),
+        ("too many controls", "pages[1].widgets[0].repeat", "25 more, with room for 24 of 4096")
+    );
+}
+
+#[test]
+fn own_effects_and_kinds_and_the_unit_hold_wherever_they_are_written() {
+    let own = |pages: &str, kinds: &str| {
+        read(&format!(
+            "pages: [(id: \"one\", widgets: [Group(at: (0, 0), widgets: [{pages}])])], kinds: [{kinds}],
+            effects: [(name: \"knock\", plays: Click(from: \"soft_click\", level_n: 7)),
+                (name: \"thud\", plays: Click(from: \"knock\", impulse_n: 3))], units: Metres"
+        ))
+    };
+    let kind = "Kind(name: \"key\", from: \"button\", feel: (press: \"thud\"))";
+    let key = |fields: &str| format!("(id: \"a\", kind: \"key\", at: (1, 0.5), {fields}),");
+    let layout = own(&key("size: (0.2, 0.3), feel: (release: \"knock\")"), kind);
+    let layout = layout.unwrap_or_else(|problems| panic!("{problems}"));
+    let [button] = layout.widgets.as_slice() else { panic!("one") };
+    assert_eq!(button.area, Rect::new(Vec2::new(1.0, 0.5), Vec2::new(1.2, 0.8)));
+    let levels = [&button.feel.press, &button.feel.release].map(|effect| {
+        let effect = effect.as_ref().unwrap();
+        let EffectKind::Click(clicks) = &effect.kind else { panic!("a click") };
+        clicks.press.level
+    });
+    assert_eq!(levels, [Newtons(7.0); 2]);
+
+    let problems = own(&key("size: (0.001, 0.3)"), kind).unwrap_err().to_string();
+    assert!(problems.contains("0.01 to 1000 m, found 0.001 m"), "{problems}");
+    let problems = own(&key("size: (0.2, 0.3)"), "").unwrap_err().to_string();
+    assert!(problems.contains("unknown kind \"key\""), "{problems}");
 }

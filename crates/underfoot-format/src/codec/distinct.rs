@@ -42,27 +42,44 @@ impl Seen {
 }
 
 impl<T: Record> Distinct<T> {
+    /// Reads the records of the field `name`, each by `read`, with stand-ins for those that cannot be read; `None` if
+    /// the field is not written.
+    pub fn read_by(
+        &self,
+        fields: &mut Fields<'_>,
+        name: &'static str,
+        read: impl FnMut(&mut Fields<'_>) -> T,
+    ) -> Option<Vec<T>> {
+        let (all, good) = self.read_all(fields.take(name)?, read);
+        if !good {
+            fields.fail(name);
+        }
+        Some(all)
+    }
+
     /// Reads all records, with stand-ins for those that cannot be read. The flag says whether all could be read.
-    fn read_all(&self, node: Node<'_>) -> (Vec<T>, bool) {
+    fn read_all(&self, node: Node<'_>, mut read: impl FnMut(&mut Fields<'_>) -> T) -> (Vec<T>, bool) {
         let Some(nodes) = node.list(self.entry, self.most) else { return (Vec::new(), false) };
         let (mut seen, mut good) = (Seen::default(), true);
-        let mut read = |(number, node): (usize, Node<'_>)| {
+        let mut read_one = |(number, node): (usize, Node<'_>)| {
             let fields = node.fields(T::NAME);
             good &= fields.is_some();
             let mut fields = fields?;
-            let one = T::read_fields(&mut fields, None);
+            let one = read(&mut fields);
             (self.about)(number, &one, &fields, &mut seen);
             good &= fields.are_read();
             fields.finish();
             Some(one)
         };
-        (nodes.into_iter().enumerate().filter_map(&mut read).collect(), good)
+        (nodes.into_iter().enumerate().filter_map(&mut read_one).collect(), good)
     }
 }
 
 impl<T: Record> Codec<Vec<T>> for Distinct<T> {
-    fn read(&self, node: Node<'_>, _: Option<&Vec<T>>) -> Option<Vec<T>> {
-        let (all, good) = self.read_all(node);
+    type Context = T::Context;
+
+    fn read(&self, node: Node<'_>, _: Option<&Vec<T>>, context: &T::Context) -> Option<Vec<T>> {
+        let (all, good) = self.read_all(node, |fields| T::read_fields(fields, None, context));
         good.then_some(all)
     }
 
@@ -84,12 +101,9 @@ impl<T: Record> Codec<Vec<T>> for Distinct<T> {
         name: &'static str,
         _: Option<&Vec<T>>,
         default: Option<Vec<T>>,
+        context: &T::Context,
     ) -> Vec<T> {
-        let Some(node) = fields.take(name) else { return default.unwrap_or_default() };
-        let (all, good) = self.read_all(node);
-        if !good {
-            fields.fail(name);
-        }
-        all
+        let read = self.read_by(fields, name, |fields| T::read_fields(fields, None, context));
+        read.or(default).unwrap_or_default()
     }
 }

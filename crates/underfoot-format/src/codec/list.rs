@@ -50,7 +50,7 @@ impl<C> List<C> {
     }
 
     /// Reads all values; `None` if one of them cannot be read.
-    fn read_all<T>(&self, node: Node<'_>) -> Option<Vec<T>>
+    fn read_all<T>(&self, node: Node<'_>, context: &C::Context) -> Option<Vec<T>>
     where
         C: Codec<T>,
     {
@@ -64,7 +64,8 @@ impl<C> List<C> {
             return None;
         }
         // All entries are read before the first failure ends the list, so that each failure is reported.
-        let read: Vec<Option<T>> = nodes.into_iter().map(|node| self.each.read(node, None)).collect();
+        let read: Vec<Option<T>> =
+            nodes.into_iter().map(|node| self.each.read(node, None, context)).collect();
         read.into_iter().collect()
     }
 }
@@ -127,8 +128,10 @@ impl<T> Listed for Arc<[T]> {
 }
 
 impl<L: Listed, C: Codec<L::Each>> Codec<L> for List<C> {
-    fn read(&self, node: Node<'_>, _: Option<&L>) -> Option<L> {
-        self.read_all(node).map(L::of)
+    type Context = C::Context;
+
+    fn read(&self, node: Node<'_>, _: Option<&L>, context: &C::Context) -> Option<L> {
+        self.read_all(node, context).map(L::of)
     }
 
     fn write(&self, values: &L) -> RonText {

@@ -19,8 +19,11 @@ use super::text::{Entry, Text as RonText};
 
 /// Reads and writes a `T`.
 pub trait Codec<T> {
+    /// The values that a reading refers to; `()` if it needs none.
+    type Context;
+
     /// Reads `node` over `base`; `None` after it has reported why the value cannot be used.
-    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T>;
+    fn read(&self, node: Node<'_>, base: Option<&T>, context: &Self::Context) -> Option<T>;
 
     /// Returns the text that files hold for `value`.
     fn write(&self, value: &T) -> RonText;
@@ -41,13 +44,14 @@ pub trait Codec<T> {
         name: &'static str,
         base: Option<&T>,
         default: Option<T>,
+        context: &Self::Context,
     ) -> T
     where
         T: Clone,
     {
         let base = base.or(default.as_ref());
         let read = match fields.take(name) {
-            Some(node) => self.read(node, base),
+            Some(node) => self.read(node, base, context),
             None => {
                 if base.is_none() {
                     fields.lack(name);
@@ -88,7 +92,9 @@ pub trait Codec<T> {
 pub struct Flag;
 
 impl Codec<bool> for Flag {
-    fn read(&self, node: Node<'_>, _: Option<&bool>) -> Option<bool> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&bool>, (): &()) -> Option<bool> {
         node.flag()
     }
 
@@ -109,7 +115,9 @@ impl Codec<bool> for Flag {
 pub struct Text(pub usize);
 
 impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Text {
-    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&T>, (): &()) -> Option<T> {
         node.text(self.0).map(T::from)
     }
 
@@ -130,7 +138,9 @@ impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Text {
 pub struct Id;
 
 impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Id {
-    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&T>, (): &()) -> Option<T> {
         node.id().map(T::from)
     }
 
@@ -157,7 +167,9 @@ pub trait Named: Copy + PartialEq + 'static {
 pub struct Name;
 
 impl<T: Named> Codec<T> for Name {
-    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&T>, (): &()) -> Option<T> {
         node.choice(T::ALL)
     }
 
@@ -179,11 +191,13 @@ impl<T: Named> Codec<T> for Name {
 pub struct Opt<C>(pub C);
 
 impl<T, C: Codec<T>> Codec<Option<T>> for Opt<C> {
-    fn read(&self, node: Node<'_>, base: Option<&Option<T>>) -> Option<Option<T>> {
+    type Context = C::Context;
+
+    fn read(&self, node: Node<'_>, base: Option<&Option<T>>, context: &C::Context) -> Option<Option<T>> {
         if node.is_none() {
             return Some(None);
         }
-        self.0.read(node, base.and_then(Option::as_ref)).map(Some)
+        self.0.read(node, base.and_then(Option::as_ref), context).map(Some)
     }
 
     fn write(&self, value: &Option<T>) -> RonText {
@@ -216,9 +230,11 @@ pub struct Pair {
 }
 
 impl<T: Copy + From<[f32; 2]> + Into<[f32; 2]>> Codec<T> for Pair {
-    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&T>, context: &()) -> Option<T> {
         let nodes: [Node<'_>; 2] = node.tuple(self.pattern)?;
-        let [first, second] = nodes.map(|node| Codec::<f32>::read(&self.each, node, None));
+        let [first, second] = nodes.map(|node| Codec::<f32>::read(&self.each, node, None, context));
         Some([first?, second?].into())
     }
 
@@ -252,8 +268,10 @@ pub struct Follow<C> {
 }
 
 impl<T, C: Codec<T>> Codec<T> for Follow<C> {
-    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
-        self.explicit.read(node, base)
+    type Context = C::Context;
+
+    fn read(&self, node: Node<'_>, base: Option<&T>, context: &C::Context) -> Option<T> {
+        self.explicit.read(node, base, context)
     }
 
     fn write(&self, value: &T) -> RonText {
@@ -272,7 +290,14 @@ impl<T, C: Codec<T>> Codec<T> for Follow<C> {
         self.explicit.turn(value, name, hand);
     }
 
-    fn read_field(&self, fields: &mut Fields<'_>, name: &'static str, base: Option<&T>, _: Option<T>) -> T
+    fn read_field(
+        &self,
+        fields: &mut Fields<'_>,
+        name: &'static str,
+        base: Option<&T>,
+        _: Option<T>,
+        context: &C::Context,
+    ) -> T
     where
         T: Clone,
     {
@@ -281,7 +306,7 @@ impl<T, C: Codec<T>> Codec<T> for Follow<C> {
             fields.follow(name);
             return otherwise();
         };
-        self.read(node, base).unwrap_or_else(|| {
+        self.read(node, base, context).unwrap_or_else(|| {
             fields.fail(name);
             otherwise()
         })
@@ -303,7 +328,9 @@ impl<T, C: Codec<T>> Codec<T> for Follow<C> {
 pub struct Own<T>(pub T);
 
 impl<T: Clone> Codec<T> for Own<T> {
-    fn read(&self, _: Node<'_>, base: Option<&T>) -> Option<T> {
+    type Context = ();
+
+    fn read(&self, _: Node<'_>, base: Option<&T>, (): &()) -> Option<T> {
         Some(base.unwrap_or(&self.0).clone())
     }
 
@@ -319,7 +346,7 @@ impl<T: Clone> Codec<T> for Own<T> {
         self.0.clone()
     }
 
-    fn read_field(&self, _: &mut Fields<'_>, _: &'static str, base: Option<&T>, _: Option<T>) -> T {
+    fn read_field(&self, _: &mut Fields<'_>, _: &'static str, base: Option<&T>, _: Option<T>, (): &()) -> T {
         base.unwrap_or(&self.0).clone()
     }
 

@@ -12,8 +12,10 @@ use crate::text::{Entry, Text as RonText};
 pub struct Rec;
 
 impl<T: Record> Codec<T> for Rec {
-    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
-        node.record(base)
+    type Context = T::Context;
+
+    fn read(&self, node: Node<'_>, base: Option<&T>, context: &T::Context) -> Option<T> {
+        node.record(base, context)
     }
 
     fn write(&self, value: &T) -> RonText {
@@ -44,8 +46,10 @@ impl<T: Record> Codec<T> for Rec {
 pub struct Flat;
 
 impl<T: Record> Codec<T> for Flat {
-    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
-        node.record(base)
+    type Context = T::Context;
+
+    fn read(&self, node: Node<'_>, base: Option<&T>, context: &T::Context) -> Option<T> {
+        node.record(base, context)
     }
 
     fn write(&self, value: &T) -> RonText {
@@ -64,8 +68,15 @@ impl<T: Record> Codec<T> for Flat {
         value.turn_fields(hand);
     }
 
-    fn read_field(&self, fields: &mut Fields<'_>, _: &'static str, base: Option<&T>, _: Option<T>) -> T {
-        T::read_fields(fields, base)
+    fn read_field(
+        &self,
+        fields: &mut Fields<'_>,
+        _: &'static str,
+        base: Option<&T>,
+        _: Option<T>,
+        context: &T::Context,
+    ) -> T {
+        T::read_fields(fields, base, context)
     }
 
     fn write_field(&self, value: &T, _: &'static str, _: Option<T>, entries: &mut Vec<Entry>) {
@@ -81,8 +92,10 @@ impl<T: Record> Codec<T> for Flat {
 pub struct Beside;
 
 impl<T: Variants> Codec<T> for Beside {
-    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
-        OneOf.read(node, base)
+    type Context = T::Context;
+
+    fn read(&self, node: Node<'_>, base: Option<&T>, context: &T::Context) -> Option<T> {
+        OneOf.read(node, base, context)
     }
 
     fn write(&self, value: &T) -> RonText {
@@ -107,6 +120,7 @@ impl<T: Variants> Codec<T> for Beside {
         name: &'static str,
         base: Option<&T>,
         default: Option<T>,
+        context: &T::Context,
     ) -> T {
         let base = base.or(default.as_ref());
         let all: Vec<_> = T::NAMES.iter().map(|name| (*name, *name)).collect();
@@ -119,7 +133,7 @@ impl<T: Variants> Codec<T> for Beside {
                 base.map(T::variant)
             }
         };
-        chosen.and_then(|chosen| T::read_fields(chosen, fields, base)).unwrap_or_else(|| {
+        chosen.and_then(|chosen| T::read_fields(chosen, fields, base, context)).unwrap_or_else(|| {
             fields.fail(name);
             // Only the name could tell which other fields are valid.
             fields.allow_unknown();
@@ -151,9 +165,11 @@ impl<T: Variants> Codec<T> for Beside {
 pub struct OneOf;
 
 impl<T: Variants> Codec<T> for OneOf {
-    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
+    type Context = T::Context;
+
+    fn read(&self, node: Node<'_>, base: Option<&T>, context: &T::Context) -> Option<T> {
         let (name, mut fields) = node.variant(T::NAMES)?;
-        let read = T::read_fields(name, &mut fields, base);
+        let read = T::read_fields(name, &mut fields, base, context);
         let all = fields.are_read();
         fields.finish();
         read.filter(|_| all)

@@ -147,7 +147,9 @@ macro_rules! whole {
 whole!(u8, u16, u32, usize);
 
 impl<T: Scalar> Codec<T> for Num {
-    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&T>, (): &()) -> Option<T> {
         let range = self.range.0..=self.range.1;
         let number = if self.bounded { node.bounded(range) } else { node.number(range) }?;
         if T::WHOLE && !number.whole {

@@ -34,8 +34,10 @@ impl<T> From<T> for Written<T> {
 pub struct At<C>(pub C);
 
 impl<T, C: Codec<T>> Codec<Written<T>> for At<C> {
-    fn read(&self, node: Node<'_>, base: Option<&Written<T>>) -> Option<Written<T>> {
-        let value = self.0.read(node, base.map(|base| &base.value))?;
+    type Context = C::Context;
+
+    fn read(&self, node: Node<'_>, base: Option<&Written<T>>, context: &C::Context) -> Option<Written<T>> {
+        let value = self.0.read(node, base.map(|base| &base.value), context)?;
         Some(Written { value, at: node.span() })
     }
 
@@ -52,21 +54,23 @@ impl<T, C: Codec<T>> Codec<Written<T>> for At<C> {
     }
 }
 
-/// A value read by a function.
-pub struct By<T> {
+/// A value read by a function in a context.
+pub struct By<T, C = ()> {
     /// Describes the written form.
     pub shape: fn() -> FieldType,
     /// Reads the value; reports why it cannot be used.
-    pub read: fn(Node<'_>) -> Option<T>,
+    pub read: fn(Node<'_>, &C) -> Option<T>,
     /// Returns the text that files hold.
     pub write: fn(&T) -> RonText,
     /// Any value.
     pub stand_in: fn() -> T,
 }
 
-impl<T> Codec<T> for By<T> {
-    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
-        (self.read)(node)
+impl<T, C> Codec<T> for By<T, C> {
+    type Context = C;
+
+    fn read(&self, node: Node<'_>, _: Option<&T>, context: &C) -> Option<T> {
+        (self.read)(node, context)
     }
 
     fn write(&self, value: &T) -> RonText {
@@ -102,7 +106,9 @@ pub struct Spelled<T> {
 const LONGEST: usize = 255;
 
 impl<T: Clone + Display> Codec<T> for Spelled<T> {
-    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
+    type Context = ();
+
+    fn read(&self, node: Node<'_>, _: Option<&T>, (): &()) -> Option<T> {
         let text = node.text(LONGEST)?;
         let value = (self.parse)(text);
         if value.is_none() {

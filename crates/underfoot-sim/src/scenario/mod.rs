@@ -110,7 +110,7 @@ impl Scenario {
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let source = Source::new(file, text)?;
         let reader = Reader::new(&source, ScenarioRecord::NAME, Limits::LAYOUT);
-        let written = reader.root("scenario").and_then(|node| node.record(None));
+        let written = reader.root("scenario").and_then(|node| node.record(None, &()));
         let (written, _) = reader.conclude(written)?;
         Ok(Self { file: file.into(), text: text.into(), written })
     }
