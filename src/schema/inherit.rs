@@ -20,6 +20,7 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::suggest::did_you_mean;
 use super::version;
+use crate::feel::Effects;
 use underfoot_format::Record;
 use underfoot_format::codec::By;
 use underfoot_format::describe::FieldType;
@@ -267,6 +268,11 @@ impl Choice {
     /// Makes a choice of those in `kinds`.
     pub(super) fn of(kinds: &Kinds) -> Self {
         Self { kinds: kinds.clone(), unusable: HashSet::new() }
+    }
+
+    /// Returns the usable kinds; layouts with them can also name these `effects`.
+    pub(super) fn kinds_playing(&self, effects: Arc<Effects>) -> Kinds {
+        self.kinds.clone().playing(effects)
     }
 
     /// Returns the kind that `node` names; `None` if it is unusable, which has been reported.

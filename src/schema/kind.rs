@@ -108,6 +108,11 @@ impl Kinds {
         &self.effects
     }
 
+    /// Returns the same kinds with these `effects` for later kinds.
+    pub(super) fn playing(self, effects: Arc<Effects>) -> Self {
+        Self { effects, ..self }
+    }
+
     /// Adds `kind`, replacing any other of the same name.
     pub(super) fn insert(&mut self, kind: Kind) {
         self.kinds.insert(kind.name.clone(), kind);

@@ -38,6 +38,8 @@ pub struct Loaded {
     pub warnings: Diagnostics,
     /// The places of its parts in the text.
     pub places: Places,
+    /// The kinds of which its controls can be made, and the effects that these can play: the known ones and its own.
+    pub kinds: Kinds,
 }
 
 impl Loaded {
@@ -118,8 +120,9 @@ pub fn parse_layout(
         let layout = page.placed_on(geometry).filter(|_| good)?;
         Some((layout, page.controls.into_iter().map(|control| control.written).collect()))
     });
+    let kinds = reader.known::<Choice>().kinds_playing(reader.known::<Effects>());
     let ((layout, written), warnings) = reader.conclude(layout)?;
-    Ok(Loaded { layout, warnings, places: Places::new(name, text, written) })
+    Ok(Loaded { layout, warnings, places: Places::new(name, text, written), kinds })
 }
 
 record! {
