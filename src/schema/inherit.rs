@@ -283,6 +283,11 @@ impl Choice {
         self.kinds.effects()
     }
 
+    /// Returns the usable kinds, with the effects that controls may name.
+    pub(super) fn usable(&self) -> &Kinds {
+        &self.kinds
+    }
+
     /// Returns the kind that `node` names; `None` if it is unusable, which has been reported.
     pub(super) fn named(&self, node: Node<'_>) -> Option<&Kind> {
         let name = node.text(64)?;

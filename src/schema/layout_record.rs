@@ -31,6 +31,8 @@ pub(super) struct LayoutRecord {
     pub(super) zones: ZonesRecord,
     pub(super) controls: ControlsRecord,
     pub(super) pages: Vec<PageRecord>,
+    /// The kinds of which its controls can be made, with the effects that they may name.
+    pub(super) kinds: Kinds,
 }
 
 record! {
@@ -126,7 +128,8 @@ impl LayoutRecord {
             context = context.after(page.widgets.len());
             page
         });
-        Self { head, zones, controls, pages: pages.unwrap_or_default() }
+        let kinds = context.kinds.usable().clone();
+        Self { head, zones, controls, pages: pages.unwrap_or_default(), kinds }
     }
 
     /// Describes a layout and its fields.

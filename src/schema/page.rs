@@ -33,6 +33,8 @@ pub struct Loaded {
     pub warnings: Diagnostics,
     /// The places of its parts in the text.
     pub places: Places,
+    /// The kinds of which its controls can be made, and the effects that these can play: the known ones and its own.
+    pub kinds: Kinds,
 }
 
 impl Loaded {
@@ -109,10 +111,11 @@ pub fn parse_layout(
     let layout = page.and_then(|(page, good)| {
         checks::check(&reader, &page, geometry);
         let layout = page.placed_on(geometry).filter(|_| good)?;
-        Some((layout, page.controls.into_iter().map(|control| control.written).collect()))
+        let written = page.controls.into_iter().map(|control| control.written).collect();
+        Some((layout, written, page.kinds))
     });
-    let ((layout, written), warnings) = reader.conclude(layout)?;
-    Ok(Loaded { layout, warnings, places: Places::new(name, text, written) })
+    let ((layout, written, kinds), warnings) = reader.conclude(layout)?;
+    Ok(Loaded { layout, warnings, places: Places::new(name, text, written), kinds })
 }
 
 /// A layout as written; its problems have been reported.
@@ -122,6 +125,8 @@ pub(super) struct Page {
     pub(super) regions: Vec<Zone>,
     pub(super) stances: Vec<Zone>,
     pub(super) pages: Vec<PageRecord>,
+    /// The kinds of which its controls can be made.
+    kinds: Kinds,
     /// The grounds of all pages.
     pub(super) grounds: Vec<GroundDefinition>,
     /// The controls of all pages.
@@ -148,7 +153,7 @@ impl Page {
         let regions_at = fields.value_span("regions").unwrap_or_else(|| node.span());
         let widgets_at = fields.span("widgets");
         fields.finish();
-        let LayoutRecord { head, zones, controls, mut pages } = record;
+        let LayoutRecord { head, zones, controls, mut pages, kinds } = record;
         let LayoutHeadRecord { units, title, .. } = head;
         let ZonesRecord { regions, stances } = zones;
         let ControlsRecord { widgets: mut controls, mut grounds } = controls;
@@ -163,8 +168,18 @@ impl Page {
         let zone = |name, place, cursor| Zone { name, place, cursor };
         let regions = regions.into_iter().map(|it| zone(it.id, it.place, it.cursor)).collect();
         let stances = stances.into_iter().map(|it| zone(it.label, it.place, CursorRule::default())).collect();
-        let page =
-            Self { title, units, regions, stances, pages, grounds, controls, regions_known, widgets_at };
+        let page = Self {
+            title,
+            units,
+            regions,
+            stances,
+            pages,
+            kinds,
+            grounds,
+            controls,
+            regions_known,
+            widgets_at,
+        };
         Some((page, good))
     }
 

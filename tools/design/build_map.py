@@ -9,7 +9,6 @@ on a display of its own. The saved file must resolve to the same layout as the s
 import argparse
 import difflib
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -20,7 +19,7 @@ from window import SIZE, Window
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SHIPPED = os.path.join(ROOT, "layouts", "map.ron")
 
-# Kind (its place in the list of what can be put down), id, label, at, size, in tiles.
+# Kind (its name in the list of what can be put down), id, label, at, size, in tiles.
 CONTROLS = [
     ("button", "pan_north", "North", (1.9, 2.9), (0.6, 0.5)),
     ("button", "pan_south", "South", (1.9, 2.2), (0.6, 0.5)),
@@ -30,10 +29,6 @@ CONTROLS = [
     ("switch", "satellite", "Satellite", (3.6, 2.2), (0.7, 0.6)),
     ("slider", "zoom", "Zoom", (4.5, 2.2), (1.35, 0.6)),
 ]
-# In the order of the list of what can be put down.
-KINDS = sorted(name[:-len(".ron")].replace("_", " ") for name in os.listdir(os.path.join(ROOT, "widgets"))
-               if name.endswith(".ron"))
-
 # From the id of a slider to its initial value.
 TABS_TO_INITIAL = 26
 
@@ -63,51 +58,19 @@ class Floor:
 
 
 class Things:
-    """The list of what can be put down, which is scrolled by the wheel."""
+    """The list of what can be put down: the words of a search leave the wanted one in the first row."""
 
-    NAMES, RIGHT = 78, 166  # where a row's name begins, and a place beside most names
-    TOP, BOTTOM = 100, 575  # below the bars, and above what is on the floor
+    # The search field, and the first row below it.
+    SEARCH, FIRST = (90, 72), (120, 110)
 
     def __init__(self, window):
         self.window = window
-        self.window.move(self.RIGHT, 300)
-        self.window.x("click", "--repeat", 40, "--delay", 10, 4)
-        # What each row looks like, by its number.
-        self.known = {}
-        self.rows, self.first = [], 0
-        self.look()
-
-    def look(self):
-        """Where the rows are that are seen as a whole, and which they are, once the list stands still."""
-        before = None
-        while True:
-            screen = self.window.look()
-            plain = screen.plain(self.RIGHT, range(36, 40))
-            found = [(top + end) // 2 for top, end in plain if self.TOP < top and end < self.BOTTOM]
-            if len(found) > 2 and found == before:
-                break
-            before = found
-            time.sleep(0.1)
-        # The row under the pointer, and one whose name reaches over here, are not plain.
-        apart = statistics.mode(after - this for this, after in zip(found, found[1:]))
-        self.rows = [found[0] + apart * row for row in range(round((found[-1] - found[0]) / apart) + 1)]
-        names = [screen.part(self.NAMES, row - 8, self.RIGHT, row + 8) for row in self.rows]
-        firsts = [self.known[name] - row for row, name in enumerate(names) if name in self.known]
-        self.first = statistics.mode(firsts) if firsts else 0
-        for row, name in enumerate(names):
-            self.known.setdefault(name, self.first + row)
 
     def click(self, kind):
         """Takes one of this kind in hand."""
-        index = KINDS.index(kind)
-        for _ in range(40):
-            if self.first <= index < self.first + len(self.rows):
-                return self.window.click(self.RIGHT, self.rows[index - self.first], settle=0.3)
-            self.window.move(self.RIGHT, 300)
-            self.window.x("click", 5 if index >= self.first else 4)
-            self.window.steps += 1
-            self.look()
-        sys.exit(f"there is no {kind} in the list, of which {self.first} and on are seen at {self.rows}")
+        self.window.click(*self.SEARCH, settle=0.2)
+        self.window.type(kind)
+        self.window.click(*self.FIRST, settle=0.3)
 
 
 def first_field(window):
@@ -182,7 +145,7 @@ def by_keys(window):
     window.shot("2-region")
     for number, control in enumerate(CONTROLS):
         window.key("F6")
-        window.key(*["Down"] * KINDS.index(control[0]))
+        window.type(control[0])
         window.key("Return", "shift+F6", settle=0.2)
         fields(window, control)
         if number in (0, 4):

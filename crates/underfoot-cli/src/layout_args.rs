@@ -72,7 +72,7 @@ impl LayoutArgs {
 
     /// As [`LayoutArgs::load`], for a picture: also warns of letters that no font has.
     pub(crate) fn load_drawn(&self, geometry: &Geometry) -> Result<Layout, Failure> {
-        let Loaded { layout, mut warnings, places } = self.read(geometry)?;
+        let Loaded { layout, mut warnings, places, kinds: _ } = self.read(geometry)?;
         warnings.merge(places.undrawn(|text| fonts().missing(text)));
         if !warnings.is_empty() {
             err!("{warnings}");

@@ -4,9 +4,11 @@ use super::address::{Address, RecordList};
 use super::change::Edit;
 use super::document::Document;
 use super::item::Item;
+use underfoot::feel::Feel;
 use underfoot::floor::Rect;
-use underfoot::layout::Widget;
-use underfoot::schema::Diagnostic;
+use underfoot::layout::{Look, Widget};
+use underfoot::schema::{Diagnostic, Kind, Kinds};
+use underfoot::widget::Behaviour;
 use underfoot_format::describe::{FieldDescription, FieldType};
 use underfoot_format::text::Entry;
 use underfoot_format::{Record, Variants};
@@ -40,6 +42,8 @@ pub struct Property {
     pub value: String,
     /// The origin of the value.
     pub origin: FieldOrigin,
+    /// Its value without the one that is written here: that of the kind, or the default; empty if there is none.
+    pub inherited: String,
 }
 
 impl Property {
@@ -81,6 +85,50 @@ pub struct FieldSection {
     pub properties: Vec<Property>,
 }
 
+/// The values of a field that a kind defines, as files write them.
+struct Inherited<'k> {
+    /// The name of the kind.
+    kind: &'k str,
+    /// The value of the control; `None` for the default.
+    own: Option<String>,
+    /// The value of the kind; `None` for the default.
+    kinds: Option<String>,
+}
+
+/// One of the parts of a control that its kind defines.
+struct FieldPart {
+    title: &'static str,
+    /// The beginning of its fields' names.
+    prefix: &'static str,
+    fields: Vec<FieldDescription>,
+    /// The values that differ from their defaults.
+    entries: Vec<Entry>,
+}
+
+/// The parts of a control: its behaviour, its look and its feel.
+fn parts(behaviour: &Behaviour, look: &Look, feel: &Feel) -> [FieldPart; 3] {
+    let known = Behaviour::describe().into_iter().find(|record| record.name == behaviour.variant());
+    let mut entries = [Vec::new(), Vec::new(), Vec::new()];
+    let [own, looks, feels] = &mut entries;
+    Variants::write_fields(behaviour, own);
+    Record::write_fields(look, looks);
+    Record::write_fields(feel, feels);
+    let [own, looks, feels] = entries;
+    let fields = known.map(|record| record.fields).unwrap_or_default();
+    [
+        FieldPart { title: behaviour.name(), prefix: "", fields, entries: own },
+        FieldPart { title: "Look", prefix: "look.", fields: Look::describe().fields, entries: looks },
+        FieldPart { title: "Feel", prefix: "feel.", fields: Feel::describe().fields, entries: feels },
+    ]
+}
+
+/// A property of this field, without an inherited value.
+fn described(name: String, field: &FieldDescription, value: String, origin: FieldOrigin) -> Property {
+    let told = field.shape.told(field.name);
+    let (about, shape) = (field.about.clone(), field.shape.clone());
+    Property { name, about, told, shape, value, origin, inherited: String::new() }
+}
+
 /// A width that suits a shoe, in metres (rule U101).
 const GOOD_M: f32 = 0.12;
 
@@ -118,7 +166,7 @@ impl Document {
         };
         let own = own.into_iter().map(|(name, about, shape)| {
             let field = FieldDescription { name, about: about.into(), shape, default: None };
-            self.property(record, name.to_owned(), &field, None, &[])
+            self.property(record, name.to_owned(), &field, None)
         });
         let mut sections =
             vec![FieldSection { title: "Identity and place".into(), properties: own.collect() }];
@@ -133,7 +181,7 @@ impl Document {
             let name = record.find(self.root()).and_then(|record| record.name.clone()).unwrap_or_default();
             let described = underfoot::schema::ground_fields(&name);
             let properties =
-                described.iter().map(|field| self.property(record, field.name.to_owned(), field, None, &[]));
+                described.iter().map(|field| self.property(record, field.name.to_owned(), field, None));
             sections.push(FieldSection { title: name, properties: properties.collect() });
         }
         sections
@@ -174,59 +222,64 @@ impl Document {
     }
 
     fn control(&self, record: &Address, widget: &Widget) -> Vec<FieldSection> {
-        let behaviour = &widget.behaviour;
-        let described = underfoot::widget::Behaviour::describe();
-        let described = described.into_iter().find(|record| record.name == behaviour.variant());
-        let entries = |write: &dyn Fn(&mut Vec<Entry>)| {
-            let mut entries = Vec::new();
-            write(&mut entries);
-            entries
-        };
-        let section = |title: &str, prefix: &str, fields: Vec<FieldDescription>, entries: Vec<Entry>| {
-            let properties = fields.iter().map(|field| {
-                self.property(record, format!("{prefix}{}", field.name), field, Some(&widget.kind), &entries)
+        let kind = self.all_kinds().get(&widget.kind);
+        let inherited = kind.map(|kind| parts(&kind.behaviour, &kind.look, &kind.feel));
+        let own = parts(&widget.behaviour, &widget.look, &widget.feel);
+        let sections = own.into_iter().enumerate().map(|(number, part)| {
+            let inherited = inherited.as_ref().and_then(|parts| parts.get(number));
+            let properties = part.fields.iter().map(|field| {
+                let entry = |part: &FieldPart| {
+                    part.entries.iter().find(|(name, _)| *name == field.name).map(|(_, text)| text.inline())
+                };
+                let given =
+                    Inherited { kind: &widget.kind, own: entry(&part), kinds: inherited.and_then(entry) };
+                self.property(record, format!("{}{}", part.prefix, field.name), field, Some(given))
             });
-            FieldSection { title: title.into(), properties: properties.collect() }
-        };
-        vec![
-            section(
-                behaviour.name(),
-                "",
-                described.map(|record| record.fields).unwrap_or_default(),
-                entries(&|entries| Variants::write_fields(behaviour, entries)),
-            ),
-            section(
-                "Look",
-                "look.",
-                underfoot::layout::Look::describe().fields,
-                entries(&|entries| Record::write_fields(&widget.look, entries)),
-            ),
-            section(
-                "Feel",
-                "feel.",
-                underfoot::feel::Feel::describe().fields,
-                entries(&|entries| Record::write_fields(&widget.feel, entries)),
-            ),
-        ]
+            FieldSection { title: part.title.into(), properties: properties.collect() }
+        });
+        sections.collect()
     }
 
-    /// One field; `entries` are the values of the resolved control, from its record or from its kind.
+    /// The fields of a kind, which a control of it inherits.
+    #[must_use]
+    pub fn fields_of_kind(kind: &Kind) -> Vec<FieldSection> {
+        let sections = parts(&kind.behaviour, &kind.look, &kind.feel).into_iter().map(|part| {
+            let properties = part.fields.iter().map(|field| {
+                let entry = part.entries.iter().find(|(name, _)| *name == field.name);
+                let value = entry.map(|(_, text)| text.inline());
+                let origin = if value.is_some() { FieldOrigin::Written } else { FieldOrigin::Default };
+                let value = value.or_else(|| field.default.clone()).unwrap_or_default();
+                described(format!("{}{}", part.prefix, field.name), field, value, origin)
+            });
+            FieldSection { title: part.title.into(), properties: properties.collect() }
+        });
+        sections.collect()
+    }
+
+    /// One field; `given` holds its value in the resolved control, for a field that a kind defines.
     fn property(
         &self,
         record: &Address,
         name: String,
         field: &FieldDescription,
-        kind: Option<&str>,
-        entries: &[Entry],
+        given: Option<Inherited<'_>>,
     ) -> Property {
-        let entry = entries.iter().find(|(entry, _)| *entry == field.name);
-        let (value, origin) = match (self.written(record, &name), entry, kind) {
-            (Some(written), ..) => (written.to_owned(), FieldOrigin::Written),
-            (None, Some((_, text)), Some(kind)) => (text.inline(), FieldOrigin::Kind(kind.to_owned())),
-            _ => (field.default.clone().unwrap_or_default(), FieldOrigin::Default),
+        let default = field.default.clone().unwrap_or_default();
+        let inherited =
+            given.as_ref().and_then(|given| given.kinds.clone()).unwrap_or_else(|| default.clone());
+        let (value, origin) = match (self.written(record, &name), given) {
+            (Some(written), _) => (written.to_owned(), FieldOrigin::Written),
+            (None, Some(Inherited { kind, own: Some(own), .. })) => (own, FieldOrigin::Kind(kind.to_owned())),
+            _ => (default, FieldOrigin::Default),
         };
-        let told = field.shape.told(field.name);
-        Property { name, about: field.about.clone(), told, shape: field.shape.clone(), value, origin }
+        Property { inherited, ..described(name, field, value, origin) }
+    }
+
+    /// The kinds of which its controls can be made and the effects that they can play: the known ones, and those that
+    /// the layout itself defines.
+    #[must_use]
+    pub fn all_kinds(&self) -> &Kinds {
+        &self.loaded().kinds
     }
 
     /// The record to which a finding refers.

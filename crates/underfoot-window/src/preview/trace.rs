@@ -49,7 +49,44 @@ impl Trace {
     pub(super) fn wave(&self, painter: &Painter, theme: &Theme, rect: Rect, played: Option<f32>) {
         ground(painter, theme, rect);
         let inner = rect.shrink2(eframe::egui::vec2(8.0, 8.0));
-        let most = self.analysis.as_ref().map_or(1.0, |analysis| analysis.peak).max(0.5);
+        self.line(painter, theme, inner);
+        if let Some(played) = played.filter(|played| *played < self.length_s) {
+            let x = inner.left() + played / self.length_s.max(1e-3) * inner.width();
+            painter.vline(x, rect.y_range(), Stroke::new(1.5, color(theme.cursor)));
+        }
+        let corner = |text: String, at: Pos2, anchor: Align2| {
+            painter.text(at, anchor, text, FontId::proportional(11.5), color(theme.quiet));
+        };
+        corner(
+            format!("± {:.1} N", self.peak_n()),
+            rect.left_bottom() + eframe::egui::vec2(7.0, -5.0),
+            Align2::LEFT_BOTTOM,
+        );
+        let length = format!("{:.0} ms", 1000.0 * self.length_s);
+        corner(length, rect.right_bottom() + eframe::egui::vec2(-7.0, -5.0), Align2::RIGHT_BOTTOM);
+    }
+
+    /// Draws the waveform alone, for a small picture.
+    pub(super) fn thumbnail(&self, painter: &Painter, theme: &Theme, rect: Rect) {
+        ground(painter, theme, rect);
+        self.line(painter, theme, rect.shrink(3.0));
+    }
+
+    /// Its peak and its length, in words.
+    pub(super) fn figures(&self) -> String {
+        match &self.analysis {
+            Some(analysis) => format!("{:.1} N peak, {:.0} ms", analysis.peak, 1000.0 * self.length_s),
+            None => "silence".to_owned(),
+        }
+    }
+
+    /// The upper end of the waveform's scale, in newtons.
+    fn peak_n(&self) -> f32 {
+        self.analysis.as_ref().map_or(1.0, |analysis| analysis.peak).max(0.5)
+    }
+
+    fn line(&self, painter: &Painter, theme: &Theme, inner: Rect) {
+        let most = self.peak_n();
         painter.hline(inner.x_range(), inner.center().y, Stroke::new(1.0, color(theme.line)));
         let at = |column: usize, newtons: f32| {
             let share = column as f32 / self.wave.len().max(2) as f32;
@@ -68,20 +105,6 @@ impl Trace {
             })
             .collect();
         painter.add(PathShape::line(points, Stroke::new(1.1, color(theme.haptic))));
-        if let Some(played) = played.filter(|played| *played < self.length_s) {
-            let x = inner.left() + played / self.length_s.max(1e-3) * inner.width();
-            painter.vline(x, rect.y_range(), Stroke::new(1.5, color(theme.cursor)));
-        }
-        let corner = |text: String, at: Pos2, anchor: Align2| {
-            painter.text(at, anchor, text, FontId::proportional(11.5), color(theme.quiet));
-        };
-        corner(
-            format!("± {most:.1} N"),
-            rect.left_bottom() + eframe::egui::vec2(7.0, -5.0),
-            Align2::LEFT_BOTTOM,
-        );
-        let length = format!("{:.0} ms", 1000.0 * self.length_s);
-        corner(length, rect.right_bottom() + eframe::egui::vec2(-7.0, -5.0), Align2::RIGHT_BOTTOM);
     }
 
     /// Draws the spectrum with its permitted band.

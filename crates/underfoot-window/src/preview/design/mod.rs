@@ -7,7 +7,6 @@ mod bar;
 mod canvas;
 mod changes;
 mod edited;
-mod fields;
 mod files;
 mod gestures;
 mod inspector;
@@ -63,6 +62,8 @@ pub(super) struct Designer {
     canvas: Canvas,
     text: text::Editor,
     inspector: inspector::Inspector,
+    /// The list of things to put down.
+    things: palette::ThingList,
     panes: Panes,
     delays: Delays,
 }
@@ -173,6 +174,7 @@ impl Designer {
             canvas: Canvas::default(),
             text: text::Editor::default(),
             inspector: inspector::Inspector::default(),
+            things: palette::ThingList::default(),
             panes: Panes::default(),
             delays: Delays::default(),
         })

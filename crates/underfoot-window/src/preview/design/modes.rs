@@ -6,7 +6,6 @@ use std::sync::Arc;
 use eframe::egui::{self, Key, Ui};
 
 use super::Designer;
-use super::palette::palette_panel;
 use crate::preview::bars::problems;
 use crate::preview::feed::{LayoutCause, PreviewCommand, Warnings};
 use crate::preview::floor_view::FloorFeet;
@@ -146,9 +145,9 @@ impl Designer {
         self.ask(ui, theme);
         // This frame shows the edits so far: records may have changed places.
         self.edited.refresh();
-        palette_panel(ui, theme, palette, &mut self.edited, &mut self.canvas.placing, &mut self.panes);
+        self.things.panel(ui, theme, palette, &mut self.edited, &mut self.canvas.placing, &mut self.panes);
         problems(ui, theme, &shown.messages);
-        self.inspector.panel(ui, theme, &mut self.edited, &mut self.panes);
+        self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes);
         self.text.panel(ui, theme, &mut self.edited, &mut self.panes);
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {

@@ -3,7 +3,9 @@
 mod clipboard;
 mod files;
 mod groups;
+mod inspector;
 mod keyboard;
+mod palette;
 mod saving;
 
 use std::sync::Arc;
@@ -117,8 +119,13 @@ impl Desk {
         self.window.run_steps(3);
     }
 
-    /// The input field with this name.
-    fn field<'d>(&'d self, name: &'d str) -> egui_kittest::Node<'d> {
+    /// The input field of the field with this name in files; a part of a place stands behind a space.
+    fn field(&self, name: &str) -> egui_kittest::Node<'_> {
+        let spoken = match name.split_once(' ') {
+            Some((field, part)) => format!("{}: {part}", super::inspector::label(field)),
+            None => super::inspector::label(name),
+        };
+        let name: &'static str = spoken.leak();
         match self.window.query_by_role_and_label(Role::TextInput, name) {
             Some(text) => text,
             None => self.window.get_by_role_and_label(Role::SpinButton, name),

@@ -1,0 +1,250 @@
+//! The palette of things to put down: searched by words, in sections of what feet do there, each with its picture.
+
+mod picture;
+mod put;
+mod thing;
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{
+    FocusDirection, Key, Margin, Panel, Response, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
+};
+
+use super::edited::EditedLayout;
+use super::list::list;
+use super::{Pane, Panes};
+use crate::preview::style::{panel_frame, quiet, section};
+use thing::PaletteSection;
+use underfoot_scene::egui_painter::{Palette, color};
+use underfoot_scene::scene::Theme;
+
+pub(super) use picture::{draw_thing, draw_widget, is_shipped};
+pub(super) use thing::PaletteThing;
+
+/// Size of a picture in the palette, in points.
+const PICTURE: egui::Vec2 = vec2(50.0, 30.0);
+
+/// Maximum number of recently used things on display.
+const RECENT: usize = 3;
+
+/// The list of things to put down.
+#[derive(Default)]
+pub(super) struct ThingList {
+    /// The words of the search.
+    words: String,
+    /// The things that were taken last, the latest first.
+    recent: Vec<PaletteThing>,
+}
+
+/// A thing in the list, under its heading.
+struct ThingRow {
+    heading: Option<&'static str>,
+    thing: PaletteThing,
+    /// Whether it stands in the list of the recently used ones.
+    is_recent: bool,
+}
+
+/// The wish of the user about a thing.
+enum ThingWish {
+    /// Take it in hand, or put it back.
+    Take(PaletteThing),
+    /// Put it at the first free place: the keyboard has no pointer position.
+    Put(PaletteThing),
+}
+
+impl ThingList {
+    /// Shows all things to choose from, and below them the list of records.
+    pub(super) fn panel(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        palette: &mut Palette,
+        edited: &mut EditedLayout,
+        placing: &mut Option<PaletteThing>,
+        panes: &mut Panes,
+    ) {
+        let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
+        let panel = Panel::left("palette").frame(frame).resizable(true);
+        panel.default_size(204.0).size_range(150.0..=300.0).show(ui, |ui| {
+            let half = 0.5 * ui.available_height();
+            let below = Panel::bottom("on the floor").frame(egui::Frame::new()).resizable(true);
+            below.default_size(0.36 * ui.available_height()).size_range(90.0..=half.max(91.0)).show(
+                ui,
+                |ui| {
+                    section(ui, theme, "On the floor", |_| {});
+                    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                        ui.set_width(ui.available_width() - 8.0);
+                        list(ui, theme, edited, panes);
+                    });
+                },
+            );
+            ui.add_space(8.0);
+            let is_led = panes.leads_to(Pane::Things);
+            let search = self.search(ui, is_led);
+            let wish = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.set_width(ui.available_width() - 8.0);
+                self.show(ui, theme, palette, edited, placing.as_ref(), search)
+            });
+            if let Some(wish) = wish.inner {
+                self.obey(wish, edited, placing);
+            }
+        });
+    }
+
+    fn obey(&mut self, wish: ThingWish, edited: &mut EditedLayout, placing: &mut Option<PaletteThing>) {
+        let (ThingWish::Take(thing) | ThingWish::Put(thing)) = &wish;
+        self.recent.retain(|known| known != thing);
+        self.recent.insert(0, thing.clone());
+        self.recent.truncate(RECENT);
+        match wish {
+            ThingWish::Put(thing) => {
+                edited.put_somewhere(&thing);
+                self.words.clear();
+            }
+            ThingWish::Take(thing) => {
+                *placing = if placing.as_ref() == Some(&thing) { None } else { Some(thing) };
+            }
+        }
+    }
+
+    /// The field for the words of a search.
+    fn search(&mut self, ui: &mut Ui, is_led: bool) -> Response {
+        let width = ui.available_width() - 12.0;
+        let field = TextEdit::singleline(&mut self.words).hint_text("Search").desired_width(width);
+        let field = ui.add(field);
+        field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Search things"));
+        if is_led {
+            field.request_focus();
+        }
+        if field.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
+            self.words.clear();
+        }
+        field.on_hover_text("Enter puts the first one where there is room")
+    }
+
+    /// The rows that fit the words of the search, the best first; all in their sections without words.
+    fn rows(&self, edited: &EditedLayout) -> Vec<ThingRow> {
+        let kinds = edited.document.all_kinds();
+        let all = PaletteThing::all(kinds, |name| kinds.get(name).is_some_and(|kind| !is_shipped(kind)));
+        if !self.words.trim().is_empty() {
+            let mut fits: Vec<(u8, PaletteThing)> = all
+                .into_iter()
+                .filter_map(|(section, thing)| Some((thing.rank(section, &self.words)?, thing)))
+                .collect();
+            fits.sort_by_key(|(rank, _)| *rank);
+            let row = |(_, thing)| ThingRow { heading: None, thing, is_recent: false };
+            return fits.into_iter().map(row).collect();
+        }
+        let own = all.iter().filter(|(section, _)| *section == PaletteSection::Own).count();
+        let row = |heading: &'static str, is_first: bool, thing: PaletteThing, is_recent: bool| ThingRow {
+            heading: is_first.then_some(heading),
+            thing,
+            is_recent,
+        };
+        let mut rows = Vec::new();
+        let mut before = None;
+        for (section, thing) in all.iter().take(own) {
+            rows.push(row(section.title(), before.replace(*section) != Some(*section), thing.clone(), false));
+        }
+        // A kind that the layout no longer has can't be used again.
+        let known = self.recent.iter().filter(|thing| all.iter().any(|(_, other)| other == *thing));
+        for (number, thing) in known.enumerate() {
+            rows.push(row("Recently used", number == 0, thing.clone(), true));
+        }
+        for (section, thing) in all.into_iter().skip(own) {
+            rows.push(row(section.title(), before.replace(section) != Some(section), thing, false));
+        }
+        rows
+    }
+
+    fn show(
+        &self,
+        ui: &mut Ui,
+        theme: &Theme,
+        palette: &mut Palette,
+        edited: &mut EditedLayout,
+        placing: Option<&PaletteThing>,
+        search: Response,
+    ) -> Option<ThingWish> {
+        let rows = self.rows(edited);
+        let mut wish = None;
+        if search.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && !self.words.trim().is_empty() {
+            wish = rows.first().map(|row| ThingWish::Put(row.thing.clone()));
+            search.request_focus();
+        }
+        if rows.is_empty() {
+            ui.label(quiet(theme, "Nothing is called so."));
+        }
+        let mut shown = vec![search];
+        for row in rows {
+            if let Some(heading) = row.heading {
+                ui.add_space(4.0);
+                ui.label(RichText::new(heading).size(12.0).strong().color(color(theme.quiet)));
+            }
+            let is_chosen = placing == Some(&row.thing) && !row.is_recent;
+            // A row keeps the keyboard when rows appear or disappear above.
+            let id = (row.thing.name(), row.is_recent);
+            let response = ui.push_id(id, |ui| show_row(ui, theme, palette, edited, &row, is_chosen)).inner;
+            if response.drag_started() || response.clicked() {
+                let is_key = response.clicked()
+                    && ui.input(|i| i.key_pressed(Key::Enter) || i.key_pressed(Key::Space));
+                wish = Some(if is_key { ThingWish::Put(row.thing) } else { ThingWish::Take(row.thing) });
+            }
+            shown.push(response);
+        }
+        go_on(ui, &shown);
+        ui.add_space(4.0);
+        if ui.button("Add a page").clicked() {
+            edited.add_page();
+        }
+        wish
+    }
+}
+
+/// One thing with its picture.
+fn show_row(
+    ui: &mut Ui,
+    theme: &Theme,
+    palette: &mut Palette,
+    edited: &EditedLayout,
+    row: &ThingRow,
+    is_chosen: bool,
+) -> Response {
+    let size = vec2(ui.available_width(), PICTURE.y + 6.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    let name = row.thing.name();
+    let does = if row.is_recent { "Put down again" } else { "Put down" };
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{does}: {name}")));
+    if ui.is_rect_visible(rect) {
+        let visuals = ui.style().interact_selectable(&response, is_chosen);
+        ui.painter().rect(rect, 6, visuals.weak_bg_fill, visuals.bg_stroke, egui::StrokeKind::Inside);
+        if is_chosen {
+            ui.painter().rect_filled(rect, 6, color(theme.accent).gamma_multiply(0.2));
+        }
+        let picture = egui::Rect::from_min_size(rect.min + vec2(5.0, 3.0), PICTURE);
+        draw_thing(ui, theme, palette, &edited.document, &row.thing, picture);
+        let at = egui::pos2(picture.right() + 7.0, rect.center().y);
+        let font = egui::FontId::proportional(12.5);
+        ui.painter().with_clip_rect(rect).text(at, egui::Align2::LEFT_CENTER, &name, font, color(theme.ink));
+    }
+    response
+        .on_hover_text("Click, then click on the floor; or drag it there; Enter puts it where there is room")
+}
+
+/// Arrow keys move through the whole list, scrolled-out entries included, and do not leave it at its end.
+pub(super) fn go_on(ui: &Ui, shown: &[Response]) {
+    let Some(at) = shown.iter().position(Response::has_focus) else { return };
+    let (up, down) = ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown)));
+    if up == down {
+        return;
+    }
+    ui.memory_mut(|memory| memory.move_focus(FocusDirection::None));
+    let next = if up { at.checked_sub(1) } else { at.checked_add(1) };
+    if let Some(next) = next.and_then(|next| shown.get(next)) {
+        next.request_focus();
+        next.scroll_to_me(None);
+    }
+}

@@ -1,0 +1,101 @@
+//! Puts new records on the floor.
+
+use glam::Vec2;
+
+use super::super::edited::EditedLayout;
+use super::thing::PaletteThing;
+use crate::edit::{Address, Edit, RecordList};
+use underfoot::floor::Rect;
+use underfoot_format::text::Text;
+
+impl EditedLayout {
+    /// Puts `thing` on `area`, in floor metres; returns whether the layout accepts it.
+    pub(in crate::preview::design) fn put(&mut self, thing: &PaletteThing, area: Rect) -> bool {
+        let on_page = |list| {
+            let page = self.layout().pages.get(self.page).map(|_| Address::of(RecordList::Pages, self.page));
+            page.unwrap_or(Address::LAYOUT).entry(list, usize::MAX)
+        };
+        let place = self.document.placed(area);
+        let (at, text) = match thing {
+            PaletteThing::Control(kind) => {
+                (on_page(RecordList::Widgets), self.document.new_control(kind, area))
+            }
+            PaletteThing::Ground(name) => {
+                (on_page(RecordList::Grounds), Text::Variant(name, place.into()).inline())
+            }
+            PaletteThing::Stance => {
+                let [at, size] = place;
+                let fields = vec![at, size, ("label", Text::quoted("Stand here"))];
+                (
+                    Address::LAYOUT.entry(RecordList::Stances, usize::MAX),
+                    Text::Record("Stance", fields).inline(),
+                )
+            }
+            PaletteThing::Region => {
+                let [at, size] = place;
+                let fields = vec![("id", Text::quoted(self.document.free_id("region", &[]))), at, size];
+                (
+                    Address::LAYOUT.entry(RecordList::Regions, usize::MAX),
+                    Text::Record("Region", fields).inline(),
+                )
+            }
+        };
+        let done = self.edit(&[Edit::Insert { at: at.clone(), text }]);
+        if done {
+            self.refresh();
+            let list = at.split().map(|(parent, list, _)| (parent, list));
+            let is_in = |address: &Address| address.split().map(|(parent, list, _)| (parent, list)) == list;
+            let last =
+                self.items.iter().map(|item| &item.record).filter(|record| is_in(record)).max().cloned();
+            self.selected = last.into_iter().collect();
+        }
+        done
+    }
+
+    /// Puts `thing` at the first place of a grid of half tiles that the reader accepts.
+    pub(super) fn put_somewhere(&mut self, thing: &PaletteThing) {
+        let geometry = self.document.floor().geometry;
+        let size = thing.size(&geometry);
+        let step = 0.5 * geometry.pitch_m();
+        let within = match thing {
+            PaletteThing::Control(_) => {
+                self.layout().regions.first().map_or(geometry.bounds(), |region| region.area)
+            }
+            _ => geometry.bounds(),
+        };
+        let steps = ((within.size() - size) / step).max(Vec2::ZERO).floor();
+        for row in 0..=steps.y as u32 {
+            for column in 0..=steps.x as u32 {
+                let at = within.min + Vec2::new(column as f32, row as f32) * step + Vec2::splat(0.2 * step);
+                let area = Rect::from_min_size(at.min(within.max - size), size);
+                // Half a shoe of room (rule U102), where possible.
+                let wide = area.grown(0.06);
+                let is_taken = |item: &crate::edit::Item| {
+                    item.record.list() == Some(RecordList::Widgets)
+                        && item.is_on(self.page)
+                        && item.area.overlaps(wide)
+                };
+                if matches!(thing, PaletteThing::Control(_)) && self.items.iter().any(is_taken) {
+                    continue;
+                }
+                if self.put(thing, area) {
+                    return;
+                }
+            }
+        }
+        if self.message.is_none() {
+            self.complain("there is no room left");
+        }
+    }
+
+    pub(super) fn add_page(&mut self) {
+        let id = Text::quoted(self.document.free_id("page_1", &[]));
+        let page = Text::Record("Page", vec![("id", id), ("widgets", Text::List(Vec::new()))]);
+        let at = Address::of(RecordList::Pages, usize::MAX);
+        if self.edit(&[Edit::Insert { at, text: page.inline() }]) {
+            self.refresh();
+            self.page = self.layout().pages.len().saturating_sub(1);
+            self.selected = vec![Address::of(RecordList::Pages, self.page)];
+        }
+    }
+}
