@@ -8,6 +8,8 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo};
 
 use super::edited::EditedLayout;
+use super::findings::findings_list;
+use super::several::shared_place;
 use super::{Pane, Panes};
 use crate::edit::{Address, Document, Edit, FieldOrigin, FieldSection, Item, Property};
 use crate::preview::PreviewCommand;
@@ -76,6 +78,7 @@ impl Inspector {
                 section(ui, theme, &format!("{} selected", several.len()), |_| {});
                 ui.label(quiet(theme, "Arrange, move, duplicate or delete them together."));
                 let several = several.to_vec();
+                shared_place(ui, theme, edited, &mut self.typed);
                 return self.common_fields(ui, theme, edited, &several, is_led);
             }
         };
@@ -93,6 +96,9 @@ impl Inspector {
             ui.label(quiet(theme, text));
         }
         problems_of(ui, theme, edited, &record);
+        if record == Address::LAYOUT {
+            findings_list(ui, theme, edited);
+        }
         let key = (vec![record.clone()], edited.document.revision());
         if self.own.of.as_ref() != Some(&key) {
             let sections = edited.document.properties(&record, item.as_ref());
@@ -317,10 +323,10 @@ fn problems_of(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, record: &A
         if let Some(help) = &finding.help {
             ui.add(egui::Label::new(quiet(theme, help)).wrap());
         }
-        if let Some((name, edits)) = edited.document.mend(finding, &edited.items)
-            && ui.button(format!("{name}: do it")).clicked()
+        if let Some(found) = crate::edit::mend(&edited.document, finding, &edited.items)
+            && ui.button(format!("{}: do it", found.name)).clicked()
         {
-            mend = Some(edits);
+            mend = Some(found.edits);
         }
     }
     for problem in edited.told() {

@@ -2,11 +2,12 @@
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{FocusDirection, Key, Margin, Panel, Response, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use eframe::egui::{Key, Margin, Panel, Response, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 use glam::Vec2;
 
 use super::edited::EditedLayout;
 use super::list::list;
+use super::list_keys::go_on;
 use super::{Pane, Panes};
 use crate::edit::{Address, Document, Edit, RecordList};
 use crate::preview::style::{panel_frame, section};
@@ -286,20 +287,5 @@ impl EditedLayout {
             self.page = self.layout().pages.len().saturating_sub(1);
             self.selected = vec![Address::of(RecordList::Pages, self.page)];
         }
-    }
-}
-
-/// Arrow keys move through the whole list, scrolled-out entries included, and do not leave it at its end.
-pub(super) fn go_on(ui: &Ui, shown: &[Response]) {
-    let Some(at) = shown.iter().position(Response::has_focus) else { return };
-    let (up, down) = ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown)));
-    if up == down {
-        return;
-    }
-    ui.memory_mut(|memory| memory.move_focus(FocusDirection::None));
-    let next = if up { at.checked_sub(1) } else { at.checked_add(1) };
-    if let Some(next) = next.and_then(|next| shown.get(next)) {
-        next.request_focus();
-        next.scroll_to_me(None);
     }
 }
