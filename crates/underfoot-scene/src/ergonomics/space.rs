@@ -61,13 +61,24 @@ fn gaps(guard: Guard) -> (&'static str, f32, f32) {
     }
 }
 
+/// The gap to its neighbours that a control needs, in metres; between two controls, the larger of theirs counts.
+#[must_use]
+pub fn needed_gap_m(widget: &Widget) -> f32 {
+    gaps(widget.behaviour.thresholds().guard).2
+}
+
+/// The distance of two areas, in metres; 0 where they touch or overlap.
+#[must_use]
+pub fn gap_between_m(one: Rect, other: Rect) -> f32 {
+    (other.min - one.max).max(one.min - other.max).max(Vec2::ZERO).length()
+}
+
 fn neighbours(subject: &mut Subject<'_>) {
     let area = subject.widget.area;
     let (word, least, wanted) = gaps(subject.widget.behaviour.thresholds().guard);
-    let distance = |other: &Rect| (other.min - area.max).max(area.min - other.max).max(Vec2::ZERO).length();
     let nearest = subject
         .others()
-        .map(|other| (distance(&other.area), other))
+        .map(|other| (gap_between_m(area, other.area), other))
         .filter(|(gap, _)| *gap < wanted - SLACK_M)
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let Some((gap, other)) = nearest else { return };
@@ -95,10 +106,14 @@ pub fn footing(stance: &Stance) -> Rect {
     Rect::new(stance.area.min + margin, stance.area.max - margin)
 }
 
+/// The distance from `point` to the nearest place of a standing foot, in metres; `None` without stance zones.
+#[must_use]
+pub fn reach_m(stances: &[Stance], point: Vec2) -> Option<f32> {
+    stances.iter().map(|stance| footing(stance).distance(point)).min_by(f32::total_cmp)
+}
+
 fn reach(subject: &mut Subject<'_>) {
-    let centre = subject.widget.area.centre();
-    let distances = subject.layout.stances.iter().map(|stance| footing(stance).distance(centre));
-    let Some(reach) = distances.min_by(f32::total_cmp) else { return };
+    let Some(reach) = reach_m(&subject.layout.stances, subject.widget.area.centre()) else { return };
     if reach <= REACH_M + SLACK_M {
         return;
     }
@@ -124,20 +139,25 @@ fn tiles(geometry: &Geometry, area: Rect) -> (TileId, TileId) {
     (tile(area.min + inset), tile(area.max - inset))
 }
 
-fn stance_tiles(subject: &mut Subject<'_>) {
-    let geometry = subject.floor.geometry;
-    let (first, last) = tiles(&geometry, subject.widget.area);
+/// The number of free rows or columns of tiles between two areas, whichever is larger; negative where they share a
+/// tile.
+#[must_use]
+pub fn free_tiles(geometry: &Geometry, one: Rect, other: Rect) -> i32 {
+    let (first, last) = tiles(geometry, one);
+    let (south_west, north_east) = tiles(geometry, other);
     let apart = |low: u16, high: u16, other_low: u16, other_high: u16| {
-        // Number of rows or columns between the two.
         i32::from(other_low.max(low)) - i32::from(other_high.min(high)) - 1
     };
-    let too_near = |stance: &&Stance| {
-        let (south_west, north_east) = tiles(&geometry, stance.area);
-        let columns = apart(first.column, last.column, south_west.column, north_east.column);
-        let rows = apart(first.row, last.row, south_west.row, north_east.row);
-        // Another rule reports overlaps.
-        columns.max(rows) < 1 && !stance.area.overlaps(subject.widget.area)
-    };
+    let columns = apart(first.column, last.column, south_west.column, north_east.column);
+    columns.max(apart(first.row, last.row, south_west.row, north_east.row))
+}
+
+fn stance_tiles(subject: &mut Subject<'_>) {
+    let geometry = subject.floor.geometry;
+    let area = subject.widget.area;
+    // Another rule reports overlaps.
+    let too_near =
+        |stance: &&Stance| free_tiles(&geometry, area, stance.area) < 1 && !stance.area.overlaps(area);
     let Some(stance) = subject.layout.stances.iter().find(too_near) else { return };
     let zone = if stance.label.is_empty() { String::new() } else { format!(" \"{}\"", stance.label) };
     let message = format!("{} has no free tile between it and the stance zone{zone}", subject.name());

@@ -1,7 +1,8 @@
 //! Edits of a layout, and the changes of its text that they cause.
 
-use super::address::{Address, RecordList, list_of};
+use super::address::{Address, list_of};
 use super::refusal::EditRefusal;
+use super::rename::renaming;
 use super::splice::{RecordText, Splice, TextLines, spliced};
 use underfoot_format::outline::{Outline, OutlineShape};
 use underfoot_format::text::Text;
@@ -49,7 +50,8 @@ pub enum Edit {
         /// Its new index in the list, counted without the record.
         to: usize,
     },
-    /// Give a record another id, and update the references to it: neighbours in its list, buttons that show a page.
+    /// Give a record another id, and update the references to it: neighbours in its list, those of the cells of a
+    /// grid included, and buttons that show a page.
     Rename {
         /// The record.
         record: Address,
@@ -95,18 +97,18 @@ impl Edit {
                 lines.take(list, index)
             }
             Self::Reorder { record, to } => return reorder(lines, root, record, *to),
-            Self::Rename { record, id } => rename(root, record, id)?,
+            Self::Rename { record, id } => renaming(root, record, id)?,
         };
         Ok(spliced(text, splices))
     }
 }
 
-fn find<'o>(root: &'o Outline, address: &Address) -> Result<&'o Outline, EditRefusal> {
+pub(super) fn find<'o>(root: &'o Outline, address: &Address) -> Result<&'o Outline, EditRefusal> {
     address.find(root).ok_or_else(|| EditRefusal::Missing(address.clone()))
 }
 
 /// The list that contains the record at `address`, and its index there.
-fn in_list<'o>(root: &'o Outline, address: &Address) -> Result<(&'o Outline, usize), EditRefusal> {
+pub(super) fn in_list<'o>(root: &'o Outline, address: &Address) -> Result<(&'o Outline, usize), EditRefusal> {
     let missing = || EditRefusal::Missing(address.clone());
     find(root, address)?;
     let (parent, list, index) = address.split().ok_or_else(missing)?;
@@ -141,35 +143,6 @@ fn reorder(lines: TextLines<'_>, root: &Outline, record: &Address, to: usize) ->
     let (parent, kind, _) = record.split().ok_or_else(|| EditRefusal::Missing(record.clone()))?;
     let splices = insert(TextLines(&without), &again, &parent.entry(kind, to), &piece)?;
     Ok(spliced(&without, splices))
-}
-
-/// Fields by which one entry of a list refers to another.
-pub(super) const NEIGHBOURS: [&str; 4] = ["right_of", "left_of", "above", "below"];
-
-fn rename(root: &Outline, record: &Address, id: &str) -> Result<Vec<Splice>, EditRefusal> {
-    let quoted = quoted(id);
-    let named = find(root, record)?.field("id").map(|field| &field.value);
-    let named = named.ok_or_else(|| EditRefusal::Missing(record.clone()))?;
-    let mut splices = vec![Splice::new(named.span.clone(), quoted.clone())];
-    let Some(old) = named.says.as_deref() else { return Ok(splices) };
-    let refers = |fields: &[&str], other: &Outline, splices: &mut Vec<Splice>| {
-        let fields = fields.iter().filter_map(|name| other.field(name));
-        let same = fields.filter(|field| field.value.says.as_deref() == Some(old));
-        splices.extend(same.map(|field| Splice::new(field.value.span.clone(), quoted.clone())));
-    };
-    match record.list() {
-        Some(RecordList::Widgets) => {
-            let (list, _) = in_list(root, record)?;
-            list.elements.iter().for_each(|other| refers(&NEIGHBOURS, &other.value, &mut splices));
-        }
-        Some(RecordList::Pages) => {
-            let controls =
-                Address::all(root).into_iter().filter(|(at, _)| at.list() == Some(RecordList::Widgets));
-            controls.for_each(|(_, control)| refers(&["goto"], control, &mut splices));
-        }
-        _ => {}
-    }
-    Ok(splices)
 }
 
 /// `text` in quotes, with the escapes of the file format.

@@ -5,8 +5,11 @@ use glam::{DVec2, Vec2};
 use super::address::{Address, RecordList, list_of};
 use super::change::{Edit, quoted};
 use super::document::Document;
+use super::group::{place_of, placed_piece};
+use super::item::Item;
 use super::place::pair;
 use super::refusal::EditRefusal;
+use super::rename::{NEIGHBOURS, referring};
 use super::splice::{RecordText, TextLines, spliced};
 use underfoot_format::outline::Outline;
 use underfoot_format::source::MAX_BYTES;
@@ -16,18 +19,32 @@ impl Document {
     /// not exist.
     #[must_use]
     pub fn copy(&self, records: &[Address]) -> String {
-        self.listed(records, true)
+        records.iter().filter_map(|record| Some(self.piece(record)?.listed(""))).collect()
     }
 
-    fn listed(&self, records: &[Address], with_comments: bool) -> String {
-        let texts = records.iter().filter_map(|address| {
-            let (parent, list, index) = address.split()?;
-            let list = list_of(parent.find(self.root())?, list)?;
-            let piece = TextLines(self.text()).piece(list, index)?;
-            let piece = if with_comments { piece } else { RecordText::new(piece.text) };
-            Some(piece.listed(""))
-        });
-        texts.collect()
+    /// The text of a record with its comments.
+    fn piece(&self, record: &Address) -> Option<RecordText> {
+        let (parent, list, index) = record.split()?;
+        TextLines(self.text()).piece(list_of(parent.find(self.root())?, list)?, index)
+    }
+
+    /// As [`Document::copy`] without comments; a record beside a neighbour that is not copied gets a place of its
+    /// own.
+    fn placed_text(&self, records: &[Address], items: &[Item]) -> Result<String, EditRefusal> {
+        let names: Vec<String> =
+            records.iter().filter_map(|record| Some(quoted(self.id_of(record)?))).collect();
+        let mut text = String::new();
+        for record in records {
+            let neighbour = NEIGHBOURS.iter().find_map(|side| self.written(record, side));
+            let is_alone = neighbour.is_some_and(|id| !names.iter().any(|name| name == id));
+            let item = items.iter().find(|item| item.record == *record).filter(|_| is_alone);
+            let piece = match item {
+                Some(item) => Some(placed_piece(self, item, place_of(self, item)?)?),
+                None => self.piece(record),
+            };
+            text.push_str(&piece.map_or_else(String::new, |piece| RecordText::new(piece.text).listed("")));
+        }
+        Ok(text)
     }
 
     /// The edits that paste the records in `text` onto the page with index `page`, moved by `by` metres, and their
@@ -80,14 +97,18 @@ impl Document {
         // A comment at the end of the text must not hide the bracket.
         let text = format!("[\n{}\n]", text.trim());
         let entries = Outline::parse(&text).ok_or(EditRefusal::NotARecord)?;
-        let (mut edits, mut places, mut taken) = (Vec::new(), Vec::<Address>::new(), Vec::new());
+        let (mut pieces, mut ids) = (Vec::new(), Vec::new());
         for (number, element) in entries.elements.iter().enumerate() {
             if !super::change::is_record(&element.value) {
                 return Err(EditRefusal::NotARecord);
             }
             let mut piece = TextLines(&text).piece(&entries, number).ok_or(EditRefusal::NotARecord)?;
-            self.renew(&mut piece.text, by, &mut taken).ok_or(EditRefusal::NotARecord)?;
-            let (parent, list) = home(&element.value);
+            self.renew(&mut piece.text, by, &mut ids).ok_or(EditRefusal::NotARecord)?;
+            pieces.push((piece, home(&element.value)));
+        }
+        let (mut edits, mut places) = (Vec::new(), Vec::<Address>::new());
+        for (mut piece, (parent, list)) in pieces {
+            piece.text = referring(&piece.text, &ids);
             let is_here = |place: &&Address| place.split().is_some_and(|it| (&it.0, it.1) == (&parent, list));
             let before = places.iter().filter(is_here).count();
             let at = parent.entry(list, self.count(&parent, list) + before);
@@ -97,18 +118,19 @@ impl Document {
         if edits.is_empty() { Err(EditRefusal::NotARecord) } else { Ok((edits, places)) }
     }
 
-    /// Gives the record `text` and the records of its group free ids, and moves it.
-    fn renew(&self, text: &mut String, by: Vec2, taken: &mut Vec<String>) -> Option<()> {
+    /// Gives the record `text` and the records of its group free ids, and moves it; adds the old and new ids to `ids`.
+    fn renew(&self, text: &mut String, by: Vec2, ids: &mut Vec<(String, String)>) -> Option<()> {
         let count = Address::all(&Outline::parse(text)?).len();
         for number in 0..count {
             let root = Outline::parse(text)?;
             let (_, record) = Address::all(&root).into_iter().nth(number)?;
             let Some(old) = record.field("id").and_then(|field| field.value.says.clone()) else { continue };
+            let taken: Vec<String> = ids.iter().map(|(_, new)| new.clone()).collect();
             let new =
-                if old.contains('{') { old.replacen('{', "copy_{", 1) } else { self.free_id(&old, taken) };
-            taken.push(new.clone());
+                if old.contains('{') { old.replacen('{', "copy_{", 1) } else { self.free_id(&old, &taken) };
             let splices = TextLines(text).set(record, &["id"], &quoted(&new));
             *text = spliced(text, splices);
+            ids.push((old, new));
         }
         let root = Outline::parse(text)?;
         let numbers: Option<Vec<f64>> = root.field("at").map(|at| {
@@ -138,12 +160,13 @@ impl Document {
             let home = record.split().map(|(parent, list, _)| (parent, list));
             lists.extend(home.filter(|home| !lists.contains(home)));
         }
+        let items = self.items();
         let (mut edits, mut places) = (Vec::new(), Vec::new());
         for (parent, list) in lists {
             let is_here =
                 |record: &&Address| record.split().is_some_and(|it| (&it.0, it.1) == (&parent, list));
             let own: Vec<Address> = records.iter().filter(is_here).cloned().collect();
-            let (more, at) = self.pasting(&self.listed(&own, false), &parent, list, by)?;
+            let (more, at) = self.pasting(&self.placed_text(&own, &items)?, &parent, list, by)?;
             edits.extend(more);
             places.extend(at);
         }

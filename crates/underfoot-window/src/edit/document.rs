@@ -236,6 +236,12 @@ impl Document {
         self.revision += 1;
     }
 
+    /// The number of steps that [`Document::undo`] can undo now.
+    #[must_use]
+    pub fn step(&self) -> usize {
+        self.history.done()
+    }
+
     /// Whether there is a step to undo.
     #[must_use]
     pub fn can_undo(&self) -> bool {

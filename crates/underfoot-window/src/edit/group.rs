@@ -95,7 +95,7 @@ fn comments_beside(document: &Document, group: &Address, pieces: &[RecordText]) 
 }
 
 /// Its written place in its list, or the place that it would have if it were written.
-fn place_of(document: &Document, item: &Item) -> Result<DVec2, EditRefusal> {
+pub(super) fn place_of(document: &Document, item: &Item) -> Result<DVec2, EditRefusal> {
     match document.pair(&item.record, "at") {
         Some(written) => Ok(written),
         None if item.is_group => Err(EditRefusal::PlacedByGroup(item.record.clone())),
@@ -104,7 +104,7 @@ fn place_of(document: &Document, item: &Item) -> Result<DVec2, EditRefusal> {
 }
 
 /// The text of a record with the place `at` of its own.
-fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Result<RecordText, EditRefusal> {
+pub(super) fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Result<RecordText, EditRefusal> {
     let missing = || EditRefusal::Missing(item.record.clone());
     let (parent, list, index) = item.record.split().ok_or_else(missing)?;
     let list = parent.find(document.root()).and_then(|parent| list_of(parent, list)).ok_or_else(missing)?;
@@ -114,7 +114,9 @@ fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Result<RecordTex
         let root = Outline::parse(&piece.text).ok_or_else(missing)?;
         piece.text = spliced(&piece.text, TextLines(&piece.text).unset(&root, &[field]));
     }
-    let size = item.area.size().as_dvec2() / document.unit_m();
+    // The cells of a grid have one size.
+    let first = item.widgets.clone().next().and_then(|at| document.layout().widgets.get(at));
+    let size = first.map_or(item.area, |widget| widget.area).size().as_dvec2() / document.unit_m();
     let needs_size = !had_at && !item.is_group && document.written(&item.record, "size").is_none();
     let size = needs_size.then(|| ("size", pair(size)));
     for (field, value) in [("at", pair(at))].into_iter().chain(size) {

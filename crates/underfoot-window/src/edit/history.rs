@@ -79,6 +79,11 @@ impl UndoHistory {
         self.steps.get(self.done)
     }
 
+    /// The number of steps that are done.
+    pub(super) fn done(&self) -> usize {
+        self.done
+    }
+
     pub(super) fn go_back(&mut self) {
         self.done = self.done.saturating_sub(1);
     }

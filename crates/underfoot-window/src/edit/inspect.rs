@@ -1,7 +1,6 @@
 //! Describes records: their fields with the present values and the origin of each.
 
 use super::address::{Address, RecordList};
-use super::change::Edit;
 use super::document::Document;
 use super::item::Item;
 use underfoot::feel::Feel;
@@ -12,7 +11,7 @@ use underfoot::widget::Behaviour;
 use underfoot_format::describe::{FieldDescription, FieldType};
 use underfoot_format::text::Entry;
 use underfoot_format::{Record, Variants};
-use underfoot_scene::ergonomics::{Finding, Part};
+use underfoot_scene::ergonomics::Finding;
 
 /// The origin of a field's value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -128,9 +127,6 @@ fn described(name: String, field: &FieldDescription, value: String, origin: Fiel
     let (about, shape) = (field.about.clone(), field.shape.clone());
     Property { name, about, told, shape, value, origin, inherited: String::new() }
 }
-
-/// A width that suits a shoe, in metres (rule U101).
-const GOOD_M: f32 = 0.12;
 
 impl Document {
     /// All fields of `record`.
@@ -293,28 +289,5 @@ impl Document {
     pub fn told_of(&self, problem: &Diagnostic) -> Option<Address> {
         // The reader gets the text without a byte-order mark.
         self.record_at(problem.span.start)
-    }
-
-    /// The repair of a finding, in words and as edits; `None` where only the user can decide.
-    ///
-    /// A control that is too small becomes 12 cm wide and deep; a threshold returns to the value of its kind.
-    #[must_use]
-    pub fn mend(&self, finding: &Finding, items: &[Item]) -> Option<(String, Vec<Edit>)> {
-        let record = self.record_of(finding.widget)?;
-        let item = items.iter().find(|item| item.record == record && item.widgets.len() == 1)?;
-        match finding.part {
-            Part::Size if finding.rule.code == "U101" => {
-                let size = item.area.size().max(glam::Vec2::splat(GOOD_M));
-                let area = Rect::from_centre_size(item.area.centre(), size);
-                Some(("Make it 12 cm".into(), self.placing(&[(item, area)]).ok()?))
-            }
-            Part::Press if self.written(&record, "press_n").is_some() => {
-                let fields = ["press_n", "release_n"];
-                let written = fields.iter().filter(|field| self.written(&record, field).is_some());
-                let edits = written.map(|field| Edit::unset(&record, field)).collect();
-                Some(("Press as its kind".into(), edits))
-            }
-            _ => None,
-        }
     }
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! Edit -change, splice-> text with a few other bytes -schema-> Layout, warnings -ergonomics-> findings
 //!   -history-> undo, redo
-//! Item (a record on the floor) -snap, arrange, place-> Edit
+//! Item (a record on the floor) -snap, arrange, place, mend-> Edit
 //! Document -file, merge-> file, draft
 //! ```
 //!
@@ -17,16 +17,21 @@ mod clipboard;
 #[cfg(test)]
 mod comment_tests;
 mod document;
+mod facets;
 mod file;
 mod group;
 mod history;
 mod inspect;
 mod item;
+mod mend;
 mod merge;
 mod place;
 mod refit;
 mod refusal;
+mod rename;
+mod shared;
 mod snap;
+mod spacing;
 mod splice;
 mod template;
 #[cfg(test)]
@@ -37,13 +42,17 @@ pub use address::{Address, RecordList};
 pub use arrange::{Align, align, distribute};
 pub use change::{Edit, quoted};
 pub use document::Document;
+pub use facets::{Facet, facet_edits};
 pub use file::{LayoutFile, Saving};
 pub use group::{grouping, ungrouping};
 pub use inspect::{FieldOrigin, FieldSection, Property};
 pub use item::{Item, around};
+pub use mend::{Mend, mend, mend_all, mend_warning};
 pub use merge::{Merge, merge};
 pub use refit::refit;
 pub use refusal::EditRefusal;
-pub use snap::{Edges, FINE_M, SnapGrid, SnapGuide, SnapReason};
+pub use shared::{NumberChange, PlaceNumber, SharedNumber, changing, shared_number};
+pub use snap::{Edges, SnapGrid, SnapGuide, SnapReason, round_step_m};
+pub use spacing::{NeighbourGap, gaps_around};
 pub use template::Template;
 pub use threshold::{pressing, releasing};

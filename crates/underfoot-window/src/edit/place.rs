@@ -3,10 +3,11 @@
 use glam::{DVec2, Vec2};
 
 use super::address::{Address, RecordList};
-use super::change::{Edit, NEIGHBOURS};
+use super::change::Edit;
 use super::document::Document;
 use super::item::{Item, around};
 use super::refusal::EditRefusal;
+use super::rename::NEIGHBOURS;
 use underfoot::floor::Rect;
 use underfoot::widget::{Axis, Behaviour, Track};
 use underfoot_format::text::{Entry, Text};

@@ -17,6 +17,12 @@ pub enum EditRefusal {
     /// The text to insert is not a record.
     #[error("this is not a record such as (id: \"home\", kind: \"button\", at: (1, 1), size: (1, 1))")]
     NotARecord,
+    /// The text to paste is no control whose appearance or feel could be taken, or no control is selected.
+    #[error("copy a control first, and select the controls that get its appearance or feel")]
+    NotAControl,
+    /// A group or a grid has the size that its controls give it.
+    #[error("{0} has no size of its own to change here")]
+    NoSize(Address),
     /// The text to insert exceeds the maximum length of a layout.
     #[error("this is longer than a layout may be")]
     TooLong,

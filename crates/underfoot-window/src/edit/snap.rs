@@ -1,11 +1,16 @@
-//! Snapping of places: to tiles, half tiles, multiples of five centimetres, and neighbours.
+//! Snapping of places: to neighbours, equal gaps, tiles, half tiles and round numbers; and the edge of the floor.
 
 use glam::Vec2;
 
+use super::spacing::equal_places;
 use underfoot::floor::{Geometry, Rect};
 
-/// The finest grid, in metres: half of 10 cm, the recommended minimum width of a target.
-pub const FINE_M: f32 = 0.05;
+/// The step of round numbers, in metres, for a layout in units of `unit_m` metres on a floor with this `geometry`:
+/// 0.05 tiles, or 1 cm.
+#[must_use]
+pub fn round_step_m(unit_m: f64, geometry: &Geometry) -> f32 {
+    if unit_m == 1.0 { 0.01 } else { 0.05 * geometry.pitch_m() }
+}
 
 /// The origin of a guide line; among the lines within reach, the first variant wins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -14,12 +19,14 @@ pub enum SnapReason {
     Edge,
     /// The middle of a neighbour.
     Centre,
+    /// The same gap to a neighbour as another one.
+    Spacing,
     /// The seam between two tiles.
     Tile,
     /// The middle of a tile.
     HalfTile,
-    /// A multiple of [`FINE_M`] from the floor's south-west corner.
-    Fine,
+    /// A round number: a multiple of [`SnapGrid::step_m`]. It attracts from any distance.
+    Round,
 }
 
 /// A line to which an area snapped.
@@ -33,8 +40,11 @@ pub struct SnapGuide {
     pub reason: SnapReason,
 }
 
-/// The edges of a rectangle that are dragged; all of them if it moves as a whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Overhang that rounding errors explain, in metres.
+const STOP_M: f32 = 1e-4;
+
+/// Edges of a rectangle: those that are dragged, all of them if it moves as a whole; none by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Edges {
     /// The western one.
     pub west: bool,
@@ -49,6 +59,43 @@ pub struct Edges {
 impl Edges {
     /// The whole rectangle.
     pub const ALL: Self = Self { west: true, east: true, south: true, north: true };
+
+    /// Whether any of them is dragged.
+    #[must_use]
+    pub fn is_any(self) -> bool {
+        self.west || self.east || self.south || self.north
+    }
+
+    /// `area` stopped at the edges of `bounds`, and the edges that stopped there. A whole rectangle keeps its size
+    /// and moves back; one that is larger than `bounds` starts at their south-west corner.
+    #[must_use]
+    pub fn stopped(self, area: Rect, bounds: Rect) -> (Rect, Self) {
+        let low = (bounds.min - area.min).max(Vec2::ZERO);
+        let high = (area.max - bounds.max).max(Vec2::ZERO);
+        let stopped = Self {
+            west: self.west && low.x > STOP_M,
+            east: self.east && high.x > STOP_M,
+            south: self.south && low.y > STOP_M,
+            north: self.north && high.y > STOP_M,
+        };
+        let area = if self == Self::ALL {
+            let back = area.min - high;
+            let min = back.max(bounds.min);
+            Rect::new(min, min + area.size())
+        } else {
+            let own = |is_own: bool, to: f32, at: f32| if is_own { to } else { at };
+            let min = Vec2::new(
+                own(stopped.west, bounds.min.x, area.min.x),
+                own(stopped.south, bounds.min.y, area.min.y),
+            );
+            let max = Vec2::new(
+                own(stopped.east, bounds.max.x, area.max.x),
+                own(stopped.north, bounds.max.y, area.max.y),
+            );
+            Rect::new(min, max)
+        };
+        (area, stopped)
+    }
 
     /// `area` with these edges moved by `by`; an edge stops `least` before the opposite one.
     #[must_use]
@@ -78,10 +125,14 @@ impl Edges {
 pub struct SnapGrid<'a> {
     /// The floor.
     pub geometry: &'a Geometry,
-    /// Neighbours, in floor metres.
+    /// Neighbours with whose edges and middles the area comes in line, in floor metres.
     pub neighbours: &'a [Rect],
+    /// Neighbours to which gaps become equal, in floor metres.
+    pub row: &'a [Rect],
     /// Maximum distance of a line, in metres.
     pub reach_m: f32,
+    /// The step of round numbers, in metres, as [`round_step_m`].
+    pub step_m: f32,
 }
 
 impl SnapGrid<'_> {
@@ -114,6 +165,10 @@ impl SnapGrid<'_> {
             }
         };
         let pitch = self.geometry.pitch_m();
+        let round = |length: f32| (length / self.step_m).round() * self.step_m;
+        let is_round = |length: f32| (length - round(length)).abs() < 1e-4;
+        // Where tiles are the unit, their lines must leave the number in the file round.
+        let keeps_round = |at: f32, to: f32| !is_round(pitch) || !(low && high) || is_round(min + to - at);
         for &(at, is_middle) in &own {
             for other in self.neighbours {
                 let (low, high) = (other.min[axis], other.max[axis]);
@@ -124,12 +179,29 @@ impl SnapGrid<'_> {
                     offer(SnapReason::Edge, at, high);
                 }
             }
-            offer(SnapReason::Tile, at, (at / pitch).round() * pitch);
-            offer(SnapReason::HalfTile, at, (at / pitch * 2.0).round() * 0.5 * pitch);
-            if !is_middle {
-                offer(SnapReason::Fine, at, (at / FINE_M).round() * FINE_M);
+            let half = 0.5 * pitch;
+            let lines = [(SnapReason::Tile, pitch), (SnapReason::HalfTile, half)];
+            for (reason, step) in lines {
+                let to = (at / step).round() * step;
+                if keeps_round(at, to) {
+                    offer(reason, at, to);
+                }
             }
         }
+        if low && high {
+            for place in equal_places(axis, area, self.row) {
+                offer(SnapReason::Spacing, min, place);
+            }
+        }
+        let best = best.or_else(|| match (low, high) {
+            (true, _) => Some((SnapReason::Round, round(min) - min, round(min))),
+            // The size becomes round, also behind an edge that is not.
+            (false, true) => {
+                let to = min + round(max - min).max(self.step_m);
+                Some((SnapReason::Round, to - max, to))
+            }
+            (false, false) => None,
+        });
         best.map(|(reason, by, at_m)| (by, SnapGuide { is_upright: axis == 0, at_m, reason }))
     }
 }
@@ -142,7 +214,8 @@ mod tests {
 
     fn snap(at: Vec2, neighbours: &[Rect], reach_m: f32) -> (Vec2, Vec<SnapReason>) {
         let geometry = Geometry::default();
-        let grid = SnapGrid { geometry: &geometry, neighbours, reach_m };
+        let step_m = round_step_m(geometry.pitch_m().into(), &geometry);
+        let grid = SnapGrid { geometry: &geometry, neighbours, row: &[], reach_m, step_m };
         let (area, guides) = grid.snap(Rect::from_min_size(at, SIZE), Edges::ALL);
         assert!((area.size() - SIZE).abs().max_element() < 1e-6, "what is moved keeps its size");
         (area.min, guides.into_iter().map(|guide| guide.reason).collect())
@@ -150,10 +223,10 @@ mod tests {
 
     #[test]
     fn the_stronger_line_wins_over_the_nearer_one() {
-        // 0.305 is 1 mm from the tile's edge and 5 mm from 0.30.
-        let (at, reasons) = snap(Vec2::new(0.305, 0.402), &[], 0.01);
-        assert!((at - Vec2::new(0.304, 0.4)).length() < 1e-6, "{at}");
-        assert_eq!(reasons, [SnapReason::Tile, SnapReason::Fine]);
+        // 0.305 is 1 mm from the tile's edge; 0.402 is 1.32 tiles and in reach of none.
+        let (at, reasons) = snap(Vec2::new(0.305, 0.402), &[], 0.005);
+        assert!((at - Vec2::new(0.304, 1.3 * 0.304)).length() < 1e-6, "{at}");
+        assert_eq!(reasons, [SnapReason::Tile, SnapReason::Round]);
         let neighbour = Rect::from_min_size(Vec2::new(0.311, 0.9), SIZE);
         let (at, reasons) = snap(Vec2::new(0.305, 0.402), &[neighbour], 0.01);
         assert!((at.x - 0.311).abs() < 1e-6);
@@ -161,18 +234,20 @@ mod tests {
     }
 
     #[test]
-    fn middles_meet_middles_and_far_lines_do_nothing() {
+    fn middles_meet_middles_and_far_from_all_lines_numbers_are_round() {
         let wide = Rect::from_centre_size(Vec2::new(0.68, 1.3), Vec2::new(0.5, 0.16));
         let (at, reasons) = snap(Vec2::new(0.592, 0.42), &[wide], 0.004);
         assert!((at.x + 0.5 * SIZE.x - 0.68).abs() < 1e-6, "{at}");
-        assert_eq!(reasons, [SnapReason::Centre]);
-        assert_eq!(snap(Vec2::new(0.423, 0.433), &[], 0.001), (Vec2::new(0.423, 0.433), vec![]));
+        assert_eq!(reasons, [SnapReason::Centre, SnapReason::Round]);
+        let (at, reasons) = snap(Vec2::new(0.423, 0.433), &[], 0.001);
+        assert!((at - Vec2::new(1.4, 1.4) * 0.304).length() < 1e-6, "{at}");
+        assert_eq!(reasons, [SnapReason::Round; 2]);
     }
 
     #[test]
     fn only_the_dragged_edge_moves() {
         let geometry = Geometry::default();
-        let grid = SnapGrid { geometry: &geometry, neighbours: &[], reach_m: 0.01 };
+        let grid = SnapGrid { geometry: &geometry, neighbours: &[], row: &[], reach_m: 0.01, step_m: 0.01 };
         let east = Edges { east: true, west: false, south: false, north: false };
         let area = Rect::new(Vec2::new(0.31, 0.31), Vec2::new(0.603, 0.5));
         let (snapped, guides) = grid.snap(area, east);
@@ -180,5 +255,31 @@ mod tests {
         assert!((snapped.max.x - 0.608).abs() < 1e-6);
         let folded = east.moved(area, Vec2::new(-9.0, 0.0), 0.05);
         assert!((folded.size().x - 0.05).abs() < 1e-6, "an edge does not pass the one opposite");
+    }
+
+    #[test]
+    fn a_dragged_edge_gives_a_round_size() {
+        let geometry = Geometry::default();
+        let grid = SnapGrid { geometry: &geometry, neighbours: &[], row: &[], reach_m: 0.001, step_m: 0.01 };
+        let east = Edges { east: true, west: false, south: false, north: false };
+        let area = Rect::new(Vec2::new(0.313, 0.31), Vec2::new(0.5571, 0.5));
+        let (snapped, _) = grid.snap(area, east);
+        assert!((snapped.size().x - 0.24).abs() < 1e-6, "{snapped:?}");
+    }
+
+    #[test]
+    fn the_floor_stops_an_area_and_names_the_edge() {
+        let bounds = Rect::new(Vec2::ZERO, Vec2::splat(2.0));
+        let over = Rect::from_min_size(Vec2::new(1.9, -0.3), Vec2::splat(0.4));
+        let (moved, edges) = Edges::ALL.stopped(over, bounds);
+        assert!((moved.min - Vec2::new(1.6, 0.0)).length() < 1e-6 && moved.size() == over.size());
+        assert_eq!((edges.east, edges.south, edges.west, edges.north), (true, true, false, false));
+        let corner = Edges { east: true, north: true, west: false, south: false };
+        let drawn = Rect::new(Vec2::splat(1.5), Vec2::new(2.5, 1.8));
+        let (cut, edges) = corner.stopped(drawn, bounds);
+        assert_eq!(cut, Rect::new(Vec2::splat(1.5), Vec2::new(2.0, 1.8)));
+        assert!(edges.east && !edges.north);
+        let (same, none) = Edges::ALL.stopped(cut, bounds);
+        assert!(same == cut && !none.is_any());
     }
 }

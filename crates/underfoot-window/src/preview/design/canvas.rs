@@ -7,9 +7,13 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Sense, Ui, WidgetInfo};
 
 use super::edited::EditedLayout;
-use super::gestures::PointerGesture;
+use super::gestures::{PointerGesture, reachable_at, touched};
+use super::in_place::InPlace;
 use super::marks::marks;
+use super::menu::{begin, show_menu};
 use super::palette::PaletteThing;
+use super::spacing_marks::spacing_marks;
+use super::trial::GestureResult;
 use crate::edit::{Address, Item, RecordList};
 use crate::preview::zoom::Zoom;
 use underfoot::engine::Snapshot;
@@ -25,8 +29,10 @@ pub(super) struct Canvas {
     scene: Scene,
     pub(super) scale: DrawnToScale,
     pub(super) gesture: PointerGesture,
-    /// The thing that the next click puts down.
+    /// The thing that the next click or drag puts down.
     pub(super) placing: Option<PaletteThing>,
+    /// The text that is edited on the floor.
+    pub(super) in_place: Option<InPlace>,
 }
 
 /// The optional marks that are drawn to scale.
@@ -54,7 +60,13 @@ impl Canvas {
         let screen = rect.shrink(14.0);
         self.zoom(ui, &canvas, bounds, screen);
         let map = self.view.map(bounds, screen);
-        let trial = self.gestures(ui, &canvas, map, screen, edited);
+        self.menu(&canvas, map, edited);
+        let trial = if self.is_typed_under(ui, edited, map) {
+            GestureResult::default()
+        } else {
+            self.gestures(ui, &canvas, map, screen, edited)
+        };
+        self.edit_on_double_click(&canvas, map, edited);
         let shown = trial.layout.as_ref().unwrap_or_else(|| edited.document.layout());
         let shown = without_hidden(edited, shown);
         let snapshot = Snapshot { page: edited.page, ..Snapshot::default() };
@@ -66,7 +78,49 @@ impl Canvas {
         egui_painter::paint(&painter, palette, &self.scene, map);
         self.scale.reach(&painter, map, theme, edited.layout());
         marks(edited, ui, rect, map, theme, &trial);
+        spacing_marks(&painter, map, theme, geometry.bounds(), &trial);
         names(edited, ui, map);
+        if let Some(mut editor) = self.in_place.take()
+            && editor.show(ui, theme, map, edited)
+        {
+            self.in_place = Some(editor);
+        }
+    }
+
+    /// Whether the pointer is over the text that is being edited.
+    fn is_typed_under(&self, ui: &Ui, edited: &EditedLayout, map: ScreenFromFloor) -> bool {
+        let editor = self.in_place.as_ref().and_then(|editor| editor.rect(edited, map));
+        let pointer = ui.input(|i| i.pointer.interact_pos());
+        editor.zip(pointer).is_some_and(|(editor, pointer)| editor.expand(3.0).contains(pointer))
+    }
+
+    /// Edits the text of the record under a double click.
+    fn edit_on_double_click(
+        &mut self,
+        canvas: &egui::Response,
+        map: ScreenFromFloor,
+        edited: &mut EditedLayout,
+    ) {
+        let at = canvas.interact_pointer_pos().filter(|_| canvas.double_clicked() && self.placing.is_none());
+        let Some(record) = at.and_then(|at| reachable_at(edited, map.floor(at))) else { return };
+        edited.select_only(record.clone());
+        let found = InPlace::text_of(edited, &record);
+        begin(edited, &mut self.in_place, Some(found));
+    }
+
+    /// The menu of the right button, for the record under the pointer or for the selection around it.
+    fn menu(&mut self, canvas: &egui::Response, map: ScreenFromFloor, edited: &mut EditedLayout) {
+        if canvas.secondary_clicked()
+            && let Some(at) = canvas.interact_pointer_pos()
+        {
+            self.placing = None;
+            match touched(edited, map.floor(at)) {
+                Some(record) if !edited.selected.contains(&record) => edited.select_only(record),
+                Some(_) => {}
+                None => edited.selected.clear(),
+            }
+        }
+        canvas.context_menu(|ui| show_menu(ui, edited, &mut self.in_place));
     }
 
     fn zoom(&mut self, ui: &Ui, canvas: &egui::Response, bounds: Rect, screen: egui::Rect) {

@@ -4,8 +4,9 @@ use eframe::egui;
 use glam::Vec2;
 
 use super::edited::EditedLayout;
-use crate::edit::{Address, Edit, EditRefusal, Item, grouping, ungrouping};
+use crate::edit::{Address, Document, Edit, EditRefusal, Facet, Item, facet_edits, grouping, ungrouping};
 use underfoot::floor::Rect;
+use underfoot::schema::Diagnostics;
 
 impl EditedLayout {
     /// Moves and sizes the selection to new areas.
@@ -62,6 +63,31 @@ impl EditedLayout {
         let Some(bounds) = self.document.bounds_of(&self.items, &self.selected) else { return };
         let text = |edited: &Self, by: Vec2| edited.document.duplicating(&edited.selected, by);
         self.put_beside(bounds.size(), text);
+    }
+
+    /// Puts copies of the selection at a distance of `by` metres and selects them.
+    pub(super) fn copy_by(&mut self, by: Vec2) {
+        match self.document.duplicating(&self.selected, by) {
+            Ok((edits, places)) => {
+                if self.edit(&edits) {
+                    self.selected = places;
+                }
+            }
+            Err(refusal) => self.complain(refusal.short()),
+        }
+    }
+
+    /// Gives the selected controls, those in groups included, the appearance or feel of the copied one.
+    pub(super) fn paste_facet(&mut self, facet: Facet, pasted: &str) {
+        if self.holds_locked() {
+            return;
+        }
+        let targets: Vec<&Item> =
+            self.selected.iter().flat_map(|record| self.document.controls_in(&self.items, record)).collect();
+        match facet_edits(&self.document, facet, pasted, &targets) {
+            Ok(edits) => drop(self.edit(&edits)),
+            Err(refusal) => self.complain(format!("No {} is pasted: {}", facet.name(), refusal.short())),
+        }
     }
 
     /// Inserts the text of the clipboard, or shows why a layout cannot hold it.
@@ -123,15 +149,27 @@ impl EditedLayout {
         self.complain(last.map_or_else(String::new, |refusal| refusal.short()));
     }
 
+    /// Undoes a step and selects what was selected before it.
     pub(super) fn undo(&mut self) {
-        if let Err(problems) = self.document.undo() {
-            self.complain(problems.to_string());
-        }
+        self.step_with(Document::undo);
     }
 
+    /// Redoes a step and selects what was selected after it.
     pub(super) fn redo(&mut self) {
-        if let Err(problems) = self.document.redo() {
-            self.complain(problems.to_string());
+        self.step_with(Document::redo);
+    }
+
+    fn step_with(&mut self, step: fn(&mut Document) -> Result<bool, Diagnostics>) {
+        self.steps.note(self.document.step(), &self.selected);
+        match step(&mut self.document) {
+            Ok(false) => {}
+            Ok(true) => {
+                self.selected = self.steps.at(self.document.step());
+                if let Some(page) = self.selected.first().and_then(Address::page) {
+                    self.page = page;
+                }
+            }
+            Err(problems) => self.complain(problems.to_string()),
         }
     }
 

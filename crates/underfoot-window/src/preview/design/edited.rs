@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 
 use eframe::egui;
 
-use crate::edit::{Address, Document, Edit, EditRefusal, Item};
+use super::findings::Problems;
+use super::step_selections::StepSelections;
+use crate::edit::{Address, Document, Edit, EditRefusal, Facet, Item};
 use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostic, Diagnostics};
 use underfoot_scene::ergonomics::Finding;
@@ -39,6 +41,13 @@ pub(super) struct EditedLayout {
     pub(super) stroke: u64,
     /// The last message about an action or a refusal.
     pub(super) message: Option<EditMessage>,
+    /// The selection at each step of undo.
+    pub(super) steps: StepSelections,
+    /// The problems with their repairs, for the list of them.
+    pub(super) problems: Problems,
+    /// The part of a control that the text of the clipboard gives, and the frame in which the menu asked for that
+    /// text.
+    pub(super) pasting: Option<(Option<Facet>, u64)>,
 }
 
 impl EditedLayout {
@@ -56,6 +65,9 @@ impl EditedLayout {
             hidden: BTreeSet::new(),
             stroke: 0,
             message: None,
+            steps: StepSelections::default(),
+            problems: Problems::default(),
+            pasting: None,
         }
     }
 
@@ -94,7 +106,23 @@ impl EditedLayout {
     }
 
     pub(super) fn edit_in(&mut self, edits: &[Edit], stroke: Option<u64>) -> bool {
+        let renamed: Vec<(String, &String)> = edits
+            .iter()
+            .filter_map(|edit| match edit {
+                Edit::Rename { record, id } => Some((self.key_of(record), id)),
+                _ => None,
+            })
+            .collect();
         let done = self.document.edit_in(edits, stroke);
+        if done.is_ok() {
+            for (old, new) in renamed {
+                for keys in [&mut self.locked, &mut self.hidden] {
+                    if keys.remove(&old) {
+                        keys.insert(new.clone());
+                    }
+                }
+            }
+        }
         self.tell(done)
     }
 
@@ -108,6 +136,7 @@ impl EditedLayout {
 
     /// Updates everything that derives from the present text.
     pub(super) fn refresh(&mut self) {
+        self.steps.note(self.document.step(), &self.selected);
         if self.seen == Some(self.document.revision()) {
             return;
         }

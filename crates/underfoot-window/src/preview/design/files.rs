@@ -167,6 +167,7 @@ impl Designer {
                 (self.storage.file, self.storage.slot, self.edited.seen, self.storage.conflict) =
                     (file, slot, None, None);
                 self.edited.selected.clear();
+                self.edited.steps.clear();
                 self.edited.locked.clear();
                 self.edited.hidden.clear();
                 true

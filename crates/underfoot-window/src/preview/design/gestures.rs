@@ -6,24 +6,17 @@ use glam::Vec2;
 
 use super::canvas::Canvas;
 use super::edited::EditedLayout;
-use crate::edit::{Address, Edges, Item, RecordList, SnapGrid, SnapGuide};
+use super::trial::{GestureResult, Snapping, copying, moving, rect_between};
+use crate::edit::{Address, Edges, Item, RecordList};
 use crate::preview::pointer::way_while_down;
-use underfoot::floor::Rect;
-use underfoot::layout::Layout;
 use underfoot_scene::egui_painter::ScreenFromFloor;
 
 /// Half the side of a handle, and the distance within which the pointer grabs it, in points.
 pub(super) const HANDLE: f32 = 5.0;
 const NEAR: f32 = 9.0;
 
-/// Distance within which a guide line attracts, in points.
-const PULL: f32 = 7.0;
-
 /// Travel of the pointer that turns a press into a drag, in points.
-const SLACK: f32 = 4.0;
-
-/// Minimum width and depth from dragging, in metres; the format allows 0.05 tiles.
-const LEAST_M: f32 = 0.03;
+pub(super) const SLACK: f32 = 4.0;
 
 /// The current gesture of the pointer.
 #[derive(Clone, Debug, Default)]
@@ -32,12 +25,25 @@ pub(super) enum PointerGesture {
     None,
     /// Pressed on a record, which moves once the pointer goes further.
     Pressed { at: Pos2, record: Address },
-    /// The selection follows the pointer.
+    /// The selection follows the pointer; with Alt, copies of it do.
     Moving { from: Vec2, edges: Edges },
+    /// The thing to put down becomes as large as the pointer draws it.
+    Drawing { from: Vec2 },
     /// The pointer draws a rectangle around the records to select.
     Lasso { from: Vec2 },
     /// The view follows the pointer.
     Panning,
+}
+
+/// The pointer over the canvas in one frame.
+pub(super) struct Pressing {
+    /// Its place on the floor.
+    pub(super) at: Vec2,
+    pub(super) inside: bool,
+    pub(super) pressed: bool,
+    pub(super) released: bool,
+    /// Whether it brings the thing from the palette and lets go of it.
+    pub(super) dropped: bool,
 }
 
 impl Canvas {
@@ -50,16 +56,16 @@ impl Canvas {
         screen: egui::Rect,
         edited: &mut EditedLayout,
     ) -> GestureResult {
-        let (pointer, pressed, released, space, shift, alt) = ui.input(|i| {
+        let (pointer, pressed, released, space, modifiers) = ui.input(|i| {
             (
                 i.pointer.interact_pos().or(i.pointer.hover_pos()),
                 i.pointer.primary_pressed(),
                 i.pointer.primary_released(),
                 i.key_down(Key::Space),
-                i.modifiers.shift,
-                i.modifiers.alt,
+                i.modifiers,
             )
         });
+        let (shift, snapping) = (modifiers.shift, Snapping { map, is_off: modifiers.command });
         let Some(pointer) = pointer else { return GestureResult::default() };
         let inside = canvas.contains_pointer() || canvas.rect.contains(pointer) && self.placing.is_some();
         let at = map.floor(pointer);
@@ -75,7 +81,8 @@ impl Canvas {
         if let Some(thing) = self.placing.clone() {
             // For a drag onto the canvas, the press began elsewhere.
             let dropped = released && !canvas.clicked() && !canvas.drag_stopped();
-            return self.put_down(edited, &thing, at, inside, pressed, dropped, map, alt);
+            let pressing = Pressing { at, inside, pressed, released, dropped };
+            return self.put_down(edited, &thing, &pressing, snapping);
         }
         if pressed && inside {
             canvas.request_focus();
@@ -92,9 +99,12 @@ impl Canvas {
             self.gesture = PointerGesture::Moving { from: map.floor(from), edges: Edges::ALL };
         }
         let trial = match &self.gesture {
-            PointerGesture::Moving { from, edges } => moving(edited, at - *from, *edges, map, alt),
+            PointerGesture::Moving { from, edges } if modifiers.alt && *edges == Edges::ALL => {
+                copying(edited, at - *from, snapping)
+            }
+            PointerGesture::Moving { from, edges } => moving(edited, at - *from, *edges, snapping),
             PointerGesture::Lasso { from } => {
-                GestureResult { lasso: Some(around(*from, at)), ..GestureResult::default() }
+                GestureResult { lasso: Some(rect_between(*from, at)), ..GestureResult::default() }
             }
             _ => GestureResult::default(),
         };
@@ -151,6 +161,9 @@ impl Canvas {
                 edited.select_only(inner.filter(|inner| inner.is_within(&record)).unwrap_or(record));
             }
             PointerGesture::Pressed { record, .. } => edited.select_only(record),
+            PointerGesture::Moving { .. } if trial.copied_by.is_some() => {
+                edited.copy_by(trial.copied_by.unwrap_or_default());
+            }
             PointerGesture::Moving { .. } if !trial.areas.is_empty() => {
                 let areas = trial.areas.clone();
                 edited.move_to(&areas);
@@ -184,45 +197,22 @@ impl Canvas {
             _ => {}
         }
     }
-
-    #[expect(clippy::too_many_arguments, reason = "what the pointer does in one frame")]
-    fn put_down(
-        &mut self,
-        edited: &mut EditedLayout,
-        thing: &super::palette::PaletteThing,
-        at: Vec2,
-        inside: bool,
-        pressed: bool,
-        dropped: bool,
-        map: ScreenFromFloor,
-        alt: bool,
-    ) -> GestureResult {
-        if !inside {
-            return GestureResult::default();
-        }
-        let size = thing.size(&edited.document.floor().geometry);
-        let area = Rect::from_centre_size(at, size);
-        let (area, guides) = snapped(edited, area, Edges::ALL, map, alt);
-        // After a drag onto the canvas, the thing is put down on release; after a click, on the press.
-        if pressed || dropped {
-            if edited.put(thing, area) || dropped {
-                self.placing = None;
-            }
-            return GestureResult::default();
-        }
-        GestureResult { areas: vec![area], guides, ..GestureResult::default() }
-    }
 }
 
 /// The record to grab at `point`: the whole outermost group, unless a member of it is selected. Ignores locked
 /// and hidden records.
-fn touched(edited: &EditedLayout, point: Vec2) -> Option<Address> {
-    let free = |item: &&Item| !edited.is_locked(&item.record) && !edited.is_hidden(&item.record);
-    let free: Vec<Item> = edited.items.iter().filter(free).cloned().collect();
-    let record = edited.document.item_at(&free, edited.page, point)?;
+pub(super) fn touched(edited: &EditedLayout, point: Vec2) -> Option<Address> {
+    let record = reachable_at(edited, point)?;
     let group = group_of(&record);
     let is_entered = edited.selected.iter().any(|one| *one != group && one.is_within(&group));
     Some(if is_entered { record } else { group })
+}
+
+/// The topmost record at `point` that is neither locked nor hidden; never a group.
+pub(super) fn reachable_at(edited: &EditedLayout, point: Vec2) -> Option<Address> {
+    let free = |item: &&Item| !edited.is_locked(&item.record) && !edited.is_hidden(&item.record);
+    let free: Vec<Item> = edited.items.iter().filter(free).cloned().collect();
+    edited.document.item_at(&free, edited.page, point)
 }
 
 /// The edges that the handle under the pointer drags, for a single selected record.
@@ -247,63 +237,6 @@ fn hover(edited: &EditedLayout, ui: &Ui, pointer: Pos2, map: ScreenFromFloor) {
     ui.ctx().set_cursor_icon(icon);
 }
 
-/// The result of moving the given edges of the selection by `by`.
-fn moving(edited: &EditedLayout, by: Vec2, edges: Edges, map: ScreenFromFloor, alt: bool) -> GestureResult {
-    let items = edited.selected_items();
-    let Some(all) = crate::edit::around(items.iter().map(|item| item.area)) else {
-        return GestureResult::default();
-    };
-    let moved = edges.moved(all, by, LEAST_M);
-    let (snapped, guides) = snapped(edited, moved, edges, map, alt);
-    let shift = snapped.min - all.min;
-    let areas: Vec<Rect> = match items[..] {
-        [_] => vec![snapped],
-        _ => items.iter().map(|item| Rect::new(item.area.min + shift, item.area.max + shift)).collect(),
-    };
-    let pairs: Vec<(&Item, Rect)> = items.iter().copied().zip(areas.iter().copied()).collect();
-    let tried = edited.document.placing(&pairs).and_then(|edits| edited.document.trial(&edits));
-    let (layout, refused) = match tried {
-        Ok(layout) => (Some(layout), None),
-        Err(refusal) => (None, Some(refusal.short())),
-    };
-    GestureResult { layout, refused, areas, guides, lasso: None }
-}
-
-fn snapped(
-    edited: &EditedLayout,
-    area: Rect,
-    edges: Edges,
-    map: ScreenFromFloor,
-    alt: bool,
-) -> (Rect, Vec<SnapGuide>) {
-    if alt {
-        return (area, Vec::new());
-    }
-    let others = edited.items.iter().filter(|item| {
-        matches!(item.record.list(), Some(RecordList::Widgets | RecordList::Regions | RecordList::Stances))
-            && item.is_on(edited.page)
-            && !item.is_group
-            && !edited.selected.iter().any(|selected| item.record.is_within(selected))
-    });
-    let neighbours: Vec<Rect> = others.map(|item| item.area).collect();
-    let geometry = &edited.document.floor().geometry;
-    let grid = SnapGrid { geometry, neighbours: &neighbours, reach_m: PULL / map.scale() };
-    grid.snap(area, edges)
-}
-
-/// The result that a gesture would have if it ended now.
-#[derive(Default)]
-pub(super) struct GestureResult {
-    /// The layout; `None` where it is refused or unchanged.
-    pub(super) layout: Option<Layout>,
-    /// The reason for a refusal.
-    pub(super) refused: Option<String>,
-    /// The areas of the selection, or of the thing that is put down.
-    pub(super) areas: Vec<Rect>,
-    pub(super) guides: Vec<SnapGuide>,
-    pub(super) lasso: Option<Rect>,
-}
-
 /// The outermost group of a record; the record itself outside any group.
 fn group_of(record: &Address) -> Address {
     let mut outermost = record.clone();
@@ -317,10 +250,6 @@ fn group_of(record: &Address) -> Address {
 
 pub(super) fn can_be_sized(item: &Item) -> bool {
     !item.is_group && item.widgets.len() <= 1
-}
-
-fn around(a: Vec2, b: Vec2) -> Rect {
-    Rect::new(a.min(b), a.max(b))
 }
 
 /// The handles around `shown`, each with the edges that it drags.

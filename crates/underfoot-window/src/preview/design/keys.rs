@@ -3,8 +3,10 @@
 use eframe::egui::{self, Key, Modifiers, Ui};
 use glam::Vec2;
 
+use super::in_place::InPlace;
+use super::menu::begin;
 use super::{Ask, Designer, Pane, gestures};
-use crate::edit::{RecordList, Template};
+use crate::edit::{Facet, RecordList, Template};
 
 /// Distance that an arrow key moves, in metres; with Shift, and with Alt.
 const NUDGE_M: [f32; 3] = [0.01, 0.05, 0.001];
@@ -51,7 +53,7 @@ impl Designer {
     pub(super) fn keys(&mut self, ui: &Ui) {
         self.keys_anywhere(ui);
         // A text field with the focus takes all other keys.
-        if ui.ctx().text_edit_focused() {
+        if ui.ctx().text_edit_focused() || self.canvas.in_place.is_some() {
             return;
         }
         let command = |key: Key| ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, key));
@@ -112,13 +114,18 @@ impl Designer {
             self.canvas.gesture = gestures::PointerGesture::None;
             self.edited.selected.clear();
         }
+        // A list or field with the focus uses these keys itself.
+        let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
+        if is_free && pressed(Key::Enter) {
+            let first = self.edited.selected.first().cloned();
+            let found = first.map(|record| InPlace::text_of(&self.edited, &record));
+            begin(&mut self.edited, &mut self.canvas.in_place, found);
+        }
         let step = ui.input(|i| match (i.modifiers.shift, i.modifiers.alt) {
             (true, _) => NUDGE_M[1],
             (_, true) => NUDGE_M[2],
             _ => NUDGE_M[0],
         });
-        // A list or field with the focus uses the arrows itself.
-        let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
         for (key, way) in [
             (Key::ArrowLeft, Vec2::NEG_X),
             (Key::ArrowRight, Vec2::X),
@@ -138,9 +145,27 @@ impl Designer {
             match event {
                 egui::Event::Copy => drop(self.edited.copy(ui.ctx())),
                 egui::Event::Cut => self.edited.cut(ui.ctx()),
-                egui::Event::Paste(text) => self.edited.paste(&text),
+                egui::Event::Paste(text) => self.paste(ui, &text),
                 _ => {}
             }
+        }
+    }
+
+    /// Pastes the text of the clipboard, or the appearance or the feel of the control in it: as the menu asked, or as
+    /// the keys tell.
+    fn paste(&mut self, ui: &Ui, text: &str) {
+        /// Frames in which the text may come that the menu asked for.
+        const SOON: u64 = 20;
+        let now = ui.ctx().cumulative_pass_nr();
+        let asked = self.edited.pasting.take().filter(|(_, since)| now <= since + SOON);
+        let by_keys = ui.input(|i| match i.modifiers {
+            Modifiers { alt: true, .. } => Some(Facet::Appearance),
+            Modifiers { shift: true, .. } => Some(Facet::Feel),
+            _ => None,
+        });
+        match asked.map_or(by_keys, |(facet, _)| facet) {
+            Some(facet) => self.edited.paste_facet(facet, text),
+            None => self.edited.paste(text),
         }
     }
 }

@@ -7,7 +7,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Sense, Ui, WidgetInfo, vec2};
 
 use super::edited::EditedLayout;
-use super::palette::go_on;
+use super::list_keys::go_on;
 use super::{Pane, Panes};
 use crate::edit::{Address, RecordList};
 use crate::preview::style::quiet;

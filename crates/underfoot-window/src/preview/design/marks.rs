@@ -6,8 +6,9 @@ use glam::Vec2;
 
 use super::canvas::DrawnToScale;
 use super::edited::EditedLayout;
-use super::gestures::{GestureResult, HANDLE, can_be_sized, handles};
+use super::gestures::{HANDLE, can_be_sized, handles};
 use super::labels::{Labels, label};
+use super::trial::GestureResult;
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
 use underfoot::units::Newtons;

@@ -17,7 +17,9 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Margin, Panel, RichText, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::edited::EditedLayout;
+use super::findings::findings_list;
 use super::palette::draw_widget;
+use super::several::shared_place;
 use super::{Pane, Panes};
 use crate::edit::{Address, Edit, FieldOrigin, FieldSection, Item};
 use crate::preview::PreviewCommand;
@@ -139,6 +141,7 @@ impl Inspector {
                 section(ui, theme, &format!("{} selected", several.len()), |_| {});
                 ui.label(quiet(theme, "Arrange, move, duplicate or delete them together."));
                 let several = several.to_vec();
+                shared_place(ui, theme, edited, &mut self.typed);
                 return self.common_fields(ui, theme, palette, edited, &several);
             }
         };
@@ -154,6 +157,9 @@ impl Inspector {
             let (at, size) = (item.area.min, item.area.size() * 100.0);
             let text = format!("{:.1} x {:.1} cm, {:.3} m east, {:.3} m north", size.x, size.y, at.x, at.y);
             ui.label(quiet(theme, text));
+        }
+        if record == Address::LAYOUT {
+            findings_list(ui, theme, edited);
         }
         let key = (vec![record.clone()], edited.document.revision());
         if self.own.of.as_ref() != Some(&key) {

@@ -4,7 +4,7 @@ use eframe::egui;
 use eframe::egui::{RichText, Ui};
 
 use super::super::edited::EditedLayout;
-use crate::edit::{Address, Edit, Property};
+use crate::edit::{Address, Edit, Property, mend};
 use crate::preview::style::quiet;
 use underfoot::layout::Colour;
 use underfoot_format::diagnostic::Severity;
@@ -62,7 +62,7 @@ pub(super) fn problems_of(theme: &Theme, edited: &EditedLayout, record: &Address
         text: format!("{}: {}; {}", finding.rule.code, finding.message, finding.expected),
         help: finding.help.clone(),
         source: finding.rule.source,
-        mend: document.mend(finding, &edited.items),
+        mend: mend(document, finding, &edited.items).map(|mend| (mend.name, mend.edits)),
     });
     let told = edited.told().filter(|problem| document.told_of(problem).as_ref() == Some(record));
     let told = told.map(|problem| FieldProblem {

@@ -7,11 +7,12 @@ mod thing;
 use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
-    FocusDirection, Key, Margin, Panel, Response, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
+    Key, Margin, Panel, Response, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
 };
 
 use super::edited::EditedLayout;
 use super::list::list;
+use super::list_keys::go_on;
 use super::{Pane, Panes};
 use crate::preview::style::{panel_frame, quiet, section};
 use thing::PaletteSection;
@@ -232,19 +233,4 @@ fn show_row(
     }
     response
         .on_hover_text("Click, then click on the floor; or drag it there; Enter puts it where there is room")
-}
-
-/// Arrow keys move through the whole list, scrolled-out entries included, and do not leave it at its end.
-pub(super) fn go_on(ui: &Ui, shown: &[Response]) {
-    let Some(at) = shown.iter().position(Response::has_focus) else { return };
-    let (up, down) = ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown)));
-    if up == down {
-        return;
-    }
-    ui.memory_mut(|memory| memory.move_focus(FocusDirection::None));
-    let next = if up { at.checked_sub(1) } else { at.checked_add(1) };
-    if let Some(next) = next.and_then(|next| shown.get(next)) {
-        next.request_focus();
-        next.scroll_to_me(None);
-    }
 }

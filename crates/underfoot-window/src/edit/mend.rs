@@ -1,0 +1,411 @@
+//! Repairs of findings: sizes, thresholds, and places that keep the rules for room and reach.
+
+use glam::{DVec2, Vec2};
+
+use super::address::RecordList;
+use super::change::Edit;
+use super::document::Document;
+use super::item::Item;
+use super::place::pair;
+use super::snap::{Edges, round_step_m};
+use underfoot::floor::Rect;
+use underfoot::layout::Widget;
+use underfoot::schema::Diagnostic;
+use underfoot_scene::ergonomics::{Finding, Part, REACH_M, free_tiles, gap_between_m, needed_gap_m, reach_m};
+
+/// A repair.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mend {
+    /// Its effect, in a few words that begin with a verb.
+    pub name: String,
+    /// The edits.
+    pub edits: Vec<Edit>,
+}
+
+impl Mend {
+    fn new(name: &str, edits: Vec<Edit>) -> Self {
+        Self { name: name.to_owned(), edits }
+    }
+}
+
+/// A width that suits a shoe, in metres (rule U101).
+const GOOD_M: f32 = 0.12;
+
+/// Tolerance for rounding errors, in metres.
+const SLACK_M: f32 = 1e-4;
+
+/// The repair of a finding; `None` where only the user can decide, or where there is no place that keeps all rules.
+///
+/// A control that is too small becomes 12 cm wide and deep; a threshold returns to the value of its kind; a control
+/// that is too close to another one, out of reach or beside a stance zone goes to the nearest place of its region where
+/// it is none of these. The control moves by steps of round numbers and keeps its size.
+#[must_use]
+pub fn mend(document: &Document, finding: &Finding, items: &[Item]) -> Option<Mend> {
+    let record = document.record_of(finding.widget)?;
+    let item = items.iter().find(|item| item.record == record)?;
+    let is_single = item.widgets.len() == 1;
+    match (finding.rule.code, finding.part) {
+        ("U101", Part::Size) if is_single => {
+            let size = item.area.size().max(Vec2::splat(GOOD_M));
+            let area = Rect::from_centre_size(item.area.centre(), size);
+            Some(Mend::new("Make it 12 cm", document.placing(&[(item, area)]).ok()?))
+        }
+        (_, Part::Press) if is_single && document.written(&record, "press_n").is_some() => {
+            let fields = ["press_n", "release_n"];
+            let written = fields.iter().filter(|field| document.written(&record, field).is_some());
+            Some(Mend::new("Press as its kind", written.map(|field| Edit::unset(&record, field)).collect()))
+        }
+        ("U102", _) if is_crowded_grid(document, item) => wider_grid(document, item),
+        ("U102", _) => Some(Mend::new("Move them apart", moved(document, item, PlaceRule::Gap)?)),
+        ("U103", _) => Some(Mend::new("Move it nearer", moved(document, item, PlaceRule::Reach)?)),
+        ("U104", _) => Some(Mend::new("Leave one free row", moved(document, item, PlaceRule::Row)?)),
+        _ => None,
+    }
+}
+
+/// The repair of a warning of the reader about a place: a control that sticks out of its region, or a stance zone that
+/// reaches into a region. `None` for all other warnings.
+#[must_use]
+pub fn mend_warning(document: &Document, problem: &Diagnostic, items: &[Item]) -> Option<Mend> {
+    let record = document.told_of(problem)?;
+    let item = items.iter().find(|item| item.record == record)?;
+    match record.list()? {
+        RecordList::Widgets if !item.is_group => into_region(document, item),
+        RecordList::Stances => out_of_regions(document, item),
+        _ => None,
+    }
+}
+
+/// The text of the layout with all repairs of which each leaves fewer problems, and the number of problems that are
+/// gone; `None` if there is no such repair.
+#[must_use]
+pub fn mend_all(document: &Document) -> Option<(String, usize)> {
+    let count = |document: &Document| document.findings().len() + document.warnings().iter().count();
+    let before = count(document);
+    let (mut best, mut left) = (document.clone(), before);
+    loop {
+        let items = best.items();
+        let found = best.findings();
+        let repairs = found.iter().filter_map(|finding| mend(&best, finding, &items));
+        let warnings = best.warnings().iter().filter_map(|problem| mend_warning(&best, problem, &items));
+        let better = repairs.chain(warnings).find_map(|mend| {
+            let mut tried = best.clone();
+            tried.edit(&mend.edits).ok()?;
+            (count(&tried) < left).then_some(tried)
+        });
+        match better {
+            Some(better) => (best, left) = (better.clone(), count(&better)),
+            None => break,
+        }
+    }
+    (left < before).then(|| (best.text().to_owned(), before - left))
+}
+
+/// The rule that a control breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PlaceRule {
+    Gap,
+    Reach,
+    Row,
+}
+
+/// How far a place of an item is from keeping each rule: by its gap and its reach in metres, and by free rows of tiles;
+/// not above 0 where it keeps the rule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PlaceCost {
+    gap: f32,
+    reach: f32,
+    rows: i32,
+}
+
+impl PlaceCost {
+    /// For the controls of `item`, moved by `by`.
+    fn of(document: &Document, item: &Item, by: Vec2) -> Self {
+        let layout = document.layout();
+        let own = layout.widgets.get(item.widgets.clone()).unwrap_or_default();
+        let mut cost = Self { gap: 0.0, reach: 0.0, rows: 0 };
+        let others = layout.widgets.iter().enumerate().filter(|(at, _)| !item.widgets.contains(at));
+        let others: Vec<&Widget> = others.map(|(_, widget)| widget).collect();
+        for widget in own {
+            let area = Rect::new(widget.area.min + by, widget.area.max + by);
+            for other in others.iter().filter(|other| shares_page(widget, other)) {
+                let needed = needed_gap_m(widget).max(needed_gap_m(other));
+                cost.gap = cost.gap.max(needed - gap_between_m(area, other.area) - SLACK_M);
+            }
+            let far = reach_m(&layout.stances, area.centre()).unwrap_or_default();
+            cost.reach = cost.reach.max(far - REACH_M);
+            for stance in &layout.stances {
+                let free = free_tiles(&document.floor().geometry, area, stance.area);
+                cost.rows = cost.rows.max(1 - free);
+            }
+        }
+        cost
+    }
+
+    /// Whether the place keeps `rule` and is by the others no worse than `before`.
+    fn keeps(self, rule: PlaceRule, before: Self) -> bool {
+        let is_kept = |is_it: bool, cost: f32, before: f32| cost <= if is_it { 0.0 } else { before.max(0.0) };
+        is_kept(rule == PlaceRule::Gap, self.gap, before.gap)
+            && is_kept(rule == PlaceRule::Reach, self.reach, before.reach)
+            && is_kept(rule == PlaceRule::Row, self.rows as f32, before.rows as f32)
+    }
+}
+
+fn shares_page(one: &Widget, other: &Widget) -> bool {
+    one.page.is_none() || other.page.is_none() || one.page == other.page
+}
+
+/// Maximum number of steps that a control moves in each direction.
+const FARTHEST: i16 = 100;
+
+/// The edits that move `item` by the least amount that keeps `rule`, inside its region.
+fn moved(document: &Document, item: &Item, rule: PlaceRule) -> Option<Vec<Edit>> {
+    let layout = document.layout();
+    let region =
+        layout.widgets.get(item.widgets.start).and_then(|first| layout.regions.get(first.region))?.area;
+    let step = round_step_m(document.unit_m(), &document.floor().geometry);
+    let before = PlaceCost::of(document, item, Vec2::ZERO);
+    // The nearest places first, in squares around the present one.
+    for far in 1..=FARTHEST {
+        if f32::from(far) * step > region.size().max_element() {
+            break;
+        }
+        let ring = (-far..=far).flat_map(|along| {
+            let (far, along) = (f32::from(far), f32::from(along));
+            [Vec2::new(along, far), Vec2::new(along, -far), Vec2::new(far, along), Vec2::new(-far, along)]
+        });
+        let fits = ring.map(|by| by * step).filter(|by| {
+            let area = Rect::new(item.area.min + *by, item.area.max + *by);
+            is_inside(area, region) && PlaceCost::of(document, item, *by).keeps(rule, before)
+        });
+        // A straight move is shorter, and leaves rows and columns in line.
+        if let Some(by) = fits.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared())) {
+            let area = Rect::new(item.area.min + by, item.area.max + by);
+            return document.placing(&[(item, area)]).ok();
+        }
+    }
+    None
+}
+
+fn is_inside(area: Rect, outer: Rect) -> bool {
+    let outer = outer.grown(SLACK_M);
+    area.min.cmpge(outer.min).all() && area.max.cmple(outer.max).all()
+}
+
+/// Whether cells of the same grid are too close to each other.
+fn is_crowded_grid(document: &Document, item: &Item) -> bool {
+    let cells = document.layout().widgets.get(item.widgets.clone()).unwrap_or_default();
+    let is_close = |at: usize, one: &Widget| {
+        cells
+            .iter()
+            .skip(at + 1)
+            .any(|other| gap_between_m(one.area, other.area) < needed_gap_m(one) - SLACK_M)
+    };
+    !item.is_group && cells.iter().enumerate().any(|(at, one)| is_close(at, one))
+}
+
+/// Writes the gap that the cells of a grid need.
+fn wider_grid(document: &Document, item: &Item) -> Option<Mend> {
+    let needed = needed_gap_m(document.layout().widgets.get(item.widgets.start)?);
+    let step = f64::from(round_step_m(document.unit_m(), &document.floor().geometry)) / document.unit_m();
+    let gap = (f64::from(needed - SLACK_M) / document.unit_m() / step).ceil() * step;
+    let edits = vec![Edit::set(&item.record, "repeat.gap", pair(DVec2::splat(gap)).inline())];
+    document.trial(&edits).ok().map(|_| Mend::new("Move them apart", edits))
+}
+
+/// Moves a control into its region.
+fn into_region(document: &Document, item: &Item) -> Option<Mend> {
+    let layout = document.layout();
+    let region =
+        layout.widgets.get(item.widgets.start).and_then(|first| layout.regions.get(first.region))?.area;
+    let (area, stopped) = Edges::ALL.stopped(item.area, region);
+    let edits =
+        document.placing(&[(item, area)]).ok().filter(|_| stopped.is_any() && is_inside(area, region))?;
+    document.trial(&edits).ok().map(|_| Mend::new("Move it into its region", edits))
+}
+
+/// Moves a stance zone beside the regions that it reaches into, or cuts such a region off at its edge.
+fn out_of_regions(document: &Document, item: &Item) -> Option<Mend> {
+    let layout = document.layout();
+    let floor = document.floor().geometry.bounds();
+    let inner: Vec<Rect> =
+        layout.regions.iter().map(|region| region.area).filter(|area| area.overlaps(item.area)).collect();
+    let region = *inner.first()?;
+    let (stance, size) = (item.area, item.area.size());
+    let mut places = [
+        Vec2::new(region.min.x - size.x, stance.min.y),
+        Vec2::new(region.max.x, stance.min.y),
+        Vec2::new(stance.min.x, region.min.y - size.y),
+        Vec2::new(stance.min.x, region.max.y),
+    ];
+    places.sort_by(|a, b| a.distance(stance.min).total_cmp(&b.distance(stance.min)));
+    let free = places.into_iter().map(|at| Rect::from_min_size(at, size)).find(|area| {
+        let shrunk = area.grown(-SLACK_M);
+        is_inside(*area, floor) && layout.regions.iter().all(|region| !region.area.overlaps(shrunk))
+    });
+    if let Some(area) = free {
+        let edits = document.placing(&[(item, area)]).ok()?;
+        return document.trial(&edits).ok().map(|_| Mend::new("Move it beside the region", edits));
+    }
+    let items = document.items();
+    let of_region =
+        items.iter().find(|item| item.record.list() == Some(RecordList::Regions) && item.area == region)?;
+    let is_used = |area: Rect| {
+        let own = layout.widgets.iter().filter(|widget| region.contains(widget.area.centre()));
+        own.into_iter().all(|widget| is_inside(widget.area, area))
+    };
+    let cuts = [
+        Rect::new(Vec2::new(stance.max.x, region.min.y), region.max),
+        Rect::new(region.min, Vec2::new(stance.min.x, region.max.y)),
+        Rect::new(Vec2::new(region.min.x, stance.max.y), region.max),
+        Rect::new(region.min, Vec2::new(region.max.x, stance.min.y)),
+    ];
+    let area = cuts.into_iter().filter(|area| area.size().min_element() > GOOD_M && is_used(*area)).max_by(
+        |a, b| {
+            let extent = |area: &Rect| area.size().element_product();
+            extent(a).total_cmp(&extent(b))
+        },
+    )?;
+    let edits = document.placing(&[(of_region, area)]).ok()?;
+    document.trial(&edits).ok().map(|_| Mend::new("End the region beside it", edits))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use underfoot::floor::Floor;
+    use underfoot::schema::Kinds;
+
+    const HEAD: &str = "Layout(version: 1, regions: [(id: \"r\", at: (0, 2), size: (6, 4))], \
+                        stances: [(at: (2, 0), size: (2, 1), label: \"Stand\")], widgets: [\n";
+
+    fn open(widgets: &str) -> Document {
+        read(&format!("{HEAD}{widgets}])"))
+    }
+
+    fn read(text: &str) -> Document {
+        let floor = Arc::new(Floor::default());
+        Document::read("it", text, &Arc::new(Kinds::builtin()), &floor)
+            .unwrap_or_else(|problems| panic!("{text}\n{problems}"))
+    }
+
+    fn codes(document: &Document) -> Vec<&'static str> {
+        document.findings().iter().map(|finding| finding.rule.code).collect()
+    }
+
+    /// Mends each finding once; checks that it is gone and that undo returns the bytes.
+    fn mended(document: &mut Document, code: &str, name: &str) {
+        let (before, count) = (document.text().to_owned(), codes(document).len());
+        assert!(codes(document).contains(&code), "{before}\n{:?}", codes(document));
+        let finding = document.findings().into_iter().find(|finding| finding.rule.code == code).unwrap();
+        let mend = mend(document, &finding, &document.items()).unwrap_or_else(|| panic!("{code}\n{before}"));
+        assert_eq!(mend.name, name);
+        document.edit(&mend.edits).unwrap();
+        assert!(codes(document).len() < count, "{:?}\n{}", codes(document), document.text());
+        let after = document.text().to_owned();
+        document.undo().unwrap();
+        assert_eq!(document.text(), before);
+        document.redo().unwrap();
+        assert_eq!(document.text(), after);
+    }
+
+    #[test]
+    fn a_foot_on_one_control_no_longer_reaches_the_other() {
+        let mut document = open(
+            "(id: \"a\", kind: \"button\", at: (2, 2.5), size: (0.6, 0.6), label: \"A\"), // a\n\
+             (id: \"b\", kind: \"button\", at: (2.65, 2.5), size: (0.6, 0.6), label: \"B\"), // b\n",
+        );
+        mended(&mut document, "U102", "Move them apart");
+        assert!(document.text().contains("// a\n") && document.text().contains("// b\n"));
+        assert!(document.text().contains("at: (2.8, 2.5)"), "a round number: {}", document.text());
+    }
+
+    #[test]
+    fn the_cells_of_a_grid_move_apart_together() {
+        let mut document = open(
+            "(id: \"k_{n}\", kind: \"button\", at: (1, 2.5), size: (0.6, 0.6), label: \"K\", \
+             repeat: (columns: 3, gap: 0.05)),",
+        );
+        mended(&mut document, "U102", "Move them apart");
+        assert!(codes(&document).is_empty(), "{}", document.text());
+    }
+
+    #[test]
+    fn what_no_foot_reaches_comes_nearer_and_what_is_underfoot_goes_a_row_away() {
+        let far = "(id: \"a\", kind: \"button\", at: (0.2, 5.2), size: (0.6, 0.6), label: \"A\"),";
+        mended(&mut open(far), "U103", "Move it nearer");
+        let mut near = read(
+            "Layout(version: 1, regions: [(id: \"r\", at: (0, 1), size: (6, 5))], \
+             stances: [(at: (2, 0), size: (2, 1))], widgets: [\
+             (id: \"a\", kind: \"button\", at: (2.2, 1.2), size: (0.6, 0.6), label: \"A\")])",
+        );
+        mended(&mut near, "U104", "Leave one free row");
+    }
+
+    #[test]
+    fn where_there_is_no_room_the_user_decides() {
+        let document = read(
+            "Layout(version: 1, regions: [(id: \"r\", at: (0, 0), size: (1.3, 0.6))], widgets: [\
+             (id: \"a\", kind: \"button\", at: (0, 0), size: (0.6, 0.6), label: \"A\"),\
+             (id: \"b\", kind: \"button\", at: (0.65, 0), size: (0.6, 0.6), label: \"B\")])",
+        );
+        let finding = document.findings().into_iter().find(|finding| finding.rule.code == "U102").unwrap();
+        assert_eq!(mend(&document, &finding, &document.items()), None);
+    }
+
+    #[test]
+    fn a_crowd_of_controls_is_mended_at_once_and_undone_at_once() {
+        let rows: String = (0..6)
+            .map(|n| {
+                let (east, north) = (1.0 + 0.62 * f64::from(n % 3), 2.2 + 0.62 * f64::from(n / 3));
+                format!("(id: \"c{n}\", kind: \"button\", at: ({east:.2}, {north:.2}), size: (0.6, 0.6), label: \"C\"),\n")
+            })
+            .collect();
+        let mut document = open(&rows);
+        let before = document.text().to_owned();
+        assert!(codes(&document).len() >= 5, "{:?}", codes(&document));
+        let (text, mended) = mend_all(&document).unwrap();
+        let count = codes(&document).len();
+        document.write(&text, None).unwrap();
+        assert_eq!(codes(&document).len(), count - mended);
+        assert!(codes(&document).is_empty(), "{:?}\n{text}", codes(&document));
+        assert_eq!(mend_all(&document), None);
+        document.undo().unwrap();
+        assert_eq!(document.text(), before);
+    }
+
+    #[test]
+    fn controls_and_stances_get_along_with_regions() {
+        for (text, name) in [
+            (
+                "Layout(version: 1, regions: [(id: \"r\", at: (0, 2), size: (4, 4))], widgets: [\
+                 (id: \"a\", kind: \"button\", at: (3.6, 3), size: (0.6, 0.6), label: \"A\")])",
+                "Move it into its region",
+            ),
+            (
+                "Layout(version: 1, regions: [(id: \"r\", at: (0, 2), size: (6, 4))], \
+                 stances: [(at: (2, 1.5), size: (2, 1))], widgets: [\
+                 (id: \"a\", kind: \"button\", at: (2, 4), size: (0.6, 0.6), label: \"A\")])",
+                "Move it beside the region",
+            ),
+            (
+                "Layout(version: 1, regions: [(id: \"r\", at: (0, 0.5), size: (6, 5.5))], \
+                 stances: [(at: (2, 0), size: (2, 1))], widgets: [\
+                 (id: \"a\", kind: \"button\", at: (2, 3), size: (0.6, 0.6), label: \"A\")])",
+                "End the region beside it",
+            ),
+        ] {
+            let mut document = read(text);
+            let problem = document.warnings().iter().next().cloned().unwrap();
+            let mend =
+                mend_warning(&document, &problem, &document.items()).unwrap_or_else(|| panic!("{text}"));
+            assert_eq!(mend.name, name);
+            document.edit(&mend.edits).unwrap();
+            assert!(document.warnings().is_empty(), "{}\n{}", document.warnings(), document.text());
+            document.undo().unwrap();
+            assert_eq!(document.text(), text);
+        }
+    }
+}
