@@ -3,6 +3,7 @@
 mod clipboard;
 mod files;
 mod groups;
+mod habits;
 mod keyboard;
 mod saving;
 
