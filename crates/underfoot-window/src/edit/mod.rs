@@ -20,6 +20,8 @@ mod document;
 mod facets;
 mod file;
 mod group;
+#[cfg(test)]
+mod habit_tests;
 mod history;
 mod inspect;
 mod item;
@@ -29,6 +31,7 @@ mod place;
 mod refit;
 mod refusal;
 mod rename;
+mod room;
 mod shared;
 mod snap;
 mod spacing;

@@ -11,19 +11,19 @@ use super::*;
 use underfoot::floor::{Floor, Rect};
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts};
 
-fn open(name: &str, text: &str) -> Document {
+pub(super) fn open(name: &str, text: &str) -> Document {
     let (kinds, floor) = (Arc::new(Kinds::builtin()), Arc::new(Floor::default()));
     Document::read(name, text, &kinds, &floor).unwrap_or_else(|problems| panic!("{text}\n{problems}"))
 }
 
-fn shipped() -> impl Iterator<Item = Document> {
+pub(super) fn shipped() -> impl Iterator<Item = Document> {
     builtin_layouts().map(|name| open(name, builtin_layout(name).unwrap()))
 }
 
 const KINDS: [&str; 6] = ["button", "switch", "slider", "hold", "stepper", "round_button"];
 
 /// A valid layout in an unusual style: comments anywhere, any line breaks, groups, grids and pages.
-fn random_layout(rng: &mut Pcg32) -> String {
+pub(super) fn random_layout(rng: &mut Pcg32) -> String {
     let mut places: Vec<(u32, u32)> = (0..6).flat_map(|x| (0..6).map(move |y| (x, y))).collect();
     let mut next = 0;
     let line_break = if rng.random_bool(0.2) { "\r\n" } else { "\n" };

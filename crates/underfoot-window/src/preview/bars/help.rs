@@ -35,7 +35,7 @@ impl HelpTopic {
                 ("Drag", "move"),
                 ("Corners", "size"),
                 ("Arrows", "nudge"),
-                ("Alt", "no snapping"),
+                ("Ctrl", "no snapping"),
                 ("Shift-click", "select more"),
                 ("Ctrl-D, Delete", "double, remove"),
                 ("Ctrl-Z", "undo"),

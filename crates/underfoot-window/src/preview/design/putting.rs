@@ -54,7 +54,8 @@ impl Canvas {
 /// The area from the press at `from` to the pointer at `to`.
 fn drawn(edited: &EditedLayout, from: Vec2, to: Vec2, snapping: Snapping) -> SnappedArea {
     let corner = Edges { west: true, south: true, ..Edges::default() };
-    let from = snapping.snap(edited, Rect::new(from, from), corner, |_| true).area.min;
+    // Any size does: only this corner snaps.
+    let from = snapping.snap(edited, Rect::from_min_size(from, Vec2::ONE), corner, |_| true).area.min;
     let (east, north) = (to.x >= from.x, to.y >= from.y);
     let edges = Edges { east, west: !east, north, south: !north };
     snapping.snap(edited, rect_between(from, to), edges, |_| true)

@@ -3,6 +3,7 @@
 mod clipboard;
 mod files;
 mod groups;
+mod habits;
 mod inspector;
 mod keyboard;
 mod palette;
