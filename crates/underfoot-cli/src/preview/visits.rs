@@ -131,11 +131,19 @@ impl Clerk {
             self.shared.state().told = told.unwrap_or_else(|failure| Some(failure.to_string()));
         }
         self.end();
-        self.discard();
+        // Closing the window must not delete a visit.
+        if self.shared.state().is_unsaved {
+            errln!("The last visit was not saved: it is in {}.", self.file.display());
+        } else {
+            self.discard();
+        }
     }
 
     fn begin(&mut self, snapshot: &Snapshot) -> Result<(), Failure> {
         let Some((session, switch)) = &self.floor else { return Ok(()) };
+        if self.shared.state().is_unsaved {
+            return Err(Failure::Other("save or discard the last visit first".into()));
+        }
         let (to, tare) = sync_channel(1);
         let tare = session.send(Command::GiveTare(to)).then(|| tare.recv_timeout(PATIENCE).ok());
         switch.begin(&self.file, snapshot, tare.flatten().flatten())?;
