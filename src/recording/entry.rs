@@ -8,7 +8,7 @@ use rosc::{OscMessage, OscPacket};
 use super::{END, GAPS, LAYOUTS, PACKETS, REQUESTS, SILENCE};
 use crate::floor::Floor;
 use crate::units::Instant;
-use crate::wire::{Batch, Decoder, Prefix, Readings, Request, SensorPacket};
+use crate::wire::{Batch, Decoder, MAX_CHANNELS, Prefix, Readings, Request, SensorPacket};
 
 /// One result of a source, in the order in which the server took it.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +35,11 @@ pub(crate) enum Entry {
 const COUNTS: u8 = 0;
 const NEWTONS: u8 = 1;
 
+/// The same with the bytes of the readings split: the lowest bytes of all, then the next, up to the highest. The
+/// high bytes are nearly the same in each packet of a board, so that they compress.
+const SPLIT_COUNTS: u8 = 2;
+const SPLIT_NEWTONS: u8 = 3;
+
 impl Entry {
     pub(crate) const fn topic(&self) -> &'static str {
         match self {
@@ -57,8 +62,21 @@ impl Entry {
 
     /// Appends its bytes to `bytes`.
     pub(crate) fn write(&self, bytes: &mut Vec<u8>) {
+        self.write_with(bytes, plain);
+    }
+
+    /// As [`Self::write`], in the form that compresses best.
+    pub(super) fn write_split(&self, bytes: &mut Vec<u8>) {
+        self.write_with(bytes, split);
+    }
+
+    fn write_with(&self, bytes: &mut Vec<u8>, form: fn(&Readings, &mut Vec<u8>)) {
         match self {
-            Self::Packet(packet) => write_packet(packet, bytes),
+            Self::Packet(packet) => {
+                bytes.extend(packet.board.to_le_bytes());
+                bytes.extend(packet.sequence.to_le_bytes());
+                form(&packet.readings, bytes);
+            }
             Self::Request(request) => write_request(request, bytes),
             Self::Layout(text) => bytes.extend(text.as_bytes()),
             Self::Gap(entries) => bytes.extend(entries.to_le_bytes()),
@@ -80,14 +98,12 @@ impl Entry {
     }
 }
 
-fn write_packet(packet: &SensorPacket, bytes: &mut Vec<u8>) {
-    bytes.extend(packet.board.to_le_bytes());
-    bytes.extend(packet.sequence.to_le_bytes());
-    match &packet.readings {
+/// Appends the kind and the readings, one after the other.
+fn plain(readings: &Readings, bytes: &mut Vec<u8>) {
+    match readings {
         Readings::Counts(counts) => {
             bytes.push(COUNTS);
-            let there = counts.iter().rev().fold(0_u64, |bits, count| bits << 1 | u64::from(count.is_some()));
-            bytes.extend(there.to_le_bytes());
+            bytes.extend(present(counts).to_le_bytes());
             counts.iter().for_each(|count| bytes.extend(count.unwrap_or_default().to_le_bytes()));
         }
         Readings::Newtons(forces) => {
@@ -97,28 +113,63 @@ fn write_packet(packet: &SensorPacket, bytes: &mut Vec<u8>) {
     }
 }
 
+/// Appends the kind and the readings, byte by byte of all.
+fn split(readings: &Readings, bytes: &mut Vec<u8>) {
+    match readings {
+        Readings::Counts(counts) => {
+            bytes.push(SPLIT_COUNTS);
+            bytes.extend(present(counts).to_le_bytes());
+            for shift in [0, 8] {
+                bytes.extend(counts.iter().map(|count| (count.unwrap_or_default() >> shift) as u8));
+            }
+        }
+        Readings::Newtons(forces) => {
+            bytes.push(SPLIT_NEWTONS);
+            for shift in [0, 8, 16, 24] {
+                bytes.extend(forces.iter().map(|force| (force.to_bits() >> shift) as u8));
+            }
+        }
+    }
+}
+
+/// A bit for each count that is present, the lowest for the first channel.
+fn present(counts: &[Option<u16>]) -> u64 {
+    counts.iter().rev().fold(0, |bits, count| bits << 1 | u64::from(count.is_some()))
+}
+
+/// The readings of `N` bytes each in the order of their channels; `is_split` tells their form.
+fn values<const N: usize>(bytes: &[u8], is_split: bool) -> Option<ArrayVec<[u8; N], MAX_CHANNELS>> {
+    if !bytes.len().is_multiple_of(N) {
+        return None;
+    }
+    let channels = bytes.len() / N;
+    let (channel_step, byte_step) = if is_split { (1, channels) } else { (N, 1) };
+    let mut values = ArrayVec::new();
+    for channel in 0..channels {
+        let mut value = [0; N];
+        for (number, byte) in value.iter_mut().enumerate() {
+            *byte = *bytes.get(channel * channel_step + number * byte_step)?;
+        }
+        values.try_push(value).ok()?;
+    }
+    Some(values)
+}
+
 fn read_packet(bytes: &[u8], received: Instant) -> Option<SensorPacket> {
     let (board, bytes) = bytes.split_first_chunk()?;
     let (sequence, bytes) = bytes.split_first_chunk()?;
     let (&kind, bytes) = bytes.split_first()?;
     let readings = match kind {
-        COUNTS => {
+        COUNTS | SPLIT_COUNTS => {
             let (there, bytes) = bytes.split_first_chunk()?;
             let there = u64::from_le_bytes(*there);
-            let mut counts = ArrayVec::new();
-            for (channel, count) in bytes.chunks(2).enumerate() {
-                let count = u16::from_le_bytes(count.try_into().ok()?);
-                let is_there = there.checked_shr(u32::try_from(channel).ok()?)? & 1 == 1;
-                counts.try_push(is_there.then_some(count)).ok()?;
-            }
-            Readings::Counts(counts)
+            let counts = values(bytes, kind == SPLIT_COUNTS)?;
+            let count = |(channel, count)| (there >> channel & 1 == 1).then_some(u16::from_le_bytes(count));
+            Readings::Counts((0_u32..).zip(counts).map(count).collect())
         }
-        NEWTONS => {
-            let mut forces = ArrayVec::new();
-            for force in bytes.chunks(4) {
-                forces.try_push(f32::from_le_bytes(force.try_into().ok()?)).ok()?;
-            }
-            Readings::Newtons(forces)
+        NEWTONS | SPLIT_NEWTONS => {
+            let forces = values(bytes, kind == SPLIT_NEWTONS)?;
+            Readings::Newtons(forces.into_iter().map(f32::from_le_bytes).collect())
         }
         _ => return None,
     };

@@ -2,20 +2,33 @@
 
 use std::io::{self, Write};
 
-use super::recorder::Recorder;
 use super::writer::Job;
 use crate::outgoing::json::Head;
 use crate::units::Instant;
 
+/// Receives the jobs of a recording.
+pub(super) trait JobSink {
+    /// Queues `job`; returns it if it does not fit.
+    fn hand_job(&self, job: Job) -> Option<Job>;
+
+    /// Counts entries or lines that could not be queued.
+    fn note_lost(&self, count: u64);
+}
+
 /// Receives JSON lines, each as a message of its own.
 #[derive(Debug)]
-pub(super) struct EventLines {
-    recorder: Recorder,
+pub(super) struct EventLines<R> {
+    recorder: R,
     line: Vec<u8>,
 }
 
-impl EventLines {
-    pub(super) const fn new(recorder: Recorder) -> Self {
+/// The time of an event, by its line; the start of the floor's clock if it has none.
+pub(super) fn time_of(line: &[u8]) -> Instant {
+    Head::read(line).ok().and_then(|head| head.at()).unwrap_or(Instant::START)
+}
+
+impl<R: JobSink> EventLines<R> {
+    pub(super) const fn new(recorder: R) -> Self {
         Self { recorder, line: Vec::new() }
     }
 
@@ -24,8 +37,7 @@ impl EventLines {
         if line.is_empty() {
             return Ok(());
         }
-        let at = Head::read(&line).ok().and_then(|head| head.at()).unwrap_or(Instant::START);
-        if self.recorder.hand_job(Job::Event(at, line)).is_some() {
+        if self.recorder.hand_job(Job::Event(time_of(&line), line)).is_some() {
             self.recorder.note_lost(1);
             return Err(io::Error::other("the recording does not keep up"));
         }
@@ -33,7 +45,7 @@ impl EventLines {
     }
 }
 
-impl Write for EventLines {
+impl<R: JobSink> Write for EventLines<R> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         for part in bytes.split_inclusive(|&byte| byte == b'\n') {
             match part.split_last() {

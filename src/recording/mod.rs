@@ -10,17 +10,21 @@ mod entry;
 mod events;
 mod messages;
 mod order;
+mod pack;
 mod packets;
 mod parts;
 mod reader;
 mod recorder;
 mod records;
 mod replay;
+mod restored;
+mod switch;
 mod tap;
 #[cfg(test)]
 mod tests;
 mod timeline;
 mod transport;
+mod trim;
 mod writer;
 
 use std::io;
@@ -37,9 +41,11 @@ pub(crate) use recorder::read_layout;
 pub use recorder::{Recorded, Recorder, WhenBehind};
 pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
+pub use switch::RecordingSwitch;
 pub(crate) use tap::{Entries, EntrySink, tapped};
 pub use timeline::{Mark, MarkKind, Timeline};
 pub use transport::Transport;
+pub use trim::Trimmed;
 
 /// Topics of a recording.
 pub(crate) const PACKETS: &str = "/underfoot/packets";
@@ -52,14 +58,21 @@ const EVENTS: &str = "/underfoot/events";
 
 const TOPICS: [&str; 7] = [PACKETS, SILENCE, REQUESTS, LAYOUTS, GAPS, END, EVENTS];
 
-/// Name of the metadata record, and version of the recording format.
+/// Name of the metadata record, and version of new recordings.
 const METADATA: &str = "underfoot";
-const VERSION: &str = "1";
+const VERSION: &str = "2";
+
+/// The versions that can be read: in the first, no packet has its readings split into bytes.
+const READABLE: [&str; 2] = ["1", VERSION];
 
 /// Key and value of the metadata that mark recordings of versions that learn the sensors' noise. Recordings of
 /// earlier versions lack them.
 const NOISE: &str = "noise";
 const LEARNT: &str = "learnt";
+
+/// Key of the metadata for the beginning of the part on display, in microseconds of the floor's clock; without it,
+/// all is displayed.
+const BEGINS: &str = "begins_us";
 
 /// Names of the attachments.
 const FLOOR: &str = "floor.ron";
@@ -85,6 +98,9 @@ pub enum RecordingError {
         /// The missing or faulty part.
         why: String,
     },
+    /// A recording can't begin now.
+    #[error("{0}")]
+    Switch(&'static str),
     /// The floor or the layout can't be stored, or the stored one can't be read.
     #[error(transparent)]
     Diagnostics(#[from] Diagnostics),

@@ -12,11 +12,12 @@ use super::parts::{Attachment, metadata};
 use super::recorder::read_layout;
 use super::records::{RawRecord, ReadState, RecordingBytes, Records};
 use super::replay::{ReplaySource, Speed};
-use super::{FLOOR, LAYOUT, LEARNT, METADATA, NOISE, RecordingError, VERSION};
+use super::{BEGINS, FLOOR, LAYOUT, LEARNT, METADATA, NOISE, READABLE, RecordingError};
 use crate::floor::{Floor, FloorFile};
 use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
+use crate::units::Instant;
 use underfoot_format::file::open_ordinary;
 
 /// A recording that is open for replay.
@@ -25,6 +26,7 @@ pub struct Recording {
     floor: Floor,
     layout: Layout,
     method: Method,
+    begins: Option<Instant>,
     parts: Ordered,
 }
 
@@ -34,6 +36,8 @@ pub(super) struct Opening {
     floor: Option<String>,
     layout: Option<String>,
     method: Option<Method>,
+    /// Beginning of the part on display.
+    begins: Option<Instant>,
     /// Whether the recording program learnt the sensors' noise; earlier versions used newtons unprocessed.
     learnt: bool,
     /// Whether repeated readings are normal.
@@ -72,7 +76,7 @@ impl Recording {
         let floor = Floor { file: FloorFile::new("the recording's floor"), noiseless, ..floor };
         let layout = read_layout(&opening.layout.unwrap_or_default(), &floor.geometry)?;
         let method = opening.method.unwrap_or_default();
-        Ok(Self { floor, layout, method, parts })
+        Ok(Self { floor, layout, method, begins: opening.begins, parts })
     }
 
     /// The recorded floor.
@@ -91,6 +95,13 @@ impl Recording {
     #[must_use]
     pub const fn method(&self) -> Method {
         self.method
+    }
+
+    /// Beginning of the part on display, of a [trimmed](Self::trim) recording. Its events before that are not meant to
+    /// be seen: they bring the floor into the state that it had then.
+    #[must_use]
+    pub const fn begins(&self) -> Option<Instant> {
+        self.begins
     }
 
     pub(super) fn into_parts(self) -> Ordered {
@@ -204,8 +215,9 @@ impl Opening {
                     return Ok(());
                 };
                 let version = entries.get("version").copied().unwrap_or_default();
-                if version != VERSION {
-                    return Err(format!("it is of version {version:.32?}, this program reads {VERSION}"));
+                if !READABLE.contains(&version) {
+                    let readable = READABLE.join(" and ");
+                    return Err(format!("it is of version {version:.32?}, this program reads {readable}"));
                 }
                 let method = entries.get("method").copied().unwrap_or_default();
                 let known =
@@ -214,6 +226,11 @@ impl Opening {
                     known
                         .ok_or_else(|| format!("feet were told apart by {method:.32?}, which is unknown"))?,
                 );
+                self.begins = match entries.get(BEGINS).map(|begins| begins.parse()) {
+                    Some(Ok(begins)) => Some(Instant::from_micros(begins)),
+                    Some(Err(_)) => return Err("the beginning in its metadata is no number".into()),
+                    None => None,
+                };
                 self.learnt = entries.get(NOISE) == Some(&LEARNT);
                 self.checksums.insert(METADATA, crc32fast::hash(data));
                 Ok(())

@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use super::RecordingError;
-use super::events::EventLines;
+use super::events::{EventLines, JobSink};
 use super::tap::{Entries, EntrySink, tapped};
-use super::writer::{Job, RecordingFile};
+use super::writer::{Job, RecordingFile, RecordingHead};
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
 use crate::schema::{self, Diagnostics, Kinds};
@@ -67,20 +67,29 @@ impl Recorder {
     ) -> Result<Recorded, RecordingError> {
         let input = input.into();
         let Some(path) = path else { return Ok(Recorded { recorder: None, input, floor, layout }) };
-        let failed = |source| RecordingError::File { path: path.into(), source };
         let floor_text = schema::write_floor(&floor);
         let floor = Floor { file: floor.file.clone(), ..schema::parse_floor(&floor_text, super::FLOOR)? };
         let (layout_text, layout) = as_kept(&layout, &floor.geometry)?;
+        let head = RecordingHead { floor: &floor_text, layout: &layout_text, method, begins: None };
+        let recorder = Self::create(path, head, behind)?;
+        let input = tapped(input, recorder.clone(), floor.geometry);
+        Ok(Recorded { recorder: Some(recorder), input, floor, layout })
+    }
+
+    /// Begins the file at `path`, and replaces an existing one.
+    pub(super) fn create(
+        path: &Path,
+        head: RecordingHead<'_>,
+        behind: WhenBehind,
+    ) -> Result<Self, RecordingError> {
+        let failed = |source| RecordingError::File { path: path.into(), source };
         let file = File::create(path).map_err(failed)?;
-        let file = RecordingFile::begin(file, path, &floor_text, &layout_text, method)
-            .map_err(|error| failed(std::io::Error::other(error)))?;
+        let file = RecordingFile::begin(file, path, head).map_err(failed)?;
         let lost = Arc::<AtomicU64>::default();
         let counter = Arc::clone(&lost);
         let worker =
             Worker::spawn("recording", move |jobs| file.write_all(jobs, &counter)).map_err(failed)?;
-        let recorder = Self { worker: Arc::new(worker), lost, behind };
-        let input = tapped(input, recorder.clone(), floor.geometry);
-        Ok(Recorded { recorder: Some(recorder), input, floor, layout })
+        Ok(Self { worker: Arc::new(worker), lost, behind })
     }
 
     /// Records events: as the lines of [`JsonSink`].
@@ -96,9 +105,10 @@ impl Recorder {
     pub fn lost(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.lost)
     }
+}
 
-    /// Queues `job`; returns it if it does not fit.
-    pub(super) fn hand_job(&self, job: Job) -> Option<Job> {
+impl JobSink for Recorder {
+    fn hand_job(&self, job: Job) -> Option<Job> {
         let mut job = self.worker.hand(job)?;
         if self.behind == WhenBehind::LeaveOut {
             return Some(job);
@@ -109,13 +119,13 @@ impl Recorder {
         }
     }
 
-    pub(super) fn note_lost(&self, count: u64) {
+    fn note_lost(&self, count: u64) {
         self.lost.fetch_add(count, Ordering::Relaxed);
     }
 }
 
 /// Span of the floor's time in one batch; the writing thread's queue holds 20 s of it.
-const BATCH: Duration = Duration::from_millis(20);
+pub(super) const BATCH: Duration = Duration::from_millis(20);
 
 impl EntrySink for Recorder {
     fn is_wanted(&self) -> bool {

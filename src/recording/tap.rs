@@ -43,6 +43,8 @@ struct Tap {
     entries_to: Box<dyn EntrySink>,
     geometry: Geometry,
     now: Instant,
+    /// Latest answer to a query of the time: it stands still from there if the receiver becomes exact.
+    answered: Instant,
     batch: Entries,
     /// Number of entries dropped since the last ones that fitted.
     left_out: u64,
@@ -56,7 +58,7 @@ pub(crate) fn tapped(
 ) -> FloorInput {
     let FloorInput { source: inner, port, replay, mut journals } = input;
     let (now, entries_to) = (inner.now(), Box::new(entries_to));
-    let tap = Shared::new(Tap { entries_to, geometry, now, batch: Vec::new(), left_out: 0 });
+    let tap = Shared::new(Tap { entries_to, geometry, now, answered: now, batch: Vec::new(), left_out: 0 });
     journals.push(Box::new(tap.clone()));
     FloorInput { source: Box::new(TappedSource { inner, tap }), port, replay, journals }
 }
@@ -107,8 +109,10 @@ impl SensorSource for TappedSource {
     }
 
     fn now(&self) -> Instant {
-        let tap = self.tap.lock();
-        if tap.entries_to.is_exact() { tap.now } else { self.inner.now() }
+        let mut tap = self.tap.lock();
+        let now = if tap.entries_to.is_exact() { tap.now } else { self.inner.now() };
+        tap.answered = tap.answered.max(now);
+        tap.answered
     }
 
     fn counters(&self) -> LinkCounters {

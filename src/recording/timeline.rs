@@ -6,7 +6,7 @@ use super::reader::Recording;
 use crate::outgoing::json::{Line, Message};
 use crate::units::Instant;
 
-/// An overview of a recording.
+/// An overview of a recording; of a trimmed one, of the part on display.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Timeline {
     /// First and last time of the recording so far.
@@ -44,15 +44,18 @@ impl Recording {
     /// Reads the whole recording. Calls `tell` from time to time and at the end with the results so far; `false` from
     /// it stops the reading.
     pub fn read_timeline(self, mut tell: impl FnMut(&Timeline) -> bool) {
+        let from = self.begins().unwrap_or(Instant::START);
         let (mut parts, mut timeline) = (self.into_parts(), Timeline::default());
         for round in 1_usize.. {
             match parts.next_part() {
                 LogPart::Entry(_, Entry::Gap(_)) => {}
                 LogPart::Entry(taken, _) => {
-                    let begins = timeline.span.map_or(taken, |(begins, _)| begins);
+                    let begins = timeline.span.map_or(taken.max(from), |(begins, _)| begins);
                     timeline.span = Some((begins, taken.max(begins)));
                 }
-                LogPart::Event(line) => timeline.marks.extend(mark(&line)),
+                LogPart::Event(line) => {
+                    timeline.marks.extend(mark(&line).filter(|mark| mark.at >= from));
+                }
                 LogPart::Whole => break,
                 LogPart::Broken(why) => {
                     timeline.broken = Some(why);

@@ -2,19 +2,20 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant as HostInstant};
 
-use mcap::records::{MessageHeader, Metadata};
-use mcap::{Attachment, McapResult, WriteOptions, Writer};
+use mcap::records::MessageHeader;
 
 use super::entry::Entry;
+use super::pack::PackedFile;
 use super::reader::known_as;
 use super::{
-    END, EVENTS, FLOOR, GAPS, LAYOUT, LAYOUTS, LEARNT, METADATA, NOISE, PACKETS, REQUESTS, SILENCE, VERSION,
+    BEGINS, END, EVENTS, FLOOR, GAPS, LAYOUT, LAYOUTS, LEARNT, METADATA, NOISE, PACKETS, REQUESTS, SILENCE,
+    VERSION,
 };
 use crate::sense::Method;
 use crate::sink::Disk;
@@ -44,9 +45,20 @@ impl Job {
     }
 }
 
+/// The content of a recording before its messages.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RecordingHead<'a> {
+    /// The floor and the layout, as texts.
+    pub(super) floor: &'a str,
+    pub(super) layout: &'a str,
+    pub(super) method: Method,
+    /// Beginning of the part on display; the messages before it only bring the floor into its state.
+    pub(super) begins: Option<Instant>,
+}
+
 /// A recording file, open for writing.
 pub(super) struct RecordingFile {
-    writer: Writer<BufWriter<File>>,
+    writer: PackedFile<BufWriter<File>>,
     disk: Disk,
     channels: BTreeMap<&'static str, u16>,
     bytes: Vec<u8>,
@@ -56,36 +68,18 @@ pub(super) struct RecordingFile {
 
 impl RecordingFile {
     /// Begins the file with the floor and the layout.
-    pub(super) fn begin(
-        file: File,
-        path: &Path,
-        floor: &str,
-        layout: &str,
-        method: Method,
-    ) -> McapResult<Self> {
+    pub(super) fn begin(file: File, path: &Path, head: RecordingHead<'_>) -> io::Result<Self> {
         let disk = Disk::of(&file, path)?;
-        // Chunks are assembled in memory: the file grows by whole chunks only and is never patched.
-        let options = WriteOptions::new()
-            .compression(None)
-            .disable_seeking(true)
-            .profile("underfoot")
-            .library(concat!("underfoot ", env!("CARGO_PKG_VERSION")));
-        let mut writer = options.create(BufWriter::new(file))?;
-        let metadata = [("version", VERSION), ("method", known_as(method)), (NOISE, LEARNT)]
-            .map(|(key, value)| (key.into(), value.into()));
-        writer.write_metadata(&Metadata { name: METADATA.into(), metadata: metadata.into() })?;
-        for (name, text) in [(FLOOR, floor), (LAYOUT, layout)] {
-            let data = text.as_bytes().into();
-            let media_type = "text/plain".into();
-            writer.attach(&Attachment {
-                log_time: 0,
-                create_time: 0,
-                name: name.into(),
-                media_type,
-                data,
-            })?;
+        let library = concat!("underfoot ", env!("CARGO_PKG_VERSION"));
+        let mut writer = PackedFile::begin(BufWriter::new(file), "underfoot", library)?;
+        let begins = head.begins.map(|at| at.micros().to_string());
+        let entries = [("method", known_as(head.method)), (NOISE, LEARNT), ("version", VERSION)];
+        let begins = begins.as_deref().map(|begins| (BEGINS, begins));
+        writer.metadata(METADATA, &begins.into_iter().chain(entries).collect::<Vec<_>>())?;
+        for (name, text) in [(FLOOR, head.floor), (LAYOUT, head.layout)] {
+            writer.attach(name, text.as_bytes())?;
         }
-        let schema = writer.add_schema("underfoot.Event", "jsonschema", EVENT_SCHEMA.as_bytes())?;
+        let schema = writer.schema("underfoot.Event", "jsonschema", EVENT_SCHEMA.as_bytes());
         let mut channels = BTreeMap::new();
         for (topic, schema, encoding) in [
             (PACKETS, 0, "underfoot.packet"),
@@ -96,35 +90,45 @@ impl RecordingFile {
             (END, 0, "underfoot.empty"),
             (EVENTS, schema, "json"),
         ] {
-            channels.insert(topic, writer.add_channel(schema, topic, encoding, &BTreeMap::new())?);
+            channels.insert(topic, writer.channel(schema, topic, encoding));
         }
         writer.flush()?;
         Ok(Self { writer, disk, channels, bytes: Vec::new(), number: 0 })
     }
 
-    fn write(&mut self, job: &Job) -> McapResult<()> {
+    fn write(&mut self, job: &Job) -> io::Result<()> {
         match job {
-            Job::Entries(entries) => {
-                for (taken, entry) in entries {
-                    self.bytes.clear();
-                    entry.write(&mut self.bytes);
-                    self.put(entry.topic(), self.number, *taken, entry.came(*taken))?;
-                    self.number = self.number.wrapping_add(1);
-                }
-            }
-            Job::Event(at, line) => {
-                self.bytes.clone_from(line);
-                self.put(EVENTS, 0, *at, *at)?;
-            }
+            Job::Entries(entries) => entries.iter().try_for_each(|(taken, entry)| self.entry(*taken, entry)),
+            Job::Event(at, line) => self.event(*at, line),
         }
+    }
+
+    /// Adds an entry that the server took at `taken`, with the next number.
+    pub(super) fn entry(&mut self, taken: Instant, entry: &Entry) -> io::Result<()> {
+        self.bytes.clear();
+        entry.write_split(&mut self.bytes);
+        self.put(entry.topic(), self.number, taken, entry.came(taken))?;
+        self.number = self.number.wrapping_add(1);
         Ok(())
     }
 
-    fn put(&mut self, topic: &str, sequence: u32, taken: Instant, came: Instant) -> McapResult<()> {
+    /// Adds the line of an event.
+    pub(super) fn event(&mut self, at: Instant, line: &[u8]) -> io::Result<()> {
+        self.bytes.clear();
+        self.bytes.extend(line);
+        self.put(EVENTS, 0, at, at)
+    }
+
+    /// Ends the file.
+    pub(super) fn finish(self) -> io::Result<()> {
+        self.writer.finish()
+    }
+
+    fn put(&mut self, topic: &str, sequence: u32, taken: Instant, came: Instant) -> io::Result<()> {
         let Some(&channel_id) = self.channels.get(topic) else { return Ok(()) };
         let [log_time, publish_time] = [taken, came].map(|at| at.micros().saturating_mul(1000));
         let header = MessageHeader { channel_id, sequence, log_time, publish_time };
-        self.writer.write_to_known_channel(&header, &self.bytes)
+        self.writer.message(&header, &self.bytes)
     }
 
     /// Writes jobs until all senders are dropped. A full or failed disk ends the recording, not sensing: later jobs
@@ -138,7 +142,7 @@ impl RecordingFile {
                     lost.fetch_add(job.count(), Ordering::Relaxed);
                 }),
                 Err(RecvTimeoutError::Timeout) => Ok(()),
-                Err(RecvTimeoutError::Disconnected) => break self.writer.finish().map(drop),
+                Err(RecvTimeoutError::Disconnected) => break self.finish(),
             };
             let done = done.and_then(|()| {
                 if flushed.elapsed() < FLUSH_EVERY {
@@ -146,7 +150,7 @@ impl RecordingFile {
                 }
                 flushed = HostInstant::now();
                 self.writer.flush()?;
-                Ok(self.disk.tend()?)
+                self.disk.tend()
             });
             if done.is_err() {
                 break done;

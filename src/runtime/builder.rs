@@ -24,7 +24,7 @@ use crate::layout::Layout;
 #[cfg(feature = "threads")]
 use crate::parallel::ThreadPool;
 #[cfg(feature = "record")]
-use crate::recording::{Recorded, Recorder, WhenBehind};
+use crate::recording::{Recorded, Recorder, RecordingSwitch, WhenBehind};
 use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
 use crate::serve::Neighbours;
@@ -56,6 +56,8 @@ pub struct SessionBuilder {
     sensing_threads: NonZeroUsize,
     #[cfg(feature = "record")]
     record: Option<std::path::PathBuf>,
+    #[cfg(feature = "record")]
+    switch: Option<RecordingSwitch>,
 }
 
 /// Origin of the packets.
@@ -119,6 +121,8 @@ impl SessionBuilder {
             sensing_threads: NonZeroUsize::MIN,
             #[cfg(feature = "record")]
             record: None,
+            #[cfg(feature = "record")]
+            switch: None,
         }
     }
 
@@ -239,6 +243,14 @@ impl SessionBuilder {
         self
     }
 
+    /// Lets `switch` begin and end recordings while the floor runs.
+    #[cfg(feature = "record")]
+    #[must_use]
+    pub fn recording_switch(mut self, switch: RecordingSwitch) -> Self {
+        self.switch = Some(switch);
+        self
+    }
+
     /// Declares that the source's readings have no noise, as those that an app generates. Repeated readings are then
     /// normal, and controls with the guard `HoldToRun` work all the same. Equivalent to `noiseless` in the floor
     /// file.
@@ -297,6 +309,14 @@ impl SessionBuilder {
         if let Some(recorder) = recorder {
             self.sinks.push(recorder.events()?);
         }
+        #[cfg(feature = "record")]
+        let input = match &self.switch {
+            Some(switch) => {
+                self.sinks.push(switch.events()?);
+                switch.wrap(input, &floor, &layout, self.method)
+            }
+            None => input,
+        };
         let queue = Arc::new(EventQueue::new(self.every_change));
         let (held_input, held) = triple_buffer(&HeldNow::default());
         let held = Arc::new(HeldWatch::new(held));

@@ -24,6 +24,7 @@ mod periodic;
 mod priority;
 mod report;
 mod silent;
+mod since;
 #[cfg(feature = "net")]
 mod tuio;
 #[cfg(feature = "net")]
@@ -57,6 +58,7 @@ pub use mono::write_mono;
 pub use osc::OscSink;
 pub use report::Report;
 pub use silent::SilentSink;
+pub use since::Since;
 #[cfg(feature = "net")]
 pub use tuio::{TuioSink, TuioVersion};
 #[cfg(all(unix, feature = "net"))]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use underfoot::feel::{RendererConfig, renderer};
 use underfoot::recording::{Progress, Recording, Speed};
 use underfoot::serve::Server;
-use underfoot::sink::{ActuatorSink, SinkError};
+use underfoot::sink::{ActuatorSink, Since, SinkError};
 use underfoot::units::Instant;
 
 use super::failure::Failure;
@@ -30,9 +30,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let recording = Recording::open(&args.file)?;
     let floor = recording.floor().clone();
     let (layout, method) = (recording.layout().clone(), recording.method());
+    let begins = recording.begins();
     let source = recording.source(args.speed);
     let progress = source.progress();
     let outputs = args.outputs.open_patiently(&floor.geometry)?;
+    let outputs = Since::new(outputs, begins.unwrap_or(Instant::START));
+    source.transport().hurry_to(begins.unwrap_or(Instant::START));
     // The renderer only repeats the reports of the mute state; its samples are not used.
     let (feel, _renderer) = renderer(RendererConfig::of(&floor, RATE));
     let mut server = Server::new(&floor, layout, method, source)

@@ -2,6 +2,7 @@
 
 mod build;
 mod files;
+mod packed;
 
 use arrayvec::ArrayVec;
 
@@ -14,7 +15,11 @@ use crate::wire::{ControlMessage, Readings, Request, SensorPacket};
 fn again(entry: &Entry) -> Option<Entry> {
     let mut bytes = Vec::new();
     entry.write(&mut bytes);
-    Entry::read(entry.topic(), &bytes, Instant::from_micros(7), &decoder())
+    let read = |bytes: &[u8]| Entry::read(entry.topic(), bytes, Instant::from_micros(7), &decoder());
+    let mut split = Vec::new();
+    entry.write_split(&mut split);
+    assert_eq!(read(&split), read(&bytes), "both forms");
+    read(&bytes)
 }
 
 #[test]

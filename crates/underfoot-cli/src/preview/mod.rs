@@ -6,6 +6,7 @@ mod feeds;
 mod followed;
 mod joined;
 mod player;
+mod visits;
 
 use std::net::SocketAddr;
 use std::panic::{self, AssertUnwindSafe};
@@ -20,7 +21,7 @@ use clap::Args as _;
 use underfoot::feel::Renderer;
 use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
-use underfoot::recording::{Recording, TappedPackets};
+use underfoot::recording::{Recording, RecordingSwitch, TappedPackets};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
@@ -41,6 +42,7 @@ use self::feeds::{Mouse, SignalScopes, ToWindow, shoe, stop_and_wait};
 use self::followed::FollowedFeed;
 use self::joined::Joined;
 use self::player::ShownRecording;
+use self::visits::Visits;
 use super::actuate::ActuateArgs;
 use super::failure::Failure;
 use super::fault_args::say_what_is_rehearsed;
@@ -173,10 +175,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .sink(ToWindow { events, missed: 0 })
         .actuators(actuators)
         .latency(latency.clone());
-    if let Some(path) = &args.record {
-        session = session.record(path);
-    }
+    let switch = RecordingSwitch::default();
+    session = match &args.record {
+        Some(path) => session.record(path),
+        None => session.recording_switch(switch.clone()),
+    };
     let session = session.start()?;
+    let visits = match &args.record {
+        Some(_) => Visits::off("All is recorded, because the program was started with --record"),
+        None => Visits::of_floor(session.clone(), switch.clone()),
+    };
     let signals = SignalWatch::start(&session)?;
 
     let desk = Desk { session: session.clone(), layouts };
@@ -198,6 +206,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let input = PreviewInput {
         warnings: Warnings::from(&warnings),
         scopes,
+        visit: Some(Box::new(visits)),
         latency: Some(latency),
         feet: stage.feet,
         faults: stage.faults,
@@ -212,6 +221,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     // The floor ends in order, even after a failure of the window.
     let options = args.window();
     let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &options)));
+    switch.end();
     session.stop();
     let end = end(&session);
     drop(signals);
@@ -266,6 +276,7 @@ fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
     let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
     let input = PreviewInput {
         playback: Some(Box::new(player)),
+        visit: Some(Box::new(Visits::of_recording(path))),
         ..PreviewInput::new(Arc::new(floor), layout, name, snapshots, window)
     };
     preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))

@@ -12,6 +12,7 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::recording::{Mark, MarkKind, Progress, Recording, Speed, Timeline, Transport};
 use underfoot::runtime::Session;
+use underfoot::sink::Since;
 use underfoot::units::Instant;
 use underfoot_window::preview::{
     EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels,
@@ -139,16 +140,19 @@ impl Run {
         let recording = Recording::open(path)?;
         let (floor, layout, method) =
             (recording.floor().clone(), recording.layout().clone(), recording.method());
+        let begins = recording.begins().unwrap_or(Instant::START);
         let source = recording.source(speed);
         source.transport().stay_at_the_end();
-        let (transport, progress, first) = (source.transport(), source.progress(), source.now());
+        let first = begins.max(source.now());
+        source.transport().hurry_to(first);
+        let (transport, progress) = (source.transport(), source.progress());
         let clock = source.clock();
         let input = announced(source, window.layouts.clone(), LayoutCause::Recorded);
         let session = Session::source(input, clock)
             .floor(floor.clone())
             .layout(layout.clone())
             .method(method)
-            .sink(ToWindow { events: window.events.clone(), missed: 0 })
+            .sink(Since::new(ToWindow { events: window.events.clone(), missed: 0 }, first))
             .start()?;
         let snapshots = session.take_snapshots();
         Ok(Self { session, floor, layout: Arc::new(layout), transport, progress, snapshots, first })

@@ -1,10 +1,12 @@
-//! Drawings as files, without a display: SVG with all text as outlines, and PNG.
+//! Drawings as files, without a display: SVG with all text as outlines, PNG, and animated GIF.
 
+mod film;
 mod svg;
 #[cfg(test)]
 mod tests;
 mod text;
 
+pub use film::Film;
 pub use svg::svg;
 
 use std::ops::RangeInclusive;
@@ -34,6 +36,9 @@ pub enum PictureError {
     /// The drawing has no extent, or a NaN extent.
     #[error("the drawing cannot be painted: {0}")]
     Drawing(String),
+    /// The animated picture cannot be written.
+    #[error("cannot write the animated picture: {0}")]
+    Film(#[from] gif::EncodingError),
     /// The file cannot be written.
     #[error("cannot write {path}: {source}")]
     File {
@@ -54,6 +59,12 @@ pub enum PictureError {
 /// [`PictureError::Size`] for a width outside [`WIDTHS`] or a height above them,
 /// [`PictureError::Drawing`] for a scene that was never drawn.
 pub fn png(scene: &Scene, fonts: &Fonts, width_px: u32) -> Result<Vec<u8>, PictureError> {
+    let pixels = painted(scene, fonts, width_px)?;
+    pixels.encode_png().map_err(|error| PictureError::Drawing(error.to_string()))
+}
+
+/// The pixels of the drawing, `width_px` wide.
+fn painted(scene: &Scene, fonts: &Fonts, width_px: u32) -> Result<Pixmap, PictureError> {
     let size = scene.bounds().size();
     let height = (width_px as f32 * size.y / size.x).round();
     let fits = WIDTHS.contains(&width_px) && (1.0..=*WIDTHS.end() as f32).contains(&height);
@@ -71,7 +82,7 @@ pub fn png(scene: &Scene, fonts: &Fonts, width_px: u32) -> Result<Vec<u8>, Pictu
     let scale =
         Transform::from_scale(width_px as f32 / tree.size().width(), height_px as f32 / tree.size().height());
     resvg::render(&tree, scale, &mut pixels.as_mut());
-    pixels.encode_png().map_err(|error| PictureError::Drawing(error.to_string()))
+    Ok(pixels)
 }
 
 /// Writes the drawing to `path`: as SVG if its name ends in `.svg`, otherwise as a PNG `width_px` wide.

@@ -134,3 +134,48 @@ fn fields_and_bands_change_smoothly_in_the_pixels() {
     scene.add_band([Vec2::ONE], Vec2::X, inks[0], inks[1]);
     assert_eq!(scene.marks().len(), marks);
 }
+
+/// The frames of an animated picture: left, top, width, height, and delay in hundredths of a second.
+fn frames(bytes: &[u8]) -> Vec<([u16; 4], u16)> {
+    let mut decoder = gif::DecodeOptions::new().read_info(bytes).unwrap();
+    let mut frames = Vec::new();
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        frames.push(([frame.left, frame.top, frame.width, frame.height], frame.delay));
+    }
+    frames
+}
+
+#[test]
+fn an_animated_picture_lasts_as_long_as_the_visit_and_redraws_only_what_the_foot_changes() {
+    use super::Film;
+    use std::time::Duration;
+
+    let (rest, pressed) = {
+        let (layout, geometry) = (map(), Geometry::default());
+        let drawn = |snapshot: &_| {
+            let mut scene = Scene::new();
+            let view = View { show: Show::PICTURE, ..View::new(&geometry, &layout, snapshot, &Theme::LIGHT) };
+            draw(&mut scene, &view);
+            scene
+        };
+        (drawn(&at_rest(&layout)), drawn(&pressing(&layout)))
+    };
+    let fonts = Fonts::built_in();
+    let mut film = Film::new(Vec::new(), 300);
+    // A moment of rest, drawn twice; then a foot, until the end.
+    for (scene, at_ms) in [(&rest, 0), (&rest, 80), (&pressed, 1234), (&rest, 2000)] {
+        film.add(scene, &fonts, Duration::from_millis(at_ms)).unwrap();
+    }
+    let bytes = film.finish(Duration::from_secs(3)).unwrap();
+    let frames = frames(&bytes);
+    let delays: Vec<u16> = frames.iter().map(|(_, delay)| *delay).collect();
+    assert_eq!(delays, [123, 77, 100]);
+    let [all, foot, lifted] = frames.iter().map(|(area, _)| *area).collect::<Vec<_>>()[..] else {
+        panic!("{frames:?}");
+    };
+    assert_eq!((all[0], all[1], all[2]), (0, 0, 300));
+    assert_eq!(foot, lifted);
+    assert!(foot[3] < all[3] || foot[2] < all[2], "{foot:?} of {all:?}");
+    let empty = Film::new(Vec::new(), 300).finish(Duration::ZERO);
+    assert!(matches!(empty, Err(PictureError::Drawing(_))));
+}

@@ -24,6 +24,7 @@ use super::shown::ShownFloor;
 use super::status::StatusBar;
 use super::time_line::TimeLine;
 use super::turns::Turns;
+use super::visit::VisitBar;
 use super::walks::Walks;
 use super::watch::FloorWatch;
 use underfoot_scene::scene;
@@ -47,6 +48,8 @@ pub(super) struct App {
     status: StatusBar,
     /// `None` unless a recording is on display.
     pub(super) time_line: Option<TimeLine>,
+    /// `None` where nothing can be recorded or exported.
+    pub(super) visit: Option<VisitBar>,
     /// `None` unless the floor is simulated.
     pub(super) rehearsal: Option<Rehearsal>,
     /// `None` where people cannot be sent onto the floor.
@@ -91,6 +94,7 @@ impl App {
             top_bar: TopBar { choices: input.choices, lists_warnings: false },
             status: StatusBar::new(input.latency),
             time_line: input.playback.map(TimeLine::new),
+            visit: input.visit.map(VisitBar::new),
             rehearsal: input.faults.map(|switch| Rehearsal::new(switch, &floor)),
             walks: input.people.map(Walks::new),
             tuner: Tuner::new(input.effects),
@@ -162,6 +166,9 @@ impl App {
         if let Some(tuner) = &mut self.tuner {
             tuner.panel(ui, &theme, &self.shown, self.selection.tile());
         }
+        if let Some(visit) = &mut self.visit {
+            visit.show(ui, &theme, self.time_line.as_ref().and_then(TimeLine::part));
+        }
         problems(ui, &theme, &self.shown.messages);
         if self.top_bar.lists_warnings {
             warnings(ui, &theme, &self.shown.messages.warnings);
@@ -204,6 +211,9 @@ impl App {
         self.appearance.handle_keys(ui, &mut self.shown.messages);
         self.appearance.enlarge(ui.ctx());
         handle_quit_key(ui);
+        if let Some(visit) = &mut self.visit {
+            visit.follow(ui, self.shown.snapshot());
+        }
         // In Design mode, `Designer::keys_anywhere` saves, after the text fields.
         if let Some(designer) = self.designer.as_mut().filter(|designer| !designer.is_open) {
             designer.keys_to_save(ui);
@@ -236,6 +246,14 @@ impl App {
             (None, None) => None,
         };
         self.window.title.show(ctx, subject.as_deref());
+    }
+
+    /// Shows the button that records, if anything can be recorded.
+    pub(super) fn show_visit_button(&mut self, ui: &mut Ui) {
+        let theme = self.appearance.theme();
+        if let Some(visit) = &mut self.visit {
+            visit.button(ui, &theme, self.shown.snapshot());
+        }
     }
 
     /// Keeps the window open while edits would be lost, once it has a request to close.

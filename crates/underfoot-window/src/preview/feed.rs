@@ -8,6 +8,7 @@ use glam::Vec2;
 use super::channels::WindowChannels;
 use super::design::DesignInput;
 use super::playback::Playback;
+use super::visit::VisitDesk;
 use underfoot::engine::Snapshot;
 use underfoot::feel::{Effect, Gesture};
 use underfoot::floor::{Floor, TileId};
@@ -49,6 +50,8 @@ pub struct PreviewInput {
     pub feet: Option<Box<dyn FootSink>>,
     /// Playback control of the recording; `None` for a floor.
     pub playback: Option<Box<dyn Playback>>,
+    /// Records visits and exports them; `None` where neither is possible.
+    pub visit: Option<Box<dyn VisitDesk>>,
     /// Fault injection for a simulated floor; `None` for a real floor or a recording.
     pub faults: Option<FaultSwitch>,
     /// Sends people onto a simulated floor; `None` for a real floor or a recording.
@@ -88,6 +91,7 @@ impl PreviewInput {
             latency: None,
             feet: None,
             playback: None,
+            visit: None,
             faults: None,
             people: None,
             packets: None,

@@ -43,6 +43,7 @@ mod touches;
 mod trace;
 mod trails;
 mod turns;
+mod visit;
 mod walks;
 mod watch;
 mod zoom;
@@ -55,6 +56,7 @@ pub use feed::{
 };
 pub use playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 pub use projection::ProjectionOptions;
+pub use visit::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
 
 use std::path::PathBuf;
 

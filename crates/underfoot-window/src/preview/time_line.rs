@@ -47,6 +47,12 @@ impl TimeLine {
         Self { playback, state: PlaybackState::default(), held_s: None, stretch_from_s: None }
     }
 
+    /// The part that is marked, in seconds; `None` without one.
+    pub(super) fn part(&self) -> Option<(f64, f64)> {
+        let all = (0.0, self.state.length_s);
+        self.state.repeats.filter(|part| *part != all)
+    }
+
     fn go_to(&mut self, at_s: f64) {
         self.playback.lead(PlaybackOrder::GoTo(at_s.clamp(0.0, self.state.length_s)));
     }

@@ -130,6 +130,7 @@ impl App {
             self.projection.toggle();
         }
         self.feet.stance_button(ui, &self.shown);
+        self.show_visit_button(ui);
     }
 }
 

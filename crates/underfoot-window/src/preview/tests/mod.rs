@@ -53,8 +53,8 @@ pub(super) fn event(at_ms: u64, id: &str) -> WidgetEvent {
 }
 
 /// A window and the program's ends of its channels.
-struct Room {
-    window: Harness<'static, App>,
+pub(super) struct Room {
+    pub(super) window: Harness<'static, App>,
     snapshots: triple_buffer::Input<Snapshot>,
     events: SyncSender<EventNews>,
     layouts: SyncSender<LayoutNews>,
@@ -87,7 +87,7 @@ impl ScopeFeed for Silence {
 }
 
 impl Room {
-    fn simulated() -> Self {
+    pub(super) fn simulated() -> Self {
         Self::of(true, 1280.0, 800.0)
     }
 
@@ -139,7 +139,7 @@ impl Room {
         self.events.send(EventNews::Event(event)).unwrap();
     }
 
-    fn run(&mut self, frames: usize) {
+    pub(super) fn run(&mut self, frames: usize) {
         self.window.run_steps(frames);
     }
 
@@ -210,7 +210,7 @@ impl Room {
         (foot(false), foot(true))
     }
 
-    fn says(&self, text: &str) -> bool {
+    pub(super) fn says(&self, text: &str) -> bool {
         self.window.query_all_by_label_contains(text).next().is_some()
     }
 }

@@ -1,8 +1,8 @@
-//! `underfoot export`: a recording as tables.
+//! A recording as tables: forces, contacts and events.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -13,27 +13,26 @@ use underfoot::serve::{Ended, Server};
 use underfoot::sink::{EventSink, Report};
 use underfoot::source::{FloorInput, SourceError};
 
-use super::failure::Failure;
-use super::replay::whole;
+use super::super::failure::Failure;
+use super::super::replay::whole;
+use super::part::RecordedPart;
+use super::{Exported, Tell};
 
-/// Options of `underfoot export`.
-#[derive(clap::Args, Debug)]
-pub(crate) struct Args {
-    /// The recording, as `underfoot run --record` writes it.
-    file: PathBuf,
-    /// Folder for forces.csv (which `underfoot sense` reads), contacts.csv and events.csv.
-    #[arg(short, long, value_name = "DIR")]
-    out: PathBuf,
-}
-
-/// Writes the tables; fails at the end if the recording is incomplete.
-pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    std::fs::create_dir_all(&args.out).map_err(|error| Failure::File(args.out.clone(), error))?;
-    forces(&args.file, &args.out.join("forces.csv"))?;
-    events(&args.file, &args.out.join("events.csv"))?;
-    let ended = contacts(&args.file, &args.out.join("contacts.csv"));
-    outln!("Forces, contacts and events are in {}.", args.out.display());
-    ended
+/// Writes the tables of a part into a folder; fails at the end if the recording is incomplete.
+pub(super) fn write(
+    file: &Path,
+    folder: &Path,
+    part: &RecordedPart,
+    tell: Tell<'_>,
+) -> Result<Exported, Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::File(folder.into(), error))?;
+    // Each of the two replays is half of the work; the lines of events take no time.
+    let mut first = |share: f64| tell(0.5 * share);
+    if forces(file, &folder.join("forces.csv"), part, &mut first)? == Exported::Stopped {
+        return Ok(Exported::Stopped);
+    }
+    events(file, &folder.join("events.csv"), part)?;
+    contacts(file, &folder.join("contacts.csv"), part, &mut |share| tell(0.5 + 0.5 * share))
 }
 
 fn create(path: &Path) -> Result<BufWriter<File>, Failure> {
@@ -41,7 +40,7 @@ fn create(path: &Path) -> Result<BufWriter<File>, Failure> {
 }
 
 /// Writes each frame with all loaded tiles; a frame without load gets a line for its first tile.
-fn forces(file: &Path, to: &Path) -> Result<(), Failure> {
+fn forces(file: &Path, to: &Path, part: &RecordedPart, tell: Tell<'_>) -> Result<Exported, Failure> {
     let failed = |error| Failure::File(to.into(), error);
     let recording = Recording::open(file)?;
     let floor = recording.floor().clone();
@@ -56,7 +55,16 @@ fn forces(file: &Path, to: &Path) -> Result<(), Failure> {
             Err(SourceError::Ended) => break,
             Err(error) => return Err(error.into()),
         }
+        if part.is_over(source.now()) {
+            break;
+        }
+        if !tell(part.share(source.now())) {
+            return Ok(Exported::Stopped);
+        }
         while let Some(frame) = assembler.ready() {
+            if !part.holds(frame.at) {
+                continue;
+            }
             let is_loaded = |forces: &[f32; 4]| forces.iter().any(|force| *force != 0.0 && force.is_finite());
             let is_empty = !frame.forces.iter().any(is_loaded);
             for (index, (tile, forces)) in floor.geometry.tiles().zip(&frame.forces).enumerate() {
@@ -69,11 +77,12 @@ fn forces(file: &Path, to: &Path) -> Result<(), Failure> {
             }
         }
     }
-    out.flush().map_err(failed)
+    out.flush().map_err(failed)?;
+    Ok(Exported::Whole)
 }
 
 /// Writes the recorded events of controls.
-fn events(file: &Path, to: &Path) -> Result<(), Failure> {
+fn events(file: &Path, to: &Path, part: &RecordedPart) -> Result<(), Failure> {
     const FIELDS: [&str; 8] = ["t_s", "id", "event", "value", "force_n", "x_m", "y_m", "contact"];
     let failed = |error| Failure::File(to.into(), error);
     let mut out = create(to)?;
@@ -81,7 +90,8 @@ fn events(file: &Path, to: &Path) -> Result<(), Failure> {
     // The replay of the contacts reports a break in the recording.
     for line in Recording::open(file)?.events().map_while(Result::ok) {
         let Ok(event) = serde_json::from_slice::<Value>(&line) else { continue };
-        if event.get("id").is_none() {
+        let at_s = event.get("t_s").and_then(Value::as_f64);
+        if event.get("id").is_none() || at_s.is_some_and(|at_s| !part.holds_s(at_s)) {
             continue;
         }
         let fields = FIELDS.map(|name| match event.get(name) {
@@ -96,7 +106,7 @@ fn events(file: &Path, to: &Path) -> Result<(), Failure> {
 }
 
 /// Writes the contacts of each frame.
-fn contacts(file: &Path, to: &Path) -> Result<(), Failure> {
+fn contacts(file: &Path, to: &Path, part: &RecordedPart, tell: Tell<'_>) -> Result<Exported, Failure> {
     let failed = |error| Failure::File(to.into(), error);
     let recording = Recording::open(file)?;
     let floor = recording.floor().clone();
@@ -106,28 +116,39 @@ fn contacts(file: &Path, to: &Path) -> Result<(), Failure> {
     let mut out = create(to)?;
     writeln!(out, "t_s,id,x_m,y_m,force_n,x_velocity_m_s,y_velocity_m_s,ambiguous").map_err(failed)?;
     let rows = Arc::<Mutex<Vec<u8>>>::default();
-    let mut server =
-        Server::new(&floor, layout, method, source).with_events(Box::new(ContactRows(Arc::clone(&rows))));
+    let mut server = Server::new(&floor, layout, method, source)
+        .with_events(Box::new(ContactRows { rows: Arc::clone(&rows), part: *part }));
     loop {
         let ended = server.turn()?;
         let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
         out.write_all(&rows).map_err(failed)?;
         rows.clear();
-        if ended == Ended::Yes {
+        drop(rows);
+        if ended == Ended::Yes || part.is_over(server.engine().now()) {
             break;
+        }
+        if !tell(part.share(server.engine().now())) {
+            return Ok(Exported::Stopped);
         }
     }
     out.flush().map_err(failed)?;
-    whole(&progress)
+    whole(&progress)?;
+    Ok(Exported::Whole)
 }
 
-/// Collects contacts as lines of a table.
-struct ContactRows(Arc<Mutex<Vec<u8>>>);
+/// Collects the contacts of a part as lines of a table.
+struct ContactRows {
+    rows: Arc<Mutex<Vec<u8>>>,
+    part: RecordedPart,
+}
 
 impl EventSink for ContactRows {
     fn report(&mut self, report: &Report<'_>) {
         let Report::Contacts(at, contacts) = report else { return };
-        let mut rows = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !self.part.holds(*at) {
+            return;
+        }
+        let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
         for contact in contacts.iter() {
             let (at_s, id, force) = (at.secs(), contact.id.0, contact.force.0);
             let (centroid, velocity, ambiguous) = (contact.centroid, contact.velocity, contact.ambiguous);

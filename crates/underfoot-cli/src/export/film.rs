@@ -1,0 +1,72 @@
+//! A recording as an animated picture.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+use std::time::Duration;
+
+use underfoot::engine::Snapshot;
+use underfoot::recording::{Recording, Speed};
+use underfoot::serve::{Ended, Server};
+use underfoot_scene::picture::{Film, PictureError};
+use underfoot_scene::scene::{self, Scene, Show, Theme, View};
+
+use super::super::failure::Failure;
+use super::super::fonts::fonts;
+use super::super::replay::whole;
+use super::part::RecordedPart;
+use super::{Exported, Tell};
+
+/// Time from one drawing to the next: viewers of GIF files show shorter ones too slowly or not at all on slow
+/// machines, and feet still move smoothly.
+const STEP: Duration = Duration::from_millis(80);
+
+/// Writes the floor of a part as a GIF file, drawn as the window draws it; fails at the end if the recording is
+/// incomplete.
+pub(super) fn write(
+    file: &Path,
+    to: &Path,
+    width_px: u32,
+    part: &RecordedPart,
+    tell: Tell<'_>,
+) -> Result<Exported, Failure> {
+    let failed = |error| Failure::File(to.into(), error);
+    let recording = Recording::open(file)?;
+    let floor = recording.floor().clone();
+    let (layout, method) = (recording.layout().clone(), recording.method());
+    let source = recording.source(Speed::Max);
+    let progress = source.progress();
+    let mut server = Server::new(&floor, layout, method, source);
+    let mut film = Film::new(BufWriter::new(File::create(to).map_err(failed)?), width_px);
+    let (mut scene, mut snapshot, mut next) = (Scene::new(), Snapshot::default(), part.from);
+    loop {
+        let ended = server.turn()?;
+        let now = server.engine().now();
+        if ended == Ended::Yes || part.is_over(now) {
+            break;
+        }
+        if !tell(part.share(now)) {
+            return Ok(Exported::Stopped);
+        }
+        if now >= next {
+            server.snapshot(&mut snapshot);
+            let view = View {
+                show: Show::PICTURE,
+                ..View::new(&floor.geometry, server.engine().layout(), &snapshot, &Theme::LIGHT)
+            };
+            scene::draw(&mut scene, &view);
+            film.add(&scene, fonts(), now.since(part.from))?;
+            // A floor that was silent for a while has no drawings of that time.
+            while next <= now {
+                next = next + STEP;
+            }
+        }
+    }
+    let end = server.engine().now().min(part.to).since(part.from);
+    let out = film.finish(end)?;
+    out.into_inner()
+        .and_then(|file| Ok(file.sync_all()?))
+        .map_err(|error| Failure::Picture(PictureError::File { path: to.into(), source: error.into() }))?;
+    whole(&progress)?;
+    Ok(Exported::Whole)
+}

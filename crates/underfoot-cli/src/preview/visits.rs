@@ -1,0 +1,237 @@
+//! Visits recorded, saved and exported for the window, on a thread of their own.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command as Program, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant as HostInstant};
+
+use underfoot::engine::Snapshot;
+use underfoot::recording::RecordingSwitch;
+use underfoot::runtime::Session;
+use underfoot::serve::Command;
+use underfoot_window::preview::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
+
+use super::super::export::{Exported, FILM_WIDTH, Form, RecordedPart, export};
+use super::super::failure::Failure;
+
+/// Maximum number of commands that wait: a person's clicks during an export.
+const ORDERS_WAITING: usize = 64;
+
+/// Maximum wait for the tare in use.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// The window's end of the thread.
+pub(super) struct Visits {
+    orders: SyncSender<VisitOrder>,
+    shared: Arc<Shared>,
+}
+
+/// State that the thread and the window share.
+#[derive(Default)]
+struct Shared {
+    state: Mutex<VisitState>,
+    /// File and beginning of the recording in progress.
+    recording: Mutex<Option<(PathBuf, HostInstant)>>,
+    stops_export: AtomicBool,
+}
+
+impl Shared {
+    fn state(&self) -> MutexGuard<'_, VisitState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn recording(&self) -> MutexGuard<'_, Option<(PathBuf, HostInstant)>> {
+        self.recording.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Length and size of the recording in progress.
+    fn size(&self) -> Option<VisitSize> {
+        let recording = self.recording();
+        let (path, begun) = recording.as_ref()?;
+        Some(VisitSize { length_s: begun.elapsed().as_secs_f64(), bytes: length(path) })
+    }
+}
+
+impl Visits {
+    /// Records the floor of `session` by `switch`.
+    pub(super) fn of_floor(session: Session, switch: RecordingSwitch) -> Self {
+        let folder = std::env::temp_dir();
+        let file = folder.join(format!("underfoot-visit-{}.mcap", std::process::id()));
+        Self::start(VisitState::default(), file, Some((session, switch)))
+    }
+
+    /// Exports the recording at `path`, of this length.
+    pub(super) fn of_recording(path: &Path) -> Self {
+        let kept = Some(VisitSize { length_s: 0.0, bytes: length(path) });
+        let off = Some("A recording is shown".to_owned());
+        Self::start(VisitState { kept, off, ..VisitState::default() }, path.into(), None)
+    }
+
+    /// Records nothing, for this reason.
+    pub(super) fn off(why: &str) -> Self {
+        let off = Some(why.to_owned());
+        Self::start(VisitState { off, ..VisitState::default() }, PathBuf::new(), None)
+    }
+
+    fn start(state: VisitState, file: PathBuf, floor: Option<(Session, RecordingSwitch)>) -> Self {
+        let shared = Arc::new(Shared { state: Mutex::new(state), ..Shared::default() });
+        let (orders, received) = sync_channel(ORDERS_WAITING);
+        let clerk = Clerk { file, floor, shared: Arc::clone(&shared) };
+        thread::spawn(move || clerk.work(&received));
+        Self { orders, shared }
+    }
+}
+
+impl VisitDesk for Visits {
+    fn state(&mut self) -> VisitState {
+        let recording = self.shared.size();
+        VisitState { recording, ..self.shared.state().clone() }
+    }
+
+    fn lead(&mut self, order: VisitOrder) {
+        if matches!(order, VisitOrder::StopExport) {
+            self.shared.stops_export.store(true, Ordering::Relaxed);
+        } else if self.orders.try_send(order).is_err() {
+            self.shared.state().told = Some("Too much is asked at once: wait for the export".into());
+        }
+    }
+}
+
+/// Carries out the commands.
+struct Clerk {
+    /// The recording: the last one of the floor, or the one on display.
+    file: PathBuf,
+    /// `None` for a recording.
+    floor: Option<(Session, RecordingSwitch)>,
+    shared: Arc<Shared>,
+}
+
+impl Clerk {
+    fn work(mut self, orders: &Receiver<VisitOrder>) {
+        for order in orders {
+            let told = match order {
+                VisitOrder::Begin(snapshot) => self.begin(&snapshot).map(|()| None),
+                VisitOrder::End => {
+                    self.end();
+                    Ok(None)
+                }
+                VisitOrder::Save(to) => self.save(&to).map(Some),
+                VisitOrder::PlayAgain => self.play().map(|()| None),
+                VisitOrder::Discard => {
+                    self.discard();
+                    Ok(None)
+                }
+                VisitOrder::Export { form, to, part } => self.export(form, &to, part).map(Some),
+                VisitOrder::StopExport => Ok(None),
+            };
+            self.shared.state().told = told.unwrap_or_else(|failure| Some(failure.to_string()));
+        }
+        self.end();
+        // Closing the window must not delete a visit.
+        if self.shared.state().is_unsaved {
+            errln!("The last visit was not saved: it is in {}.", self.file.display());
+        } else {
+            self.discard();
+        }
+    }
+
+    fn begin(&mut self, snapshot: &Snapshot) -> Result<(), Failure> {
+        let Some((session, switch)) = &self.floor else { return Ok(()) };
+        if self.shared.state().is_unsaved {
+            return Err(Failure::Other("save or discard the last visit first".into()));
+        }
+        let (to, tare) = sync_channel(1);
+        let tare = session.send(Command::GiveTare(to)).then(|| tare.recv_timeout(PATIENCE).ok());
+        switch.begin(&self.file, snapshot, tare.flatten().flatten())?;
+        *self.shared.recording() = Some((self.file.clone(), HostInstant::now()));
+        let mut state = self.shared.state();
+        (state.kept, state.is_unsaved) = (None, false);
+        Ok(())
+    }
+
+    fn end(&mut self) {
+        let Some((_, switch)) = &self.floor else { return };
+        let Some(size) = self.shared.size() else { return };
+        switch.end();
+        *self.shared.recording() = None;
+        let mut state = self.shared.state();
+        state.kept = Some(VisitSize { bytes: length(&self.file), ..size });
+        state.is_unsaved = true;
+    }
+
+    /// Saves the recording; an existing file of that name stays.
+    fn save(&mut self, to: &Path) -> Result<String, Failure> {
+        let to = free(to);
+        // A rename does not reach another disk.
+        fs::copy(&self.file, &to).map_err(|error| Failure::File(to.clone(), error))?;
+        self.shared.state().is_unsaved = false;
+        Ok(format!("Saved in {}.", to.display()))
+    }
+
+    fn play(&self) -> Result<(), Failure> {
+        let failed = |error| Failure::File(self.file.clone(), error);
+        let program = std::env::current_exe().map_err(failed)?;
+        let mut window = Program::new(program);
+        window.arg("preview").arg(&self.file).stdin(Stdio::null());
+        let mut window = window.spawn().map_err(failed)?;
+        // The system keeps a process that has ended until somebody waits for it.
+        thread::spawn(move || window.wait());
+        Ok(())
+    }
+
+    /// Deletes the recording of a floor.
+    fn discard(&mut self) {
+        let mut state = self.shared.state();
+        if self.floor.is_some() && state.kept.take().is_some() {
+            state.is_unsaved = false;
+            // It may be gone already.
+            let _ = fs::remove_file(&self.file);
+        }
+    }
+
+    fn export(&self, form: VisitForm, to: &Path, part: Option<(f64, f64)>) -> Result<String, Failure> {
+        let to = free(to);
+        let form = match form {
+            VisitForm::Picture => Form::Film(FILM_WIDTH),
+            VisitForm::Recording => Form::Recording,
+            VisitForm::Tables => Form::Tables,
+        };
+        let name = to.display().to_string();
+        let shared = &self.shared;
+        shared.stops_export.store(false, Ordering::Relaxed);
+        shared.state().work = Some(VisitWork { name: name.clone(), share: 0.0 });
+        let (from_s, to_s) = part.map_or((0.0, None), |(from, to)| (from, Some(to)));
+        let exported = RecordedPart::of(&self.file, from_s, to_s).and_then(|part| {
+            export(&self.file, &part, form, &to, &mut |share| {
+                if let Some(work) = &mut shared.state().work {
+                    work.share = share;
+                }
+                !shared.stops_export.load(Ordering::Relaxed)
+            })
+        });
+        shared.state().work = None;
+        Ok(match exported? {
+            Exported::Whole => format!("Exported to {name}."),
+            Exported::Stopped => format!("The export to {name} was stopped."),
+        })
+    }
+}
+
+fn length(path: &Path) -> u64 {
+    fs::metadata(path).map_or(0, |file| file.len())
+}
+
+/// The path, or the first one like it with a number that does not exist yet.
+fn free(path: &Path) -> PathBuf {
+    let named = |number: u32| {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let ending = path.extension().map(|ending| format!(".{}", ending.to_string_lossy()));
+        path.with_file_name(format!("{stem}-{number}{}", ending.unwrap_or_default()))
+    };
+    let numbered = (2..u32::MAX).map(named);
+    std::iter::once(path.to_owned()).chain(numbered).find(|path| !path.exists()).unwrap_or_default()
+}

@@ -1,0 +1,168 @@
+//! The button that records, and the bar for the recording: save, play again, export.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use eframe::egui::accesskit::Role;
+use eframe::egui::{self, Key, Margin, Modifiers, Panel, ProgressBar, RichText, Ui, WidgetInfo};
+
+use super::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState};
+use crate::preview::style::{panel_frame, quiet, selectable};
+use underfoot::engine::Snapshot;
+use underfoot_scene::egui_painter::color;
+use underfoot_scene::scene::Theme;
+
+/// Time between frames while a clock or a progress bar moves.
+const PICTURE: Duration = Duration::from_millis(100);
+
+/// The forms of an export: name, and the ending of the file's name.
+const FORMS: [(VisitForm, &str, &str); 3] = [
+    (VisitForm::Picture, "Animated picture (GIF)", ".gif"),
+    (VisitForm::Recording, "Recording (MCAP)", ".mcap"),
+    (VisitForm::Tables, "Tables (CSV)", "-tables"),
+];
+
+/// The button, the bar, and the texts in it.
+pub(in crate::preview) struct VisitBar {
+    desk: Box<dyn VisitDesk>,
+    state: VisitState,
+    is_open: bool,
+    /// Name of the files, without their endings.
+    name: String,
+    form: VisitForm,
+}
+
+impl VisitBar {
+    pub(in crate::preview) fn new(desk: Box<dyn VisitDesk>) -> Self {
+        Self {
+            desk,
+            state: VisitState::default(),
+            is_open: false,
+            name: "visit".into(),
+            form: VisitForm::default(),
+        }
+    }
+
+    /// Takes in the state, and handles F9.
+    pub(in crate::preview) fn follow(&mut self, ui: &Ui, snapshot: &Snapshot) {
+        let was_recording = self.state.recording.is_some();
+        self.state = self.desk.state();
+        if was_recording && self.state.recording.is_none() && self.state.kept.is_some() {
+            self.is_open = true;
+        }
+        if self.state.recording.is_some() || self.state.work.is_some() {
+            ui.ctx().request_repaint_after(PICTURE);
+        }
+        if self.state.off.is_none() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::F9)) {
+            self.switch(snapshot);
+        }
+    }
+
+    fn switch(&mut self, snapshot: &Snapshot) {
+        self.desk.lead(match self.state.recording {
+            Some(_) => VisitOrder::End,
+            None => VisitOrder::Begin(Box::new(snapshot.clone())),
+        });
+    }
+
+    /// Shows the button that records; in front of it, the one that opens the bar, if there is a recording.
+    pub(in crate::preview) fn button(&mut self, ui: &mut Ui, theme: &Theme, snapshot: &Snapshot) {
+        if self.state.kept.is_some() {
+            let hint = "Save, play or export what was recorded";
+            if selectable(ui, self.is_open, "Visit", hint) {
+                self.is_open = !self.is_open;
+            }
+        }
+        let text = match &self.state.recording {
+            Some(size) => RichText::new(format!("Stop {}", written(size))).color(color(theme.fault)),
+            None => RichText::new("REC"),
+        };
+        let is_on = self.state.recording.is_some();
+        let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
+        let button = ui.add_enabled(self.state.off.is_none(), button);
+        let button = match &self.state.off {
+            Some(why) => button.on_disabled_hover_text(why),
+            None => button.on_hover_text("Record the floor; F9 does the same"),
+        };
+        if button.clicked() {
+            self.switch(snapshot);
+        }
+    }
+
+    /// Shows the bar; `part` is the part of the time line that is marked.
+    pub(in crate::preview) fn show(&mut self, ui: &mut Ui, theme: &Theme, part: Option<(f64, f64)>) {
+        let Some(kept) = self.state.kept.filter(|_| self.is_open) else { return };
+        let frame = panel_frame(theme, Margin::symmetric(14, 6));
+        Panel::bottom("visit").frame(frame).resizable(false).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(quiet(theme, format!("Visit {}", written(&kept))));
+                let name = egui::TextEdit::singleline(&mut self.name).desired_width(150.0);
+                let field = ui.add(name).on_hover_text("Name of the file, without its ending");
+                field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Name of the visit"));
+                if self.state.is_unsaved {
+                    self.save_buttons(ui);
+                }
+                self.export_buttons(ui, part);
+            });
+            if let Some(told) = &self.state.told {
+                ui.label(quiet(theme, told).size(12.5));
+            }
+        });
+    }
+
+    fn save_buttons(&mut self, ui: &mut Ui) {
+        if ui.button("Save this visit").clicked() {
+            self.desk.lead(VisitOrder::Save(self.path(".mcap")));
+        }
+        let hint = "In a window of its own, with a time line to trim it";
+        if ui.button("Play again").on_hover_text(hint).clicked() {
+            self.desk.lead(VisitOrder::PlayAgain);
+        }
+        if ui.button("Discard").on_hover_text("Delete the recording").clicked() {
+            self.desk.lead(VisitOrder::Discard);
+        }
+    }
+
+    fn export_buttons(&mut self, ui: &mut Ui, part: Option<(f64, f64)>) {
+        if let Some(work) = &self.state.work {
+            let bar = ProgressBar::new(work.share as f32).desired_width(140.0);
+            ui.add(bar.text(format!("{} {:.0} %", work.name, 100.0 * work.share)));
+            if ui.button("Cancel").clicked() {
+                self.desk.lead(VisitOrder::StopExport);
+            }
+            return;
+        }
+        let known = FORMS.iter().find(|(form, ..)| *form == self.form);
+        let (name, ending) = known.map_or(("", ""), |(_, name, ending)| (*name, *ending));
+        let menu = egui::ComboBox::from_id_salt("form of the visit").selected_text(name).width(190.0);
+        let menu = menu.show_ui(ui, |ui| {
+            for (form, name, _) in FORMS {
+                ui.selectable_value(&mut self.form, form, name);
+            }
+        });
+        menu.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Form of the export"));
+        let (text, hint) = match part {
+            Some((from, to)) => {
+                (format!("Export {from:.1} to {to:.1} s"), "Only the part that is marked on the time line")
+            }
+            None => ("Export".into(), "All of it; a drag with Shift on the time line marks a part"),
+        };
+        if ui.button(text).on_hover_text(hint).clicked() {
+            self.desk.lead(VisitOrder::Export { form: self.form, to: self.path(ending), part });
+        }
+    }
+
+    /// The file or folder with this ending.
+    fn path(&self, ending: &str) -> PathBuf {
+        let name = self.name.trim();
+        let name = name.strip_suffix(ending).unwrap_or(name);
+        format!("{}{ending}", if name.is_empty() { "visit" } else { name }).into()
+    }
+}
+
+/// Length and size: `0:12 · 3.1 MB`.
+fn written(size: &VisitSize) -> String {
+    // The cast from float saturates at the range of the integer.
+    let seconds = size.length_s.max(0.0) as u64;
+    format!("{}:{:02} · {:.1} MB", seconds / 60, seconds % 60, size.bytes as f64 * 1e-6)
+}
