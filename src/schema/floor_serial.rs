@@ -167,9 +167,13 @@ impl LinesRecord {
                 reader.report(Problem::error(column.at.clone(), message).expected(first));
             }
         }
-        if let Some(width) = &self.width
-            && let Some(beyond) = columns.clone().find(|column| column.value > width.value)
-        {
+        let Some(width) = &self.width else { return };
+        if self.columns.is_none() && channels > usize::from(width.value) {
+            let message = format!("{} columns are too few for {channels} channels", width.value);
+            reader
+                .report(Problem::error(width.at.clone(), message).expected("expected one for each channel"));
+        }
+        if let Some(beyond) = columns.clone().find(|column| column.value > width.value) {
             let message = format!("column {} is beyond the {} columns of a line", beyond.value, width.value);
             reader
                 .report(Problem::error(beyond.at.clone(), message).expected("expected a column of the line"));
@@ -228,5 +232,53 @@ pub(super) fn check_ports(
             let problem = Problem::error(port.at.clone(), format!("there is no serial port {}", port.value));
             reader.report(problem.expected("not plugged in?").help(help));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::{parse_floor, write_floor};
+
+    fn read(ports: &str) -> Floor {
+        let text = format!("Floor(columns: 2, rows: 2, serial: [{ports}])");
+        parse_floor(&text, "floor.ron").unwrap_or_else(|problems| panic!("{problems}"))
+    }
+
+    #[test]
+    fn a_port_carries_osc_unless_lines_are_described() {
+        let floor = read("(port: \"usb:A9\"), (baud: 1000000)");
+        let slip = SerialWire::slip(PortName::Usb("A9".into()));
+        let nameless = SerialWire { port: None, baud: 1_000_000, lines: None };
+        assert_eq!(floor.serial, [slip, nameless]);
+        assert_eq!(parse_floor(&write_floor(&floor), "floor.ron"), Ok(floor));
+    }
+
+    #[test]
+    fn lines_are_described_by_their_columns() {
+        let floor = read(
+            r#"(port: "/dev/ttyUSB0", lines: (board: 1, full_scale: 1023)),
+               (lines: (request: "v", request_end: CrLf, separators: ";", columns: [3, 2, 9, 8, 7, 6, 5, 4],
+                   width: 12, newtons: true))"#,
+        );
+        let lines: Vec<&TextLines> = floor.serial.iter().filter_map(|wire| wire.lines.as_ref()).collect();
+        let usual = TextLines {
+            board: 1,
+            request: Vec::new(),
+            separators: " ,".into(),
+            columns: (1..=8).collect(),
+            width: 8,
+            numbers: TextNumbers::Counts(1023.0),
+        };
+        let own = TextLines {
+            board: 0,
+            request: b"v\r\n".into(),
+            separators: ";".into(),
+            columns: vec![3, 2, 9, 8, 7, 6, 5, 4],
+            width: 12,
+            numbers: TextNumbers::Newtons,
+        };
+        assert_eq!(lines, [&usual, &own]);
+        assert_eq!(parse_floor(&write_floor(&floor), "floor.ron"), Ok(floor));
     }
 }

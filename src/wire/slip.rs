@@ -41,7 +41,7 @@ pub enum SlipFault {
 /// let mut decoder = SlipDecoder::default();
 /// let mut frames = Vec::new();
 /// for byte in sent {
-///     frames.extend(decoder.push(byte).transpose().unwrap().map(<[u8]>::to_vec));
+///     frames.extend(decoder.push(byte).unwrap().map(<[u8]>::to_vec));
 /// }
 /// assert_eq!(frames, [b"/a\0\0,\0\0\0"]);
 /// ```
@@ -50,11 +50,11 @@ pub struct SlipDecoder {
     frame: Vec<u8>,
     /// Number of bytes skipped since the last END.
     skipped: usize,
-    state: State,
+    state: SlipState,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
+enum SlipState {
     #[default]
     Skipping,
     Begun,
@@ -71,49 +71,49 @@ impl SlipDecoder {
         if byte == END {
             self.skipped = 0;
         }
-        if self.state == State::Begun {
+        if self.state == SlipState::Begun {
             self.frame.clear();
         }
         self.state = match (self.state, byte) {
-            (State::Within, END) => {
-                self.state = State::Begun;
+            (SlipState::Within, END) => {
+                self.state = SlipState::Begun;
                 return Ok(Some(&self.frame));
             }
-            (State::Escaped, END) => {
-                self.state = State::Begun;
+            (SlipState::Escaped, END) => {
+                self.state = SlipState::Begun;
                 return Err(SlipFault::Escape);
             }
-            (_, END) => State::Begun,
-            (State::Skipping, _) => self.skip()?,
-            (State::Begun | State::Within, ESC) => State::Escaped,
-            (State::Escaped, ESC_END) => self.add(END)?,
-            (State::Escaped, ESC_ESC) => self.add(ESC)?,
-            (State::Escaped, _) => {
-                self.state = State::Skipping;
+            (_, END) => SlipState::Begun,
+            (SlipState::Skipping, _) => self.skip()?,
+            (SlipState::Begun | SlipState::Within, ESC) => SlipState::Escaped,
+            (SlipState::Escaped, ESC_END) => self.add(END)?,
+            (SlipState::Escaped, ESC_ESC) => self.add(ESC)?,
+            (SlipState::Escaped, _) => {
+                self.state = SlipState::Skipping;
                 return Err(SlipFault::Escape);
             }
-            (State::Begun | State::Within, byte) => self.add(byte)?,
+            (SlipState::Begun | SlipState::Within, byte) => self.add(byte)?,
         };
         Ok(None)
     }
 
     /// Bytes without any END are no frames.
-    fn skip(&mut self) -> Result<State, SlipFault> {
+    fn skip(&mut self) -> Result<SlipState, SlipFault> {
         self.skipped += 1;
         if self.skipped < SKIPPED {
-            return Ok(State::Skipping);
+            return Ok(SlipState::Skipping);
         }
         self.skipped = 0;
         Err(SlipFault::NoEnd)
     }
 
-    fn add(&mut self, byte: u8) -> Result<State, SlipFault> {
+    fn add(&mut self, byte: u8) -> Result<SlipState, SlipFault> {
         if self.frame.len() >= DatagramLimits::SENSORS.bytes {
-            self.state = State::Skipping;
+            self.state = SlipState::Skipping;
             return Err(SlipFault::TooLong);
         }
         self.frame.push(byte);
-        Ok(State::Within)
+        Ok(SlipState::Within)
     }
 }
 

@@ -54,7 +54,7 @@ impl BesideSource {
         while let Some(one) = news {
             match one {
                 News::Packet(packet) => return Some(packet),
-                News::Counts(counts) => self.counters += *counts,
+                News::Counts(counts) => self.counters += counts,
                 News::Refused(cause) => {
                     let mut fault = self.fault.lock().unwrap_or_else(PoisonError::into_inner);
                     *fault = Some((cause, (self.ports.clock.0)()));
@@ -80,18 +80,10 @@ impl BesideSource {
 
 impl SensorSource for BesideSource {
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
-        let until = self.now() + patience;
-        loop {
-            if let Some(packet) = self.either()? {
-                return Ok(Some(packet));
-            }
-            let left = until.since(self.now());
-            if left.is_zero() {
-                return Ok(None);
-            }
-            if let Some(packet) = self.serial(left.min(LOOK_EVERY)) {
-                return Ok(Some(packet));
-            }
+        match self.either()? {
+            // The caller also notices by the time that passes here that a board is silent.
+            None => Ok(self.serial(patience.min(LOOK_EVERY))),
+            packet => Ok(packet),
         }
     }
 

@@ -10,14 +10,14 @@ use super::sequence::LineSequence;
 
 /// The content of some bytes.
 #[derive(Debug, Default)]
-pub(super) struct Content {
+pub(super) struct PortContent {
     pub(super) packets: Vec<SensorPacket>,
     pub(super) counters: LinkCounters,
     /// The last fault, in one clause.
     pub(super) fault: Option<String>,
 }
 
-impl Content {
+impl PortContent {
     fn refuse(&mut self, fault: String) {
         self.fault = Some(fault);
     }
@@ -67,7 +67,7 @@ impl PortDecoder {
     }
 
     /// Adds the content of `bytes`, which were read at `now`; returns the number of lines or frames that end in them.
-    pub(super) fn take(&mut self, bytes: &[u8], now: Instant, content: &mut Content) -> u64 {
+    pub(super) fn take(&mut self, bytes: &[u8], now: Instant, content: &mut PortContent) -> u64 {
         let before = content.counters.datagrams;
         for byte in bytes {
             match self {
@@ -108,7 +108,7 @@ pub(super) struct SlipPort {
 }
 
 impl SlipPort {
-    fn take(&mut self, byte: u8, now: Instant, content: &mut Content) {
+    fn take(&mut self, byte: u8, now: Instant, content: &mut PortContent) {
         let Self { frames, decoder, batch } = self;
         let counters = &mut content.counters;
         let frame = match frames.push(byte) {
@@ -150,7 +150,7 @@ pub(super) struct LinePort {
 }
 
 impl LinePort {
-    fn take(&mut self, byte: u8, now: Instant, content: &mut Content) {
+    fn take(&mut self, byte: u8, now: Instant, content: &mut PortContent) {
         let Some(line) = self.decoder.push(byte) else { return };
         content.counters.datagrams += 1;
         let sequence = self.sequence.number(now);

@@ -17,7 +17,7 @@ pub(super) struct Device(Box<dyn SerialPort>);
 
 /// The result of a read.
 #[derive(Debug)]
-pub(super) enum Heard {
+pub(super) enum PortRead {
     /// So many bytes.
     Bytes(usize),
     /// None in time.
@@ -50,12 +50,12 @@ pub(super) fn open(name: &PortName, baud: u32) -> Result<Device, SerialError> {
 
 impl Device {
     /// Reads the bytes that have arrived; waits 10 ms for the first.
-    pub(super) fn read(&mut self, buffer: &mut [u8]) -> Heard {
+    pub(super) fn read(&mut self, buffer: &mut [u8]) -> PortRead {
         match self.0.read(buffer) {
-            Ok(0) => Heard::Gone(ErrorKind::UnexpectedEof.into()),
-            Ok(count) => Heard::Bytes(count),
-            Err(error) if is_passing(error.kind()) => Heard::Nothing,
-            Err(error) => Heard::Gone(error),
+            Ok(0) => PortRead::Gone(ErrorKind::UnexpectedEof.into()),
+            Ok(count) => PortRead::Bytes(count),
+            Err(error) if is_passing(error.kind()) => PortRead::Nothing,
+            Err(error) => PortRead::Gone(error),
         }
     }
 

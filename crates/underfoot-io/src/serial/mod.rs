@@ -119,8 +119,8 @@ pub fn wires(floor: &Floor, named: &[PortName]) -> Result<Vec<SerialWire>, Seria
 enum News {
     /// A sample of a board.
     Packet(SensorPacket),
-    /// What was counted since the last count.
-    Counts(Box<LinkCounters>),
+    /// Counts since the last news of this kind.
+    Counts(LinkCounters),
     /// The cause of the last refusal.
     Refused(LinkCause),
 }
@@ -158,14 +158,14 @@ impl SerialPorts {
         let (sender, news) = sync_channel(MAX_NEWS);
         let stop = Arc::<AtomicBool>::default();
         let mut ports =
-            Self { news, clock: HostClockOf(clock.clone()), stop: Arc::clone(&stop), threads: Vec::new() };
+            Self { news, clock: HostClockOf(clock), stop: Arc::clone(&stop), threads: Vec::new() };
         for (number, wire) in (1..).zip(wires) {
             let name = wire.port.clone().ok_or(SerialError::Nameless { number })?;
             let device = match device::open(&name, wire.baud) {
                 Err(SerialError::Absent { .. }) if if_absent == IfAbsent::Wait => None,
                 opened => Some(opened?),
             };
-            let thread = PortThread::new(wire, name, floor, clock.clone(), sender.clone());
+            let thread = PortThread::new(wire, name, floor, ports.clock.0.clone(), sender.clone());
             ports.threads.push(thread.start(device, Arc::clone(&stop)).map_err(SerialError::Thread)?);
         }
         Ok(ports)

@@ -1,4 +1,4 @@
-//! Notices about one port, at a limited rate.
+//! PortNotices about one port, at a limited rate.
 
 use std::time::Duration;
 
@@ -9,12 +9,12 @@ const QUIET: Duration = Duration::from_secs(60);
 
 /// Lets the first notice pass, then one a minute with the number in between.
 #[derive(Debug, Default)]
-pub(super) struct Notices {
+pub(super) struct PortNotices {
     last: Option<Instant>,
     held_back: u64,
 }
 
-impl Notices {
+impl PortNotices {
     /// The number of notices since the last one that passed, if this one passes.
     pub(super) fn pass(&mut self, now: Instant) -> Option<u64> {
         if self.last.is_some_and(|last| now.since(last) < QUIET) {

@@ -12,9 +12,9 @@ use underfoot::floor::{Floor, PortName, SerialWire};
 use underfoot::units::{HostClock, Instant};
 use underfoot::wire::{LinkCause, LinkCounters};
 
-use super::decode::{Content, PortDecoder};
-use super::device::{self, Device, Heard};
-use super::notices::Notices;
+use super::decode::{PortContent, PortDecoder};
+use super::device::{self, Device, PortRead};
+use super::notices::PortNotices;
 use super::{News, SerialError};
 
 /// Interval between attempts to open a port that is gone.
@@ -29,6 +29,19 @@ const UNANSWERED: Duration = Duration::from_millis(50);
 /// Maximum number of bytes read at once.
 const BUFFER: usize = 4096;
 
+/// The last request for a line.
+struct LastRequest {
+    at: Instant,
+    is_answered: bool,
+}
+
+impl Default for LastRequest {
+    /// No request has been sent.
+    fn default() -> Self {
+        Self { at: Instant::START, is_answered: true }
+    }
+}
+
 /// The thread of one port.
 pub(super) struct PortThread {
     name: PortName,
@@ -38,8 +51,8 @@ pub(super) struct PortThread {
     news: SyncSender<News>,
     /// Counts that did not reach the sensing thread yet.
     counted: LinkCounters,
-    refusals: Notices,
-    failures: Notices,
+    refusals: PortNotices,
+    failures: PortNotices,
 }
 
 impl PortThread {
@@ -57,8 +70,8 @@ impl PortThread {
             clock,
             news,
             counted: LinkCounters::default(),
-            refusals: Notices::default(),
-            failures: Notices::default(),
+            refusals: PortNotices::default(),
+            failures: PortNotices::default(),
         }
     }
 
@@ -104,21 +117,19 @@ impl PortThread {
     fn serve(&mut self, mut device: Device, stop: &AtomicBool) {
         self.decoder.restart();
         let mut buffer = [0; BUFFER];
-        let mut content = Content::default();
-        let mut asked = None;
+        let mut content = PortContent::default();
+        let mut asked = LastRequest::default();
         while !stop.load(Ordering::Relaxed) {
             self.ask(&mut device, &mut asked);
             match device.read(&mut buffer) {
-                Heard::Bytes(count) => {
+                PortRead::Bytes(count) => {
                     let now = (self.clock)();
                     let bytes = buffer.get(..count).unwrap_or_default();
-                    if self.decoder.take(bytes, now, &mut content) > 0 {
-                        asked = asked.filter(|at| now.since(*at) < REQUEST_EVERY);
-                    }
+                    asked.is_answered |= self.decoder.take(bytes, now, &mut content) > 0;
                     self.deliver(&mut content, now);
                 }
-                Heard::Nothing => {}
-                Heard::Gone(error) => {
+                PortRead::Nothing => {}
+                PortRead::Gone(error) => {
                     warn!(
                         "the serial port {} is gone ({error}): its boards are lost until it is back",
                         self.name
@@ -129,17 +140,21 @@ impl PortThread {
         }
     }
 
-    /// Asks for a line, if the board has to be asked and no answer is due. `asked`: time of the last request.
-    fn ask(&self, device: &mut Device, asked: &mut Option<Instant>) {
+    /// Asks for a line, if the board has to be asked and no answer is due.
+    fn ask(&self, device: &mut Device, asked: &mut LastRequest) {
         let request = self.decoder.request();
-        let now = (self.clock)();
-        if !request.is_empty() && asked.is_none_or(|at| now.since(at) >= UNANSWERED) && device.send(request) {
-            *asked = Some(now);
+        let waited = (self.clock)().since(asked.at);
+        if request.is_empty() || !(asked.is_answered || waited >= UNANSWERED) {
+            return;
+        }
+        sleep(REQUEST_EVERY.saturating_sub(waited));
+        if device.send(request) {
+            *asked = LastRequest { at: (self.clock)(), is_answered: false };
         }
     }
 
     /// Passes `content` to the sensing thread and empties it. Packets beyond the queue are counted and dropped.
-    fn deliver(&mut self, content: &mut Content, now: Instant) {
+    fn deliver(&mut self, content: &mut PortContent, now: Instant) {
         self.counted += std::mem::take(&mut content.counters);
         for packet in content.packets.drain(..) {
             if let Err(TrySendError::Full(_)) = self.news.try_send(News::Packet(packet)) {
@@ -154,9 +169,7 @@ impl PortThread {
             let cause = LinkCause::PortGarbled { port: self.name.to_string(), why };
             drop(self.news.try_send(News::Refused(cause)));
         }
-        if self.counted != LinkCounters::default()
-            && self.news.try_send(News::Counts(Box::new(self.counted))).is_ok()
-        {
+        if self.counted != LinkCounters::default() && self.news.try_send(News::Counts(self.counted)).is_ok() {
             self.counted = LinkCounters::default();
         }
     }
