@@ -106,6 +106,7 @@ impl Floor {
             noiseless: self.noiseless,
             tared: self.tared,
             allow: self.allow.clone(),
+            serial: Vec::new(),
             areas: Vec::new(),
             gateway: None,
             key: None,

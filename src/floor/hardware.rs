@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use super::{
     Area, Calibration, CalibrationRecord, Corner, Day, Drive, FloorFile, Geometry, Loudspeaker, MapRecord,
-    Network, PositionMap, Response, SensorId, TileId,
+    Network, PositionMap, Response, SensorId, SerialWire, TileId,
 };
 use crate::units::Newtons;
 
@@ -43,6 +43,8 @@ pub struct Floor {
     pub tared: Option<Day>,
     /// The networks that boards may send from; only this machine if it is empty.
     pub allow: Vec<Network>,
+    /// The serial ports of boards, beside the network; empty on a part of a larger floor.
+    pub serial: Vec<SerialWire>,
     /// The parts of the floor with a computer of their own; empty if one computer serves the whole floor.
     pub areas: Vec<Area>,
     /// The address on which the gateway listens for the areas' computers; `None` if it is set elsewhere.
@@ -74,6 +76,7 @@ impl Floor {
             noiseless: false,
             tared: None,
             allow: Vec::new(),
+            serial: Vec::new(),
             areas: Vec::new(),
             gateway: None,
             key: None,

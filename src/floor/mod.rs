@@ -19,6 +19,7 @@ mod network;
 mod position_map;
 mod record;
 mod rect;
+mod serial;
 mod significant;
 
 pub use area::{Area, SENSED_BEYOND_M};
@@ -35,6 +36,9 @@ pub use network::{Network, NotANetwork};
 pub use position_map::PositionMap;
 pub use record::{CalibrationRecord, Day, MapRecord, NotADay};
 pub use rect::Rect;
-pub(crate) use {address::ADDRESS, exp::exp, network::NETWORK, record::DAY};
+pub use serial::{NotAPort, PortName, SerialWire, TextLines, TextNumbers};
+pub(crate) use {
+    address::ADDRESS, exp::exp, network::NETWORK, record::DAY, serial::PORT, serial::RequestEnd,
+};
 
 pub use address::{NotAnAddress, canonical, read_address};

@@ -10,6 +10,7 @@ use super::floor_codecs::{Measures, ValidTiles};
 use super::floor_parts::{
     ActuatorRecord, BoardRecord, LoudspeakerRecord, MapEntry, ResponseRecord, SensorRecord, all_actuators,
 };
+use super::floor_serial::{self, SERIAL, SerialRecord};
 use super::node::Node;
 use super::pairs::Limits;
 use super::problem::Problem;
@@ -17,7 +18,7 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version::{self, FORMAT_VERSION, VERSION};
 use crate::floor::{
-    ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
+    ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network, PortName,
 };
 use underfoot_format::codec::{Distinct, Text};
 use underfoot_format::describe::Description;
@@ -29,8 +30,20 @@ use underfoot_format::{Flag, Flat, Opt, Rec, Record, list, record};
 /// # Errors
 /// Every problem of the file, or that it cannot be read.
 pub fn load_floor(path: &Path) -> Result<Floor, Diagnostics> {
+    load_floor_with_ports(path, &|_| None)
+}
+
+/// As [`load_floor`], and reports each serial port of the file for which `absent` returns what to do about it: ports
+/// belong to a computer, and a file can be read on others.
+///
+/// # Errors
+/// As [`load_floor`], and for each absent port.
+pub fn load_floor_with_ports(
+    path: &Path,
+    absent: &dyn Fn(&PortName) -> Option<String>,
+) -> Result<Floor, Diagnostics> {
     let text = read_text(path)?;
-    parse_floor(&text, &path.display().to_string())
+    parse_floor_with_ports(&text, &path.display().to_string(), absent)
 }
 
 /// Reads the floor that `text` describes; fields that are not written are as on [`Floor::of`] its geometry.
@@ -40,22 +53,36 @@ pub fn load_floor(path: &Path) -> Result<Floor, Diagnostics> {
 /// # Errors
 /// Every problem of the text.
 pub fn parse_floor(text: &str, name: &str) -> Result<Floor, Diagnostics> {
+    parse_floor_with_ports(text, name, &|_| None)
+}
+
+/// As [`parse_floor`], and reports absent serial ports as [`load_floor_with_ports`] does.
+///
+/// # Errors
+/// Every problem of the text, and every absent port.
+pub fn parse_floor_with_ports(
+    text: &str,
+    name: &str,
+    absent: &dyn Fn(&PortName) -> Option<String>,
+) -> Result<Floor, Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = Reader::new(&source, FloorRecord::NAME, Limits::FLOOR);
     if let Some(newer) = version::newer(&reader, FloorRecord::NAME) {
         return Err(newer);
     }
-    let floor = reader.root("floor").and_then(floor);
+    let floor = reader.root("floor").and_then(|node| floor(node, absent));
     reader.conclude(floor).map(|(floor, _)| Floor { file: FloorFile::new(name), ..floor })
 }
 
-fn floor(node: Node<'_>) -> Option<Floor> {
+fn floor(node: Node<'_>, absent: &dyn Fn(&PortName) -> Option<String>) -> Option<Floor> {
     let mut fields = node.fields(FloorRecord::NAME)?;
     let record = FloorRecord::read(&mut fields);
     let good = fields.are_read();
     fields.finish();
     let floor = record.floor();
     record.check_channels(node.reader, &floor);
+    floor_serial::check(node.reader, &record.parts.serial, &floor);
+    floor_serial::check_ports(node.reader, &record.parts.serial, absent);
     if good {
         floor_areas::check(node.reader, &floor.geometry, &record.parts.areas);
     }
@@ -91,6 +118,8 @@ record! {
     pub(super) boards: Option<Vec<BoardRecord>> = "boards", Opt(BOARDS) => None;
     /// Networks that the boards' packets come from; this machine alone if there are none.
     pub(super) allow: Vec<Network> = "allow", list("network", MAX_NETWORKS, NETWORK) => Vec::new();
+    /// The serial ports of boards, beside the network.
+    pub(super) serial: Vec<SerialRecord> = "serial", SERIAL => Vec::new();
     /// Whether the readings lack noise of their own, as those of an app or of a simulation without noise: repeated
     /// readings are then normal, and `HoldToRun` works with them.
     pub(super) noiseless: bool = "noiseless", Flag => false;
@@ -216,6 +245,7 @@ impl FloorRecord {
         floor.noiseless = parts.noiseless;
         floor.tared = parts.tared;
         floor.allow.clone_from(&parts.allow);
+        floor.serial = parts.serial.iter().map(|port| port.wire(&floor.boards)).collect();
         floor.drive = parts.drive;
         floor.loudspeakers = parts.loudspeakers.iter().map(LoudspeakerRecord::loudspeaker).collect();
         floor
@@ -237,6 +267,7 @@ impl FloorRecord {
             key: floor.key.clone(),
             boards,
             allow: floor.allow.clone(),
+            serial: floor.serial.iter().map(SerialRecord::of).collect(),
             noiseless: floor.noiseless,
             tared: floor.tared,
             sensors: SensorRecord::all(floor),

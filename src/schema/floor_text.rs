@@ -5,7 +5,7 @@ use crate::floor::{Floor, LawKind};
 use underfoot_format::text::Text;
 
 /// Comments above each field, and the comment in place of a field that is not written.
-const COMMENTS: [(&str, &[&str], Option<&str>); 12] = [
+const COMMENTS: [(&str, &[&str], Option<&str>); 13] = [
     ("areas", &["The parts of the floor that a computer of its own serves."], None),
     ("gateway", &["Where the computer that joins them listens."], None),
     (
@@ -14,6 +14,7 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 12] = [
         Some("Each row of tiles has its own boards, up to eight tiles a board."),
     ),
     ("allow", &["Where the boards' packets come from."], None),
+    ("serial", &["The serial ports of boards, and the columns of those that send lines of text."], None),
     ("noiseless", &["The readings have no noise of their own: that they repeat says nothing."], None),
     ("tared", &[], None),
     (

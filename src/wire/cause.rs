@@ -85,6 +85,13 @@ pub enum LinkCause {
         /// Their fault, and their likely format.
         why: String,
     },
+    /// A serial port gives bytes that are not the expected lines or frames.
+    PortGarbled {
+        /// The name of the port.
+        port: String,
+        /// The fault of the last line or frame.
+        why: String,
+    },
     /// Datagrams come from a blocked address.
     SenderRefused {
         /// The sender, and the rule that blocks it.
@@ -179,6 +186,7 @@ impl LinkCause {
             Self::OtherAddress { .. } => "other_address",
             Self::WrongReadings { .. } => "wrong_readings",
             Self::NotOsc { .. } => "not_osc",
+            Self::PortGarbled { .. } => "port_garbled",
             Self::SenderRefused { .. } => "sender_refused",
             Self::CountsBeyond { .. } => "counts_beyond",
             Self::NotNumbers { .. } => "not_numbers",
@@ -219,6 +227,7 @@ impl LinkCause {
             | Self::BoardsMissing { board, .. } => Some(*board),
             Self::OtherAddress { .. }
             | Self::NotOsc { .. }
+            | Self::PortGarbled { .. }
             | Self::SenderRefused { .. }
             | Self::Unknown { .. } => None,
         }
@@ -279,6 +288,9 @@ impl fmt::Display for LinkCause {
             ),
             Self::WrongReadings { board, channels, found } => wrong_readings(f, *board, *channels, found),
             Self::NotOsc { why } => write!(f, "datagrams arrive that are not OSC: {why}"),
+            Self::PortGarbled { port, why } => {
+                write!(f, "the serial port {port} does not give what the floor file says: {why}")
+            }
             Self::SenderRefused { why } => write!(f, "datagrams arrive that are refused: {why}"),
             Self::CountsBeyond { board } => write!(
                 f,
@@ -434,6 +446,7 @@ mod tests {
             LinkCause::OtherAddress { found: "/board/0".into(), expected: "/underfoot/board/0".into() },
             LinkCause::WrongReadings { board, channels: 4, found: "idddd".into() },
             LinkCause::NotOsc { why: "they look like text".into() },
+            LinkCause::PortGarbled { port: "/dev/ttyACM0".into(), why: "it is not text".into() },
             LinkCause::SenderRefused { why: "10.0.0.1".into() },
             LinkCause::CountsBeyond { board },
             LinkCause::NotNumbers { board },

@@ -11,6 +11,7 @@ mod decode;
 mod encode;
 mod guard;
 mod json_request;
+mod lines;
 mod link;
 mod message;
 mod packet;
@@ -18,16 +19,19 @@ mod pattern;
 mod prefix;
 mod sensor_message;
 pub(crate) mod sent;
+mod slip;
 mod split;
 
 pub use cause::guess_format;
 pub use cause::{BOARD_RATES_HZ, LinkCause};
 pub use counters::LinkCounters;
 pub(crate) use encode::write;
+pub use lines::{LineDecoder, LineFault};
 pub use link::LinkState;
 pub use message::{ControlMessage, Request};
 pub use packet::{Readings, SensorPacket};
 pub use prefix::{BadPrefix, Prefix};
+pub use slip::{SlipDecoder, SlipFault, write_slip};
 pub use split::each_message;
 
 pub use argument::{ArgumentKind, MAX_LABEL};

@@ -9,6 +9,7 @@ use underfoot::runtime::StartError;
 use underfoot::schema::{Diagnostics, SaveError};
 use underfoot::sink::SinkError;
 use underfoot::source::SourceError;
+use underfoot_io::serial::SerialError;
 use underfoot_scene::picture::PictureError;
 
 /// The reason why a command failed, in words for its user.
@@ -20,6 +21,9 @@ pub(crate) enum Failure {
     /// The source of packets failed.
     #[error("error: {0}")]
     Source(#[from] SourceError),
+    /// A serial port can't be used.
+    #[error("error: {0}")]
+    Serial(#[from] SerialError),
     /// Samples or events can't be sent.
     #[error("error: {0}")]
     Sink(#[from] SinkError),

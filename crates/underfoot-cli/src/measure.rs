@@ -10,7 +10,7 @@ use underfoot::floor::{Corner, read_address};
 use underfoot::layout::{Layout, Widget};
 use underfoot::sense::{Assembler, Quality, Tare, TareOutcome};
 use underfoot::serve::{ForceRange, ForceWatch, TileRange};
-use underfoot::source::UdpSource;
+use underfoot::source::SensorSource;
 use underfoot::units::Instant;
 
 use super::failure::Failure;
@@ -45,12 +45,14 @@ pub(crate) struct Args {
 
 /// Measures the floor and prints the forces.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let floor = args.floor.load()?;
+    let floor = args.boards.load(&args.floor)?;
     let layout = match &args.layout.layout {
         Some(_) => Some(args.layout.load(&floor.geometry)?),
         None => None,
     };
-    let mut source = args.boards.bind(args.listen, &floor)?;
+    let source = args.boards.bind(args.listen, &floor)?;
+    let clock = source.clock();
+    let mut source = args.boards.beside(source, &floor, clock)?.source;
     let tare = Tare::suited_to(&floor);
     errln!("Listening on {} for {} s; Ctrl-C ends it.", args.listen, args.seconds.as_secs_f64());
     if tare != Tare::FromFloor {
@@ -85,7 +87,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 fn watch_floor(
     args: &Args,
-    source: &mut UdpSource,
+    source: &mut dyn SensorSource,
     assembler: &mut Assembler,
     watch: &mut ForceWatch,
 ) -> Result<(), Failure> {

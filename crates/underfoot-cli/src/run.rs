@@ -38,7 +38,7 @@ use super::watch::FileWatch;
 use super::web::WebArgs;
 
 /// Default address for packets.
-const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
+pub(crate) const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
 /// Options of `underfoot run`.
 #[derive(clap::Args, Debug)]
@@ -88,7 +88,7 @@ pub(crate) struct Args {
 
 /// Serves a floor until it is stopped.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let (served, floor) = args.area.of(args.floor.load()?)?;
+    let (served, floor) = args.area.of(args.boards.load(&args.floor)?)?;
     let layout = served.layout(args.layout.load(&served.geometry)?);
     let prefix = args.outputs.prefix.osc_prefix.clone();
     let stop = stop_flag()?;
@@ -103,7 +103,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = source.with_prefix(prefix.clone());
     let source = args.commands.open(source)?;
     let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
-    let input = args.faults.wrap(source, LinkFaults::default());
+    let input = args.boards.beside(source, &floor, clock.clone())?;
+    let input = args.faults.wrap(input, LinkFaults::default());
     let method = if args.eq4 { Method::Eq4 } else { Method::default() };
     let path = args.record.as_deref();
     let Recorded { recorder, input, floor, layout } =

@@ -2,15 +2,20 @@
 
 use std::io::ErrorKind;
 use std::net::SocketAddr;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
 use tracing::warn;
-use underfoot::floor::{Floor, Network, read_address};
-use underfoot::source::{SourceError, UdpSource};
+use underfoot::floor::{Floor, Network, PortName, read_address};
+use underfoot::schema;
+use underfoot::source::{FloorInput, SourceError, UdpSource};
+use underfoot::units::HostClock;
+use underfoot_io::serial::{IfAbsent, SerialPorts, absent, wires};
 
 use super::failure::Failure;
+use super::floor_args::FloorArgs;
 
 /// Options for permitted boards.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -22,6 +27,14 @@ pub(crate) struct BoardArgs {
     /// Pin each board to the address of its first packet.
     #[arg(long)]
     pin: bool,
+    /// Also read boards from this serial port: /dev/ttyACM0, COM3, or usb: and the serial number of its USB device;
+    /// several may be given. Ports of the floor file without a name get these in order; each further one carries OSC
+    /// in SLIP frames.
+    #[arg(long, value_name = "PORT")]
+    serial: Vec<PortName>,
+    /// Start without the serial ports that are not plugged in yet.
+    #[arg(long)]
+    await_ports: bool,
 }
 
 /// Options for permitted apps.
@@ -36,6 +49,41 @@ pub(crate) struct CommandArgs {
 }
 
 impl BoardArgs {
+    /// Whether serial ports are given.
+    #[cfg(feature = "preview")]
+    pub(crate) const fn have_ports(&self) -> bool {
+        !self.serial.is_empty()
+    }
+
+    /// Loads the chosen floor, whose serial ports must be there.
+    pub(crate) fn load(&self, floor: &FloorArgs) -> Result<Floor, Failure> {
+        match &floor.floor {
+            Some(path) => self.load_file(path),
+            None => floor.load(),
+        }
+    }
+
+    /// Loads the floor file at `path`, whose serial ports must be there.
+    pub(crate) fn load_file(&self, path: &Path) -> Result<Floor, Failure> {
+        let absent = |port: &PortName| if self.await_ports { None } else { absent(port) };
+        Ok(schema::load_floor_with_ports(path, &absent)?)
+    }
+
+    /// Opens the serial ports of `floor` and of the options beside `input`, whose packets `clock` stamps.
+    pub(crate) fn beside(
+        &self,
+        input: impl Into<FloorInput>,
+        floor: &Floor,
+        clock: HostClock,
+    ) -> Result<FloorInput, Failure> {
+        let (input, wires) = (input.into(), wires(floor, &self.serial)?);
+        if wires.is_empty() {
+            return Ok(input);
+        }
+        let if_absent = if self.await_ports { IfAbsent::Wait } else { IfAbsent::Refuse };
+        Ok(SerialPorts::open(&wires, floor, clock, if_absent)?.beside(input))
+    }
+
     /// Listens for the boards of `floor`.
     pub(crate) fn bind(&self, listen: SocketAddr, floor: &Floor) -> Result<UdpSource, Failure> {
         let mut source = UdpSource::bind(listen, floor).map_err(|error| chosen_by("--listen", error))?;

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use underfoot::floor::{Floor, read_address};
 use underfoot::serve::{WiringStep, WiringTask, WiringWalk};
+use underfoot::source::SensorSource;
 
 use super::failure::Failure;
 use super::floor_args::{FloorArgs, FloorOut};
@@ -39,8 +40,10 @@ pub(crate) struct Args {
 /// Walks from board to board.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let out = args.out.as_deref().map(FloorOut::new);
-    let floor = args.floor.load()?;
+    let floor = args.boards.load(&args.floor)?;
     let source = args.boards.bind(args.listen, &floor)?;
+    let clock = source.clock();
+    let source = args.boards.beside(source, &floor, clock)?.source;
     let stop = stop_flag()?;
     errln!("Listening on {}; keep off the floor for a moment.", args.listen);
     let (mut source, mut walk) = (source, WiringWalk::new(&floor));

@@ -6,9 +6,7 @@ use std::time::Duration;
 
 use serde_json::json;
 use underfoot::floor::read_address;
-use underfoot::schema;
 use underfoot::serve::{TareFailure, take_tare};
-use underfoot::source::FloorInput;
 
 use super::today;
 use crate::failure::Failure;
@@ -44,13 +42,17 @@ pub(crate) struct Args {
 /// Takes and saves the tare, or reports why it can't.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = FloorOut::new(&args.floor);
-    let mut floor = schema::load_floor(&args.floor)?;
+    let mut floor = args.boards.load_file(&args.floor)?;
     let source = args.boards.bind(args.listen, &floor)?;
+    let clock = source.clock();
+    let mut input = args.boards.beside(source, &floor, clock)?;
     errln!("Listening on {}; keep off the floor.", args.listen);
-    floor.tare = take_tare(&mut FloorInput::from(source).source, &floor, args.seconds, args.accept_change)
-        .map_err(|failure| match failure {
-            TareFailure::Changed { .. } => Failure::Other(format!("{failure} with --accept-change")),
-            failure => Failure::Other(failure.to_string()),
+    floor.tare =
+        take_tare(&mut input.source, &floor, args.seconds, args.accept_change).map_err(|failure| {
+            match failure {
+                TareFailure::Changed { .. } => Failure::Other(format!("{failure} with --accept-change")),
+                failure => Failure::Other(failure.to_string()),
+            }
         })?;
     floor.tared = Some(today());
     let saved = out.save(&floor)?;

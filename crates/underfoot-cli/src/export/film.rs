@@ -1,14 +1,14 @@
 //! A recording as an animated picture.
 
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::Path;
 use std::time::Duration;
 
 use underfoot::engine::Snapshot;
 use underfoot::recording::{Recording, Speed};
 use underfoot::serve::{Ended, Server};
-use underfoot_scene::picture::{Film, PictureError};
+use underfoot_scene::picture::Film;
 use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
 use super::super::failure::Failure;
@@ -64,9 +64,8 @@ pub(super) fn write(
     }
     let end = server.engine().now().min(part.to).since(part.from);
     let out = film.finish(end)?;
-    out.into_inner()
-        .and_then(|file| Ok(file.sync_all()?))
-        .map_err(|error| Failure::Picture(PictureError::File { path: to.into(), source: error.into() }))?;
+    let written = out.into_inner().map_err(io::Error::from).and_then(|file| file.sync_all());
+    written.map_err(failed)?;
     whole(&progress)?;
     Ok(Exported::Whole)
 }

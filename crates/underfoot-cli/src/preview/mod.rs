@@ -51,6 +51,7 @@ use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::output;
 use super::outputs::OutputArgs;
 use super::play::{self, SimArgs};
+use super::run::LISTEN;
 use super::run::end;
 use super::senders::{BoardArgs, CommandArgs};
 use super::stop::stop_flag;
@@ -150,7 +151,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(path) = &args.follow {
         return followed(args, path);
     }
-    let floor = args.floor.load()?;
+    let floor = match args.real() {
+        Some(_) => args.boards.load(&args.floor)?,
+        None => args.floor.load()?,
+    };
     let (layout, warnings) = args.layout.reviewed(&floor)?;
     let stage = args.stage(&floor, &layout)?;
 
@@ -345,14 +349,24 @@ impl Args {
         PreviewOptions { projection, settings, ..PreviewOptions::default() }
     }
 
+    /// The address for the packets of a real floor; `None` for a simulated one.
+    fn real(&self) -> Option<SocketAddr> {
+        self.listen.or_else(|| self.boards.have_ports().then_some(LISTEN))
+    }
+
     fn stage(&self, floor: &Floor, layout: &Layout) -> Result<Stage, Failure> {
-        if let Some(address) = self.listen {
+        if let Some(address) = self.real() {
+            if self.session || self.scenario.is_some() {
+                let why = "--serial shows a real floor, and a scenario plays on a simulated one";
+                return Err(Failure::Other(why.into()));
+            }
             let prefix = self.outputs.prefix.osc_prefix.clone();
             let source = self.commands.open(self.boards.bind(address, floor)?.with_prefix(prefix))?;
+            let clock = source.clock();
             return Ok(Stage {
                 floor: floor.clone(),
-                clock: source.clock(),
-                input: source.into(),
+                input: self.boards.beside(source, floor, clock.clone())?,
+                clock,
                 name: format!("floor on port {}", address.port()),
                 feet: None,
                 shoes: None,

@@ -32,6 +32,8 @@ mod plan;
 mod rack;
 mod recordings;
 mod senders;
+#[cfg(unix)]
+mod serial;
 mod service;
 mod simulated;
 mod soak;

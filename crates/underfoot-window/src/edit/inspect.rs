@@ -4,7 +4,6 @@ use super::address::{Address, RecordList};
 use super::document::Document;
 use super::item::Item;
 use underfoot::feel::Feel;
-use underfoot::floor::Rect;
 use underfoot::layout::{Look, Widget};
 use underfoot::schema::{Diagnostic, Kind, Kinds};
 use underfoot::widget::Behaviour;

@@ -82,7 +82,7 @@ impl ShownField<'_> {
 }
 
 /// The unit of places of this document, in words.
-pub(super) fn unit_name(document: &Document) -> &'static str {
+pub(in crate::preview::design) fn unit_name(document: &Document) -> &'static str {
     if document.unit_m() == 1.0 { "m" } else { "tiles" }
 }
 

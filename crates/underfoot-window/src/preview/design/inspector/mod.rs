@@ -32,6 +32,7 @@ use underfoot_scene::egui_painter::{Palette, color};
 use underfoot_scene::scene::{Theme, in_drawn_order};
 use words::capital;
 
+pub(super) use field::unit_name;
 #[cfg(test)]
 pub(super) use words::label;
 

@@ -24,7 +24,7 @@ impl Desk {
     }
 
     /// Clicks the entry of the open menu; the bar may have a button of the same name.
-    fn choose(&mut self, entry: &str) {
+    fn choose_entry(&mut self, entry: &str) {
         let entries = self.window.query_all_by_label_contains(entry);
         entries.last().unwrap_or_else(|| panic!("no {entry}")).click();
         self.window.run_steps(3);
@@ -167,7 +167,7 @@ fn the_menu_pastes_the_appearance_and_the_feel_alone() {
     let place = desk.place(&other);
     desk.open_menu(place);
     assert_eq!(desk.selected_ids(), [other.clone()]);
-    desk.choose("Paste appearance");
+    desk.choose_entry("Paste appearance");
     desk.window.event(Event::Paste(copied.clone()));
     desk.window.run_steps(3);
     let (from, after) = (look(&desk, source), look(&desk, &other));
@@ -176,7 +176,7 @@ fn the_menu_pastes_the_appearance_and_the_feel_alone() {
     desk.undo();
     assert_eq!(desk.text(), first);
     desk.open_menu(place);
-    desk.choose("Paste feel");
+    desk.choose_entry("Paste feel");
     desk.window.event(Event::Paste(copied));
     desk.window.run_steps(3);
     assert_eq!(look(&desk, &other).feel, from.feel);
@@ -192,7 +192,7 @@ fn an_id_that_the_menu_changes_is_followed_by_its_neighbours_and_its_lock() {
     desk.click("Hide: b");
     let place = desk.place("a");
     desk.open_menu(place);
-    desk.choose("Rename");
+    desk.choose_entry("Rename");
     desk.type_over("first");
     assert_eq!(desk.text(), text.replace("\"a\"", "\"first\""));
     desk.undo();

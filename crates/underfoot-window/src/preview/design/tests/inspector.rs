@@ -146,7 +146,7 @@ fn the_waveform_of_each_effect_is_drawn_with_its_figures() {
     desk.open("Feel");
     for moment in ["at the press", "at the release"] {
         let shown = desk.window.get_by_label_contains(&format!("Waveform {moment}: "));
-        let figures = shown.label().unwrap_or_default();
+        let figures = shown.accesskit_node().label().unwrap_or_default();
         assert!(figures.contains(" N peak, "), "{figures}");
     }
 }
