@@ -21,7 +21,7 @@ fn line(ms: u64) -> Vec<u8> {
     let [sw, se, nw, ne] = [3, 5, 7, 11].map(|salt| 120.0 + load + noise(salt));
     let line = format!("{sw:.1} {se:.1} {nw:.1} {ne:.1}\n").into_bytes();
     match ms {
-        500..3000 if ms % 500 == 0 => vec![0xE6; 40],
+        500..3000 if ms.is_multiple_of(500) => vec![0xE6; 40],
         500..3000 if ms % 500 == 250 => line.into_iter().take(9).collect(),
         _ => line,
     }

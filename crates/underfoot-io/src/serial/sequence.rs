@@ -42,7 +42,7 @@ mod tests {
     #[test]
     fn a_stream_after_a_silence_is_a_new_one() {
         let mut sequence = LineSequence::default();
-        let mut at = |ms| sequence.number(Instant::from_micros(1000 * ms));
+        let mut at = |ms: u64| sequence.number(Instant::from_micros(1000 * ms));
         assert_eq!([at(0), at(10), at(110)], [0, 1, 2]);
         assert_eq!([at(211), at(212)], [3_u32.wrapping_sub(BACK), 4_u32.wrapping_sub(BACK)]);
     }

@@ -67,7 +67,7 @@ impl<W: Write> Film<W> {
     pub fn finish(mut self, until: Duration) -> Result<W, PictureError> {
         self.write_until(until)?;
         let encoder = self.encoder.ok_or_else(|| PictureError::Drawing("it has no drawings".into()))?;
-        encoder.into_inner().map_err(|error| PictureError::Film(error.into()))
+        encoder.into_inner().map_err(PictureError::Film)
     }
 
     /// Writes the waiting part, which is shown until `until`.

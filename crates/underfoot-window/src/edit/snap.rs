@@ -168,7 +168,7 @@ impl SnapGrid<'_> {
         let round = |length: f32| (length / self.step_m).round() * self.step_m;
         let is_round = |length: f32| (length - round(length)).abs() < 1e-4;
         // Where tiles are the unit, their lines must leave the number in the file round.
-        let keeps_round = |at: f32, to: f32| !is_round(pitch) || !(low && high) || is_round(min + to - at);
+        let keeps_round = |at: f32, to: f32| !(is_round(pitch) && low && high) || is_round(min + to - at);
         for &(at, is_middle) in &own {
             for other in self.neighbours {
                 let (low, high) = (other.min[axis], other.max[axis]);

@@ -1,5 +1,7 @@
 //! The inspector: plain words, sliders, drop-downs, colours, waveforms, and the origin of each value.
 
+use egui_kittest::kittest::NodeT;
+
 use super::*;
 
 impl Desk {
