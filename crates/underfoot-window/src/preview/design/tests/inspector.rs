@@ -147,7 +147,8 @@ fn the_waveform_of_each_effect_is_drawn_with_its_figures() {
     let mut desk = Desk::at_home(map());
     desk.open("Feel");
     for moment in ["at the press", "at the release"] {
-        let shown = desk.window.get_by_label_contains(&format!("Waveform {moment}: "));
+        let begin = format!("Waveform {moment}: ");
+        let shown = desk.window.get_by_label_contains(&begin);
         let figures = shown.accesskit_node().label().unwrap_or_default();
         assert!(figures.contains(" N peak, "), "{figures}");
     }
