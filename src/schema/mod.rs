@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! bytes -format-> tree with spans, fields in range
-//!   -page, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
+//!   -layout_record, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
 //! ```
 //!
 //! Apps may also read values that can be read alone, and write all of them, by the crate `ron`; what such a value

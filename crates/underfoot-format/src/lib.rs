@@ -9,8 +9,9 @@
 //! ```
 //!
 //! One reading finds all problems of a file, each with its place and the nearest valid name. A record is read over a
-//! base, which supplies the fields that are not written. This crate depends on no particular record: it stands
-//! below all of them.
+//! base, which supplies the fields that are not written. It is read in a context ([`Record::Context`]), which holds the
+//! values that the file refers to: `record! { pub struct Mode = "Mode" with Effects; ... }`. This crate depends on no
+//! particular record: it stands below all of them.
 //!
 //! Serde's derive cannot do this: it stops at the first problem, has neither places nor ranges, and cannot read over
 //! a base. With schemars, every record would need a second struct for the file format and a conversion of the units;
@@ -19,6 +20,7 @@
 
 pub mod codec;
 mod complaint;
+mod context;
 pub mod describe;
 pub mod diagnostic;
 mod excerpt;
@@ -46,8 +48,9 @@ pub mod words;
 pub use codec::{
     Codec, Flag, Flat, Follow, Id, List, Name, Named, Num, OneOf, Opt, Own, Pair, Rec, Text, list, num,
 };
+pub use context::Includes;
 pub use fault::Faults;
-pub use record::{Includes, Record, Variants};
+pub use record::{Record, Variants};
 
 // Public signatures contain types of this crate.
 pub use ron2;

@@ -7,20 +7,6 @@ use super::hand::Hand;
 use super::node::Node;
 use super::text::Entry;
 
-/// A context of readings that includes the smaller context `C`: that of a record within the record being read.
-///
-/// Every context includes the empty one.
-pub trait Includes<C> {
-    /// Returns the smaller context.
-    fn included(&self) -> &C;
-}
-
-impl<C> Includes<()> for C {
-    fn included(&self) -> &() {
-        &()
-    }
-}
-
 /// A type that files write as named fields in round brackets. [`record!`](crate::record!) implements it.
 pub trait Record: Clone + PartialEq + 'static {
     /// Its name in files.
@@ -137,7 +123,7 @@ macro_rules! record {
                         $name,
                         base.map(|base| &base.$field),
                         $crate::__default!($($default)?),
-                        $crate::record::Includes::included(context),
+                        $crate::Includes::included(context),
                     ),)*
                 };
                 $(
@@ -231,7 +217,7 @@ macro_rules! choices {
                             Some(Self::$variant(base)) => Some(base),
                             _ => None,
                         };
-                        let context = $crate::record::Includes::included(context);
+                        let context = $crate::Includes::included(context);
                         <$record as $crate::Record>::read_fields(fields, base, context)
                     }))?),)*
                     _ => None,

@@ -15,7 +15,7 @@ use underfoot_format::{Flat, Follow, Includes, Num, OneOf, Opt, Rec, choices, li
 struct PlaceNames(Vec<&'static str>);
 
 /// A person on a floor.
-struct Visit {
+struct Guest {
     names: PlaceNames,
 }
 
@@ -25,13 +25,13 @@ impl Includes<Self> for PlaceNames {
     }
 }
 
-impl Includes<Self> for Visit {
+impl Includes<Self> for Guest {
     fn included(&self) -> &Self {
         self
     }
 }
 
-impl Includes<PlaceNames> for Visit {
+impl Includes<PlaceNames> for Guest {
     fn included(&self) -> &PlaceNames {
         &self.names
     }
@@ -90,8 +90,8 @@ choices! {
 const WAYS: Distinct<Way> = Distinct { entry: "way", most: 4, about: |_, _, _, _| {} };
 
 record! {
-    /// A day.
-    struct Day = "Day" with Visit;
+    /// An outing.
+    struct Outing = "Outing" with Guest;
     /// The first way.
     first: Way = "first", Rec;
     /// The other ways.
@@ -104,8 +104,8 @@ record! {
     step: Step = "", Flat;
 }
 
-fn visit() -> Visit {
-    Visit { names: PlaceNames(vec!["door", "stairs"]) }
+fn guest() -> Guest {
+    Guest { names: PlaceNames(vec!["door", "stairs"]) }
 }
 
 #[test]
@@ -113,19 +113,19 @@ fn a_place_is_found_from_every_depth_of_a_record() {
     let text = "(height_m: 2, first: (from: \"stairs\", to: \"stairs\", over: [\"door\", \"stairs\"], rest: \"stairs\"),
         ways: [(from: \"stairs\")], deeds: [Climb(height_m: 1), Walk(from: \"stairs\")],
         last: Walk, from: \"stairs\", step: (height_m: 3))";
-    let day: Day = read_record(text, &visit()).unwrap();
+    let outing: Outing = read_record(text, &guest()).unwrap();
     let way = |to, over, rest, step| Way { from: 1.into(), to, over, rest, step };
-    assert_eq!(day.first, way(Some(1), vec![0, 1], 1, None));
-    assert_eq!(day.ways, [way(None, vec![], 0, None)]);
-    assert_eq!(day.deeds, [Deed::Climb(Step { height_m: 1.0 }), Deed::Walk(way(None, vec![], 0, None))]);
-    assert_eq!(day.last, Deed::Walk(way(None, vec![], 0, Some(Step { height_m: 3.0 }))));
-    assert_eq!(day.step, Step { height_m: 2.0 });
+    assert_eq!(outing.first, way(Some(1), vec![0, 1], 1, None));
+    assert_eq!(outing.ways, [way(None, vec![], 0, None)]);
+    assert_eq!(outing.deeds, [Deed::Climb(Step { height_m: 1.0 }), Deed::Walk(way(None, vec![], 0, None))]);
+    assert_eq!(outing.last, Deed::Walk(way(None, vec![], 0, Some(Step { height_m: 3.0 }))));
+    assert_eq!(outing.step, Step { height_m: 2.0 });
 }
 
 #[test]
 fn each_reading_has_a_context_of_its_own() {
     let text = "(from: \"attic\", over: [\"cellar\"])";
-    let problems = read_record::<Way>(text, &visit().names).unwrap_err().to_string();
+    let problems = read_record::<Way>(text, &guest().names).unwrap_err().to_string();
     for name in ["attic", "cellar"] {
         assert!(problems.contains(&format!("no place is called {name}")), "{problems}");
     }

@@ -244,11 +244,12 @@ fn controls_of_groups_and_of_all_pages_share_one_limit() {
 #[test]
 fn own_effects_and_kinds_and_the_unit_hold_wherever_they_are_written() {
     let own = |pages: &str, kinds: &str| {
-        read(&format!(
-            "pages: [(id: \"one\", widgets: [Group(at: (0, 0), widgets: [{pages}])])], kinds: [{kinds}],
+        let text = format!(
+            "Layout(version: 1, regions: [(id: \"all\", at: (0, 0), size: (1.8, 1.8))], pages: [(id: \"one\", widgets: [Group(at: (0, 0), widgets: [{pages}])])], kinds: [{kinds}],
             effects: [(name: \"knock\", plays: Click(from: \"soft_click\", level_n: 7)),
-                (name: \"thud\", plays: Click(from: \"knock\", impulse_n: 3))], units: Metres"
-        ))
+                (name: \"thud\", plays: Click(from: \"knock\", duck_db: 3))], units: Metres)"
+        );
+        parse_layout(&text, "page.ron", &Kinds::builtin(), &Geometry::default()).map(|loaded| loaded.layout)
     };
     let kind = "Kind(name: \"key\", from: \"button\", feel: (press: \"thud\"))";
     let key = |fields: &str| format!("(id: \"a\", kind: \"key\", at: (1, 0.5), {fields}),");

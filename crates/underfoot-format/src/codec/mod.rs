@@ -4,12 +4,14 @@ mod distinct;
 mod list;
 mod nested;
 mod num;
+mod unwritten;
 mod written;
 
 pub use self::distinct::{Distinct, Seen};
 pub use self::list::{List, list};
 pub use self::nested::{Beside, Flat, OneOf, Rec};
 pub use self::num::{Num, Scalar, num};
+pub use self::unwritten::{Follow, Own};
 pub use self::written::{At, By, Spelled, Written};
 use super::describe::{FieldDescription, FieldType, first_paragraph};
 use super::fields::Fields;
@@ -257,100 +259,4 @@ impl<T: Copy + From<[f32; 2]> + Into<[f32; 2]>> Codec<T> for Pair {
         }
         *value = values.into();
     }
-}
-
-/// A value that follows from other fields where it is not written; the rules of the record compute it.
-pub struct Follow<C> {
-    /// Codec of the written value.
-    pub explicit: C,
-    /// Description, for people, of the value that follows.
-    pub otherwise: &'static str,
-}
-
-impl<T, C: Codec<T>> Codec<T> for Follow<C> {
-    type Context = C::Context;
-
-    fn read(&self, node: Node<'_>, base: Option<&T>, context: &C::Context) -> Option<T> {
-        self.explicit.read(node, base, context)
-    }
-
-    fn write(&self, value: &T) -> RonText {
-        self.explicit.write(value)
-    }
-
-    fn shape(&self) -> FieldType {
-        self.explicit.shape()
-    }
-
-    fn stand_in(&self) -> T {
-        self.explicit.stand_in()
-    }
-
-    fn turn(&self, value: &mut T, name: &'static str, hand: &mut Hand<'_>) {
-        self.explicit.turn(value, name, hand);
-    }
-
-    fn read_field(
-        &self,
-        fields: &mut Fields<'_>,
-        name: &'static str,
-        base: Option<&T>,
-        _: Option<T>,
-        context: &C::Context,
-    ) -> T
-    where
-        T: Clone,
-    {
-        let otherwise = || base.cloned().unwrap_or_else(|| self.stand_in());
-        let Some(node) = fields.take(name) else {
-            fields.follow(name);
-            return otherwise();
-        };
-        self.read(node, base, context).unwrap_or_else(|| {
-            fields.fail(name);
-            otherwise()
-        })
-    }
-
-    fn describe_field(
-        &self,
-        name: &'static str,
-        about: &[&str],
-        _: Option<T>,
-        fields: &mut Vec<FieldDescription>,
-    ) {
-        let default = Some(self.otherwise.to_owned());
-        fields.push(FieldDescription { name, about: first_paragraph(about), shape: self.shape(), default });
-    }
-}
-
-/// A value that no file holds: it comes from the base, or is this one.
-pub struct Own<T>(pub T);
-
-impl<T: Clone> Codec<T> for Own<T> {
-    type Context = ();
-
-    fn read(&self, _: Node<'_>, base: Option<&T>, (): &()) -> Option<T> {
-        Some(base.unwrap_or(&self.0).clone())
-    }
-
-    fn write(&self, _: &T) -> RonText {
-        RonText::Nothing
-    }
-
-    fn shape(&self) -> FieldType {
-        FieldType::Words("")
-    }
-
-    fn stand_in(&self) -> T {
-        self.0.clone()
-    }
-
-    fn read_field(&self, _: &mut Fields<'_>, _: &'static str, base: Option<&T>, _: Option<T>, (): &()) -> T {
-        base.unwrap_or(&self.0).clone()
-    }
-
-    fn write_field(&self, _: &T, _: &'static str, _: Option<T>, _: &mut Vec<Entry>) {}
-
-    fn describe_field(&self, _: &'static str, _: &[&str], _: Option<T>, _: &mut Vec<FieldDescription>) {}
 }
