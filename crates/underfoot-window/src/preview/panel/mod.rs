@@ -20,7 +20,8 @@ pub(in crate::preview) use tuner::Tuner;
 use eframe::egui::{Margin, Panel, ScrollArea, Ui};
 
 use super::app::App;
-use super::style::{panel_frame, selectable};
+use super::icons::Icon;
+use super::style::{panel_frame, switch_button};
 
 /// Minimum height of the list of events, in points.
 const EVENTS: f32 = 150.0;
@@ -39,14 +40,15 @@ pub(super) struct SidePanel {
 impl SidePanel {
     /// Whether a window of this width, in points, shows the panel: a window too narrow for panel and floor shows it
     /// only on request.
-    fn is_shown(&self, width: f32) -> bool {
+    pub(super) fn is_shown(&self, width: f32) -> bool {
         self.wanted.unwrap_or(width >= 2.2 * 304.0)
     }
 
     /// A button that opens or closes the panel.
     pub(super) fn button(&mut self, ui: &mut Ui) {
         let shown = self.is_shown(ui.ctx().content_rect().width());
-        if selectable(ui, shown, "Panel", "Figures, events and actuators at the side") {
+        let hint = "Figures, events and actuators at the side";
+        if switch_button(ui, shown, Icon::PanelRight, "Panel", hint) {
             self.wanted = Some(!shown);
         }
     }

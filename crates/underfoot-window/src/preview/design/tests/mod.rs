@@ -65,6 +65,7 @@ impl Desk {
         };
         let app = App::new(input, &PreviewOptions::default());
         let mut builder = Harness::builder().with_size(vec2(1400.0, 860.0)).with_step_dt(1.0 / 60.0);
+        builder = builder.with_context_setup(|ctx| ctx.set_fonts(crate::preview::style::fonts()));
         // Chinese letters, which the program's own fonts lack.
         if text.chars().any(|letter| letter >= '\u{4e00}') {
             builder = builder.allow_missing_glyphs();
