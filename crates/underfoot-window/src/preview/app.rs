@@ -13,7 +13,7 @@ use super::feed::PreviewInput;
 use super::floor_check::FloorCheck;
 use super::floor_view::{FloorFeet, FloorView, OnFloor};
 use super::focus::FocusRing;
-use super::messages::WindowMessages;
+use super::messages::{Happened, WindowMessages};
 use super::mode::WindowMode;
 use super::panel::{SidePanel, Tuner, handle_undo_key};
 use super::plots::Plots;
@@ -134,6 +134,24 @@ impl App {
         self.designer.as_ref().is_some_and(|designer| designer.is_open)
     }
 
+    /// Whether the floor shows the first steps: only feet of mouse and keys can take them.
+    fn has_steps(&self) -> bool {
+        self.appearance.has_steps() && self.feet.are_led() && !self.is_checking()
+    }
+
+    /// Follows the first steps until they are done.
+    fn follow_steps(&mut self, ui: &Ui) {
+        if !self.has_steps() {
+            return self.view.steps.restart();
+        }
+        let (shown, standing) = (&self.shown, self.feet.standing_at());
+        let (snapshot, layout) = (shown.snapshot(), shown.layout());
+        let recent = shown.messages.recent.iter();
+        if self.view.steps.follow(shown.now_s, snapshot, layout, recent, standing) {
+            self.appearance.show_steps(ui.ctx(), false, &mut self.shown.messages);
+        }
+    }
+
     /// Whether a check of the floor is running.
     pub(super) fn is_checking(&self) -> bool {
         self.floor_check.as_ref().is_some_and(FloorCheck::is_running)
@@ -143,6 +161,7 @@ impl App {
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
         self.handle_keys(ui);
+        self.follow_steps(ui);
         self.share_zoom();
         let begun = self.designer.as_mut().filter(|designer| designer.is_open).map(|it| it.begin_frame(ui));
         let first: &[egui::Id] = if begun.is_none() { self.view.controls() } else { &[] };
@@ -160,7 +179,7 @@ impl App {
             canvas: ui.available_rect_before_wrap(),
             widths: self.window.widths,
             designs: self.designer.is_some(),
-            has_side: self.panel.is_shown(window.width()),
+            has_side: self.panel.is_shown(window.width(), self.is_designing()),
         };
         match (&mut self.designer, begun) {
             (Some(designer), Some(before)) => {
@@ -217,7 +236,7 @@ impl App {
             tuner.panel(ui, &theme, &self.shown, self.selection.tile());
         }
         self.plots.show(ui, &theme, &self.shown, &self.selection, self.designer.as_mut());
-        let frame = egui::Frame::new();
+        let (frame, has_steps) = (egui::Frame::new(), self.has_steps());
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
             stage.canvas = ui.available_rect_before_wrap();
             let on_floor = OnFloor {
@@ -225,6 +244,7 @@ impl App {
                 selection: &mut self.selection,
                 walks: self.walks.as_mut(),
                 check: self.floor_check.as_ref(),
+                has_steps,
             };
             self.view.show(ui, &theme, &self.shown, on_floor, stage.floor());
         });
@@ -236,15 +256,21 @@ impl App {
         let (now_s, elapsed_s) = ui.input(|i| (i.time, i.stable_dt));
         self.shown.receive(now_s);
         let ignored = self.presses.update(self.shown.snapshot());
-        self.shown.messages.note_ignored(ignored);
+        self.shown.messages.note_unanswered(ignored.into_iter().map(Happened::Ignored));
+        let missed =
+            self.view.misses.update(self.shown.snapshots.output_buffer(), &self.shown.messages.layout);
+        self.shown.messages.note_unanswered(missed.into_iter().map(Happened::NearMiss));
         self.feet.receive();
         let snapshot = self.shown.snapshot();
         self.view.trails.update(now_s, snapshot);
         self.plots.note(now_s, snapshot, self.shown.layout());
         self.selection.follow(snapshot);
-        self.selection.follow_press(self.presses.latest());
+        self.selection.follow_use(&snapshot.held, self.presses.latest());
         self.status.observe(now_s, snapshot);
         self.shown.receive_signals(self.selection.tile(), elapsed_s);
+        if self.shown.scopes.are_moving() {
+            self.shown.messages.tell_silence();
+        }
     }
 
     /// Handles the keys that work anywhere in the window, and what the parts do once a frame before they are drawn.
@@ -335,7 +361,10 @@ impl App {
     fn shows_for_a_while(&self) -> bool {
         let snapshot = self.shown.snapshot();
         let ignored = snapshot.ignored.last();
+        let missed = self.view.misses.latest();
         ignored.is_some_and(|press| snapshot.at.since(press.at) < 2 * scene::TOLD)
+            || missed.is_some_and(|miss| snapshot.at.since(miss.at) < 2 * scene::TOLD)
+            || (self.has_steps() && self.view.steps.ends_soon())
             || self
                 .shown
                 .messages

@@ -151,12 +151,12 @@ impl Choice {
 }
 
 impl Appearance {
-    /// A menu of colours and sizes; it stays open after a click.
-    pub(super) fn menu(&mut self, ui: &mut Ui, messages: &mut WindowMessages) {
+    /// A menu of colours and sizes; it stays open after a click. A compact one has a button with an icon alone.
+    pub(super) fn menu(&mut self, ui: &mut Ui, is_compact: bool, messages: &mut WindowMessages) {
         let mut choice = self.choice;
         let window = self.theme();
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-        let button = MenuButton::new(icons::with(Icon::SunMoon, "Appearance")).config(config);
+        let button = MenuButton::new(icons::short(Icon::SunMoon, "Appearance", is_compact)).config(config);
         let (button, _) = button.ui(ui, |ui| {
             ui.set_width(190.0);
             for (part, theme) in [("Window", &mut choice.window), ("Projected", &mut choice.projected)] {

@@ -19,6 +19,11 @@ pub(super) fn with(icon: Icon, name: &str) -> String {
     format!("{} {name}", icon.unicode())
 }
 
+/// The text of a button: the icon before `name`, or alone where there is little room.
+pub(super) fn short(icon: Icon, name: &str, is_compact: bool) -> String {
+    if is_compact { icon.unicode().to_string() } else { with(icon, name) }
+}
+
 /// A button with an icon alone, for an action called `name`; a hover shows the name and `hint`.
 pub(super) fn icon_button(ui: &mut Ui, is_on: bool, icon: Icon, name: &str, hint: &str) -> bool {
     let button = ui.add_enabled(is_on, Button::new(icon.unicode().to_string()));

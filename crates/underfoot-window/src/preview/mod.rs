@@ -18,9 +18,11 @@ mod floor_view;
 mod focus;
 mod icons;
 mod keyboard;
+mod labels;
 mod lookout;
 mod messages;
 mod mode;
+mod near_misses;
 mod off_hint;
 mod panel;
 mod playback;
@@ -51,7 +53,7 @@ mod walks;
 mod watch;
 mod zoom;
 
-pub use channels::{ProgramChannels, WindowChannels, channels};
+pub use channels::{Notice, ProgramChannels, WindowChannels, channels};
 pub use design::{DesignInput, KindsOf, usual_state};
 pub use feed::{
     EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed,

@@ -126,9 +126,18 @@ pub(super) fn selectable<'a>(ui: &mut Ui, is_on: bool, text: impl egui::IntoAtom
     ui.add(button).on_hover_text(hint).clicked()
 }
 
-/// A button with an icon that stays down while `is_on`; returns whether it was clicked.
-pub(super) fn switch_button(ui: &mut Ui, is_on: bool, icon: Icon, name: &str, hint: &str) -> bool {
-    let button = egui::Button::selectable(is_on, icons::with(icon, name)).frame_when_inactive(true);
+/// A button with an icon that stays down while `is_on`, without its name if it is compact; returns whether it was
+/// clicked.
+pub(super) fn switch_button(
+    ui: &mut Ui,
+    is_on: bool,
+    icon: Icon,
+    name: &str,
+    is_compact: bool,
+    hint: &str,
+) -> bool {
+    let text = icons::short(icon, name, is_compact);
+    let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
     let button = ui.add(button);
     button.widget_info(|| {
         egui::WidgetInfo::selected(egui::accesskit::Role::Button, button.enabled(), is_on, name)

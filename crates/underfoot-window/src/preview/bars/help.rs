@@ -4,7 +4,7 @@ use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{Grid, Margin, Panel, PopupCloseBehavior, RichText, Ui};
 
 use crate::preview::appearance::Appearance;
-use crate::preview::icons::{Icon, named, with};
+use crate::preview::icons::{Icon, named, short};
 use crate::preview::messages::WindowMessages;
 use crate::preview::style::{panel_frame, quiet};
 use underfoot_scene::egui_painter::color;
@@ -121,24 +121,26 @@ pub(super) fn help_menu(
     ui: &mut Ui,
     theme: &Theme,
     activity: HelpTopic,
+    is_compact: bool,
     appearance: &mut Appearance,
     messages: &mut WindowMessages,
 ) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let (button, _) = MenuButton::new(with(Icon::CircleQuestionMark, "Help")).config(config).ui(ui, |ui| {
-        ui.set_min_width(260.0);
-        Grid::new("help").spacing([14.0, 3.0]).show(ui, |ui| {
-            for (key, does) in activity.steps() {
-                ui.label(RichText::new(*key).color(color(theme.ink)));
-                ui.label(quiet(theme, *does));
-                ui.end_row();
+    let (button, _) =
+        MenuButton::new(short(Icon::CircleQuestionMark, "Help", is_compact)).config(config).ui(ui, |ui| {
+            ui.set_min_width(260.0);
+            Grid::new("help").spacing([14.0, 3.0]).show(ui, |ui| {
+                for (key, does) in activity.steps() {
+                    ui.label(RichText::new(*key).color(color(theme.ink)));
+                    ui.label(quiet(theme, *does));
+                    ui.end_row();
+                }
+            });
+            ui.separator();
+            let mut has_steps = appearance.has_steps();
+            if ui.checkbox(&mut has_steps, "First steps on the floor").changed() {
+                appearance.show_steps(ui.ctx(), has_steps, messages);
             }
         });
-        ui.separator();
-        let mut has_steps = appearance.has_steps();
-        if ui.checkbox(&mut has_steps, "First steps on the floor").changed() {
-            appearance.show_steps(ui.ctx(), has_steps, messages);
-        }
-    });
     named(button, "Help");
 }

@@ -18,31 +18,28 @@ impl App {
         if self.shown.scopes.is_fed() {
             let muted = self.shown.snapshot().muted.all;
             let hint = "Let nothing be felt or heard; M does the same";
-            if switch_button(ui, muted, Icon::VolumeX, "Mute", hint) {
+            if switch_button(ui, muted, Icon::VolumeX, "Mute", false, hint) {
                 self.shown.command(PreviewCommand::Mute(!muted));
             }
         }
         layers_menu(ui, &mut self.view.show);
         if let Some(tuner) = &mut self.tuner {
             let hint = "Tune what controls feel like: see, hear and save";
-            tuner.is_open ^= switch_button(ui, tuner.is_open, Icon::AudioWaveform, "Effects", hint);
+            tuner.is_open ^= switch_button(ui, tuner.is_open, Icon::AudioWaveform, "Effects", false, hint);
         }
         let plots = &mut self.plots.is_open;
-        *plots ^= switch_button(
-            ui,
-            *plots,
-            Icon::ChartLine,
-            "Plots",
-            "Forces and values over time; P does the same",
-        );
-        self.panel.button(ui);
+        let hint = "Forces and values over time; P does the same";
+        *plots ^= switch_button(ui, *plots, Icon::ChartLine, "Plots", false, hint);
+        self.panel.button(ui, false);
         let count = self.shown.messages.warnings.count;
         if count > 0 {
             let text = if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") };
-            let shown = RichText::new(with(Icon::TriangleAlert, &text)).color(color(theme.warning));
+            let shown = with(Icon::TriangleAlert, &count.to_string());
+            let shown = RichText::new(shown).color(color(theme.warning));
             let lists = &mut self.top_bar.lists_warnings;
             let button = Button::selectable(*lists, shown).frame_when_inactive(true);
-            let button = named(ui.add(button), &text).on_hover_text("Trouble for feet and eyes");
+            let button =
+                named(ui.add(button), &text).on_hover_text(format!("{text}: trouble for feet and eyes"));
             *lists ^= button.clicked();
         }
     }

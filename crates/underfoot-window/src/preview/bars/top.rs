@@ -16,6 +16,9 @@ use underfoot_scene::scene::{Theme, in_drawn_order};
 /// Width of the window below which the tools of the mode get a line of their own, in points.
 const TWO_LINES: f32 = 1180.0;
 
+/// Width of the window below which the right end of the bar has icons without words, in points.
+const COMPACT: f32 = 760.0;
+
 /// Height of one line of the bar, in points: constant, so that the floor keeps its place.
 const LINE: f32 = 27.0;
 
@@ -68,6 +71,7 @@ impl App {
         Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
             let has_two_lines = ui.available_width() < TWO_LINES;
+            let is_compact = ui.available_width() < COMPACT;
             line(ui, |ui| {
                 self.mode_switch(ui);
                 ui.add_space(4.0);
@@ -76,7 +80,7 @@ impl App {
                     ui.add_space(4.0);
                     self.tools(ui, &theme);
                 }
-                self.end(ui, &theme);
+                self.end(ui, &theme, is_compact);
             });
             if has_two_lines {
                 line(ui, |ui| self.tools(ui, &theme));
@@ -87,7 +91,10 @@ impl App {
     /// The tools of the present mode.
     fn tools(&mut self, ui: &mut Ui, theme: &Theme) {
         match &mut self.designer {
-            Some(designer) if designer.is_open => designer.tools(ui, theme, &self.top_bar.choices),
+            Some(designer) if designer.is_open => {
+                designer.tools(ui, theme, &self.top_bar.choices);
+                self.panel.button(ui, true);
+            }
             _ => self.try_tools(ui, theme),
         }
     }
@@ -114,7 +121,7 @@ impl App {
     }
 
     /// The part at the right: the states of the floor, appearance and help.
-    fn end(&mut self, ui: &mut Ui, theme: &Theme) {
+    fn end(&mut self, ui: &mut Ui, theme: &Theme, is_compact: bool) {
         // The widgets come from left to right, so their place follows from their width in the last frame.
         let room = ui.available_width() - self.top_bar.end_width - ui.spacing().item_spacing.x;
         if room > 0.0 {
@@ -123,9 +130,9 @@ impl App {
         let end = ui.scope(|ui| {
             ui.horizontal(|ui| {
                 mutes(ui, theme, &self.shown, self.rehearsal.as_ref());
-                self.appearance.menu(ui, &mut self.shown.messages);
+                self.appearance.menu(ui, is_compact, &mut self.shown.messages);
                 let activity = self.activity();
-                help_menu(ui, theme, activity, &mut self.appearance, &mut self.shown.messages);
+                help_menu(ui, theme, activity, is_compact, &mut self.appearance, &mut self.shown.messages);
                 link_state(ui, theme, &self.shown, self.time_line.is_some());
             });
         });

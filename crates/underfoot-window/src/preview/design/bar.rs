@@ -10,7 +10,7 @@ use super::edited::EditedLayout;
 use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
 use crate::preview::bars::{MessageStack, message_frame};
-use crate::preview::icons::{Icon, icon_button};
+use crate::preview::icons::{self, Icon, icon_button};
 use crate::preview::style::{is_entered, quiet, toggle};
 use underfoot::floor::Rect;
 use underfoot::schema;
@@ -101,7 +101,7 @@ impl Designer {
             }
         });
         let can_save = !self.is_saved() || self.storage.file.path().is_none() || self.storage.file.is_new();
-        if ui.add_enabled(can_save, egui::Button::new("Save")).on_hover_text("Ctrl+S").clicked() {
+        if icons::icon_button(ui, can_save, Icon::Save, "Save", "Ctrl+S") {
             self.save();
         }
     }
@@ -172,12 +172,17 @@ impl Designer {
             .collect();
         let count = self.edited.findings.len() + self.edited.told().count();
         if count == 0 {
-            ui.label(quiet(theme, "no warnings"));
+            let label = ui.label(quiet(theme, Icon::CircleCheck.unicode()));
+            label.widget_info(|| WidgetInfo::labeled(Role::Label, true, "no warnings"));
+            label.on_hover_text("no warnings");
             return;
         }
         let noun = if count == 1 { "warning" } else { "warnings" };
-        let text = egui::RichText::new(format!("{count} {noun}")).color(color(theme.warning));
-        if ui.button(text).on_hover_text("Select the next control that has one").clicked() {
+        let text = icons::with(Icon::TriangleAlert, &count.to_string());
+        let button = ui.button(egui::RichText::new(text).color(color(theme.warning)));
+        let name = format!("{count} {noun}");
+        let button = icons::named(button, &name);
+        if button.on_hover_text(format!("{name}: select the next control that has one")).clicked() {
             let at =
                 self.edited.selected.first().and_then(|record| all.iter().rposition(|other| other == record));
             let next = at.map_or(0, |at| at + 1);

@@ -12,7 +12,6 @@ mod files;
 mod gestures;
 mod inspector;
 mod keys;
-mod labels;
 mod list;
 mod marks;
 mod modes;

@@ -65,6 +65,11 @@ impl FloorFeet {
         self.mouse.is_some()
     }
 
+    /// The place of the standing foot, in floor metres, if it is down.
+    pub(in crate::preview) fn standing_at(&self) -> Option<Vec2> {
+        self.mouse.as_ref().and_then(|(feet, _)| feet.standing()).map(|shoe| shoe.position)
+    }
+
     /// The shoes on display.
     pub(super) fn shoes(&self) -> &[Shoe] {
         &self.shoes
@@ -96,7 +101,7 @@ impl FloorFeet {
         let Some((feet, _)) = &mut self.mouse else { return };
         let stands = feet.standing().is_some();
         let hint = "A second foot that stays where it is left; Space puts it under the mouse";
-        if switch_button(ui, stands, Icon::Footprints, "Stance foot", hint) {
+        if switch_button(ui, stands, Icon::Footprints, "Stance foot", false, hint) {
             if stands {
                 feet.lift_standing();
             } else {

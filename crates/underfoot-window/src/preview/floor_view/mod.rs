@@ -1,6 +1,7 @@
 //! The floor in the middle of the window, and the mouse on it.
 
 mod feet;
+mod first_steps;
 
 use eframe::egui;
 use eframe::egui::accesskit::{Action, Role};
@@ -10,8 +11,10 @@ use eframe::egui::{
 };
 
 pub(super) use feet::FloorFeet;
+pub(super) use first_steps::FirstSteps;
 
 use super::floor_check::FloorCheck;
+use super::near_misses::{NearMiss, NearMissWatch};
 use super::off_hint::why_off;
 use super::pointer::way_while_down;
 use super::selection::Selection;
@@ -21,6 +24,7 @@ use super::walks::Walks;
 use super::watch::{Banner, Weight};
 use super::zoom::Zoom;
 use underfoot::floor::{Geometry, TileId};
+use underfoot::layout::Layout;
 use underfoot::widget::{Behaviour, Value};
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
 use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
@@ -35,6 +39,10 @@ pub(super) struct FloorView {
     /// The layers over the floor.
     pub(super) show: Show,
     pub(super) trails: Trails,
+    /// The presses beside controls.
+    pub(super) misses: NearMissWatch,
+    /// The first steps of a new user.
+    pub(super) steps: FirstSteps,
 }
 
 /// The parts of the window that act on the floor by the mouse.
@@ -43,6 +51,8 @@ pub(super) struct OnFloor<'a> {
     pub(super) selection: &'a mut Selection,
     pub(super) walks: Option<&'a mut Walks>,
     pub(super) check: Option<&'a FloorCheck>,
+    /// Whether the first steps are shown.
+    pub(super) has_steps: bool,
 }
 
 impl Default for FloorView {
@@ -54,6 +64,8 @@ impl Default for FloorView {
             palette: Palette::default(),
             show: Show::WINDOW,
             trails: Trails::default(),
+            misses: NearMissWatch::default(),
+            steps: FirstSteps::default(),
         }
     }
 }
@@ -73,7 +85,7 @@ impl FloorView {
         on_floor: OnFloor<'_>,
         screen: Rect,
     ) {
-        let OnFloor { feet, selection, mut walks, check } = on_floor;
+        let OnFloor { feet, selection, mut walks, check, has_steps } = on_floor;
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::drag());
         canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Floor"));
@@ -94,6 +106,9 @@ impl FloorView {
             check.show_marks(ui, rect, map, theme, &shown.floor);
         }
         feet.focus(name_controls(ui, map, shown, &mut self.controls));
+        if has_steps && !draws_walks {
+            self.steps.show(ui, rect, map, theme, shown);
+        }
         if self.zoom.is_closer() {
             self.zoom_out_button(ui, rect);
         }
@@ -118,12 +133,15 @@ impl FloorView {
         shown: &ShownFloor,
         (shoes, chosen): (&[Shoe], Option<TileId>),
     ) {
+        let misses: Vec<scene::PressBeside> =
+            self.misses.latest().into_iter().map(|miss| beside(miss, shown.layout())).collect();
         let view = View {
             show: self.show,
             shoes,
             levels: shown.scopes.levels(),
             trails: self.trails.all(),
             chosen,
+            near_misses: &misses,
             ..View::new(&shown.floor.geometry, shown.layout(), shown.snapshot(), theme)
         };
         scene::draw(&mut self.scene, &view);
@@ -156,6 +174,17 @@ impl FloorView {
         if button.on_hover_text("Show the whole floor").clicked() {
             self.zoom = Zoom::default();
         }
+    }
+}
+
+/// The drawing of a press beside a control.
+fn beside(miss: &NearMiss, layout: &Layout) -> scene::PressBeside {
+    let widget = layout.widgets.iter().find(|widget| widget.id == miss.id);
+    scene::PressBeside {
+        at: miss.at,
+        place: miss.place,
+        control: widget.map(|widget| widget.area),
+        text: miss.text.clone(),
     }
 }
 

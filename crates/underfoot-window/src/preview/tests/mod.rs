@@ -3,7 +3,9 @@
 mod bars;
 mod faults;
 mod feet;
+mod first_steps;
 mod floor_check;
+mod modes;
 mod panel;
 mod plots;
 mod presses;
