@@ -12,7 +12,7 @@ use underfoot::schema::{self, Diagnostics, Saved};
 use underfoot::serve::Command;
 use underfoot::wire::ControlMessage;
 use underfoot_window::edit;
-use underfoot_window::preview::{LayoutCause, LayoutNews, PreviewCommand, Warnings};
+use underfoot_window::preview::{LayoutCause, LayoutNews, Notice, PreviewCommand, Warnings};
 
 use super::super::failure::Failure;
 use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
@@ -70,7 +70,7 @@ impl CommandHandler {
     pub(super) fn process_commands(
         mut self,
         commands: Receiver<PreviewCommand>,
-        notices: SyncSender<String>,
+        notices: SyncSender<Notice>,
     ) {
         thread::spawn(move || {
             for wanted in commands {
@@ -83,7 +83,7 @@ impl CommandHandler {
                         self.files.layout = path;
                         match self.desk.watch(&self.files) {
                             Ok(watch) => self.watch = watch,
-                            Err(failure) => drop(notices.send(failure.to_string())),
+                            Err(failure) => drop(notices.send(failure.to_string().into())),
                         }
                         continue;
                     }
@@ -96,12 +96,12 @@ impl CommandHandler {
                         continue;
                     }
                     PreviewCommand::SaveFloor { floor, path } => {
-                        let _ = notices.send(keep_floor(&floor, &path));
+                        let _ = notices.send(keep_floor(&floor, &path).into());
                         continue;
                     }
                     PreviewCommand::SaveEffect { name, text } => {
                         // The window may be closed already.
-                        let _ = notices.send(self.save(&name, &text));
+                        let _ = notices.send(self.save(&name, &text).into());
                         continue;
                     }
                     PreviewCommand::Enable { id, enabled: true } => {

@@ -16,7 +16,8 @@ use underfoot::mirror::TextMirror;
 use underfoot::schema::Diagnostics;
 use underfoot::sink::{EventSink, Report};
 use underfoot_window::preview::{
-    LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState, Warnings,
+    LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
+    Warnings,
 };
 
 use super::super::failure::Failure;
@@ -204,7 +205,7 @@ impl FollowedFloor {
         }
     }
 
-    fn say(&self, notice: impl Into<String>) {
+    fn say(&self, notice: impl Into<Notice>) {
         // Messages never wait for a window that is closed or does not draw.
         let _ = self.window.notices.try_send(notice.into());
     }

@@ -18,7 +18,8 @@ use underfoot::runtime::Session;
 use underfoot::schema;
 use underfoot::serve::Command;
 use underfoot_window::preview::{
-    EventNews, LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
+    EventNews, LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink,
+    ServerState,
 };
 
 use super::super::failure::Failure;
@@ -208,7 +209,7 @@ impl ServedFloor {
         }
     }
 
-    fn say(&self, notice: impl Into<String>) {
+    fn say(&self, notice: impl Into<Notice>) {
         // Messages never wait for a window that is closed or does not draw.
         let _ = self.window.notices.try_send(notice.into());
     }

@@ -33,7 +33,7 @@ use underfoot_sim::{
     feet_by_hand, watched,
 };
 use underfoot_window::preview::{
-    self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
+    self, DesignInput, FootSink, Notice, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
     ProjectionOptions, ScopeFeed, ShoeFeed, Warnings, channels,
 };
 
@@ -166,7 +166,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let latency = LatencyStages::default();
     let told = notices.clone();
     // The window may be closed.
-    let notice = move |text| drop(told.try_send(text));
+    let notice = move |text| drop(told.try_send(Notice::Sound(text)));
     let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
     let (tap, packets) = TappedPackets::new();
     let input = tap.wrap(stage.input, floor.geometry);

@@ -7,8 +7,9 @@ use glam::Vec2;
 
 use super::mark::{Ink, Paint, Stroke};
 use super::{Scene, View};
-use underfoot::engine::Ignored;
+use underfoot::engine::{Ignored, IgnoredPress};
 use underfoot::floor::{Corner, Rect};
+use underfoot::layout::Widget;
 use underfoot::sense::{Covariance, Quality};
 use underfoot::wire::LinkState;
 
@@ -131,6 +132,7 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) 
     let (theme, now) = (view.theme, view.snapshot.at);
     let by = super::magnification(view.geometry).clamp(0.3, 4.0);
     let size_m = 0.028 * by;
+    near_misses(scene, view, size_m, &mut taken);
     let mut told = Vec::new();
     for press in view.snapshot.ignored.iter().rev().filter(|press| now.since(press.at) < TOLD) {
         // For a foot that slides over several controls, only the last one shows a reason.
@@ -151,6 +153,42 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) 
         let plate = Paint::fill(Ink::solid(theme.plate))
             .with_stroke(Stroke::new(0.0025 * by, Ink::solid(theme.warning)));
         scene.add_badge(middle, size_m, Ink::solid(theme.warning), plate, format_args!("{text}"));
+    }
+}
+
+/// The force of the last light press of `widget`, as a share of its threshold, while its reason is shown: its ring
+/// stays filled that far after the foot has left. 0 without such a press.
+pub(super) fn light_share(view: &View<'_>, widget: &Widget) -> f32 {
+    let wanted = widget.behaviour.thresholds();
+    let is_it = |press: &&IgnoredPress| {
+        press.id == widget.id
+            && press.why == Ignored::TooLight
+            && view.snapshot.at.since(press.at) < TOLD
+            && wanted.share.is_none()
+    };
+    let share = view.snapshot.ignored.iter().rev().find(is_it).map(|press| press.force.0 / wanted.press.0);
+    share.filter(|share| share.is_finite()).map_or(0.0, |share| share.clamp(0.0, 1.0))
+}
+
+/// Draws each recent press beside a control: a cross at its place, a line to the control, and the distance.
+fn near_misses(scene: &mut Scene, view: &View<'_>, size_m: f32, taken: &mut Vec<Rect>) {
+    let (theme, now) = (view.theme, view.snapshot.at);
+    let line = Paint::stroke(Stroke::new(0.09 * size_m, Ink::solid(theme.warning)));
+    for miss in view.near_misses.iter().filter(|miss| now.since(miss.at) < TOLD && miss.place.is_finite()) {
+        let arm = 0.45 * size_m;
+        for way in [Vec2::new(arm, arm), Vec2::new(arm, -arm)] {
+            scene.add_line(miss.place - way, miss.place + way, line);
+        }
+        if let Some(control) = miss.control {
+            scene.add_line(miss.place, miss.place.clamp(control.min, control.max.max(control.min)), line);
+        }
+        let half = Vec2::new(0.5 * (super::widths::width(&miss.text) * size_m + size_m), 0.8 * size_m);
+        let press = Rect::new(miss.place, miss.place).grown(arm);
+        let middle = beside(press, half, view.geometry.bounds(), taken);
+        taken.push(Rect::new(middle - half, middle + half));
+        let plate = Paint::fill(Ink::solid(theme.plate))
+            .with_stroke(Stroke::new(0.09 * size_m, Ink::solid(theme.warning)));
+        scene.add_badge(middle, size_m, Ink::solid(theme.warning), plate, format_args!("{}", miss.text));
     }
 }
 
@@ -177,7 +215,7 @@ mod tests {
     use super::super::sample::{at_rest, map, pressing};
     use super::super::{Mark, Show, Theme, Trail};
     use super::*;
-    use underfoot::engine::{IgnoredPress, Snapshot};
+    use underfoot::engine::Snapshot;
     use underfoot::floor::Geometry;
     use underfoot::sense::ContactId;
     use underfoot::units::{Instant, Newtons};
@@ -246,6 +284,45 @@ mod tests {
         }
         let scene = marks(&snapshot, Show { ignored: true, ..BARE }, &[]);
         assert!(!scene.marks().iter().any(|mark| matches!(mark, Mark::Field { .. })));
+    }
+
+    #[test]
+    fn a_press_beside_a_control_shows_its_distance_for_some_seconds() {
+        let (layout, geometry) = (map(), Geometry::default());
+        let area = layout.widgets[0].area;
+        let near_misses = [super::super::PressBeside {
+            at: Instant::from_millis(10_000),
+            place: Vec2::new(area.max.x + 0.03, area.centre().y),
+            control: Some(area),
+            text: "3 cm beside it".into(),
+        }];
+        let told = |at_ms: u64, ignored: bool| {
+            let snapshot = Snapshot { at: Instant::from_millis(at_ms), ..at_rest(&layout) };
+            let mut scene = Scene::new();
+            let show = Show { ignored, ..BARE };
+            let near_misses = &near_misses;
+            let view = View { show, near_misses, ..View::new(&geometry, &layout, &snapshot, &Theme::LIGHT) };
+            super::super::draw(&mut scene, &view);
+            scene.texts().filter(|(text, _)| *text == "3 cm beside it").count()
+        };
+        assert_eq!(
+            [told(10_100, true), told(14_000, true), told(16_000, true), told(10_100, false)],
+            [1, 1, 0, 0]
+        );
+    }
+
+    #[test]
+    fn the_ring_of_a_light_press_stays_as_long_as_its_reason() {
+        let layout = map();
+        let widget = &layout.widgets[0];
+        let share = |at_ms: u64, why: Ignored| {
+            let mut snapshot = Snapshot { at: Instant::from_millis(at_ms), ..at_rest(&layout) };
+            let (at, id, contact) = (Instant::from_millis(10_000), widget.id.clone(), ContactId(7));
+            snapshot.ignored = vec![IgnoredPress { at, id, contact, force: Newtons(30.0), why }];
+            light_share(&View::new(&Geometry::default(), &layout, &snapshot, &Theme::LIGHT), widget)
+        };
+        assert!((share(11_000, Ignored::TooLight) - 30.0 / 60.0).abs() < 1e-3);
+        assert_eq!([share(16_000, Ignored::TooLight), share(11_000, Ignored::Step)], [0.0, 0.0]);
     }
 
     #[test]

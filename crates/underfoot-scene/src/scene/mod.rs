@@ -41,7 +41,7 @@ pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::{outline_of, sole};
 pub use pieces::{TextDirection, TextPiece, in_drawn_order, pieces};
 pub use theme::{Faces, Theme};
-pub use view::{Layer, Shoe, Show, Trail, View};
+pub use view::{Layer, PressBeside, Shoe, Show, Trail, View};
 
 use glam::Vec2;
 

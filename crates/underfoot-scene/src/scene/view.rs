@@ -4,9 +4,9 @@ use glam::Vec2;
 
 use super::Theme;
 use underfoot::engine::{Snapshot, WidgetState};
-use underfoot::floor::{Geometry, TileId};
+use underfoot::floor::{Geometry, Rect, TileId};
 use underfoot::layout::{Layout, Widget};
-use underfoot::units::Newtons;
+use underfoot::units::{Instant, Newtons};
 use underfoot::widget::Value;
 
 /// A simulated shoe, for drawing.
@@ -138,6 +138,19 @@ pub struct Trail {
     pub leads: bool,
 }
 
+/// A press on free floor close to a control.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressBeside {
+    /// Time of its end.
+    pub at: Instant,
+    /// The place of the press, in floor metres.
+    pub place: Vec2,
+    /// The area of the control, in floor metres; `None` if the layout no longer has it.
+    pub control: Option<Rect>,
+    /// The distance and the name of the control.
+    pub text: String,
+}
+
 /// Input of one drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
@@ -159,6 +172,8 @@ pub struct View<'a> {
     pub levels: &'a [f32],
     /// Recent paths of the contacts, for the layer of trails.
     pub trails: &'a [Trail],
+    /// Presses close to controls, for the layer of ignored presses.
+    pub near_misses: &'a [PressBeside],
     /// A tile to outline.
     pub chosen: Option<TileId>,
 }
@@ -181,6 +196,7 @@ impl<'a> View<'a> {
             shoes: &[],
             levels: &[],
             trails: &[],
+            near_misses: &[],
             chosen: None,
         }
     }

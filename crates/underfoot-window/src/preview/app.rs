@@ -6,13 +6,15 @@ use eframe::egui::{self, Ui};
 
 use super::PreviewOptions;
 use super::appearance::Appearance;
-use super::bars::{HelpTopic, TELL_S, TopBar, handle_mute_key, help_bar, notices, problems, warnings};
+use super::bars::{HelpTopic, MessageStack, TELL_S, TopBar, handle_mute_key, help_bar};
 use super::closing::{Closing, Title, handle_quit_key};
 use super::design::Designer;
 use super::feed::PreviewInput;
 use super::floor_check::FloorCheck;
 use super::floor_view::{FloorFeet, FloorView, OnFloor};
-use super::messages::WindowMessages;
+use super::focus::FocusRing;
+use super::messages::{Happened, WindowMessages};
+use super::mode::WindowMode;
 use super::panel::{SidePanel, Tuner, handle_undo_key};
 use super::plots::Plots;
 use super::presses::PressLog;
@@ -21,13 +23,14 @@ use super::rehearsal::Rehearsal;
 use super::scopes::ActuatorScopes;
 use super::selection::Selection;
 use super::shown::ShownFloor;
+use super::stage::{PanelWidths, StageOfWindow};
 use super::status::StatusBar;
 use super::time_line::TimeLine;
 use super::turns::Turns;
 use super::visit::VisitBar;
 use super::walks::Walks;
 use super::watch::FloorWatch;
-use underfoot_scene::scene;
+use underfoot_scene::scene::{self, Theme};
 
 /// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);
@@ -72,6 +75,10 @@ pub(super) struct WindowState {
     turns: Turns,
     /// Time of the next frame.
     due: Instant,
+    focus: FocusRing,
+    widths: PanelWidths,
+    /// Whether the last frame showed Design mode.
+    was_designing: bool,
 }
 
 impl App {
@@ -91,7 +98,7 @@ impl App {
             presses: if input.playback.is_some() { PressLog::recorded() } else { PressLog::default() },
             plots: Plots::default(),
             panel: SidePanel::default(),
-            top_bar: TopBar { choices: input.choices, lists_warnings: false },
+            top_bar: TopBar::new(input.choices),
             status: StatusBar::new(input.latency),
             time_line: input.playback.map(TimeLine::new),
             visit: input.visit.map(VisitBar::new),
@@ -107,6 +114,9 @@ impl App {
                 title: Title::new(&options.title),
                 turns: Turns::default(),
                 due: Instant::now(),
+                focus: FocusRing::default(),
+                widths: PanelWidths::default(),
+                was_designing: false,
             },
             shown: ShownFloor {
                 scopes: ActuatorScopes::new(input.scopes, &floor),
@@ -128,6 +138,24 @@ impl App {
         self.designer.as_ref().is_some_and(|designer| designer.is_open)
     }
 
+    /// Whether the floor shows the first steps: only feet of mouse and keys can take them.
+    fn has_steps(&self) -> bool {
+        self.appearance.has_steps() && self.feet.are_led() && !self.is_checking()
+    }
+
+    /// Follows the first steps until they are done.
+    fn follow_steps(&mut self, ui: &Ui) {
+        if !self.has_steps() {
+            return self.view.steps.restart();
+        }
+        let (shown, standing) = (&self.shown, self.feet.standing_at());
+        let (snapshot, layout) = (shown.snapshot(), shown.layout());
+        let recent = shown.messages.recent.iter();
+        if self.view.steps.follow(shown.now_s, snapshot, layout, recent, standing) {
+            self.appearance.show_steps(ui.ctx(), false, &mut self.shown.messages);
+        }
+    }
+
     /// Whether a check of the floor is running.
     pub(super) fn is_checking(&self) -> bool {
         self.floor_check.as_ref().is_some_and(FloorCheck::is_running)
@@ -137,31 +165,76 @@ impl App {
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
         self.handle_keys(ui);
+        self.follow_steps(ui);
+        self.share_zoom();
+        let begun = self.designer.as_mut().filter(|designer| designer.is_open).map(|it| it.begin_frame(ui));
+        let first: &[egui::Id] = if begun.is_none() { self.view.controls() } else { &[] };
+        self.window.focus.begin(ui, first);
+        let window = ui.available_rect_before_wrap();
         self.show_top_bar(ui);
         let theme = self.appearance.theme();
-        self.status.show(ui, &theme, &self.shown, self.mode());
+        self.status.show(ui, &theme, &self.shown);
         help_bar(ui, &theme, self.activity());
         if let Some(line) = &mut self.time_line {
             line.show(ui, &theme);
         }
-        notices(ui, &theme, &mut self.shown.messages);
-        if let Some(designer) = self.designer.as_mut().filter(|designer| designer.is_open) {
-            designer.show(ui, &theme, &self.shown, &mut self.view.palette, &self.top_bar.choices);
-        } else {
-            self.show_floor(ui);
+        let mut stage = StageOfWindow {
+            window,
+            canvas: ui.available_rect_before_wrap(),
+            widths: self.window.widths,
+            designs: self.designer.is_some(),
+            has_side: self.panel.is_shown(window.width(), self.is_designing()),
+        };
+        match (&mut self.designer, begun) {
+            (Some(designer), Some(before)) => {
+                // A click on the switch of the modes leaves Design mode some frames later.
+                designer.show(ui, &theme, &self.shown, &mut self.view.palette, &mut stage, before);
+            }
+            _ => self.show_floor(ui, &mut stage),
         }
+        self.window.widths = stage.widths;
+        self.show_messages(ui, &theme, stage.canvas);
+        self.window.focus.show(ui, &theme);
         self.request_next_frame(ui);
     }
 
-    /// Draws the floor with the panels around it.
-    fn show_floor(&mut self, ui: &mut Ui) {
-        let theme = self.appearance.theme();
-        if let Some(designer) = &mut self.designer {
-            designer.ask(ui, &theme);
+    /// Shows the messages over the floor.
+    fn show_messages(&mut self, ui: &Ui, theme: &Theme, canvas: egui::Rect) {
+        let stack = MessageStack { theme, canvas };
+        let lists_warnings = self.top_bar.lists_warnings && !self.is_designing();
+        stack.lower(ui, &self.shown.messages, lists_warnings);
+        let designer = &mut self.designer;
+        stack.upper(ui, &mut self.shown, |ui| {
+            if let Some(designer) = designer {
+                designer.messages(ui, &stack);
+            }
+        });
+    }
+
+    /// Keeps the visible part of the floor when the mode changes.
+    fn share_zoom(&mut self) {
+        let designs = self.is_designing();
+        if let Some(designer) = self.designer.as_mut().filter(|_| designs != self.window.was_designing) {
+            if designs {
+                *designer.zoom_mut() = self.view.zoom;
+            } else {
+                self.view.zoom = *designer.zoom_mut();
+            }
         }
+        self.window.was_designing = designs;
+    }
+
+    /// Draws the floor with the panels around it.
+    fn show_floor(&mut self, ui: &mut Ui, stage: &mut StageOfWindow) {
+        let theme = self.appearance.theme();
         match self.floor_check.as_mut().filter(|check| check.is_running()) {
             Some(check) => check.panel(ui, &theme, &self.shown, self.feet.are_led()),
-            None => self.show_side_panel(ui),
+            None => {
+                self.show_side_panel(ui);
+                if stage.is_wide() {
+                    stage.widths.note_right(stage.window, ui.available_rect_before_wrap());
+                }
+            }
         }
         if let Some(tuner) = &mut self.tuner {
             tuner.panel(ui, &theme, &self.shown, self.selection.tile());
@@ -169,20 +242,18 @@ impl App {
         if let Some(visit) = &mut self.visit {
             visit.show(ui, &theme, self.time_line.as_ref().and_then(TimeLine::part));
         }
-        problems(ui, &theme, &self.shown.messages);
-        if self.top_bar.lists_warnings {
-            warnings(ui, &theme, &self.shown.messages.warnings);
-        }
         self.plots.show(ui, &theme, &self.shown, &self.selection, self.designer.as_mut());
-        let frame = egui::Frame::new();
+        let (frame, has_steps) = (egui::Frame::new(), self.has_steps());
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
+            stage.canvas = ui.available_rect_before_wrap();
             let on_floor = OnFloor {
                 feet: &mut self.feet,
                 selection: &mut self.selection,
                 walks: self.walks.as_mut(),
                 check: self.floor_check.as_ref(),
+                has_steps,
             };
-            self.view.show(ui, &theme, &self.shown, on_floor);
+            self.view.show(ui, &theme, &self.shown, on_floor, stage.floor());
         });
         self.projection.show(ui, &mut self.shown, &self.appearance);
     }
@@ -192,15 +263,21 @@ impl App {
         let (now_s, elapsed_s) = ui.input(|i| (i.time, i.stable_dt));
         self.shown.receive(now_s);
         let ignored = self.presses.update(self.shown.snapshot());
-        self.shown.messages.note_ignored(ignored);
+        self.shown.messages.note_unanswered(ignored.into_iter().map(Happened::Ignored));
+        let missed =
+            self.view.misses.update(self.shown.snapshots.output_buffer(), &self.shown.messages.layout);
+        self.shown.messages.note_unanswered(missed.into_iter().map(Happened::NearMiss));
         self.feet.receive();
         let snapshot = self.shown.snapshot();
         self.view.trails.update(now_s, snapshot);
         self.plots.note(now_s, snapshot, self.shown.layout());
         self.selection.follow(snapshot);
-        self.selection.follow_press(self.presses.latest());
+        self.selection.follow_use(&snapshot.held, self.presses.latest());
         self.status.observe(now_s, snapshot);
         self.shown.receive_signals(self.selection.tile(), elapsed_s);
+        if self.shown.scopes.are_moving() {
+            self.shown.messages.tell_silence();
+        }
     }
 
     /// Handles the keys that work anywhere in the window, and what the parts do once a frame before they are drawn.
@@ -208,6 +285,7 @@ impl App {
         if let Some(check) = &mut self.floor_check {
             check.follow(ui, &self.shown);
         }
+        self.handle_mode_key(ui);
         self.appearance.handle_keys(ui, &mut self.shown.messages);
         self.appearance.enlarge(ui.ctx());
         handle_quit_key(ui);
@@ -263,22 +341,14 @@ impl App {
         }
     }
 
-    /// The name of the mode.
-    fn mode(&self) -> &'static str {
-        match (self.is_designing(), self.projection.is_open()) {
-            (true, _) => "Design",
-            (false, true) => "Try + floor",
-            (false, false) => "Try",
-        }
-    }
-
     /// The use of the window now.
-    fn activity(&self) -> HelpTopic {
+    pub(super) fn activity(&self) -> HelpTopic {
         let draws_walks = self.walks.as_ref().is_some_and(|walks| walks.are_drawn);
         match () {
             () if self.is_designing() => HelpTopic::Designing,
             () if self.is_checking() => HelpTopic::Checking,
             () if draws_walks => HelpTopic::DrawingWalks,
+            () if self.mode() == WindowMode::Project => HelpTopic::Projecting,
             () if self.feet.are_led() => HelpTopic::Stepping,
             () if self.time_line.is_some() => HelpTopic::Replaying,
             () => HelpTopic::Watching { is_rendered: self.shown.scopes.is_fed() },
@@ -309,7 +379,10 @@ impl App {
     fn shows_for_a_while(&self) -> bool {
         let snapshot = self.shown.snapshot();
         let ignored = snapshot.ignored.last();
+        let missed = self.view.misses.latest();
         ignored.is_some_and(|press| snapshot.at.since(press.at) < 2 * scene::TOLD)
+            || missed.is_some_and(|miss| snapshot.at.since(miss.at) < 2 * scene::TOLD)
+            || (self.has_steps() && self.view.steps.ends_soon())
             || self
                 .shown
                 .messages

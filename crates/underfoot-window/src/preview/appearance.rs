@@ -7,6 +7,7 @@ use eframe::egui;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{Key, Modifiers, PopupCloseBehavior, Ui};
 
+use super::icons::{self, Icon};
 use super::messages::WindowMessages;
 use super::style;
 use super::style::quiet;
@@ -37,6 +38,8 @@ struct Choice {
     projected: Theme,
     /// Size of the text, in tenths of the usual size.
     text: u8,
+    /// Whether the floor shows the first steps of a new user.
+    has_steps: bool,
 }
 
 /// The appearance of the window and the projection.
@@ -54,7 +57,7 @@ impl Appearance {
     /// Uses the colours of `theme` for the window unless `file` holds others; also returns a message for the user if
     /// the file cannot be used.
     pub(super) fn new(theme: Theme, file: Option<PathBuf>) -> (Self, Option<String>) {
-        let usual = Choice { window: theme, projected: Theme::DARK, text: USUAL };
+        let usual = Choice { window: theme, projected: Theme::DARK, text: USUAL, has_steps: true };
         let read = file.as_deref().map_or(Ok(None), |file| match read_bounded(file, LONGEST) {
             Ok(text) => usual.read(&text).map(Some).map_err(str::to_owned),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -66,6 +69,16 @@ impl Appearance {
         });
         let choice = read.ok().flatten().unwrap_or(usual);
         (Self { choice, file, enlarged: 1.0, applied: None }, wrong)
+    }
+
+    /// Whether the floor shows the first steps of a new user.
+    pub(super) fn has_steps(&self) -> bool {
+        self.choice.has_steps
+    }
+
+    /// Shows or hides the first steps, from now on.
+    pub(super) fn show_steps(&mut self, ctx: &egui::Context, has_steps: bool, messages: &mut WindowMessages) {
+        self.choose(ctx, Choice { has_steps, ..self.choice }, messages);
     }
 
     pub(super) fn theme(&self) -> Theme {
@@ -102,7 +115,8 @@ impl Choice {
     fn text(&self) -> String {
         let name = |theme: &Theme| theme.name().unwrap_or(Theme::NAMED[0].0).to_lowercase();
         let (window, projected) = (name(&self.window), name(&self.projected));
-        format!("{HEAD}\nwindow {window}\nprojected {projected}\ntext {}\n", self.text)
+        let steps = if self.has_steps { "on" } else { "off" };
+        format!("{HEAD}\nwindow {window}\nprojected {projected}\ntext {}\nfirst_steps {steps}\n", self.text)
     }
 
     /// This choice with the settings in `text`.
@@ -127,6 +141,7 @@ impl Choice {
                     let tenths: u8 = tenths.parse().map_err(|_| "the size of the text is no number")?;
                     self.text = tenths.clamp(TENTHS.0, TENTHS.1);
                 }
+                Some(("first_steps", on)) => self.has_steps = on != "off",
                 // Settings of a later version.
                 _ => {}
             }
@@ -136,12 +151,13 @@ impl Choice {
 }
 
 impl Appearance {
-    /// A menu of colours and sizes; it stays open after a click.
-    pub(super) fn menu(&mut self, ui: &mut Ui, messages: &mut WindowMessages) {
+    /// A menu of colours and sizes; it stays open after a click. A compact one has a button with an icon alone.
+    pub(super) fn menu(&mut self, ui: &mut Ui, is_compact: bool, messages: &mut WindowMessages) {
         let mut choice = self.choice;
         let window = self.theme();
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-        MenuButton::new("Look").config(config).ui(ui, |ui| {
+        let button = MenuButton::new(icons::short(Icon::SunMoon, "Appearance", is_compact)).config(config);
+        let (button, _) = button.ui(ui, |ui| {
             ui.set_width(190.0);
             for (part, theme) in [("Window", &mut choice.window), ("Projected", &mut choice.projected)] {
                 ui.label(quiet(&window, part));
@@ -174,6 +190,7 @@ impl Appearance {
                 }
             });
         });
+        icons::named(button, "Appearance");
         self.choose(ui.ctx(), choice, messages);
     }
 
@@ -216,8 +233,8 @@ mod tests {
 
     #[test]
     fn what_is_chosen_is_read_again_and_nonsense_is_told() {
-        let usual = Choice { window: Theme::LIGHT, projected: Theme::DARK, text: USUAL };
-        let chosen = Choice { window: Theme::CONTRAST, projected: Theme::LIGHT, text: 14 };
+        let usual = Choice { window: Theme::LIGHT, projected: Theme::DARK, text: USUAL, has_steps: true };
+        let chosen = Choice { window: Theme::CONTRAST, projected: Theme::LIGHT, text: 14, has_steps: false };
         assert_eq!(usual.read(&chosen.text()), Ok(chosen));
         assert_eq!(
             usual.read(&format!("{HEAD}\ntext 250\nsound 3\n")),

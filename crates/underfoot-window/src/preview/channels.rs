@@ -13,6 +13,27 @@ const NEWS_WAITING: usize = 64;
 /// Capacity for commands: seconds of a dragging mouse.
 const COMMANDS_WAITING: usize = 256;
 
+/// A message for the user of the window.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// Appears at once.
+    Text(String),
+    /// Describes the output of sound, or the reason why there is none; appears once there is something to hear.
+    Sound(String),
+}
+
+impl From<String> for Notice {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl From<&str> for Notice {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
 /// The window's ends.
 #[derive(Debug)]
 pub struct WindowChannels {
@@ -21,7 +42,7 @@ pub struct WindowChannels {
     /// The results of changes to the layout file.
     pub layouts: Receiver<LayoutNews>,
     /// Messages for the user of the window, such as the reason why there is no sound.
-    pub notices: Receiver<String>,
+    pub notices: Receiver<Notice>,
     /// The commands of the user; at most 256 wait.
     pub commands: SyncSender<PreviewCommand>,
 }
@@ -34,7 +55,7 @@ pub struct ProgramChannels {
     /// Sends results of changes to the layout file; at most 64 wait.
     pub layouts: SyncSender<LayoutNews>,
     /// Sends messages for the user of the window; at most 64 wait.
-    pub notices: SyncSender<String>,
+    pub notices: SyncSender<Notice>,
     /// The commands of the user; the channel closes with the window.
     pub commands: Receiver<PreviewCommand>,
 }

@@ -3,7 +3,6 @@
 use eframe::egui::{self, Context, Key, Modal, Modifiers, Ui, ViewportCommand};
 
 use super::design::Designer;
-use super::style::pill;
 use underfoot_scene::scene::Theme;
 
 /// The state of closing.
@@ -124,11 +123,6 @@ pub(super) fn file_name(ui: &mut Ui, theme: &Theme, designer: &Designer) {
     let name = egui::RichText::new(designer.title()).color(underfoot_scene::egui_painter::color(ink));
     let hint = if designer.is_saved() { "Saved" } else { "Not saved: Ctrl+S saves it" };
     ui.add(egui::Label::new(name).truncate()).on_hover_text(hint);
-    if !designer.is_open
-        && let Some((text, is_bad)) = designer.last_message()
-    {
-        pill(ui, if is_bad { theme.fault } else { theme.good }, theme, text);
-    }
 }
 
 /// Ends the typing in a field, so that its text is applied.

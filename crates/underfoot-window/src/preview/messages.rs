@@ -5,7 +5,9 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
+use super::channels::Notice;
 use super::feed::{EventNews, LayoutCause, LayoutNews, Warnings};
+use super::near_misses::NearMiss;
 use underfoot::engine::{IgnoredPress, Snapshot};
 use underfoot::layout::Layout;
 use underfoot::units::Instant;
@@ -27,6 +29,8 @@ pub(super) enum Happened {
     Event(WidgetEvent),
     /// A control did not answer a press.
     Ignored(IgnoredPress),
+    /// A press beside a control.
+    NearMiss(NearMiss),
     /// A ground event: ice cracked, or other ground yielded.
     GroundEvent {
         /// Index of the ground in the layout.
@@ -45,6 +49,7 @@ impl Happened {
         match self {
             Self::Event(event) => event.at,
             Self::Ignored(press) => press.at,
+            Self::NearMiss(miss) => miss.at,
             Self::GroundEvent { at, .. } => *at,
         }
     }
@@ -54,7 +59,7 @@ impl Happened {
 pub(super) struct WindowMessages {
     events: Receiver<EventNews>,
     layouts: Receiver<LayoutNews>,
-    notices: Receiver<String>,
+    notices: Receiver<Notice>,
     /// The list of events, newest first.
     pub(super) recent: VecDeque<Happened>,
     /// The event counter of each ground in the last frame.
@@ -73,6 +78,8 @@ pub(super) struct WindowMessages {
     pub(super) warnings: Warnings,
     /// Messages for the user, oldest first.
     pub(super) notes: VecDeque<String>,
+    /// The message about the sound, until there is something to hear.
+    silence: Option<String>,
 }
 
 /// The result of the last change to the layout file.
@@ -100,7 +107,7 @@ impl WindowMessages {
         layout: Arc<Layout>,
         events: Receiver<EventNews>,
         layouts: Receiver<LayoutNews>,
-        notices: Receiver<String>,
+        notices: Receiver<Notice>,
     ) -> Self {
         Self {
             events,
@@ -115,6 +122,7 @@ impl WindowMessages {
             files_changed: false,
             warnings: Warnings::default(),
             notes: VecDeque::new(),
+            silence: None,
         }
     }
 
@@ -170,8 +178,11 @@ impl WindowMessages {
         while let Some((layout, _)) = self.coming.pop_front_if(|(_, from)| *from <= revision) {
             self.layout = layout;
         }
-        while let Ok(note) = self.notices.try_recv() {
-            self.note(note);
+        while let Ok(notice) = self.notices.try_recv() {
+            match notice {
+                Notice::Text(text) => self.note(text),
+                Notice::Sound(text) => self.silence = Some(text),
+            }
         }
     }
 
@@ -207,13 +218,20 @@ impl WindowMessages {
         }
     }
 
-    /// Inserts ignored presses in order of time: they may arrive after later events.
-    pub(super) fn note_ignored(&mut self, presses: Vec<IgnoredPress>) {
+    /// Inserts presses without an answer in order of time: they may arrive after later events.
+    pub(super) fn note_unanswered(&mut self, presses: impl IntoIterator<Item = Happened>) {
         for press in presses {
             self.event_count += 1;
             self.recent.truncate(KEPT - 1);
-            let older = self.recent.iter().position(|happened| happened.at() <= press.at);
-            self.recent.insert(older.unwrap_or(self.recent.len()), Happened::Ignored(press));
+            let older = self.recent.iter().position(|happened| happened.at() <= press.at());
+            self.recent.insert(older.unwrap_or(self.recent.len()), press);
+        }
+    }
+
+    /// Shows the reason why there is no sound, now that there would have been something to hear.
+    pub(super) fn tell_silence(&mut self) {
+        if let Some(reason) = self.silence.take() {
+            self.note(reason);
         }
     }
 
@@ -339,7 +357,7 @@ mod tests {
             force: underfoot::units::Newtons(24.0),
             why: underfoot::engine::Ignored::TooLight,
         };
-        messages.note_ignored(vec![press]);
+        messages.note_unanswered([Happened::Ignored(press)]);
         let at: Vec<_> = messages.recent.iter().map(|line| line.at().micros() / 1000).collect();
         assert_eq!((at, messages.event_count), (vec![300, 200, 100], 3));
     }

@@ -15,9 +15,14 @@ mod feed;
 mod feet;
 mod floor_check;
 mod floor_view;
+mod focus;
+mod icons;
 mod keyboard;
+mod labels;
 mod lookout;
 mod messages;
+mod mode;
+mod near_misses;
 mod off_hint;
 mod panel;
 mod playback;
@@ -34,6 +39,7 @@ mod sample;
 mod scopes;
 mod selection;
 mod shown;
+mod stage;
 mod status;
 mod style;
 #[cfg(test)]
@@ -48,7 +54,7 @@ mod walks;
 mod watch;
 mod zoom;
 
-pub use channels::{ProgramChannels, WindowChannels, channels};
+pub use channels::{Notice, ProgramChannels, WindowChannels, channels};
 pub use design::{DesignInput, KindsOf, usual_state};
 pub use feed::{
     EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed,
@@ -126,7 +132,7 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
         let app = app::App::new(lookout::start(input, &context.egui_ctx), &options);
         style::apply(&context.egui_ctx, &app.appearance.theme());
-        context.egui_ctx.set_fonts(underfoot_scene::letters::definitions());
+        context.egui_ctx.set_fonts(style::fonts());
         // Missing letters come from the fonts of this computer, as in pictures.
         context.egui_ctx.add_font_provider(std::sync::Arc::new(underfoot_scene::letters::Installed::new()));
         // The window has its own text size, which it stores.

@@ -127,9 +127,9 @@ impl PressLog {
             || self.all.iter().any(is_it)
     }
 
-    /// The control that was pressed last.
-    pub(super) fn latest(&self) -> Option<&WidgetId> {
-        self.all.back().map(|press| &press.id)
+    /// The control that was pressed last, and the time at which that press ended.
+    pub(super) fn latest(&self) -> Option<(&WidgetId, Instant)> {
+        self.all.back().map(|press| (&press.id, press.at))
     }
 
     /// The presses of one control, the latest first.

@@ -3,6 +3,7 @@
 use underfoot::engine::Snapshot;
 use underfoot::floor::{Geometry, TileId};
 use underfoot::layout::{Layout, Widget};
+use underfoot::units::Instant;
 use underfoot::widget::WidgetId;
 
 /// The content of the side panel: the tile under the working foot and the control that was pressed last, or pinned
@@ -12,6 +13,10 @@ pub(super) struct Selection {
     tile: TileId,
     control: Option<WidgetId>,
     pinned: bool,
+    /// The controls under feet in the last frame.
+    held: Vec<WidgetId>,
+    /// The time of the last press that was followed.
+    pressed_at: Option<Instant>,
 }
 
 impl Selection {
@@ -19,7 +24,7 @@ impl Selection {
     pub(super) fn new(geometry: &Geometry) -> Self {
         let TileId { column, row } = geometry.first();
         let tile = TileId::new(column + geometry.columns() / 2, row + geometry.rows() / 2);
-        Self { tile, control: None, pinned: false }
+        Self { tile, control: None, pinned: false, held: Vec::new(), pressed_at: None }
     }
 
     /// Follows the heaviest tile of the cursor, or of the heaviest contact, unless pinned.
@@ -38,10 +43,22 @@ impl Selection {
         }
     }
 
-    /// Follows the control that was pressed last, unless another one is pinned.
-    pub(super) fn follow_press(&mut self, control: Option<&WidgetId>) {
-        if control.is_some() && (!self.pinned || self.control.is_none()) && self.control.as_ref() != control {
-            self.control = control.cloned();
+    /// Follows the control in use, unless another one is pinned: the one that a foot took hold of last, or, with no
+    /// foot on any control, the one of the last press, which ended at its time.
+    pub(super) fn follow_use(&mut self, held: &[WidgetId], last_press: Option<(&WidgetId, Instant)>) {
+        let begun = held.iter().find(|id| !self.held.contains(id)).cloned();
+        let ended = last_press.filter(|(_, at)| held.is_empty() && self.pressed_at != Some(*at));
+        if held.is_empty() {
+            self.pressed_at = last_press.map(|(_, at)| at);
+        }
+        if self.held != held {
+            self.held = held.to_vec();
+        }
+        if self.pinned && self.control.is_some() {
+            return;
+        }
+        if let Some(id) = begun.or_else(|| ended.map(|(id, _)| id.clone())) {
+            self.control = Some(id);
         }
     }
 
@@ -106,17 +123,34 @@ mod tests {
     }
 
     #[test]
-    fn the_control_is_the_one_pressed_last_until_one_is_pinned() {
+    fn the_control_is_the_one_in_use_until_one_is_pinned() {
         let mut selection = Selection::new(&Geometry::default());
         let [home, zoom] = ["home", "zoom"].map(WidgetId::new);
-        selection.follow_press(Some(&home));
-        selection.follow_press(Some(&zoom));
+        let at = Instant::from_millis;
+        selection.follow_use(&[], Some((&home, at(1))));
+        selection.follow_use(&[], Some((&zoom, at(2))));
         assert_eq!(selection.control(), Some(&zoom));
         selection.pin_control(home.clone());
-        selection.follow_press(Some(&zoom));
+        selection.follow_use(&[], Some((&zoom, at(3))));
         assert_eq!(selection.control(), Some(&home));
         selection.unpin();
-        selection.follow_press(Some(&zoom));
+        selection.follow_use(&[], Some((&zoom, at(4))));
         assert_eq!(selection.control(), Some(&zoom));
+    }
+
+    #[test]
+    fn a_control_that_is_dragged_is_shown_and_stays_when_the_foot_leaves() {
+        let mut selection = Selection::new(&Geometry::default());
+        let [home, zoom] = ["home", "zoom"].map(WidgetId::new);
+        let before = Some((&home, Instant::from_millis(1)));
+        selection.follow_use(&[], before);
+        selection.follow_use(std::slice::from_ref(&zoom), before);
+        assert_eq!(selection.control(), Some(&zoom), "the press before is over");
+        selection.follow_use(&[], before);
+        assert_eq!(selection.control(), Some(&zoom), "the report of its press comes later");
+        // A second foot takes another one meanwhile.
+        selection.follow_use(std::slice::from_ref(&zoom), before);
+        selection.follow_use(&[zoom, home.clone()], before);
+        assert_eq!(selection.control(), Some(&home));
     }
 }

@@ -1,4 +1,4 @@
-//! The status bar at the window's lower edge: mode, source, rates and losses.
+//! The status bar at the window's lower edge: source, rates and losses.
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
@@ -21,8 +21,7 @@ const EVERY_S: f64 = 0.5;
 /// Size of the letters, in points.
 const LETTERS: f32 = 12.0;
 
-/// Width of the mode, and minimum width of the source, in points.
-const MODE: f32 = 66.0;
+/// Minimum width of the source, in points.
 const SOURCE: f32 = 90.0;
 
 /// One figure of the bar: a fixed width, so that nothing moves when its text gets longer.
@@ -114,8 +113,8 @@ impl StatusBar {
         self.packets.observe(now_s, snapshot.counters.packets);
     }
 
-    /// Shows the bar, with the name of the mode at its left; figures that do not fit are left out, from the right.
-    pub(super) fn show(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, mode: &str) {
+    /// Shows the bar; figures that do not fit are left out, from the right.
+    pub(super) fn show(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor) {
         self.latency.update(shown.now_s);
         let frame = panel_frame(theme, Margin::symmetric(14, 3));
         let frame = frame.stroke(egui::Stroke::NONE);
@@ -125,25 +124,16 @@ impl StatusBar {
                 ui.set_height(18.0);
                 ui.spacing_mut().item_spacing.x = 14.0;
                 let room = ui.available_width();
-                figure(
-                    ui,
-                    &Figure {
-                        width: MODE,
-                        text: mode.into(),
-                        colour: theme.ink,
-                        meaning: "F2 changes between trying and designing, F11 projects".into(),
-                    },
-                );
                 // Show as many figures as fit, at the right; the source gets the remaining width.
                 let gap = ui.spacing().item_spacing.x;
-                let mut left = room - MODE - SOURCE - 2.0 * gap;
+                let mut left = room - SOURCE - gap;
                 let fits = |one: &Figure| {
                     left -= one.width + gap;
                     left >= 0.0
                 };
                 let figures: Vec<Figure> = figures.into_iter().take_while(fits).collect();
                 let taken: f32 = figures.iter().map(|one| one.width + gap).sum();
-                let source = vec2(room - MODE - gap - taken, 18.0);
+                let source = vec2(room - taken, 18.0);
                 ui.allocate_ui_with_layout(source, Layout::left_to_right(Align::Center), |ui| {
                     ui.set_min_size(source);
                     let (said, colour) = said_source(theme, shown);

@@ -6,9 +6,17 @@ use eframe::egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2,
 };
 
+use super::icons::{self, Icon};
 use underfoot::layout::Colour;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
+
+/// The fonts of the window: those of pictures, and icons.
+pub(super) fn fonts() -> egui::FontDefinitions {
+    let mut fonts = underfoot_scene::letters::definitions();
+    icons::add_to(&mut fonts);
+    fonts
+}
 
 /// Gives every widget of `ctx` the colours of `theme`.
 pub(super) fn apply(ctx: &egui::Context, theme: &Theme) {
@@ -74,8 +82,7 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
         face.corner_radius = radius;
         face.expansion = 0.0;
     }
-    // A widget with the keyboard focus looks like one under the mouse; a hairline would be invisible on a panel.
-    visuals.widgets.hovered.bg_stroke = Stroke::new(2.0, color(theme.accent));
+    visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, color(theme.accent));
     // Check boxes must be visible on the panel.
     visuals.widgets.inactive.bg_fill = color(panel.mix(theme.ink, 0.10));
 }
@@ -117,6 +124,25 @@ pub(super) fn plot_button(ui: &mut Ui, name: &str) -> bool {
 pub(super) fn selectable<'a>(ui: &mut Ui, is_on: bool, text: impl egui::IntoAtoms<'a>, hint: &str) -> bool {
     let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
     ui.add(button).on_hover_text(hint).clicked()
+}
+
+/// A button with an icon that stays down while `is_on`, without its name if it is compact; returns whether it was
+/// clicked.
+pub(super) fn switch_button(
+    ui: &mut Ui,
+    is_on: bool,
+    icon: Icon,
+    name: &str,
+    is_compact: bool,
+    hint: &str,
+) -> bool {
+    let text = icons::short(icon, name, is_compact);
+    let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
+    let button = ui.add(button);
+    button.widget_info(|| {
+        egui::WidgetInfo::selected(egui::accesskit::Role::Button, button.enabled(), is_on, name)
+    });
+    button.on_hover_text(hint).clicked()
 }
 
 /// A button that switches something on and off.

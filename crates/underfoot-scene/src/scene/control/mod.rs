@@ -16,7 +16,7 @@ use glam::Vec2;
 use super::face::{Face, SMALL_M};
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::widths::CAP_HEIGHT;
-use super::{Scene, View};
+use super::{Scene, View, layers};
 use reading::Reading;
 use underfoot::engine::WidgetState;
 use underfoot::floor::Rect;
@@ -35,6 +35,8 @@ pub(super) fn draw_all(scene: &mut Scene, view: &View<'_>) {
         let mut state = view.widget_state(index);
         if !view.show.engagement {
             state.press_share = 0.0;
+        } else if view.show.ignored && state.press_share <= 0.0 {
+            state.press_share = layers::light_share(view, widget);
         }
         if !state.hidden {
             draw(scene, view, view.as_apps_set(index, widget).as_ref().unwrap_or(widget), state);

@@ -1,14 +1,20 @@
-//! The help bar: how to use the floor now.
+//! Help: the keys and gestures of the present mode, at the lower edge and in a menu.
 
-use eframe::egui::{Margin, Panel, RichText, Ui};
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
+use eframe::egui::{Grid, Margin, Panel, PopupCloseBehavior, RichText, Ui};
 
-use super::TWO_LINES;
-use crate::preview::style::panel_frame;
+use crate::preview::appearance::Appearance;
+use crate::preview::icons::{Icon, named, short};
+use crate::preview::messages::WindowMessages;
+use crate::preview::style::{panel_frame, quiet};
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
 
 /// Height of the window below which the help bar is hidden, in points.
 const HELP: f32 = 560.0;
+
+/// Width of the window below which the help bar shows only the first hints, in points.
+const NARROW: f32 = 1010.0;
 
 /// The use of the window by its user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +22,8 @@ pub(in crate::preview) enum HelpTopic {
     Designing,
     Checking,
     DrawingWalks,
+    /// A second window shows the floor for a projector.
+    Projecting,
     /// The mouse is a foot.
     Stepping,
     /// A recording is on display.
@@ -59,9 +67,16 @@ impl HelpTopic {
                 ("Shift-click", "look at a tile"),
                 ("Tab, Enter", "press by keyboard"),
                 ("W", "draw a walk"),
-                ("F11", "project"),
                 ("P", "plots"),
                 ("M", "mute"),
+            ],
+            Self::Projecting => &[
+                ("In the projected window: C", "adjust the corners"),
+                ("1 to 4, Arrows", "move one of them"),
+                ("M", "mirror"),
+                ("F", "full screen"),
+                ("N", "next screen"),
+                ("F11", "close it"),
             ],
             Self::Replaying => &[
                 ("Space", "pause"),
@@ -88,8 +103,8 @@ pub(in crate::preview) fn help_bar(ui: &mut Ui, theme: &Theme, activity: HelpTop
     let frame = panel_frame(theme, Margin::symmetric(14, 5));
     Panel::bottom("help bar").frame(frame).resizable(false).show(ui, |ui| {
         let steps = activity.steps();
-        // A narrow window shows the first ones only; the documentation lists the rest.
-        let told = if ui.available_width() < TWO_LINES { 4 } else { steps.len() };
+        // A narrow window shows the first ones only; the menu lists the rest.
+        let told = if ui.available_width() < NARROW { 4 } else { steps.len() };
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 5.0;
             for (key, does) in steps.iter().take(told) {
@@ -99,4 +114,33 @@ pub(in crate::preview) fn help_bar(ui: &mut Ui, theme: &Theme, activity: HelpTop
             }
         });
     });
+}
+
+/// A menu with all keys and gestures of the present mode, and a switch for the first steps on the floor.
+pub(super) fn help_menu(
+    ui: &mut Ui,
+    theme: &Theme,
+    activity: HelpTopic,
+    is_compact: bool,
+    appearance: &mut Appearance,
+    messages: &mut WindowMessages,
+) {
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let (button, _) =
+        MenuButton::new(short(Icon::CircleQuestionMark, "Help", is_compact)).config(config).ui(ui, |ui| {
+            ui.set_min_width(260.0);
+            Grid::new("help").spacing([14.0, 3.0]).show(ui, |ui| {
+                for (key, does) in activity.steps() {
+                    ui.label(RichText::new(*key).color(color(theme.ink)));
+                    ui.label(quiet(theme, *does));
+                    ui.end_row();
+                }
+            });
+            ui.separator();
+            let mut has_steps = appearance.has_steps();
+            if ui.checkbox(&mut has_steps, "First steps on the floor").changed() {
+                appearance.show_steps(ui.ctx(), has_steps, messages);
+            }
+        });
+    named(button, "Help");
 }

@@ -1,12 +1,13 @@
-//! The bars at the window's edges: state, buttons, help and problems.
+//! The bars at the window's edges, and the messages over the floor.
 
 mod help;
-mod notices;
+mod messages;
+mod pills;
+mod tools;
 mod top;
 
 pub(super) use help::{HelpTopic, help_bar};
-pub(super) use notices::{notices, problems, warnings};
-pub(super) use top::{TELL_S, TopBar, handle_mute_key};
-
-/// Width of the window below which the top bar takes two lines, in points.
-const TWO_LINES: f32 = 1010.0;
+pub(super) use messages::{MessageStack, message_frame};
+pub(super) use pills::TELL_S;
+pub(super) use tools::handle_mute_key;
+pub(super) use top::TopBar;

@@ -1,15 +1,17 @@
-//! The bar of Design mode: files, undo, arrangement; and the questions that need the user's decision.
+//! The tools of Design mode: files, undo, arrangement; and the questions that need the user's decision.
 
 use std::path::PathBuf;
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, Margin, Panel, Ui, WidgetInfo};
+use eframe::egui::{Key, Ui, WidgetInfo};
 
 use super::edited::EditedLayout;
 use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
-use crate::preview::style::{is_entered, panel_colour, panel_frame, pill, quiet, toggle};
+use crate::preview::bars::{MessageStack, message_frame};
+use crate::preview::icons::{self, Icon, icon_button};
+use crate::preview::style::{is_entered, quiet, toggle};
 use underfoot::floor::Rect;
 use underfoot::schema;
 use underfoot_scene::egui_painter::color;
@@ -19,51 +21,37 @@ use underfoot_scene::scene::Theme;
 type Action = fn(&mut EditedLayout);
 
 impl Designer {
-    /// Shows files, undo, arrangement and the number of problems.
-    pub(super) fn bar(&mut self, ui: &mut Ui, theme: &Theme, choices: &[String]) {
-        let frame = panel_frame(theme, Margin::symmetric(14, 5));
-        Panel::top("design bar").frame(frame).resizable(false).show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                self.files(ui, choices);
-                ui.separator();
-                let (can_undo, can_redo) = (self.edited.document.can_undo(), self.edited.document.can_redo());
-                let button = |ui: &mut Ui, on, name: &str, hint: &str| {
-                    ui.add_enabled(on, egui::Button::new(name)).on_hover_text(hint).clicked()
-                };
-                if button(ui, can_undo, "Undo", "Ctrl+Z") {
-                    self.edited.undo();
-                }
-                if button(ui, can_redo, "Redo", "Ctrl+Shift+Z") {
-                    self.edited.redo();
-                }
-                ui.separator();
-                let any = !self.edited.selected.is_empty();
-                if button(ui, any, "Duplicate", "Ctrl+D") {
-                    self.edited.duplicate();
-                }
-                if button(ui, any, "Delete", "Delete") {
-                    self.edited.delete();
-                }
-                if button(ui, any, "Turn", "R: a quarter turn") {
-                    self.edited.turn();
-                }
-                self.arrange(ui);
-                ui.menu_button("Show", |ui| {
-                    ui.checkbox(&mut self.canvas.scale.shoes, "Shoes in true size");
-                    ui.checkbox(&mut self.canvas.scale.reach, "How far feet reach");
-                });
-                ui.separator();
-                if button(ui, true, "Fit", "See the whole floor; the wheel zooms, Space and drag moves") {
-                    self.canvas.fit();
-                }
-                toggle(ui, &mut self.text.is_open, "Text", "The layout as text, beside the floor");
-                self.count(ui, theme);
-                if let Some(message) = self.edited.message() {
-                    let colour = if message.is_bad { theme.fault } else { theme.good };
-                    pill(ui, colour, theme, &message.text);
-                }
-            });
+    /// Shows files, undo, arrangement and the number of problems, in the top bar.
+    pub(in crate::preview) fn tools(&mut self, ui: &mut Ui, theme: &Theme, choices: &[String]) {
+        self.files(ui, choices);
+        let (can_undo, can_redo) = (self.edited.document.can_undo(), self.edited.document.can_redo());
+        let any = !self.edited.selected.is_empty();
+        if icon_button(ui, can_undo, Icon::Undo2, "Undo", "Ctrl+Z") {
+            self.edited.undo();
+        }
+        if icon_button(ui, can_redo, Icon::Redo2, "Redo", "Ctrl+Shift+Z") {
+            self.edited.redo();
+        }
+        if icon_button(ui, any, Icon::CopyPlus, "Duplicate", "Ctrl+D") {
+            self.edited.duplicate();
+        }
+        if icon_button(ui, any, Icon::Trash2, "Delete", "the Delete key") {
+            self.edited.delete();
+        }
+        if icon_button(ui, any, Icon::RotateCw, "Turn", "R, a quarter turn") {
+            self.edited.turn();
+        }
+        self.arrange(ui);
+        ui.menu_button("Show", |ui| {
+            ui.checkbox(&mut self.canvas.scale.shoes, "Shoes in true size");
+            ui.checkbox(&mut self.canvas.scale.reach, "How far feet reach");
         });
+        let hint = "see the whole floor; the wheel zooms, Space and drag moves";
+        if icon_button(ui, true, Icon::Maximize, "Fit", hint) {
+            self.canvas.fit();
+        }
+        toggle(ui, &mut self.text.is_open, "Text", "The layout as text, beside the floor");
+        self.count(ui, theme);
     }
 
     fn files(&mut self, ui: &mut Ui, choices: &[String]) {
@@ -113,7 +101,7 @@ impl Designer {
             }
         });
         let can_save = !self.is_saved() || self.storage.file.path().is_none() || self.storage.file.is_new();
-        if ui.add_enabled(can_save, egui::Button::new("Save")).on_hover_text("Ctrl+S").clicked() {
+        if icons::icon_button(ui, can_save, Icon::Save, "Save", "Ctrl+S") {
             self.save();
         }
     }
@@ -184,12 +172,17 @@ impl Designer {
             .collect();
         let count = self.edited.findings.len() + self.edited.told().count();
         if count == 0 {
-            ui.label(quiet(theme, "no warnings"));
+            let label = ui.label(quiet(theme, Icon::CircleCheck.unicode()));
+            label.widget_info(|| WidgetInfo::labeled(Role::Label, true, "no warnings"));
+            label.on_hover_text("no warnings");
             return;
         }
         let noun = if count == 1 { "warning" } else { "warnings" };
-        let text = egui::RichText::new(format!("{count} {noun}")).color(color(theme.warning));
-        if ui.button(text).on_hover_text("Select the next control that has one").clicked() {
+        let text = icons::with(Icon::TriangleAlert, &count.to_string());
+        let button = ui.button(egui::RichText::new(text).color(color(theme.warning)));
+        let name = format!("{count} {noun}");
+        let button = icons::named(button, &name);
+        if button.on_hover_text(format!("{name}: select the next control that has one")).clicked() {
             let at =
                 self.edited.selected.first().and_then(|record| all.iter().rposition(|other| other == record));
             let next = at.map_or(0, |at| at + 1);
@@ -200,11 +193,10 @@ impl Designer {
     }
 
     /// Asks about a draft of an earlier window and about conflicting changes.
-    pub(super) fn questions(&mut self, ui: &mut Ui, theme: &Theme) {
-        let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
-        let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
+    fn questions(&mut self, ui: &mut Ui, theme: &Theme) {
+        let frame = message_frame(theme, theme.warning);
         if let Some(draft) = self.storage.left_over.clone() {
-            Panel::top("left over").frame(frame).resizable(false).show(ui, |ui| {
+            frame.show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     let name = self.storage.file.name();
                     ui.label(format!("{name} was being edited when a window ended without saving."));
@@ -222,7 +214,7 @@ impl Designer {
             });
         }
         if let Some((theirs, records)) = self.storage.conflict.clone() {
-            Panel::top("conflict").frame(frame).resizable(false).show(ui, |ui| {
+            frame.show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     let what = if records.is_empty() { "the same lines".into() } else { records.join(", ") };
                     ui.label(format!("Another program has changed {what} as well, and saved it."));
@@ -246,17 +238,27 @@ impl Designer {
         }
     }
 
+    /// Shows what Design mode asks and reports, over the floor.
+    pub(in crate::preview) fn messages(&mut self, ui: &mut Ui, stack: &MessageStack<'_>) {
+        if self.is_open {
+            self.questions(ui, stack.theme);
+        }
+        self.ask(ui, stack.theme);
+        if let Some(message) = self.edited.message() {
+            let colour = if message.is_bad { stack.theme.fault } else { stack.theme.good };
+            stack.tell(ui, colour, &message.text);
+        }
+    }
+
     /// Shows the path dialogue, if it is open.
-    pub(in crate::preview) fn ask(&mut self, ui: &mut Ui, theme: &Theme) {
-        let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
-        let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
+    fn ask(&mut self, ui: &mut Ui, theme: &Theme) {
         let Some(mut asking) = self.storage.asking.take() else { return };
         let mut goes_on = true;
-        Panel::top("path").frame(frame).resizable(false).show(ui, |ui| {
+        message_frame(theme, theme.accent).show(ui, |ui| {
             ui.horizontal(|ui| {
                 let name = if asking.to == Ask::Open { "Open" } else { "Save as" };
                 ui.label(name);
-                let field = ui.add(egui::TextEdit::singleline(&mut asking.path).desired_width(420.0));
+                let field = ui.add(egui::TextEdit::singleline(&mut asking.path).desired_width(300.0));
                 field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Path"));
                 // Check this before the field regains the focus: after that, the loss of focus would be invisible.
                 let entered = is_entered(ui, &field);

@@ -43,13 +43,14 @@ pub(super) struct DrawnToScale {
 }
 
 impl Canvas {
-    /// Shows the floor in the remaining part of the window.
+    /// Shows the floor in the remaining part of the window, fitted into `screen`.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         theme: &Theme,
         palette: &mut Palette,
         edited: &mut EditedLayout,
+        screen: egui::Rect,
     ) {
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::click_and_drag());
@@ -57,7 +58,6 @@ impl Canvas {
         let geometry = edited.document.floor().geometry;
         let show = Show { sensors: false, contacts: false, ..Show::WINDOW };
         let bounds = scene::extent(&geometry, show);
-        let screen = rect.shrink(14.0);
         self.zoom(ui, &canvas, bounds, screen);
         let map = self.view.map(bounds, screen);
         self.menu(&canvas, map, edited);

@@ -190,11 +190,6 @@ impl Designer {
         if self.is_saved() { name } else { format!("{UNSAVED} {name}") }
     }
 
-    /// The last message about the file, and whether it reports a failure.
-    pub(in crate::preview) fn last_message(&self) -> Option<(&str, bool)> {
-        self.edited.message().map(|message| (message.text.as_str(), message.is_bad))
-    }
-
     /// Saves, or asks for a path.
     pub(in crate::preview) fn save_or_ask(&mut self) {
         if self.storage.file.path().is_some() { self.save() } else { self.ask_for(Ask::SaveAs) }

@@ -1,21 +1,25 @@
 //! Marks over the canvas: the selection, guide lines, findings, and feet to scale.
 
 use eframe::egui;
-use eframe::egui::{Pos2, Stroke, StrokeKind, Ui, pos2, vec2};
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Align2, FontId, Pos2, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use glam::Vec2;
 
 use super::canvas::DrawnToScale;
 use super::edited::EditedLayout;
 use super::gestures::{HANDLE, can_be_sized, handles};
-use super::labels::{Labels, label};
 use super::trial::GestureResult;
+use crate::preview::labels::{Labels, label};
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
 use underfoot::units::Newtons;
 use underfoot_format::diagnostic::Severity;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
-use underfoot_scene::ergonomics::{REACH_M, STEP_AWAY_M, footing};
+use underfoot_scene::ergonomics::{Finding, REACH_M, STEP_AWAY_M, footing};
 use underfoot_scene::scene::{Shoe, Theme};
+
+/// Radius of a badge, in points.
+const BADGE: f32 = 8.5;
 
 /// Draws the selection, its guide lines and the findings.
 pub(super) fn marks(
@@ -28,21 +32,8 @@ pub(super) fn marks(
 ) {
     let painter = ui.painter_at(rect);
     let accent = color(theme.accent);
-    let mut labels = Labels::within(rect);
-    for finding in &edited.findings {
-        let Some(widget) = edited.layout().widgets.get(finding.widget) else { continue };
-        let is_hidden = || edited.document.found_in(finding).is_none_or(|record| edited.is_hidden(&record));
-        if widget.page.is_some_and(|page| page != edited.page) || trial.layout.is_some() || is_hidden() {
-            continue;
-        }
-        let colour = color(match finding.severity {
-            Severity::Error => theme.fault,
-            Severity::Warning => theme.warning,
-        });
-        let shown = map.rect(widget.area);
-        painter.rect_stroke(shown.expand(2.0), 4, Stroke::new(1.5, colour), StrokeKind::Outside);
-        let code = finding.rule.code;
-        labels.put(&painter, shown, &[&format!("{code} {}", finding.expected), code], colour, theme);
+    if trial.layout.is_none() {
+        badges(edited, ui, rect, map, theme);
     }
     let is_moving = !trial.areas.is_empty();
     for item in edited.selected_items() {
@@ -82,6 +73,46 @@ pub(super) fn marks(
     if let Some(lasso) = trial.lasso {
         let shown = map.rect(lasso);
         painter.rect(shown, 0, accent.gamma_multiply(0.1), Stroke::new(1.0, accent), StrokeKind::Inside);
+    }
+}
+
+/// Draws one badge for each control with findings, in the colour of the worst; the texts appear beside the control
+/// under the pointer and beside those that are selected.
+fn badges(edited: &EditedLayout, ui: &Ui, rect: egui::Rect, map: ScreenFromFloor, theme: &Theme) {
+    let painter = ui.painter_at(rect);
+    let widgets = &edited.layout().widgets;
+    let on_page = widgets.iter().filter(|widget| widget.is_on(edited.page));
+    let mut labels = Labels::within(rect, on_page.map(|widget| map.rect(widget.area)));
+    let pointer = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at));
+    for (index, widget) in widgets.iter().enumerate().filter(|(_, widget)| widget.is_on(edited.page)) {
+        let record = |finding: &Finding| edited.document.found_in(finding);
+        let is_seen = |finding: &&Finding| {
+            finding.widget == index && record(finding).is_some_and(|record| !edited.is_hidden(&record))
+        };
+        let findings: Vec<&Finding> = edited.findings.iter().filter(is_seen).collect();
+        let Some(first) = findings.first() else { continue };
+        let is_error = findings.iter().any(|finding| finding.severity == Severity::Error);
+        let colour = if is_error { theme.fault } else { theme.warning };
+        let control = map.rect(widget.area);
+        let badge = control.right_top() + vec2(-2.0, 2.0);
+        painter.circle(badge, BADGE, color(colour), Stroke::new(1.5, color(theme.plate)));
+        let mark = if findings.len() == 1 { "!".to_owned() } else { findings.len().to_string() };
+        painter.text(badge, Align2::CENTER_CENTER, mark, FontId::proportional(12.0), color(theme.plate));
+        let is_hovered = pointer.is_some_and(|at| control.contains(at) || at.distance(badge) < BADGE);
+        let is_selected = record(first).is_some_and(|record| edited.selected.contains(&record));
+        let lines: Vec<String> = findings
+            .iter()
+            .map(|finding| format!("{} {}: {}", finding.rule.code, finding.message, finding.expected))
+            .collect();
+        let spoken = format!("Warnings of {}: {}", widget.id, lines.join("; "));
+        let around = egui::Rect::from_center_size(badge, egui::Vec2::splat(2.0 * BADGE));
+        let node = ui.interact(around, ui.scope_id().with(("warnings", index)), Sense::hover());
+        node.widget_info(|| WidgetInfo::labeled(Role::Image, true, &spoken));
+        if is_hovered || is_selected {
+            let place = labels.put(&painter, control, &lines.join("\n"), colour, theme);
+            let shown = ui.interact(place, ui.scope_id().with(("warning text", index)), Sense::hover());
+            shown.widget_info(|| WidgetInfo::labeled(Role::Tooltip, true, lines.join("; ")));
+        }
     }
 }
 

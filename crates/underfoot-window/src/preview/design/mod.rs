@@ -13,7 +13,6 @@ mod gestures;
 mod in_place;
 mod inspector;
 mod keys;
-mod labels;
 mod list;
 mod list_keys;
 mod marks;

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Key, Ui};
 
-use super::Designer;
-use crate::preview::bars::problems;
+use super::{Designer, Pane};
 use crate::preview::feed::{LayoutCause, PreviewCommand, Warnings};
 use crate::preview::floor_view::FloorFeet;
 use crate::preview::messages::FileNote;
 use crate::preview::shown::ShownFloor;
+use crate::preview::stage::StageOfWindow;
+use crate::preview::zoom::Zoom;
 use underfoot::schema;
 use underfoot_scene::egui_painter::Palette;
 use underfoot_scene::scene::Theme;
@@ -18,7 +19,7 @@ use underfoot_scene::scene::Theme;
 impl Designer {
     /// Changes between Design and Try; the floor then gets the edited layout, with the text that was just being
     /// typed.
-    fn turn_mode(&mut self, ctx: &egui::Context, feet: &mut FloorFeet) {
+    pub(in crate::preview) fn turn_mode(&mut self, ctx: &egui::Context, feet: &mut FloorFeet) {
         if self.is_open {
             if let Some(id) = ctx.memory(|memory| memory.focused()) {
                 ctx.memory_mut(|memory| memory.surrender_focus(id));
@@ -27,6 +28,7 @@ impl Designer {
             return ctx.request_repaint();
         }
         self.is_open = true;
+        ctx.request_repaint();
         // No simulated foot stands on the canvas in Design mode.
         feet.lift();
     }
@@ -99,18 +101,6 @@ impl Designer {
         }
     }
 
-    /// The button that changes the mode, as F2 does; disabled during a check of the floor.
-    pub(in crate::preview) fn mode_button(&mut self, ui: &mut Ui, is_checking: bool, feet: &mut FloorFeet) {
-        let button = egui::Button::selectable(self.is_open, "Design").frame_when_inactive(true);
-        if ui
-            .add_enabled(!is_checking, button)
-            .on_hover_text("Design the layout, or try it with feet; F2 does the same")
-            .clicked()
-        {
-            self.turn_mode(ui.ctx(), feet);
-        }
-    }
-
     /// Opens the layout called `name`, which the user has put on the floor: a built-in one, or a file.
     pub(in crate::preview) fn open_choice(&mut self, name: &str) {
         match schema::builtin_layout(name).filter(|_| !Path::new(name).exists()) {
@@ -127,31 +117,46 @@ impl Designer {
         shown.command(PreviewCommand::Try { layout, name, warnings, cause });
     }
 
-    /// Draws the window in Design mode.
+    /// Begins a frame of Design mode, before the bars: handles the keys. Returns the revision of the layout before.
+    pub(in crate::preview) fn begin_frame(&mut self, ui: &Ui) -> u64 {
+        self.edited.refresh();
+        self.edited.refresh_undrawn(ui.ctx());
+        let before = self.edited.document.revision();
+        self.keys(ui);
+        before
+    }
+
+    /// Draws the window in Design mode. `before` is the revision of the layout at the start of this frame.
     pub(in crate::preview) fn show(
         &mut self,
         ui: &mut Ui,
         theme: &Theme,
         shown: &ShownFloor,
         palette: &mut Palette,
-        choices: &[String],
+        stage: &mut StageOfWindow,
+        before: u64,
     ) {
-        self.edited.refresh();
-        self.edited.refresh_undrawn(ui.ctx());
-        let before = self.edited.document.revision();
-        self.keys(ui);
-        self.bar(ui, theme, choices);
-        self.questions(ui, theme);
-        self.ask(ui, theme);
         // This frame shows the edits so far: records may have changed places.
         self.edited.refresh();
-        self.things.panel(ui, theme, palette, &mut self.edited, &mut self.canvas.placing, &mut self.panes);
-        problems(ui, theme, &shown.messages);
-        self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes);
+        // A narrow window has room for one pane: the palette, or the fields of what is selected.
+        let (things, fields) = match stage.is_wide() {
+            true => (true, stage.has_side),
+            false => (self.edited.selected.is_empty(), !self.edited.selected.is_empty() && stage.has_side),
+        };
+        if things || self.panes.pane == Some(Pane::Things) {
+            self.things.panel(ui, theme, palette, &mut self.edited, &mut self.canvas.placing, &mut self.panes);
+        }
+        if fields || self.panes.pane == Some(Pane::Fields) {
+            self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes);
+        }
+        if stage.is_wide() && !self.text.is_open {
+            stage.widths.note(stage.window, ui.available_rect_before_wrap());
+        }
         self.text.panel(ui, theme, &mut self.edited, &mut self.panes);
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
-            self.canvas.show(ui, theme, palette, &mut self.edited);
+            stage.canvas = ui.available_rect_before_wrap();
+            self.canvas.show(ui, theme, palette, &mut self.edited, stage.floor());
         });
         self.panes.focus = None;
         // The floor of a server gets the edits only when the user tries them.
@@ -162,5 +167,10 @@ impl Designer {
             shown.command(wish);
         }
         self.leave(ui.ctx(), shown);
+    }
+
+    /// The part of the floor on the screen.
+    pub(in crate::preview) fn zoom_mut(&mut self) -> &mut Zoom {
+        &mut self.canvas.view
     }
 }

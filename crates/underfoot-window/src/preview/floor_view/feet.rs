@@ -10,10 +10,11 @@ use glam::Vec2;
 
 use crate::preview::feed::{FootSink, ShoeFeed};
 use crate::preview::feet::{HandInput, MouseFeet, Move};
+use crate::preview::icons::Icon;
 use crate::preview::keyboard::Keyboard;
 use crate::preview::pointer::{pressed_at, way_while_down};
 use crate::preview::shown::ShownFloor;
-use crate::preview::style::selectable;
+use crate::preview::style::switch_button;
 use crate::preview::touches::FloorTouch;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
 use underfoot_scene::scene::{Shoe, Theme};
@@ -64,6 +65,11 @@ impl FloorFeet {
         self.mouse.is_some()
     }
 
+    /// The place of the standing foot, in floor metres, if it is down.
+    pub(in crate::preview) fn standing_at(&self) -> Option<Vec2> {
+        self.mouse.as_ref().and_then(|(feet, _)| feet.standing()).map(|shoe| shoe.position)
+    }
+
     /// The shoes on display.
     pub(super) fn shoes(&self) -> &[Shoe] {
         &self.shoes
@@ -95,7 +101,7 @@ impl FloorFeet {
         let Some((feet, _)) = &mut self.mouse else { return };
         let stands = feet.standing().is_some();
         let hint = "A second foot that stays where it is left; Space puts it under the mouse";
-        if selectable(ui, stands, "Stance foot", hint) {
+        if switch_button(ui, stands, Icon::Footprints, "Stance foot", false, hint) {
             if stands {
                 feet.lift_standing();
             } else {

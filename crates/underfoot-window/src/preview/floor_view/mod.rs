@@ -1,17 +1,20 @@
 //! The floor in the middle of the window, and the mouse on it.
 
 mod feet;
+mod first_steps;
 
 use eframe::egui;
-use eframe::egui::accesskit::Role;
+use eframe::egui::accesskit::{Action, Role};
 use eframe::egui::{
-    Align2, CursorIcon, EventFilter, FontId, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo,
-    vec2,
+    Align2, CursorIcon, EventFilter, FontId, Id, Key, PointerButton, Pos2, Rect, Response, Sense, Ui,
+    WidgetInfo, vec2,
 };
 
 pub(super) use feet::FloorFeet;
+pub(super) use first_steps::FirstSteps;
 
 use super::floor_check::FloorCheck;
+use super::near_misses::{NearMiss, NearMissWatch};
 use super::off_hint::why_off;
 use super::pointer::way_while_down;
 use super::selection::Selection;
@@ -21,18 +24,25 @@ use super::walks::Walks;
 use super::watch::{Banner, Weight};
 use super::zoom::Zoom;
 use underfoot::floor::{Geometry, TileId};
+use underfoot::layout::Layout;
 use underfoot::widget::{Behaviour, Value};
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
 use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
 
 /// The view of the floor.
 pub(super) struct FloorView {
-    zoom: Zoom,
+    pub(super) zoom: Zoom,
+    /// The controls on the screen, in their order for the keyboard.
+    controls: Vec<Id>,
     scene: Scene,
     pub(super) palette: Palette,
     /// The layers over the floor.
     pub(super) show: Show,
     pub(super) trails: Trails,
+    /// The presses beside controls.
+    pub(super) misses: NearMissWatch,
+    /// The first steps of a new user.
+    pub(super) steps: FirstSteps,
 }
 
 /// The parts of the window that act on the floor by the mouse.
@@ -41,29 +51,46 @@ pub(super) struct OnFloor<'a> {
     pub(super) selection: &'a mut Selection,
     pub(super) walks: Option<&'a mut Walks>,
     pub(super) check: Option<&'a FloorCheck>,
+    /// Whether the first steps are shown.
+    pub(super) has_steps: bool,
 }
 
 impl Default for FloorView {
     fn default() -> Self {
         Self {
             zoom: Zoom::default(),
+            controls: Vec::new(),
             scene: Scene::new(),
             palette: Palette::default(),
             show: Show::WINDOW,
             trails: Trails::default(),
+            misses: NearMissWatch::default(),
+            steps: FirstSteps::default(),
         }
     }
 }
 
 impl FloorView {
-    /// Fills the remaining part of the window with the floor.
-    pub(super) fn show(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, on_floor: OnFloor<'_>) {
-        let OnFloor { feet, selection, mut walks, check } = on_floor;
+    /// The controls of the last frame, in their order for the keyboard.
+    pub(super) fn controls(&self) -> &[Id] {
+        &self.controls
+    }
+
+    /// Fills the remaining part of the window with the floor, fitted into `screen`.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        shown: &ShownFloor,
+        on_floor: OnFloor<'_>,
+        screen: Rect,
+    ) {
+        let OnFloor { feet, selection, mut walks, check, has_steps } = on_floor;
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::drag());
         canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Floor"));
-        self.zoom_by_wheel(ui, &canvas, &shown.floor.geometry);
-        let map = self.zoom.map(scene::extent(&shown.floor.geometry, self.show), rect.shrink(6.0));
+        self.zoom_by_wheel(ui, &canvas, &shown.floor.geometry, screen);
+        let map = self.zoom.map(scene::extent(&shown.floor.geometry, self.show), screen);
         look_at_tiles(ui, &canvas, map, shown, selection, feet.are_led());
         if let Some(walks) = &mut walks {
             walks.draw(ui, &canvas, map, shown);
@@ -78,7 +105,10 @@ impl FloorView {
         if let Some(check) = check {
             check.show_marks(ui, rect, map, theme, &shown.floor);
         }
-        feet.focus(name_controls(ui, map, theme, shown));
+        feet.focus(name_controls(ui, map, shown, &mut self.controls));
+        if has_steps && !draws_walks {
+            self.steps.show(ui, rect, map, theme, shown);
+        }
         if self.zoom.is_closer() {
             self.zoom_out_button(ui, rect);
         }
@@ -103,12 +133,15 @@ impl FloorView {
         shown: &ShownFloor,
         (shoes, chosen): (&[Shoe], Option<TileId>),
     ) {
+        let misses: Vec<scene::PressBeside> =
+            self.misses.latest().into_iter().map(|miss| beside(miss, shown.layout())).collect();
         let view = View {
             show: self.show,
             shoes,
             levels: shown.scopes.levels(),
             trails: self.trails.all(),
             chosen,
+            near_misses: &misses,
             ..View::new(&shown.floor.geometry, shown.layout(), shown.snapshot(), theme)
         };
         scene::draw(&mut self.scene, &view);
@@ -117,7 +150,7 @@ impl FloorView {
     }
 
     /// Ctrl with the wheel, and a pinch, zoom about the pointer; the middle button pans.
-    fn zoom_by_wheel(&mut self, ui: &Ui, canvas: &Response, geometry: &Geometry) {
+    fn zoom_by_wheel(&mut self, ui: &Ui, canvas: &Response, geometry: &Geometry, screen: Rect) {
         let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|_| canvas.contains_pointer()) else {
             return;
         };
@@ -126,7 +159,6 @@ impl FloorView {
             let zoomed = if i.any_touches() { 1.0 } else { i.zoom_delta() };
             (zoomed, way_while_down(i, PointerButton::Middle))
         });
-        let screen = canvas.rect.shrink(6.0);
         let extent = scene::extent(geometry, self.show);
         if by != 1.0 {
             self.zoom.about(pointer, by, extent, screen);
@@ -142,6 +174,17 @@ impl FloorView {
         if button.on_hover_text("Show the whole floor").clicked() {
             self.zoom = Zoom::default();
         }
+    }
+}
+
+/// The drawing of a press beside a control.
+fn beside(miss: &NearMiss, layout: &Layout) -> scene::PressBeside {
+    let widget = layout.widgets.iter().find(|widget| widget.id == miss.id);
+    scene::PressBeside {
+        at: miss.at,
+        place: miss.place,
+        control: widget.map(|widget| widget.area),
+        text: miss.text.clone(),
     }
 }
 
@@ -188,8 +231,9 @@ fn look_at_tiles(
 
 /// Gives screen readers and tests the name and state of each control on the floor; returns the index of
 /// the control with the keyboard focus.
-fn name_controls(ui: &Ui, map: ScreenFromFloor, theme: &Theme, shown: &ShownFloor) -> Option<usize> {
+fn name_controls(ui: &Ui, map: ScreenFromFloor, shown: &ShownFloor, controls: &mut Vec<Id>) -> Option<usize> {
     let mut focused = None;
+    controls.clear();
     let snapshot = shown.snapshot();
     for (index, widget) in shown.layout().widgets.iter().enumerate() {
         let state = snapshot.widgets.get(index).copied().unwrap_or_default();
@@ -197,7 +241,10 @@ fn name_controls(ui: &Ui, map: ScreenFromFloor, theme: &Theme, shown: &ShownFloo
             continue;
         }
         let id = ui.scope_id().with(("floor control", index));
-        let node = ui.interact(map.rect(widget.area), id, Sense::focusable_noninteractive());
+        controls.push(id);
+        // The focus gets these controls before all other widgets: see `FocusRing::begin`.
+        let node = ui.interact(map.rect(widget.area), id, Sense::hover());
+        ui.ctx().accesskit_node_builder(id, |builder| builder.add_action(Action::Focus));
         let off = why_off(snapshot, index);
         if node.has_focus() {
             focused = Some(index);
@@ -205,8 +252,6 @@ fn name_controls(ui: &Ui, map: ScreenFromFloor, theme: &Theme, shown: &ShownFloo
             let filter =
                 EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
             ui.memory_mut(|memory| memory.set_focus_lock_filter(node.id, filter));
-            let edge = egui::Stroke::new(3.0, color(theme.cursor));
-            ui.painter().rect_stroke(node.rect.expand(4.0), 8.0, edge, egui::StrokeKind::Outside);
         }
         node.widget_info(|| {
             let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };

@@ -6,6 +6,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 
 use super::super::messages::{Happened, WindowMessages};
+use super::super::near_misses::NearMiss;
 use super::super::style::{TextRow, quiet, section};
 use underfoot::engine::IgnoredPress;
 use underfoot::outgoing::json::{IgnoredRecord, event_line};
@@ -45,6 +46,7 @@ pub(super) fn events_part(
             match happened {
                 Happened::Event(event) => show(ui, theme, event),
                 Happened::Ignored(press) => show_ignored(ui, theme, press),
+                Happened::NearMiss(miss) => show_near_miss(ui, theme, miss),
                 Happened::GroundEvent { material, count, at, .. } => {
                     gave_way(ui, theme, material, *count, *at);
                 }
@@ -75,6 +77,7 @@ fn is_wanted(happened: &Happened, wanted: &str) -> bool {
     let words = match happened {
         Happened::Event(event) => format!("{} {} {}", event.id, event.kind.name(), value(event.kind)),
         Happened::Ignored(press) => format!("{} ignored: {}", press.id, press.why),
+        Happened::NearMiss(miss) => format!("{} missed: {}", miss.id, miss.text),
         Happened::GroundEvent { material, .. } => format!("{material} gave way"),
     };
     wanted.split_whitespace().all(|word| words.to_lowercase().contains(word))
@@ -91,6 +94,14 @@ fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
             let line = serde_json::to_string(&IgnoredRecord::from(press)).ok()?;
             Some(line + "\n")
         }
+        Happened::NearMiss(miss) => {
+            let (t_s, id, why) = (miss.at.secs(), miss.id.as_str(), &miss.text);
+            let line = serde_json::json!({
+                "t_s": t_s, "event": "missed", "id": id, "force_n": miss.force.0,
+                "x_m": miss.place.x, "y_m": miss.place.y, "distance_m": miss.distance_m, "why": why,
+            });
+            Some(format!("{line}\n"))
+        }
         Happened::GroundEvent { .. } => None,
     });
     lines.collect()
@@ -106,6 +117,18 @@ fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
     line.left(0.23, 0.56, press.id.as_str(), color(theme.ink));
     line.left(0.58, 0.86, &press.why.to_string(), color(theme.warning));
     line.right(1.0, &format!("{:.0} N", press.force.0), color(theme.ink));
+    response.on_hover_text(spoken);
+}
+
+/// Shows a press beside a control.
+fn show_near_miss(ui: &mut Ui, theme: &Theme, miss: &NearMiss) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
+    let spoken = format!("{:.0} N, {}: no control there", miss.force.0, miss.text);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    let line = TextRow { ui, rect, size: 12.5 };
+    line.right(0.19, &format!("{:.3}", miss.at.secs()), color(theme.quiet));
+    line.left(0.23, 0.86, &miss.text, color(theme.warning));
+    line.right(1.0, &format!("{:.0} N", miss.force.0), color(theme.ink));
     response.on_hover_text(spoken);
 }
 

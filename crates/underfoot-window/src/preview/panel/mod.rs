@@ -20,10 +20,11 @@ pub(in crate::preview) use tuner::Tuner;
 use eframe::egui::{Margin, Panel, ScrollArea, Ui};
 
 use super::app::App;
-use super::style::{panel_frame, selectable};
+use super::icons::Icon;
+use super::style::{panel_frame, switch_button};
 
 /// Minimum height of the list of events, in points.
-const EVENTS: f32 = 150.0;
+const EVENTS: f32 = 190.0;
 
 /// The state of the side panel.
 #[derive(Default)]
@@ -37,16 +38,21 @@ pub(super) struct SidePanel {
 }
 
 impl SidePanel {
-    /// Whether a window of this width, in points, shows the panel: a window too narrow for panel and floor shows it
-    /// only on request.
-    fn is_shown(&self, width: f32) -> bool {
-        self.wanted.unwrap_or(width >= 2.2 * 304.0)
+    /// Whether a window of this width, in points, shows the panel at the right: in Try, a window too narrow for panel
+    /// and floor shows it only on request.
+    pub(super) fn is_shown(&self, width: f32, designs: bool) -> bool {
+        self.wanted.unwrap_or(designs || width >= 2.2 * 304.0)
     }
 
-    /// A button that opens or closes the panel.
-    pub(super) fn button(&mut self, ui: &mut Ui) {
-        let shown = self.is_shown(ui.ctx().content_rect().width());
-        if selectable(ui, shown, "Panel", "Figures, events and actuators at the side") {
+    /// A button that opens or closes the panel at the right.
+    pub(super) fn button(&mut self, ui: &mut Ui, designs: bool) {
+        let shown = self.is_shown(ui.ctx().content_rect().width(), designs);
+        let hint = if designs {
+            "The fields of what is selected, at the side"
+        } else {
+            "Figures, events and actuators at the side"
+        };
+        if switch_button(ui, shown, Icon::PanelRight, "Panel", designs, hint) {
             self.wanted = Some(!shown);
         }
     }
@@ -55,15 +61,19 @@ impl SidePanel {
 impl App {
     /// Shows the side panel, unless it is closed.
     pub(super) fn show_side_panel(&mut self, ui: &mut Ui) {
-        if !self.panel.is_shown(ui.ctx().content_rect().width()) {
+        if !self.panel.is_shown(ui.ctx().content_rect().width(), false) {
             return;
         }
         let theme = self.appearance.theme();
         let frame = panel_frame(&theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         let panel = Panel::right("side panel").frame(frame).resizable(true);
-        panel.default_size(304.0).size_range(264.0..=440.0).show(ui, |ui| {
-            let height = ui.available_height();
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let half = 0.5 * ui.available_width();
+        panel.default_size(304.0).size_range(264.0_f32.min(half)..=440.0_f32.min(half)).show(ui, |ui| {
+            let height = ui.available_height().max(0.0);
+            // The list gets the height that the other parts left free in the last frame, and stays in view.
+            let events = (height - self.panel.other_parts).clamp(EVENTS.min(0.5 * height), 0.6 * height);
+            let area = ScrollArea::vertical().max_height(height - events);
+            area.auto_shrink(false).show(ui, |ui| {
                 // The scroll bar needs space beside the figures.
                 ui.set_width(ui.available_width() - 8.0);
                 let top = ui.cursor().top();
@@ -75,15 +85,14 @@ impl App {
                     self.show_foot_parts(ui);
                 }
                 contacts::contacts_part(ui, &theme, self.shown.snapshot());
-                // The list gets the height that the other parts left free in the last frame.
-                let events = (height - self.panel.other_parts).max(EVENTS);
-                events::events_part(ui, &theme, &self.shown.messages, &mut self.panel.search, events);
                 scopes::scopes_part(ui, &theme, &mut self.shown);
                 if !is_told {
                     self.show_floor_parts(ui);
                 }
-                self.panel.other_parts = ui.cursor().top() - top - events;
+                self.panel.other_parts = ui.cursor().top() - top;
             });
+            let left = ui.available_height();
+            events::events_part(ui, &theme, &self.shown.messages, &mut self.panel.search, left);
         });
     }
 

@@ -139,7 +139,7 @@ fn a_layout_is_opened_by_name() {
 #[test]
 fn colours_and_the_side_panel_are_changed_by_buttons() {
     let mut room = Room::simulated();
-    room.window.get_by_label("Look").click();
+    room.window.get_by_label("Appearance").click();
     room.run(3);
     for (name, theme) in Theme::NAMED {
         room.window.get_by_label(&format!("Window: {name}")).click();
@@ -183,7 +183,7 @@ fn the_size_of_the_text_is_chosen_by_keys_and_menu_and_remembered_with_the_colou
     assert!((factor(&room) / before - 1.3).abs() < 0.01, "{}", factor(&room));
     room.window.key_press_modifiers(Modifiers::COMMAND, Key::Minus);
     room.run(2);
-    room.window.get_by_label("Look").click();
+    room.window.get_by_label("Appearance").click();
     room.run(3);
     assert!(room.says("Text 120 %"));
     room.window.get_by_label("Window: Dark").click();

@@ -3,7 +3,9 @@
 mod bars;
 mod faults;
 mod feet;
+mod first_steps;
 mod floor_check;
+mod modes;
 mod panel;
 mod plots;
 mod presses;
@@ -131,6 +133,7 @@ impl Room {
         let window = Harness::builder()
             .with_size(vec2(width, height))
             .with_step_dt(1.0 / 60.0)
+            .with_context_setup(|ctx| ctx.set_fonts(crate::preview::style::fonts()))
             .build_ui_state(|ui, app: &mut App| app.show(ui), app);
         Self { window, snapshots, events, layouts, notices, commands, feet, folder }
     }

@@ -151,3 +151,40 @@ fn presses_that_were_ignored_stand_in_the_list_of_events_with_the_reason() {
     assert_eq!(room.window.query_all_by_label_contains("home ignored").count(), 1, "once");
     assert_eq!(room.window.unnamed_widgets(), Vec::<String>::new());
 }
+
+#[test]
+fn a_press_beside_a_control_says_how_far_off_it_was_in_the_list() {
+    let mut room = map_room();
+    let page = map();
+    let north = &page.widgets.iter().find(|widget| widget.label == "North").unwrap();
+    // North of the control lies free floor, or the edge of another control farther away.
+    let place = Vec2::new(north.area.centre().x, north.area.max.y + 0.03);
+    assert_eq!(page.widget_at(0, place), None);
+    for step in 0..6 {
+        let mut snapshot = at_rest(&page);
+        snapshot.at = Instant::from_millis(1000 + 50 * step);
+        if step < 5 {
+            crate::preview::sample::step_on(&mut snapshot, 9, place, 80.0, Vec2::ZERO);
+        }
+        room.write(snapshot);
+    }
+    assert!(room.says("80 N, 3 cm beside North"));
+    let miss = room.window.state().view.misses.latest().unwrap();
+    assert!((miss.distance_m - 0.03).abs() < 0.002 && miss.id.as_str() == "north", "{miss:?}");
+}
+
+#[test]
+fn the_panel_shows_the_control_that_is_dragged_not_the_one_before() {
+    let mut room = map_room();
+    room.write(pressed_home());
+    assert!(room.says("Control Home"));
+    let mut dragging = pressed_home();
+    let slider =
+        map().widgets.iter().find(|it| matches!(it.behaviour, underfoot::widget::Behaviour::Slider(_)));
+    let slider = slider.unwrap().clone();
+    dragging.held = vec![slider.id.clone()];
+    room.write(dragging);
+    assert!(room.says(&format!("Control {}", slider.label)));
+    room.write(pressed_home());
+    assert!(room.says(&format!("Control {}", slider.label)), "until the next press");
+}

@@ -8,12 +8,12 @@ fn line(room: &Room) -> Vec<(String, f32)> {
 }
 
 #[test]
-fn the_line_tells_mode_source_rates_and_losses_and_nothing_in_it_moves() {
+fn the_line_tells_source_rates_and_losses_and_nothing_in_it_moves() {
     let mut room = Room::of(true, 1280.0, 800.0);
     let mut snapshot = at_rest(&map());
     room.write(snapshot.clone());
     let before = line(&room);
-    assert!(before.iter().any(|(text, _)| text == "Try") && room.says("simulated floor"), "{before:?}");
+    assert!(room.says("simulated floor"), "{before:?}");
     assert!(before.iter().any(|(text, _)| text == "0 lost, 0 refused"), "{before:?}");
     // 6000 packets and 1000 frames a second, for one second, and then losses.
     for _ in 0..60 {
@@ -31,9 +31,6 @@ fn the_line_tells_mode_source_rates_and_losses_and_nothing_in_it_moves() {
     assert!((rate - 6000.0).abs() < 200.0, "{rate}");
     let places = |line: &[(String, f32)]| line.iter().map(|(_, left)| *left).collect::<Vec<_>>();
     assert_eq!(places(&before), places(&after));
-    room.window.key_press(Key::F2);
-    room.run(3);
-    assert!(line(&room).iter().any(|(text, _)| text == "Design"));
 }
 
 #[test]
@@ -43,6 +40,6 @@ fn a_narrow_window_tells_as_much_as_there_is_room_for() {
     let mut narrow = Room::of(true, 640.0, 420.0);
     narrow.run(2);
     let (wide, narrow) = (line(&wide), line(&narrow));
-    assert!(narrow.len() < wide.len() && narrow.len() > 2, "{narrow:?}");
+    assert!(narrow.len() < wide.len() && narrow.len() > 1, "{narrow:?}");
     assert!(narrow.iter().all(|(_, left)| *left < 640.0 - 40.0));
 }

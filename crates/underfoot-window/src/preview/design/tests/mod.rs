@@ -1,5 +1,6 @@
 //! Design mode without a display: finds parts by name, uses mouse and keyboard, and checks the resulting text.
 
+mod badges;
 mod clipboard;
 mod files;
 mod groups;
@@ -68,6 +69,7 @@ impl Desk {
         };
         let app = App::new(input, &PreviewOptions::default());
         let mut builder = Harness::builder().with_size(vec2(1400.0, 860.0)).with_step_dt(1.0 / 60.0);
+        builder = builder.with_context_setup(|ctx| ctx.set_fonts(crate::preview::style::fonts()));
         // Chinese letters, which the program's own fonts lack.
         if text.chars().any(|letter| letter >= '\u{4e00}') {
             builder = builder.allow_missing_glyphs();
