@@ -180,6 +180,7 @@ impl FootHistory {
         }
     }
 
+    #[inline]
     pub(super) fn update(&mut self, contact: &Contact, now: Instant) {
         (self.place, self.force) = (contact.centroid, contact.force.0);
         if may_be_two(contact) {
@@ -287,6 +288,7 @@ impl FootHistory {
         }
     }
 
+    #[inline]
     pub(super) fn judge(&mut self, person: &TrackedPerson, now: Instant) {
         if self.force < AS_GOOD_AS_LIFTED_N {
             (self.landed, self.landed_at) = (now, self.place);

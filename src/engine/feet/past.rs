@@ -35,6 +35,7 @@ impl Past {
     }
 
     /// Records `load`, unless the last record is more recent than [`PLACE_EVERY`].
+    #[inline]
     pub(super) fn note(&mut self, load: PastLoad, now: Instant) {
         if now.since(self.kept_at) >= PLACE_EVERY {
             self.kept_at = now;
@@ -50,6 +51,7 @@ impl Past {
     }
 
     /// The record of so many records ago.
+    #[inline]
     pub(super) fn ago(&self, ago: usize) -> PastLoad {
         self.loads[(self.next + 2 * PLACES - 1 - ago) % PLACES]
     }
