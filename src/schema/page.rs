@@ -19,7 +19,9 @@ use super::pages::{self, PAGES, PageRecord};
 use super::pairs::Limits;
 use super::places::Places;
 use super::reader::Reader;
+use super::send_checks;
 use super::source::{Source, read_text};
+use super::targets::{TARGETS, TargetRecord};
 use super::units::{UNITS, Units};
 use super::version::{self, VERSION};
 use crate::feel::Effects;
@@ -115,6 +117,7 @@ pub fn parse_layout(
     reader.know(Arc::new(Room::default()));
     let layout = reader.root("layout").and_then(Page::read).and_then(|(page, good)| {
         checks::check(&reader, &page, geometry);
+        send_checks::check(&reader, &page);
         let layout = page.placed_on(geometry).filter(|_| good)?;
         Some((layout, page.controls.into_iter().map(|control| control.written).collect()))
     });
@@ -135,6 +138,8 @@ record! {
     regions: Vec<RegionRecord> = "regions", REGIONS => Vec::new();
     /// The places of people while they use the controls.
     stances: Vec<StanceRecord> = "stances", STANCES => Vec::new();
+    /// The programs and devices that messages of controls go to.
+    targets: Vec<TargetRecord> = "targets", TARGETS => Vec::new();
     /// The layout's own effects.
     effects: () = "effects", OWN_EFFECTS => ();
     /// The layout's own kinds.
@@ -175,11 +180,13 @@ const STANCES: Distinct<StanceRecord> =
 
 /// A layout as written; its problems have been reported.
 pub(super) struct Page {
+    pub(super) version: u32,
     title: String,
     pub(super) units: Units,
     pub(super) regions: Vec<Zone>,
     pub(super) stances: Vec<Zone>,
     pub(super) pages: Vec<PageRecord>,
+    pub(super) targets: Vec<TargetRecord>,
     /// The grounds of all pages.
     pub(super) grounds: Vec<GroundDefinition>,
     /// The controls of all pages.
@@ -207,7 +214,8 @@ impl Page {
         let regions_at = fields.value_span("regions").unwrap_or_else(|| node.span());
         let widgets_at = fields.span("widgets");
         fields.finish();
-        let LayoutRecord { title, units, regions, stances, mut pages, mut grounds, .. } = record;
+        let LayoutRecord { version, title, units, regions, stances, targets, mut pages, mut grounds, .. } =
+            record;
         let regions_known =
             regions.iter().all(|region| region.place.is_some()) && !node.reader.is_broken(&regions_at);
         let mut controls = record.widgets;
@@ -220,8 +228,19 @@ impl Page {
         let zone = |name, place, cursor| Zone { name, place, cursor };
         let regions = regions.into_iter().map(|it| zone(it.id, it.place, it.cursor)).collect();
         let stances = stances.into_iter().map(|it| zone(it.label, it.place, CursorRule::default())).collect();
-        let page =
-            Self { title, units, regions, stances, pages, grounds, controls, regions_known, widgets_at };
+        let page = Self {
+            version,
+            title,
+            units,
+            regions,
+            stances,
+            pages,
+            targets,
+            grounds,
+            controls,
+            regions_known,
+            widgets_at,
+        };
         Some((page, good))
     }
 
@@ -258,6 +277,7 @@ impl Page {
                 behaviour: kind.behaviour,
                 feel: kind.feel,
                 look: kind.look,
+                send: control.send.iter().map(|sending| sending.value.clone()).collect(),
             })
         });
         Some(Layout {
@@ -265,6 +285,7 @@ impl Page {
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
             pages: self.pages.iter().map(PageRecord::checked).collect(),
+            targets: self.targets.iter().map(TargetRecord::checked).collect(),
             grounds: self
                 .grounds
                 .iter()

@@ -1,16 +1,14 @@
 //! Every OSC address of a floor with a layout, in and out, made from the tables of the decoder and the encoder.
 
 mod arguments;
-mod events;
 
 use serde::Serialize;
 
 use self::arguments::{argument, indicators, pages, taken, values};
-use self::events::events;
 use crate::floor::Floor;
 use crate::ground::Material;
 use crate::layout::{Layout, Widget};
-use crate::widget::{Behaviour, Control, Detail, OffReason};
+use crate::widget::{Behaviour, Control, Detail, OffReason, possible_events};
 use crate::wire::sent::{self, Arguments, Field, FieldRange, Sent};
 use crate::wire::{ArgumentKind, COMMANDS, Prefix};
 
@@ -186,7 +184,7 @@ impl Maker<'_> {
             }
         }
         let held = control.value().map(|value| values(&widget.behaviour, value)).unwrap_or_default();
-        for (kind, says) in events(&widget.behaviour, control.value()) {
+        for (kind, says) in possible_events(&widget.behaviour, control.value()) {
             let mut arguments = match kind.detail() {
                 None => Vec::new(),
                 Some(Detail::Value(_)) => held.clone(),

@@ -177,12 +177,14 @@ fn draw_control(
         behaviour: kind.behaviour.clone(),
         feel: kind.feel.clone(),
         look: kind.look,
+        send: Vec::new(),
     };
     let layout = Layout {
         title: String::new(),
         regions: Vec::new(),
         stances: Vec::new(),
         pages: Vec::new(),
+        targets: Vec::new(),
         grounds: Vec::new(),
         widgets: vec![widget],
     };
