@@ -23,7 +23,7 @@ use glam::Vec2;
 
 use crate::feel::Feel;
 use crate::floor::{Area, Geometry, Rect};
-use crate::messages::{Plan, SendTarget, Sending};
+use crate::messages::{MessagePlan, SendTarget, Sending};
 use crate::widget::{Behaviour, WidgetId};
 
 /// Controls placed on one floor, on one page or on several that take turns.
@@ -93,8 +93,8 @@ impl Layout {
 
     /// The targets and the messages of all controls.
     #[must_use]
-    pub fn plan(&self) -> Plan {
-        let mut plan = Plan::new(self.targets.clone());
+    pub fn plan(&self) -> MessagePlan {
+        let mut plan = MessagePlan::new(self.targets.clone());
         for widget in &self.widgets {
             plan.add(&widget.id, &widget.behaviour, &widget.send);
         }

@@ -12,10 +12,10 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use super::order::{Act, Holdable, Order, OscValue, Unsent};
-use super::pace::{self, Pace, STROKE};
-use super::plan::{Line, Plan};
-use super::pointer::{Motion, deflection, numbers, share, wheel};
+use super::order::{Act, Holdable, MessageOrder, OscValue, Unsent};
+use super::pace::{self, STROKE, ValuePace};
+use super::plan::{MessageLine, MessagePlan};
+use super::pointer::{PointerMotion, deflection, numbers, share, wheel};
 use super::sending::{OscArgument, OscSettings, Payload, When};
 use crate::rate_limit::RateLimit;
 use crate::units::Instant;
@@ -27,7 +27,7 @@ const SILENCE: Duration = Duration::from_millis(70);
 /// Runs the messages of one layout.
 #[derive(Debug)]
 pub struct Messenger {
-    plan: Plan,
+    plan: MessagePlan,
     states: Vec<LineState>,
     /// The number of lines that hold each thing down.
     down: BTreeMap<(usize, Holdable), u32>,
@@ -44,8 +44,8 @@ struct LineState {
     /// The last time at which the control was known to be held; `None` while it is not.
     held: Option<Instant>,
     value: Option<Value>,
-    pace: Pace,
-    motion: Motion,
+    pace: ValuePace,
+    motion: PointerMotion,
     /// Steps of the wheel that have gone out.
     steps: i32,
     /// Force and place of the foot at the last event.
@@ -55,8 +55,8 @@ struct LineState {
 impl Messenger {
     /// Runs the messages of `plan`; nothing is down.
     #[must_use]
-    pub fn new(plan: Plan) -> Self {
-        let state = |line: &Line| LineState {
+    pub fn new(plan: MessagePlan) -> Self {
+        let state = |line: &MessageLine| LineState {
             value: line.initial,
             steps: match (&line.payload, line.initial) {
                 (Payload::Wheel(steps), Some(value)) => wheel(value, line.ends[0], *steps),
@@ -71,7 +71,7 @@ impl Messenger {
 
     /// The messages that it runs.
     #[must_use]
-    pub const fn plan(&self) -> &Plan {
+    pub const fn plan(&self) -> &MessagePlan {
         &self.plan
     }
 
@@ -87,7 +87,7 @@ impl Messenger {
     }
 
     /// Processes an event of a control; appends orders.
-    pub fn event(&mut self, event: &WidgetEvent, orders: &mut Vec<Order>) {
+    pub fn event(&mut self, event: &WidgetEvent, orders: &mut Vec<MessageOrder>) {
         for index in 0..self.plan.lines.len() {
             if self.plan.lines.get(index).is_some_and(|line| line.control == event.id) {
                 self.event_of(index, event, orders);
@@ -95,7 +95,7 @@ impl Messenger {
         }
     }
 
-    fn event_of(&mut self, index: usize, event: &WidgetEvent, orders: &mut Vec<Order>) {
+    fn event_of(&mut self, index: usize, event: &WidgetEvent, orders: &mut Vec<MessageOrder>) {
         let (Some(line), Some(state)) = (self.plan.lines.get(index), self.states.get_mut(index)) else {
             return;
         };
@@ -121,7 +121,7 @@ impl Messenger {
     }
 
     /// Processes the report that the controls in `held`, and no others, are held at `at`.
-    pub fn held(&mut self, at: Instant, held: &[WidgetId], orders: &mut Vec<Order>) {
+    pub fn held(&mut self, at: Instant, held: &[WidgetId], orders: &mut Vec<MessageOrder>) {
         for index in 0..self.states.len() {
             let is_held = self.plan.lines.get(index).is_some_and(|line| held.contains(&line.control));
             if let Some(state) = self.states.get_mut(index) {
@@ -134,12 +134,12 @@ impl Messenger {
     }
 
     /// Processes the loss of the floor: everything comes up.
-    pub fn lost(&mut self, orders: &mut Vec<Order>) {
+    pub fn lost(&mut self, orders: &mut Vec<MessageOrder>) {
         self.release_all(orders);
     }
 
     /// Passes the time: holds without a report end, waiting values go out, the pointer moves.
-    pub fn advance(&mut self, now: Instant, orders: &mut Vec<Order>) {
+    pub fn advance(&mut self, now: Instant, orders: &mut Vec<MessageOrder>) {
         for index in 0..self.states.len() {
             let Some(state) = self.states.get_mut(index) else { continue };
             if state.held.is_some_and(|held| now.since(held) > SILENCE) {
@@ -151,7 +151,7 @@ impl Messenger {
     }
 
     /// Lets everything come up; controls that are held must be pressed again.
-    pub fn release_all(&mut self, orders: &mut Vec<Order>) {
+    pub fn release_all(&mut self, orders: &mut Vec<MessageOrder>) {
         for index in 0..self.states.len() {
             if let Some(state) = self.states.get_mut(index) {
                 state.held = None;
@@ -161,7 +161,7 @@ impl Messenger {
     }
 
     /// Sends the message of an event.
-    fn fire(&mut self, index: usize, now: Instant, orders: &mut Vec<Order>) {
+    fn fire(&mut self, index: usize, now: Instant, orders: &mut Vec<MessageOrder>) {
         let (Some(line), Some(state)) = (self.plan.lines.get(index), self.states.get(index)) else { return };
         let act = match &line.payload {
             Payload::Key(key) => Act::Stroke(Holdable::Key(key.clone())),
@@ -176,7 +176,7 @@ impl Messenger {
             self.unsent.held += 1;
             return;
         }
-        let order = Order { target: line.target, control: line.control.clone(), act };
+        let order = MessageOrder { target: line.target, control: line.control.clone(), act };
         if self.may_send(order.target, now, STROKE) {
             orders.push(order);
         } else {
@@ -184,7 +184,7 @@ impl Messenger {
         }
     }
 
-    fn go_down(&mut self, index: usize, now: Instant, orders: &mut Vec<Order>) {
+    fn go_down(&mut self, index: usize, now: Instant, orders: &mut Vec<MessageOrder>) {
         let Some(line) = self.plan.lines.get(index) else { return };
         let (target, control) = (line.target, line.control.clone());
         let Some(what) = line.holdable() else { return };
@@ -199,11 +199,11 @@ impl Messenger {
         let count = self.down.entry((target, what.clone())).or_default();
         *count += 1;
         if *count == 1 {
-            orders.push(Order { target, control, act: Act::Down(what) });
+            orders.push(MessageOrder { target, control, act: Act::Down(what) });
         }
     }
 
-    fn come_up(&mut self, index: usize, orders: &mut Vec<Order>) {
+    fn come_up(&mut self, index: usize, orders: &mut Vec<MessageOrder>) {
         let (Some(line), Some(state)) = (self.plan.lines.get(index), self.states.get_mut(index)) else {
             return;
         };
@@ -217,11 +217,11 @@ impl Messenger {
             return;
         }
         self.down.remove(&key);
-        orders.push(Order { target: key.0, control: line.control.clone(), act: Act::Up(key.1) });
+        orders.push(MessageOrder { target: key.0, control: line.control.clone(), act: Act::Up(key.1) });
     }
 
-    /// Sends what follows the value, where something new is due.
-    fn follow(&mut self, index: usize, now: Instant, orders: &mut Vec<Order>) {
+    /// Sends the message that follows the value, if a new one is due.
+    fn follow(&mut self, index: usize, now: Instant, orders: &mut Vec<MessageOrder>) {
         let (Some(line), Some(state)) = (self.plan.lines.get(index), self.states.get_mut(index)) else {
             return;
         };
@@ -251,7 +251,7 @@ impl Messenger {
             _ => None,
         };
         let Some(act) = act else { return };
-        let order = Order { target: line.target, control: line.control.clone(), act };
+        let order = MessageOrder { target: line.target, control: line.control.clone(), act };
         // A value that the rate holds back waits and goes out as the latest one; a motion is left out.
         let passes =
             self.budgets.get_mut(order.target).is_some_and(|budget| budget.take_many(now, 1).is_some());
@@ -272,7 +272,7 @@ impl Messenger {
 }
 
 /// The arguments of an OSC message now.
-fn arguments(line: &Line, state: &LineState, settings: &OscSettings) -> Vec<OscValue> {
+fn arguments(line: &MessageLine, state: &LineState, settings: &OscSettings) -> Vec<OscValue> {
     let [force, x, y] = state.foot;
     let usual: &[OscArgument] = if line.when == When::Value { &[OscArgument::Value] } else { &[] };
     let mut values = Vec::new();

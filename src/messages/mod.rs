@@ -1,7 +1,7 @@
-//! Messages of controls to other programs: what a layout says, and the state machine that decides when each goes out.
+//! Messages of controls to other programs, and the state machine that decides when each goes out.
 //!
 //! ```text
-//! layout -Plan-> Messenger <- events, held controls, state of the link, time
+//! layout -MessagePlan-> Messenger <- events, held controls, state of the link, time
 //!                Messenger -> orders: down, up, stroke, steps of a wheel, motion, OSC
 //! ```
 //!
@@ -22,8 +22,8 @@ mod trigger;
 
 pub use key::{KeyStroke, KeySymbol};
 pub use messenger::Messenger;
-pub use order::{Act, Holdable, Order, OscValue, Unsent};
-pub use plan::Plan;
+pub use order::{Act, Holdable, MessageOrder, OscValue, Unsent};
+pub use plan::MessagePlan;
 pub use sending::{MAX_MESSAGES, MouseButton, OscArgument, OscSettings, Payload, Sending, When};
 pub use target::{Destination, KeyboardTarget, MAX_TARGETS, OscTarget, SendTarget, Transport};
 pub use trigger::Trigger;

@@ -10,8 +10,8 @@ use crate::widget::WidgetId;
 
 /// One order: the sender carries it out at once or not at all.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Order {
-    /// The index of the target in [`super::Plan::targets`].
+pub struct MessageOrder {
+    /// The index of the target in [`super::MessagePlan::targets`].
     pub target: usize,
     /// The control that gave it.
     pub control: WidgetId,
@@ -36,7 +36,7 @@ pub enum Act {
     Osc(String, Vec<OscValue>),
 }
 
-/// What can be held down.
+/// A thing that can be held down.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Deserialize, Serialize)]
 pub enum Holdable {
     /// A key with its modifiers.

@@ -11,7 +11,7 @@ pub(super) const EVERY: Duration = Duration::from_millis(10);
 /// Tokens that one key, click or event costs; one that follows a value costs 1.
 pub(super) const STROKE: u32 = 5;
 
-/// The bound of one target: 1000 tokens a second (our choice: 200 keys, far beyond what feet do, or ten values at
+/// The bound of one target: 1000 tokens a second (our choice: 200 keys, far beyond feet, or ten values at
 /// [`EVERY`]), 200 of them at once.
 pub(super) fn of_target() -> RateLimit {
     RateLimit::new(200, Duration::from_millis(1))
@@ -19,13 +19,13 @@ pub(super) fn of_target() -> RateLimit {
 
 /// The next message that follows one value.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pace {
+pub(super) struct ValuePace {
     last: Option<Instant>,
     /// Whether a value waits; the latest one goes out.
     pub(super) waits: bool,
 }
 
-impl Pace {
+impl ValuePace {
     /// Whether a waiting value may go out at `now`.
     pub(super) fn is_due(&self, now: Instant) -> bool {
         self.waits && self.last.is_none_or(|last| now.since(last) >= EVERY)

@@ -9,16 +9,16 @@ use crate::widget::{Behaviour, Value, WidgetId};
 
 /// Targets and messages of one layout.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Plan {
+pub struct MessagePlan {
     /// The targets, by their index.
     pub targets: Vec<SendTarget>,
     /// The messages of all controls.
-    pub(super) lines: Vec<Line>,
+    pub(super) lines: Vec<MessageLine>,
 }
 
 /// One message of one control.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Line {
+pub(super) struct MessageLine {
     pub(super) control: WidgetId,
     pub(super) target: usize,
     pub(super) when: When,
@@ -28,7 +28,7 @@ pub(super) struct Line {
     pub(super) initial: Option<Value>,
 }
 
-impl Plan {
+impl MessagePlan {
     /// A plan for these targets, without messages.
     #[must_use]
     pub fn new(targets: Vec<SendTarget>) -> Self {
@@ -40,7 +40,7 @@ impl Plan {
     pub fn add(&mut self, id: &WidgetId, behaviour: &Behaviour, sendings: &[Sending]) {
         for Sending { when, target, payload } in sendings {
             let Some(target) = self.targets.iter().position(|it| it.name == *target) else { continue };
-            self.lines.push(Line {
+            self.lines.push(MessageLine {
                 control: id.clone(),
                 target,
                 when: *when,
@@ -64,7 +64,7 @@ impl Plan {
     }
 }
 
-impl Line {
+impl MessageLine {
     /// The key, button or address that it holds down; `None` if it holds nothing.
     pub(super) fn holdable(&self) -> Option<Holdable> {
         match (&self.payload, self.when) {

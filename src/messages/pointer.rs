@@ -12,13 +12,13 @@ const LONGEST: Duration = Duration::from_millis(50);
 
 /// The pointer moved by a pad or by leaning: it moves by `speed * deflection * time`.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Motion {
+pub(super) struct PointerMotion {
     last: Option<Instant>,
     /// Parts of pixels that have not been moved yet.
     rest: Vec2,
 }
 
-impl Motion {
+impl PointerMotion {
     /// Returns the pixels to move at `now`, rightwards and downwards, with the control at `deflection` (-1 to 1,
     /// eastwards and northwards) and the speed in pixels per second.
     pub(super) fn step(&mut self, now: Instant, deflection: Vec2, speed: f32) -> [i32; 2] {

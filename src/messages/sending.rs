@@ -1,5 +1,7 @@
 //! The messages of one control, as its layout writes them.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 use underfoot_format::Named;
 
@@ -9,7 +11,7 @@ use super::trigger::Trigger;
 /// Maximum number of messages of one control (our choice).
 pub const MAX_MESSAGES: usize = 16;
 
-/// One message of a control: when it goes out, to which target, and what it holds.
+/// One message of a control: its time, its target and its content.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sending {
     /// When it goes out.
@@ -96,6 +98,31 @@ impl MouseButton {
 impl Named for MouseButton {
     const ALL: &'static [(&'static str, Self)] =
         &[("left", Self::Left), ("middle", Self::Middle), ("right", Self::Right)];
+}
+
+impl fmt::Display for When {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::On(trigger) => write!(f, "at each event {}", trigger.name()),
+            Self::While => f.write_str("while a foot holds it"),
+            Self::Value => f.write_str("as its value changes"),
+        }
+    }
+}
+
+impl fmt::Display for Payload {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Key(key) => write!(f, "key {key}"),
+            Self::Button(button) => write!(f, "{} button", button.name()),
+            Self::Wheel(steps) => write!(f, "wheel {steps:+}"),
+            Self::Pointer(speed) => write!(f, "pointer at {speed} pixels/s"),
+            Self::Osc(address, OscSettings { range: Some([from, to]), .. }) => {
+                write!(f, "{address} {from} to {to}")
+            }
+            Self::Osc(address, _) => f.write_str(address),
+        }
+    }
 }
 
 impl OscSettings {

@@ -1,4 +1,4 @@
-//! What goes down comes up, whatever feet, floor and link do.
+//! A key that goes down comes up, after any history of feet, floor and link.
 
 use std::collections::BTreeSet;
 
@@ -19,11 +19,11 @@ fn key(name: &str) -> Payload {
 
 /// Two controls hold the same key, a third one another; all click it too; a slider sends its value and turns a wheel, a
 /// pad moves the pointer.
-fn plan() -> Plan {
+fn plan() -> MessagePlan {
     let target = |name: &str, to| SendTarget { name: name.into(), to };
     let keyboard = Destination::Keyboard(KeyboardTarget { window: None, display: None });
     let osc = Destination::Osc(OscTarget { address: "127.0.0.1:53000".into(), over: Transport::default() });
-    let mut plan = Plan::new(vec![target("viewer", keyboard), target("desk", osc)]);
+    let mut plan = MessagePlan::new(vec![target("viewer", keyboard), target("desk", osc)]);
     let hold = Behaviour::Hold(HoldSpec { thresholds: AT });
     let slider = Behaviour::Slider(SliderSpec::new(AT, Scale::new(0.0, 10.0)));
     let pad = Behaviour::Pad(PadSpec {
@@ -66,15 +66,15 @@ fn event(id: &str, kind: EventKind, ms: u64) -> WidgetEvent {
     }
 }
 
-/// Carries out orders as a keyboard does: a second down, or an up of what is up, is a fault.
+/// Carries out orders as a keyboard does: a second down, or a second up, is a fault.
 #[derive(Default)]
-struct Board {
+struct PressedKeys {
     down: BTreeSet<(usize, Holdable)>,
 }
 
-impl Board {
-    fn carry_out(&mut self, orders: &[Order]) {
-        for Order { target, act, .. } in orders {
+impl PressedKeys {
+    fn carry_out(&mut self, orders: &[MessageOrder]) {
+        for MessageOrder { target, act, .. } in orders {
             match act {
                 Act::Down(what) => assert!(self.down.insert((*target, what.clone())), "down twice: {what}"),
                 Act::Up(what) => assert!(self.down.remove(&(*target, what.clone())), "up twice: {what}"),
@@ -118,8 +118,8 @@ fn happening() -> impl Strategy<Value = Happening> {
 }
 
 /// Plays `history`; returns the machine, the board and the time after it.
-fn play(history: &[Happening]) -> (Messenger, Board, u64) {
-    let (mut messenger, mut board, mut ms) = (Messenger::new(plan()), Board::default(), 1000);
+fn play(history: &[Happening]) -> (Messenger, PressedKeys, u64) {
+    let (mut messenger, mut board, mut ms) = (Messenger::new(plan()), PressedKeys::default(), 1000);
     let mut orders = Vec::new();
     for happening in history {
         match happening {
@@ -165,7 +165,7 @@ proptest! {
     }
 }
 
-fn acts(orders: &mut Vec<Order>) -> Vec<String> {
+fn acts(orders: &mut Vec<MessageOrder>) -> Vec<String> {
     orders.drain(..).map(|order| order.act.to_string()).collect()
 }
 

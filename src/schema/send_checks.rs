@@ -15,7 +15,8 @@ use underfoot_format::codec::Written;
 /// First version of the format with messages.
 const SINCE: u32 = 2;
 
-/// Reports messages without a target, that never go out, that nothing would end, or that two controls send.
+/// Reports messages without a target, messages that never go out or that nothing would end, and messages of two
+/// controls.
 pub(super) fn check(reader: &Reader<'_>, page: &Page) {
     let mut told: Vec<(usize, &'static str)> = Vec::new();
     let mut report = |at: &std::ops::Range<usize>, rule: &'static str, problem: Problem| {
@@ -51,10 +52,10 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
     twice(reader, page);
 }
 
-/// What is wrong: the message, the expected form, and advice.
-type Fault = Option<(String, String, Option<String>)>;
+/// A problem: the message, the expected form, and advice.
+type SendFault = Option<(String, String, Option<String>)>;
 
-fn of_target(page: &Page, sending: &Sending) -> Fault {
+fn of_target(page: &Page, sending: &Sending) -> SendFault {
     let name = &sending.target;
     let Some(target) = page.targets.iter().find(|target| target.name.value == *name) else {
         let names: Vec<&str> = page.targets.iter().map(|target| target.name.value.as_str()).collect();
@@ -70,7 +71,7 @@ fn of_target(page: &Page, sending: &Sending) -> Fault {
     })
 }
 
-fn of_event(sending: &Sending, behaviour: &Behaviour) -> Fault {
+fn of_event(sending: &Sending, behaviour: &Behaviour) -> SendFault {
     match sending.when {
         When::On(trigger) if !trigger.is_given_by(behaviour) => Some((
             format!("this {} never gives `{}`", behaviour.name(), trigger.name()),
@@ -86,7 +87,7 @@ fn of_event(sending: &Sending, behaviour: &Behaviour) -> Fault {
     }
 }
 
-fn of_guard(sending: &Sending, behaviour: &Behaviour) -> Fault {
+fn of_guard(sending: &Sending, behaviour: &Behaviour) -> SendFault {
     let runs = matches!(behaviour.thresholds().guard, Guard::HoldToRun(_));
     (sending.when == When::While && !runs).then(|| {
         let message = "what is held down needs the guard HoldToRun".to_owned();

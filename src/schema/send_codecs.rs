@@ -7,7 +7,7 @@ use underfoot_format::codec::{By, List};
 use underfoot_format::describe::{Description, FieldType};
 use underfoot_format::ron2::ast::Expr;
 use underfoot_format::text::Text;
-use underfoot_format::{Codec, Num, Opt, Record, list, num, record};
+use underfoot_format::{Num, Opt, Record, list, num, record};
 
 /// Ends of a range of OSC numbers.
 const ENDS: Num = num(-1e6..=1e6);
@@ -113,14 +113,14 @@ const ARGUMENT: By<OscArgument> = By {
 
 /// Arguments that the foot or the control gives.
 #[derive(Clone, Copy)]
-enum Given {
+enum ArgumentSource {
     Value,
     Force,
     X,
     Y,
 }
 
-impl Given {
+impl ArgumentSource {
     fn argument(self) -> OscArgument {
         match self {
             Self::Value => OscArgument::Value,
@@ -131,8 +131,12 @@ impl Given {
     }
 }
 
-const FROM_THE_FOOT: &[(&str, Given)] =
-    &[("value", Given::Value), ("force", Given::Force), ("x", Given::X), ("y", Given::Y)];
+const FROM_THE_FOOT: &[(&str, ArgumentSource)] = &[
+    ("value", ArgumentSource::Value),
+    ("force", ArgumentSource::Force),
+    ("x", ArgumentSource::X),
+    ("y", ArgumentSource::Y),
+];
 
 /// A number without a point is an integer, one with a point is not: receivers distinguish them.
 fn argument(node: Node<'_>) -> Option<OscArgument> {

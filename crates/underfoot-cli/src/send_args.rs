@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use underfoot::layout::Layout;
-use underfoot::messages::Plan;
+use underfoot::messages::MessagePlan;
 use underfoot_io::targets::{LoadedPlan, TargetSink, redirect};
 
 use super::failure::Failure;
@@ -25,6 +25,13 @@ fn moved(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), place.to_owned()))
 }
 
+/// Says that the messages of `layout` are off, if it has any.
+pub(crate) fn tell_off(layout: &Layout, reason: &str) {
+    if !layout.plan().is_empty() {
+        errln!("The messages of this layout to other programs are off: {reason}.");
+    }
+}
+
 impl SendArgs {
     /// Opens the way to the targets of `layout`, which the operator has named; says where its messages go.
     pub(crate) fn open(&self, layout: &Layout) -> Result<(TargetSink, LoadedPlan), Failure> {
@@ -32,8 +39,8 @@ impl SendArgs {
         if !plan.is_empty() {
             let names: Vec<&str> = plan.targets.iter().map(|target| target.name.as_str()).collect();
             errln!("Controls send to {}; -v shows every message.", names.join(", "));
-        } else if self.no_send && !layout.plan().is_empty() {
-            errln!("The messages of this layout are off: --no-send.");
+        } else if self.no_send {
+            tell_off(layout, "--no-send");
         }
         let program = std::env::current_exe()
             .map_err(|error| Failure::Other(format!("this program can't be found: {error}")))?;
@@ -55,9 +62,9 @@ impl SendArgs {
     }
 
     /// The messages, with the targets where this command line puts them.
-    fn plan(&self, layout: &Layout) -> Result<Plan, String> {
+    fn plan(&self, layout: &Layout) -> Result<MessagePlan, String> {
         if self.no_send {
-            return Ok(Plan::default());
+            return Ok(MessagePlan::default());
         }
         let mut plan = layout.plan();
         for (name, place) in &self.targets {

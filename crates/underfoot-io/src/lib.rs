@@ -1,3 +1,3 @@
-//! What a floor exchanges with other programs and devices of its computer.
+//! Exchange of a floor with other programs and devices of its computer.
 
 pub mod targets;

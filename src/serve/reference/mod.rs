@@ -22,6 +22,8 @@ pub enum MessageDirection {
     Out,
     /// From the floor to the program that asked.
     Answer,
+    /// From a control to a target of its layout.
+    Target,
 }
 
 /// One argument.
@@ -211,5 +213,13 @@ impl Maker<'_> {
             _ => {}
         }
         self.answer_of::<sent::PageOfControl>(id);
+        for sending in &widget.send {
+            self.entries.push(AddressEntry {
+                direction: MessageDirection::Target,
+                address: format!("{}: {}", sending.target, sending.payload),
+                arguments: Vec::new(),
+                says: format!("{id} sends it {}.", sending.when),
+            });
+        }
     }
 }

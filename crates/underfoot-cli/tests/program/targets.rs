@@ -1,4 +1,4 @@
-//! Whatever goes down comes up, whatever dies: messages of a held control, seen by an observer outside of the program.
+//! A key that goes down comes up after any failure: messages of a held control, seen by an observer outside of the program.
 
 use std::io::{BufRead, BufReader};
 use std::net::UdpSocket;
@@ -46,13 +46,13 @@ trait Observer {
 }
 
 /// A receiver of OSC.
-struct Desk {
+struct OscDesk {
     socket: UdpSocket,
     is_down: bool,
     zooms: Vec<f32>,
 }
 
-impl Desk {
+impl OscDesk {
     fn new() -> Self {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.set_nonblocking(true).unwrap();
@@ -64,7 +64,7 @@ impl Desk {
     }
 }
 
-impl Observer for Desk {
+impl Observer for OscDesk {
     fn is_down(&mut self) -> bool {
         let mut bytes = [0; 512];
         while let Ok(length) = self.socket.recv(&mut bytes) {
@@ -82,14 +82,14 @@ impl Observer for Desk {
 }
 
 /// A virtual X display, and the state of its space bar.
-struct Screen {
+struct VirtualScreen {
     server: Child,
     display: String,
     connection: RustConnection,
     code: u8,
 }
 
-impl Screen {
+impl VirtualScreen {
     /// A display of its own; `None`, with the reason printed, if there is no Xvfb.
     fn open() -> Option<Self> {
         let spawned = Command::new("Xvfb")
@@ -122,14 +122,14 @@ impl Screen {
     }
 }
 
-impl Observer for Screen {
+impl Observer for VirtualScreen {
     fn is_down(&mut self) -> bool {
         let keys = self.connection.query_keymap().unwrap().reply().unwrap().keys;
         keys[usize::from(self.code / 8)] & (1 << (self.code % 8)) != 0
     }
 }
 
-impl Drop for Screen {
+impl Drop for VirtualScreen {
     fn drop(&mut self) {
         let _ = self.server.kill();
         let _ = self.server.wait();
@@ -210,7 +210,7 @@ fn comes_up_soon(site: &Site, observer: &mut impl Observer) {
 
 #[test]
 fn an_osc_address_that_is_held_comes_up_whatever_dies() {
-    let mut desk = Desk::new();
+    let mut desk = OscDesk::new();
     let site = Site::new();
     let page = page(&desk.target(), r#"While(pressed, Osc("desk", "/drive"))"#);
     std::fs::write(site.folder().join("page.ron"), page).unwrap();
@@ -220,8 +220,8 @@ fn an_osc_address_that_is_held_comes_up_whatever_dies() {
 
 #[test]
 fn a_key_that_is_held_comes_up_whatever_dies() {
-    let Some(mut screen) = Screen::open() else { return };
-    let desk = Desk::new();
+    let Some(mut screen) = VirtualScreen::open() else { return };
+    let desk = OscDesk::new();
     let site = Site::new();
     let targets = format!("{}, {}", screen.target(), desk.target());
     let page = page(&targets, r#"While(pressed, Key("viewer", "space"))"#);
@@ -233,8 +233,8 @@ fn a_key_that_is_held_comes_up_whatever_dies() {
 #[test]
 #[ignore = "takes ten minutes; figures of a machine that is busy say nothing"]
 fn twenty_rounds_of_each_end_of_a_key() {
-    let Some(mut screen) = Screen::open() else { return };
-    let desk = Desk::new();
+    let Some(mut screen) = VirtualScreen::open() else { return };
+    let desk = OscDesk::new();
     let site = Site::new();
     let targets = format!("{}, {}", screen.target(), desk.target());
     let page = page(&targets, r#"While(pressed, Key("viewer", "space"))"#);
@@ -251,7 +251,7 @@ fn twenty_rounds_of_each_end_of_a_key() {
 
 #[test]
 fn a_target_that_the_layout_lacks_is_refused_by_name() {
-    let desk = Desk::new();
+    let desk = OscDesk::new();
     let site = Site::new();
     let page = page(&desk.target(), r#"While(pressed, Osc("desk", "/drive"))"#);
     std::fs::write(site.folder().join("page.ron"), page).unwrap();

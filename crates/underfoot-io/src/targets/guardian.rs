@@ -1,8 +1,8 @@
-//! The guardian: a process that sends, knows what is down, and lets it come up when the server fails.
+//! The guardian: a process that sends, notes everything that is down, and releases it when the server fails.
 //!
 //! ```text
 //! plan               -> everything that the layout can hold is released
-//! act                -> carried out; what goes down is noted
+//! act                -> carried out; each down is noted
 //! heartbeat          -> acknowledged
 //! none for 80 ms     -> everything comes up; nothing is pressed again by itself
 //! end of the input   -> everything comes up, and the process ends
@@ -20,16 +20,16 @@ use super::PATIENCE;
 use super::link::{FromGuardian, ToGuardian, next, put};
 use super::outlets::Outlets;
 
-/// Longest time between two attempts to release what could not be released.
+/// Longest time between two attempts to release a key.
 const AGAIN: Duration = Duration::from_millis(20);
 
-/// Time for which the guardian tries to release what is down after its server has ended.
+/// Time for which the guardian tries to release keys after its server has ended.
 const LAST: Duration = Duration::from_secs(3);
 
 /// Maximum number of messages that wait: a second of the fastest orders.
 const QUEUE: usize = 4096;
 
-/// Guards what the server at the other end of `from` and `to` holds down, until that end closes.
+/// Guards everything that the server at the other end of `from` and `to` holds down, until that end closes.
 ///
 /// # Errors
 /// The system gives no thread.
@@ -51,9 +51,9 @@ pub fn guard(mut from: impl BufRead + Send + 'static, to: impl Write) -> std::io
 /// The state of the guardian.
 struct Guardian<W> {
     outlets: Outlets,
-    /// What is down, or may be.
+    /// Keys, buttons and addresses that are down, or may be.
     down: BTreeSet<(usize, Holdable)>,
-    /// What may be down from before, and could not be released so far.
+    /// Those that may be down from before, and could not be released so far.
     starting: BTreeSet<(usize, Holdable)>,
     /// The time at which the plan came.
     begun: Instant,
@@ -66,7 +66,7 @@ impl<W: Write> Guardian<W> {
         let mut heard = Instant::now();
         loop {
             let wait = PATIENCE.saturating_sub(heard.elapsed());
-            // Without patience left, it only tries to release what is still down.
+            // Without patience left, it only tries to release the rest.
             let wait = if wait.is_zero() { AGAIN } else { wait };
             match messages.recv_timeout(wait) {
                 Ok(message) => {
@@ -75,7 +75,7 @@ impl<W: Write> Guardian<W> {
                         self.release_all();
                     }
                     match message {
-                        // What a server that was silent wanted to press is old.
+                        // A press of a server that was silent is old.
                         ToGuardian::Act(_, act) if is_late && !matches!(act, Act::Up(_)) => self.undone += 1,
                         ToGuardian::Act(target, act) => self.act(target, &act),
                         message => {
@@ -102,7 +102,7 @@ impl<W: Write> Guardian<W> {
 
     fn process(&mut self, message: ToGuardian) {
         match message {
-            ToGuardian::Plan(targets, holdables) => {
+            ToGuardian::Setup(targets, holdables) => {
                 self.release_all();
                 self.outlets = Outlets::new(targets);
                 self.starting = holdables.into_iter().collect();
@@ -154,7 +154,7 @@ impl<W: Write> Guardian<W> {
         self.tell(notices);
     }
 
-    /// Lets everything come up; what could not be released stays noted.
+    /// Lets everything come up; a key that could not be released stays noted.
     fn release_all(&mut self) {
         let mut notices = Vec::new();
         let Self { outlets, down, .. } = self;
@@ -162,7 +162,7 @@ impl<W: Write> Guardian<W> {
         self.tell(notices);
     }
 
-    /// Releases what may be down from before the start; a target that stays absent holds nothing of ours.
+    /// Releases keys from before the start; a target that stays absent holds nothing of ours.
     fn release_old(&mut self) {
         if self.begun.elapsed() > LAST {
             self.starting.clear();

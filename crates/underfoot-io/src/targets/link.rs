@@ -13,7 +13,7 @@ const LONGEST: u64 = 4 << 20;
 #[derive(Debug, Deserialize, Serialize)]
 pub(super) enum ToGuardian {
     /// The targets, and everything that messages can hold down there: all of it is released first.
-    Plan(Vec<SendTarget>, Vec<(usize, Holdable)>),
+    Setup(Vec<SendTarget>, Vec<(usize, Holdable)>),
     /// An order for the target with this index.
     Act(usize, Act),
     /// The server works; the guardian answers with the same number.

@@ -1,4 +1,4 @@
-//! Targets: the messages of controls as keys, pointer and OSC, with the guarantee that what goes down comes up.
+//! Targets: the messages of controls as keys, pointer and OSC, with the guarantee that each key that goes down comes up.
 //!
 //! ```text
 //! sensing thread          supervisor thread               process `underfoot guardian`

@@ -19,12 +19,12 @@ const CONNECT: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub(super) struct OscOutlet {
     address: String,
-    way: Way,
+    way: OscWay,
 }
 
 /// The protocol below OSC.
 #[derive(Debug)]
-enum Way {
+enum OscWay {
     Udp(UdpSocket),
     /// A connection that is being made.
     Connecting(Receiver<std::io::Result<TcpStream>>),
@@ -51,9 +51,9 @@ impl OscOutlet {
                 socket.set_nonblocking(true).map_err(gone)?;
                 socket.set_broadcast(true).map_err(gone)?;
                 socket.connect(address).map_err(gone)?;
-                Way::Udp(socket)
+                OscWay::Udp(socket)
             }
-            Transport::Tcp => Way::Connecting(connect(address).map_err(gone)?),
+            Transport::Tcp => OscWay::Connecting(connect(address).map_err(gone)?),
         };
         Ok(Self { address: target.address.clone(), way })
     }
@@ -64,24 +64,26 @@ impl OscOutlet {
         let gone = |error: std::io::Error| OutletError::Gone(format!("{}: {error}", self.address));
         match &mut self.way {
             // A receiver on this computer that is not there answers so at the next message.
-            Way::Udp(socket) => match socket.send(&packet) {
+            OscWay::Udp(socket) => match socket.send(&packet) {
                 Err(error) if error.kind() == ErrorKind::ConnectionRefused => {
                     socket.send(&packet).map(drop).map_err(gone)
                 }
                 sent => sent.map(drop).map_err(gone),
             },
-            Way::Connecting(_) => Err(OutletError::Refused(format!("{} is not connected yet", self.address))),
+            OscWay::Connecting(_) => {
+                Err(OutletError::Refused(format!("{} is not connected yet", self.address)))
+            }
             // A stream that takes only a part of a frame is of no use any more.
-            Way::Tcp(stream) => stream.write_all(&framed(&packet)).map_err(gone),
+            OscWay::Tcp(stream) => stream.write_all(&framed(&packet)).map_err(gone),
         }
     }
 
     /// Uses a connection that has been made.
     fn settle(&mut self) -> Result<(), OutletError> {
-        let Way::Connecting(made) = &self.way else { return Ok(()) };
+        let OscWay::Connecting(made) = &self.way else { return Ok(()) };
         match made.try_recv() {
             Ok(Ok(stream)) => {
-                self.way = Way::Tcp(stream);
+                self.way = OscWay::Tcp(stream);
                 Ok(())
             }
             Ok(Err(error)) => Err(OutletError::Gone(format!("{}: {error}", self.address))),

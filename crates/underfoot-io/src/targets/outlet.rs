@@ -14,7 +14,7 @@ pub trait Outlet: Send {
     /// must be opened again.
     fn carry_out(&mut self, act: &Act) -> Result<(), OutletError>;
 
-    /// Lets `what` come up, whoever holds it down.
+    /// Lets `what` come up, also if another program holds it down.
     ///
     /// # Errors
     /// As [`Outlet::carry_out`].

@@ -8,12 +8,12 @@ use std::time::Instant as HostInstant;
 
 use tracing::warn;
 use underfoot::layout::Layout;
-use underfoot::messages::{Act, Messenger, Order, Plan, Unsent};
+use underfoot::messages::{Act, MessageOrder, MessagePlan, Messenger, Unsent};
 use underfoot::sink::{EventSink, Report};
 use underfoot::units::Instant;
 use underfoot::wire::LinkState;
 
-use super::supervisor::{GuardianCommand, Job, Shared, Supervisor};
+use super::supervisor::{GuardianCommand, GuardianSupervisor, TargetJob, TargetStatus};
 
 /// Maximum number of orders that wait: a second of the fastest ones.
 const QUEUE: usize = 1024;
@@ -21,12 +21,12 @@ const QUEUE: usize = 1024;
 /// Sends the messages of the controls of one layout, through a guardian.
 pub struct TargetSink {
     messenger: Messenger,
-    plans: Receiver<Plan>,
+    plans: Receiver<MessagePlan>,
     /// `None` only while being dropped.
-    jobs: Option<SyncSender<Job>>,
-    shared: Arc<Shared>,
+    jobs: Option<SyncSender<TargetJob>>,
+    shared: Arc<TargetStatus>,
     begun: HostInstant,
-    orders: Vec<Order>,
+    orders: Vec<MessageOrder>,
     /// Whether the queue was full: everything must come up.
     overflowed: bool,
     lost: u64,
@@ -36,13 +36,13 @@ pub struct TargetSink {
 
 /// Changes the messages of a running [`TargetSink`].
 #[derive(Clone, Debug)]
-pub struct LoadedPlan(mpsc::Sender<Plan>);
+pub struct LoadedPlan(mpsc::Sender<MessagePlan>);
 
 impl LoadedPlan {
-    /// Uses the targets and messages of `layout`, which the operator has named; everything comes up first.
-    pub fn load(&self, targets: Plan) {
+    /// Uses these targets and messages, of a layout that the operator has named; everything comes up first.
+    pub fn load(&self, plan: MessagePlan) {
         // The session may have ended.
-        let _ = self.0.send(targets);
+        let _ = self.0.send(plan);
     }
 
     /// Sends nothing any more: the layout on the floor is not the operator's.
@@ -50,7 +50,7 @@ impl LoadedPlan {
         if !layout.plan().is_empty() {
             warn!("the messages of this layout are off: {reason}");
         }
-        let _ = self.0.send(Plan::default());
+        let _ = self.0.send(MessagePlan::default());
     }
 }
 
@@ -59,11 +59,12 @@ impl TargetSink {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn start(plan: Plan, command: GuardianCommand) -> std::io::Result<(Self, LoadedPlan)> {
+    pub fn start(plan: MessagePlan, command: GuardianCommand) -> std::io::Result<(Self, LoadedPlan)> {
         let (jobs, queue) = sync_channel(QUEUE);
         let (load, plans) = channel();
-        let (shared, begun) = (Arc::new(Shared::default()), HostInstant::now());
-        let supervisor = Supervisor { command, shared: Arc::clone(&shared), begun, plan: plan.clone() };
+        let (shared, begun) = (Arc::new(TargetStatus::default()), HostInstant::now());
+        let supervisor =
+            GuardianSupervisor { command, shared: Arc::clone(&shared), begun, plan: plan.clone() };
         let thread = Builder::new().name("targets".into()).spawn(move || supervisor.run(&queue))?;
         let sink = Self {
             messenger: Messenger::new(plan),
@@ -84,17 +85,17 @@ impl TargetSink {
     fn pass_on(&mut self) {
         let orders = std::mem::take(&mut self.orders);
         for order in orders {
-            if !self.offer(Job::Order(order)) {
+            if !self.offer(TargetJob::Send(order)) {
                 self.overflowed = true;
             }
         }
-        if self.overflowed && self.offer(Job::Release) {
+        if self.overflowed && self.offer(TargetJob::Release) {
             self.overflowed = false;
         }
     }
 
-    fn offer(&mut self, job: Job) -> bool {
-        let counts = matches!(&job, Job::Order(order) if !matches!(order.act, Act::Up(_)));
+    fn offer(&mut self, job: TargetJob) -> bool {
+        let counts = matches!(&job, TargetJob::Send(order) if !matches!(order.act, Act::Up(_)));
         match self.jobs.as_ref().map(|jobs| jobs.try_send(job)) {
             Some(Ok(())) => true,
             Some(Err(TrySendError::Full(_) | TrySendError::Disconnected(_))) | None => {
@@ -112,7 +113,7 @@ impl TargetSink {
         }
         self.messenger.release_all(&mut self.orders);
         self.pass_on();
-        if self.offer(Job::Plan(plan.clone())) {
+        if self.offer(TargetJob::Setup(plan.clone())) {
             self.messenger = Messenger::new(plan);
             self.told = Unsent::default();
         } else {

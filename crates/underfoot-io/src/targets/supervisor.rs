@@ -9,7 +9,7 @@ use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use tracing::{info, warn};
-use underfoot::messages::{Order, Plan};
+use underfoot::messages::{MessageOrder, MessagePlan};
 
 use super::link::{FromGuardian, ToGuardian, next, put};
 use super::outlets::Outlets;
@@ -25,34 +25,34 @@ const AGAIN: Duration = Duration::from_millis(200);
 const FAREWELL: Duration = Duration::from_secs(4);
 
 /// A job for the supervisor.
-pub(super) enum Job {
+pub(super) enum TargetJob {
     /// Other messages, of a layout that was loaded.
-    Plan(Plan),
+    Setup(MessagePlan),
     /// An order.
-    Order(Order),
+    Send(MessageOrder),
     /// Let everything come up.
     Release,
 }
 
-/// What the supervisor shares with the sink.
+/// Numbers that the supervisor shares with the sink.
 #[derive(Debug, Default)]
-pub(super) struct Shared {
-    /// Milliseconds since [`Supervisor::begun`] at which the sensing thread last polled.
+pub(super) struct TargetStatus {
+    /// Milliseconds since [`GuardianSupervisor::begun`] at which the sensing thread last polled.
     pub(super) polled: AtomicU64,
     /// Orders that were not carried out.
     pub(super) undone: AtomicU64,
 }
 
 /// The supervisor's state, on a thread of its own.
-pub(super) struct Supervisor {
+pub(super) struct GuardianSupervisor {
     pub(super) command: GuardianCommand,
-    pub(super) shared: Arc<Shared>,
+    pub(super) shared: Arc<TargetStatus>,
     pub(super) begun: Instant,
-    pub(super) plan: Plan,
+    pub(super) plan: MessagePlan,
 }
 
 /// A guardian that runs.
-struct Running {
+struct RunningGuardian {
     child: Child,
     input: ChildStdin,
     answers: Receiver<FromGuardian>,
@@ -62,10 +62,10 @@ struct Running {
     beaten: Instant,
 }
 
-impl Supervisor {
+impl GuardianSupervisor {
     /// Runs until the sink ends.
-    pub(super) fn run(mut self, jobs: &Receiver<Job>) {
-        let mut running: Option<Running> = None;
+    pub(super) fn run(mut self, jobs: &Receiver<TargetJob>) {
+        let mut running: Option<RunningGuardian> = None;
         let mut started: Option<Instant> = None;
         loop {
             if running.is_none() && !self.plan.is_empty() && started.is_none_or(|at| at.elapsed() >= AGAIN) {
@@ -80,16 +80,16 @@ impl Supervisor {
                 if !fine && let Some(failed) = running.take() {
                     self.take_over(failed);
                 }
-            } else if matches!(job, Ok(Job::Order(_))) {
+            } else if matches!(job, Ok(TargetJob::Send(_))) {
                 self.shared.undone.fetch_add(1, Ordering::Relaxed);
             }
             match job {
-                Ok(Job::Plan(plan)) => self.plan = plan,
+                Ok(TargetJob::Setup(plan)) => self.plan = plan,
                 Err(RecvTimeoutError::Disconnected) => break,
                 _ => {}
             }
         }
-        if let Some(Running { mut child, input, .. }) = running {
+        if let Some(RunningGuardian { mut child, input, .. }) = running {
             // The end of its input lets everything come up.
             drop(input);
             let begun = Instant::now();
@@ -101,7 +101,7 @@ impl Supervisor {
         }
     }
 
-    fn start(&mut self) -> Option<Running> {
+    fn start(&mut self) -> Option<RunningGuardian> {
         match self.try_start() {
             Ok(running) => Some(running),
             Err(error) => {
@@ -111,7 +111,7 @@ impl Supervisor {
         }
     }
 
-    fn try_start(&mut self) -> io::Result<Running> {
+    fn try_start(&mut self) -> io::Result<RunningGuardian> {
         let mut command = (self.command)();
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         // Ctrl-C is for the server alone.
@@ -124,11 +124,11 @@ impl Supervisor {
         let (tell, answers) = channel();
         Builder::new().name("guardian out".into()).spawn(move || read(output, &tell))?;
         put(&mut input, &plan_for(&self.plan))?;
-        Ok(Running { child, input, answers, beat: 0, waits: None, beaten: Instant::now() })
+        Ok(RunningGuardian { child, input, answers, beat: 0, waits: None, beaten: Instant::now() })
     }
 
     /// Processes the guardian's answers; false if it has failed.
-    fn listen(&self, guardian: &mut Running) -> bool {
+    fn listen(&self, guardian: &mut RunningGuardian) -> bool {
         loop {
             match guardian.answers.try_recv() {
                 Ok(FromGuardian::Beat(number)) if number == guardian.beat => guardian.waits = None,
@@ -145,21 +145,21 @@ impl Supervisor {
     }
 
     /// Passes on `job` and the heartbeat, if it is due; false if the guardian has failed.
-    fn serve(&self, guardian: &mut Running, job: &Result<Job, RecvTimeoutError>) -> bool {
+    fn serve(&self, guardian: &mut RunningGuardian, job: &Result<TargetJob, RecvTimeoutError>) -> bool {
         let sent = match job {
-            Ok(Job::Plan(plan)) => put(&mut guardian.input, &plan_for(plan)),
-            Ok(Job::Order(order)) => {
+            Ok(TargetJob::Setup(plan)) => put(&mut guardian.input, &plan_for(plan)),
+            Ok(TargetJob::Send(order)) => {
                 let name = self.plan.targets.get(order.target).map_or("", |target| &target.name);
                 info!("{name}: {} ({})", order.act, order.control);
                 put(&mut guardian.input, &ToGuardian::Act(order.target, order.act.clone()))
             }
-            Ok(Job::Release) => put(&mut guardian.input, &ToGuardian::Release),
+            Ok(TargetJob::Release) => put(&mut guardian.input, &ToGuardian::Release),
             Err(_) => Ok(()),
         };
         sent.is_ok() && (guardian.beaten.elapsed() < BEAT || self.beat(guardian).is_ok())
     }
 
-    fn beat(&self, guardian: &mut Running) -> io::Result<()> {
+    fn beat(&self, guardian: &mut RunningGuardian) -> io::Result<()> {
         guardian.beaten = Instant::now();
         let now = self.begun.elapsed().as_millis();
         let silent = now.saturating_sub(self.shared.polled.load(Ordering::Relaxed).into());
@@ -173,7 +173,7 @@ impl Supervisor {
     }
 
     /// Ends a guardian that has failed and releases everything in its place.
-    fn take_over(&mut self, mut failed: Running) {
+    fn take_over(&mut self, mut failed: RunningGuardian) {
         // It ends first, so that it presses nothing afterwards.
         let _ = failed.child.kill();
         let mut outlets = Outlets::new(self.plan.targets.clone());
@@ -185,8 +185,8 @@ impl Supervisor {
     }
 }
 
-fn plan_for(plan: &Plan) -> ToGuardian {
-    ToGuardian::Plan(plan.targets.clone(), plan.holdables().into_iter().collect())
+fn plan_for(plan: &MessagePlan) -> ToGuardian {
+    ToGuardian::Setup(plan.targets.clone(), plan.holdables().into_iter().collect())
 }
 
 /// Reads the guardian's answers until it ends.

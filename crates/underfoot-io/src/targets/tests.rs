@@ -1,4 +1,4 @@
-//! OSC over real sockets, and a guardian whose server falls silent or ends.
+//! OSC over real sockets, and a guardian after its server has fallen silent or ended.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::io::{BufReader, Read};
@@ -81,14 +81,14 @@ fn osc_arrives_over_tcp_in_slip_frames_and_nothing_waits_for_a_receiver_that_is_
 }
 
 /// A server's end of a link to a guardian, and the receiver of its messages.
-struct Server {
+struct GuardedServer {
     input: UnixStream,
     answers: BufReader<UnixStream>,
     receiver: UdpSocket,
     guardian: Option<thread::JoinHandle<()>>,
 }
 
-impl Server {
+impl GuardedServer {
     fn start() -> Self {
         let receiver = UdpSocket::bind("127.0.0.1:0").unwrap();
         receiver.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
@@ -98,7 +98,7 @@ impl Server {
         let mut server = Self { input, answers: BufReader::new(answers), receiver, guardian: Some(guardian) };
         let address = server.receiver.local_addr().unwrap().to_string();
         let drive = (0, Holdable::Osc("/drive".into()));
-        server.say(&ToGuardian::Plan(vec![desk(address, Transport::Udp)], vec![drive]));
+        server.say(&ToGuardian::Setup(vec![desk(address, Transport::Udp)], vec![drive]));
         assert_eq!(server.heard(), "/drive 0", "before the first message all is released");
         server.beat(1);
         server
@@ -128,7 +128,7 @@ impl Server {
 
 #[test]
 fn a_hold_lasts_while_its_server_is_heard_and_no_longer() {
-    let mut server = Server::start();
+    let mut server = GuardedServer::start();
     server.press();
     for number in 2..30 {
         thread::sleep(Duration::from_millis(10));
@@ -149,7 +149,7 @@ fn a_hold_lasts_while_its_server_is_heard_and_no_longer() {
 
 #[test]
 fn a_server_that_ends_lets_everything_come_up_and_the_guardian_ends() {
-    let mut server = Server::start();
+    let mut server = GuardedServer::start();
     server.press();
     server.input.shutdown(std::net::Shutdown::Both).unwrap();
     assert_eq!(server.heard(), "/drive 0");

@@ -89,7 +89,7 @@ impl X11Outlet {
         Ok(())
     }
 
-    /// Lets a key come up that [`X11Outlet::press`] pressed; with `force` whoever pressed it.
+    /// Lets a key come up that [`X11Outlet::press`] pressed; with `force` also one that another program pressed.
     fn lift(&mut self, key: &KeyStroke, force: bool) -> Result<(), OutletError> {
         for code in self.codes(key)?.into_iter().rev() {
             let holds = self.down.entry(code).or_default();
