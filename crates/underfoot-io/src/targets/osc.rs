@@ -1,7 +1,7 @@
 //! Messages as OSC over UDP, or over TCP in SLIP frames.
 
-use std::io::{ErrorKind, Write};
-use std::net::{SocketAddr, TcpStream, ToSocketAddrs, UdpSocket};
+use std::io::{self, ErrorKind, Write};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpStream, ToSocketAddrs, UdpSocket};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread::Builder;
 use std::time::Duration;
@@ -25,43 +25,27 @@ pub(super) struct OscOutlet {
 /// The protocol below OSC.
 #[derive(Debug)]
 enum OscWay {
+    /// A name that is being looked up, or a connection that is being made.
+    Opening(Receiver<io::Result<OscWay>>),
     Udp(UdpSocket),
-    /// A connection that is being made.
-    Connecting(Receiver<std::io::Result<TcpStream>>),
     Tcp(TcpStream),
 }
 
 impl OscOutlet {
-    /// Opens the way to `target`; a TCP connection is made meanwhile.
+    /// Opens the way to `target`. Names and connections take their time on a thread of their own.
     pub(super) fn open(target: &OscTarget) -> Result<Self, OutletError> {
-        let gone = |error: std::io::Error| OutletError::Gone(format!("{}: {error}", target.address));
-        let found: Vec<SocketAddr> = target.address.to_socket_addrs().map_err(gone)?.collect();
-        let first = found.iter().find(|address| address.is_ipv4()).or(found.first()).copied();
-        let Some(address) = first else {
-            return Err(OutletError::Gone(format!("{} has no address", target.address)));
+        let gone = |error: io::Error| OutletError::Gone(format!("{}: {error}", target.address));
+        let way = match (target.address.parse(), target.over) {
+            (Ok(address), Transport::Udp) => datagrams(address),
+            _ => open_meanwhile(target.clone()),
         };
-        let way = match target.over {
-            Transport::Udp => {
-                let any: SocketAddr = if address.is_ipv4() {
-                    (std::net::Ipv4Addr::UNSPECIFIED, 0).into()
-                } else {
-                    (std::net::Ipv6Addr::UNSPECIFIED, 0).into()
-                };
-                let socket = UdpSocket::bind(any).map_err(gone)?;
-                socket.set_nonblocking(true).map_err(gone)?;
-                socket.set_broadcast(true).map_err(gone)?;
-                socket.connect(address).map_err(gone)?;
-                OscWay::Udp(socket)
-            }
-            Transport::Tcp => OscWay::Connecting(connect(address).map_err(gone)?),
-        };
-        Ok(Self { address: target.address.clone(), way })
+        Ok(Self { address: target.address.clone(), way: way.map_err(gone)? })
     }
 
     fn send(&mut self, address: &str, values: &[OscValue]) -> Result<(), OutletError> {
         let packet = encoded(address, values)?;
         self.settle()?;
-        let gone = |error: std::io::Error| OutletError::Gone(format!("{}: {error}", self.address));
+        let gone = |error: io::Error| OutletError::Gone(format!("{}: {error}", self.address));
         match &mut self.way {
             // A receiver on this computer that is not there answers so at the next message.
             OscWay::Udp(socket) => match socket.send(&packet) {
@@ -70,20 +54,18 @@ impl OscOutlet {
                 }
                 sent => sent.map(drop).map_err(gone),
             },
-            OscWay::Connecting(_) => {
-                Err(OutletError::Refused(format!("{} is not connected yet", self.address)))
-            }
+            OscWay::Opening(_) => Err(OutletError::Refused(format!("{} is not connected yet", self.address))),
             // A stream that takes only a part of a frame is of no use any more.
             OscWay::Tcp(stream) => stream.write_all(&framed(&packet)).map_err(gone),
         }
     }
 
-    /// Uses a connection that has been made.
+    /// Uses the way that has been opened meanwhile.
     fn settle(&mut self) -> Result<(), OutletError> {
-        let OscWay::Connecting(made) = &self.way else { return Ok(()) };
-        match made.try_recv() {
-            Ok(Ok(stream)) => {
-                self.way = OscWay::Tcp(stream);
+        let OscWay::Opening(opened) = &self.way else { return Ok(()) };
+        match opened.try_recv() {
+            Ok(Ok(way)) => {
+                self.way = way;
                 Ok(())
             }
             Ok(Err(error)) => Err(OutletError::Gone(format!("{}: {error}", self.address))),
@@ -113,20 +95,43 @@ impl Outlet for OscOutlet {
     }
 }
 
-/// Connects on a thread of its own, since an absent computer lets a caller wait.
-fn connect(address: SocketAddr) -> std::io::Result<Receiver<std::io::Result<TcpStream>>> {
-    let (done, made) = channel();
-    let connect = move || {
-        let stream = TcpStream::connect_timeout(&address, CONNECT).and_then(|stream| {
-            stream.set_nodelay(true)?;
-            stream.set_nonblocking(true)?;
-            Ok(stream)
+/// Looks the name of `target` up and connects, on a thread of its own.
+fn open_meanwhile(target: OscTarget) -> io::Result<OscWay> {
+    let (done, opened) = channel();
+    let open = move || {
+        let way = looked_up(&target.address).and_then(|address| match target.over {
+            Transport::Udp => datagrams(address),
+            Transport::Tcp => stream(address),
         });
         // The outlet may be gone.
-        let _ = done.send(stream);
+        let _ = done.send(way);
     };
-    Builder::new().name("osc connect".into()).spawn(connect)?;
-    Ok(made)
+    Builder::new().name("osc connect".into()).spawn(open)?;
+    Ok(OscWay::Opening(opened))
+}
+
+/// The first address of a name; an IPv4 one if there is one.
+fn looked_up(name: &str) -> io::Result<SocketAddr> {
+    let found: Vec<SocketAddr> = name.to_socket_addrs()?.collect();
+    let first = found.iter().find(|address| address.is_ipv4()).or(found.first()).copied();
+    first.ok_or_else(|| io::Error::other("it has no address"))
+}
+
+fn datagrams(address: SocketAddr) -> io::Result<OscWay> {
+    let any: IpAddr =
+        if address.is_ipv4() { Ipv4Addr::UNSPECIFIED.into() } else { Ipv6Addr::UNSPECIFIED.into() };
+    let socket = UdpSocket::bind((any, 0))?;
+    socket.set_nonblocking(true)?;
+    socket.set_broadcast(true)?;
+    socket.connect(address)?;
+    Ok(OscWay::Udp(socket))
+}
+
+fn stream(address: SocketAddr) -> io::Result<OscWay> {
+    let stream = TcpStream::connect_timeout(&address, CONNECT)?;
+    stream.set_nodelay(true)?;
+    stream.set_nonblocking(true)?;
+    Ok(OscWay::Tcp(stream))
 }
 
 fn encoded(address: &str, values: &[OscValue]) -> Result<Vec<u8>, OutletError> {

@@ -21,6 +21,9 @@ pub type GuardianCommand = Box<dyn FnMut() -> Command + Send>;
 /// Least time between two starts of a guardian that ends at once.
 const AGAIN: Duration = Duration::from_millis(200);
 
+/// Longest time for a guardian to start, connect and release everything: a machine that boots is slow.
+const STARTING: Duration = Duration::from_secs(10);
+
 /// Time for the guardian to end after its input has ended.
 const FAREWELL: Duration = Duration::from_secs(4);
 
@@ -60,6 +63,8 @@ struct RunningGuardian {
     /// The time at which the oldest heartbeat without an answer went out.
     waits: Option<Instant>,
     beaten: Instant,
+    /// Whether it has answered: before that it may take its time, and gets no orders.
+    is_ready: bool,
 }
 
 impl GuardianSupervisor {
@@ -124,15 +129,18 @@ impl GuardianSupervisor {
         let (tell, answers) = channel();
         Builder::new().name("guardian out".into()).spawn(move || read(output, &tell))?;
         put(&mut input, &plan_for(&self.plan))?;
-        Ok(RunningGuardian { child, input, answers, beat: 0, waits: None, beaten: Instant::now() })
+        let (beaten, waits) = (Instant::now(), None);
+        Ok(RunningGuardian { child, input, answers, beat: 0, waits, beaten, is_ready: false })
     }
 
     /// Processes the guardian's answers; false if it has failed.
     fn listen(&self, guardian: &mut RunningGuardian) -> bool {
         loop {
             match guardian.answers.try_recv() {
-                Ok(FromGuardian::Beat(number)) if number == guardian.beat => guardian.waits = None,
-                Ok(FromGuardian::Beat(_)) => guardian.waits = Some(Instant::now()),
+                Ok(FromGuardian::Beat(number)) => {
+                    guardian.is_ready = true;
+                    guardian.waits = (number != guardian.beat).then(Instant::now);
+                }
                 Ok(FromGuardian::Notice(text)) => warn!("{text}"),
                 Ok(FromGuardian::Undone(count)) => {
                     self.shared.undone.fetch_add(count, Ordering::Relaxed);
@@ -141,13 +149,18 @@ impl GuardianSupervisor {
                 Err(std::sync::mpsc::TryRecvError::Disconnected) => return false,
             }
         }
-        guardian.waits.is_none_or(|since| since.elapsed() < PATIENCE)
+        let patience = if guardian.is_ready { PATIENCE } else { STARTING };
+        guardian.waits.is_none_or(|since| since.elapsed() < patience)
     }
 
     /// Passes on `job` and the heartbeat, if it is due; false if the guardian has failed.
     fn serve(&self, guardian: &mut RunningGuardian, job: &Result<TargetJob, RecvTimeoutError>) -> bool {
         let sent = match job {
             Ok(TargetJob::Setup(plan)) => put(&mut guardian.input, &plan_for(plan)),
+            Ok(TargetJob::Send(_)) if !guardian.is_ready => {
+                self.shared.undone.fetch_add(1, Ordering::Relaxed);
+                Ok(())
+            }
             Ok(TargetJob::Send(order)) => {
                 let name = self.plan.targets.get(order.target).map_or("", |target| &target.name);
                 info!("{name}: {} ({})", order.act, order.control);
