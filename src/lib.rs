@@ -74,6 +74,7 @@ pub mod feel;
 pub mod floor;
 pub mod ground;
 pub mod layout;
+pub mod messages;
 #[cfg(feature = "record")]
 pub mod mirror;
 pub mod outgoing;

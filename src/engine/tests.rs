@@ -46,6 +46,7 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
             drag: Some(Arc::new(friction.into())),
             ..Feel::default()
         },
+        send: Vec::new(),
         look: Look {
             shape: Shape::Box,
             face: Colour::default(),
@@ -71,6 +72,7 @@ fn page() -> Layout {
         }],
         stances: Vec::new(),
         pages: Vec::new(),
+        targets: Vec::new(),
         grounds: Vec::new(),
         widgets: vec![
             widget("home", Vec2::new(0.35, 0.95), size, home),

@@ -23,6 +23,7 @@ use glam::Vec2;
 
 use crate::feel::Feel;
 use crate::floor::{Area, Geometry, Rect};
+use crate::messages::{MessagePlan, SendTarget, Sending};
 use crate::widget::{Behaviour, WidgetId};
 
 /// Controls placed on one floor, on one page or on several that take turns.
@@ -36,6 +37,8 @@ pub struct Layout {
     pub stances: Vec<Stance>,
     /// The pages that take turns, the first one first; empty if there is only one.
     pub pages: Vec<Page>,
+    /// The programs and devices that messages go to.
+    pub targets: Vec<SendTarget>,
     /// The grounds on all pages; where two overlap, both respond.
     pub grounds: Vec<Ground>,
     /// The controls of all pages, in drawing order.
@@ -65,6 +68,8 @@ pub struct Widget {
     pub feel: Feel,
     /// Its shape and colours.
     pub look: Look,
+    /// Its messages to other programs.
+    pub send: Vec<Sending>,
 }
 
 impl Layout {
@@ -84,6 +89,16 @@ impl Layout {
         let own = geometry.part(&area.tiles).map(|own| own.bounds());
         self.grounds.retain(|ground| own.is_some_and(|own| own.overlaps(ground.spec.area)));
         self
+    }
+
+    /// The targets and the messages of all controls.
+    #[must_use]
+    pub fn plan(&self) -> MessagePlan {
+        let mut plan = MessagePlan::new(self.targets.clone());
+        for widget in &self.widgets {
+            plan.add(&widget.id, &widget.behaviour, &widget.send);
+        }
+        plan
     }
 
     /// The index in [`Layout::pages`] of the page named `id`.

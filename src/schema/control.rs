@@ -11,9 +11,11 @@ use super::node::{Node, is_id};
 use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
+use super::send::{self, Fill};
 use super::units::Units;
 use crate::feel::Effects;
 use crate::layout::Icon;
+use crate::messages::Sending;
 use underfoot_format::codec::{At, Written};
 use underfoot_format::{Codec, Id};
 
@@ -29,6 +31,8 @@ pub(super) struct Control {
     pub(super) goto: Option<Written<String>>,
     /// Its kind, with all overridden fields.
     pub(super) kind: Option<Kind>,
+    /// Its messages, with their places.
+    pub(super) send: Vec<Written<Sending>>,
     pub(super) written: ControlSpans,
 }
 
@@ -79,6 +83,7 @@ impl<'r> Grid<'r> {
         let placing = Placing::read(&mut fields, *units);
         let size = size(&mut fields, placing.is_relative, *units);
         let goto: Option<Written<String>> = fields.take("goto").and_then(|node| At(Id).read(node, None, &()));
+        let send = fields.take("send");
         let repeat_at = fields.value_span("repeat");
         // If the grid is unreadable, its ids are not checked, since they may be patterns.
         let names = match &repeat {
@@ -121,13 +126,32 @@ impl<'r> Grid<'r> {
                 None
             }
         };
-        let control = |(cell, id, label)| {
+        let sends = base.map(|base| (send, base.send.as_slice(), node));
+        let mut sound = true;
+        let control = |(cell, id, label): (Cell, Option<String>, Option<String>)| {
             let (kind, goto, written) = (kind.clone(), goto.clone(), written.clone());
-            (cell, Control { id, label, place: None, page: None, goto, kind, written })
+            // Problems of a message are reported for the first control of a grid.
+            let send = sends.filter(|_| sound).map(|sends| messages(sends, cell, label.as_deref()));
+            sound &= send.as_ref().is_none_or(Option::is_some);
+            let (kind, send) = (kind.filter(|_| sound), send.flatten().unwrap_or_default());
+            (cell, Control { id, label, place: None, page: None, goto, kind, send, written })
         };
         let controls = names.into_iter().map(control).collect();
         let repeat = repeat.flatten().flatten().unwrap_or_else(Repeat::single);
         Some(Self { placing, size, gap: repeat.gap, rows: repeat.rows, columns: repeat.columns, controls })
+    }
+}
+
+/// Reads the messages of one control of a grid: its own, or those of its kind.
+fn messages(
+    (own, inherited, entry): (Option<Node<'_>>, &[Sending], Node<'_>),
+    cell: Cell,
+    label: Option<&str>,
+) -> Option<Vec<Written<Sending>>> {
+    let fill: &Fill<'_> = &|node, pattern| fill(node, pattern, cell, label);
+    match own {
+        Some(node) => send::read_all(node, fill),
+        None => send::inherited(inherited, entry, fill),
     }
 }
 
@@ -253,5 +277,6 @@ fn overridden(fields: &mut Fields<'_>, base: &Kind, effects: &Effects) -> Option
         );
     }
     let feel = fields.read("feel", Some(base.feel.clone()), |node| node.record(Some(&base.feel), effects));
-    Some(Kind { name: base.name.clone(), behaviour: behaviour?, look: look?, feel: feel? })
+    let (name, send) = (base.name.clone(), base.send.clone());
+    Some(Kind { name, behaviour: behaviour?, look: look?, feel: feel?, send })
 }

@@ -10,9 +10,11 @@ use super::diagnostic::{Diagnostic, Diagnostics};
 use super::inherit;
 use super::node::Node;
 use super::problem::Problem;
+use super::send::SENDS;
 use super::version::{FORMAT_VERSION, VERSION};
 use crate::feel::{Effects, Feel, NamedEffect};
 use crate::layout::Look;
+use crate::messages::Sending;
 use crate::widget::Behaviour;
 use underfoot_format::codec::Beside;
 use underfoot_format::{Flat, Id, Includes, Opt, Rec, Record, Text, record};
@@ -28,6 +30,8 @@ record! {
     pub feel: Feel = "feel", Rec => Feel::default();
     /// Its appearance.
     pub look: Look = "look", Rec => Look::PLAIN;
+    /// Its messages to other programs.
+    pub send: Vec<Sending> = "send", SENDS => Vec::new();
 }
 
 record! {

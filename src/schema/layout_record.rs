@@ -17,6 +17,7 @@ use super::inherit::{Choice, OWN_KINDS, OwnKinds};
 use super::kind::Kinds;
 use super::lists::MAX_WIDGETS;
 use super::pages::{PAGES, PageRecord};
+use super::targets::{TARGETS, TargetRecord};
 use super::units::Units;
 use super::version::VERSION;
 use crate::feel::{Effects, NamedEffect};
@@ -39,11 +40,13 @@ record! {
     /// A page of controls placed on the floor: a file in `layouts/`.
     pub(super) struct LayoutHeadRecord = "Layout";
     /// The version of the format.
-    version: u32 = "version", VERSION;
+    pub(super) version: u32 = "version", VERSION;
     /// The unit of places, sizes and gaps.
     pub(super) units: Units = "units", Name => Units::Tiles;
     /// Its title for people.
     pub(super) title: String = "title", Text(200) => String::new();
+    /// The programs and devices that messages of controls go to.
+    pub(super) targets: Vec<TargetRecord> = "targets", TARGETS => Vec::new();
 }
 
 record! {

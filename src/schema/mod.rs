@@ -52,8 +52,12 @@ mod reference;
 mod repeat;
 #[cfg(feature = "save")]
 mod save;
+mod send;
+mod send_checks;
+mod send_codecs;
 #[cfg(feature = "save")]
 mod state;
+mod targets;
 #[cfg(test)]
 mod tests;
 mod undrawn;

@@ -15,7 +15,9 @@ use super::pages::{self, PageRecord};
 use super::pairs::Limits;
 use super::places::Places;
 use super::reader::Reader;
+use super::send_checks;
 use super::source::{Source, read_text};
+use super::targets::TargetRecord;
 use super::units::Units;
 use super::version;
 use crate::feel::Effects;
@@ -110,6 +112,7 @@ pub fn parse_layout(
     let page = reader.root("layout").and_then(|node| Page::read(node, kinds));
     let layout = page.and_then(|(page, good)| {
         checks::check(&reader, &page, geometry);
+        send_checks::check(&reader, &page);
         let layout = page.placed_on(geometry).filter(|_| good)?;
         let written = page.controls.into_iter().map(|control| control.written).collect();
         Some((layout, written, page.kinds))
@@ -120,6 +123,7 @@ pub fn parse_layout(
 
 /// A layout as written; its problems have been reported.
 pub(super) struct Page {
+    pub(super) version: u32,
     title: String,
     pub(super) units: Units,
     pub(super) regions: Vec<Zone>,
@@ -127,6 +131,7 @@ pub(super) struct Page {
     pub(super) pages: Vec<PageRecord>,
     /// The kinds of which its controls can be made.
     kinds: Kinds,
+    pub(super) targets: Vec<TargetRecord>,
     /// The grounds of all pages.
     pub(super) grounds: Vec<GroundDefinition>,
     /// The controls of all pages.
@@ -154,7 +159,7 @@ impl Page {
         let widgets_at = fields.span("widgets");
         fields.finish();
         let LayoutRecord { head, zones, controls, mut pages, kinds } = record;
-        let LayoutHeadRecord { units, title, .. } = head;
+        let LayoutHeadRecord { version, units, title, targets } = head;
         let ZonesRecord { regions, stances } = zones;
         let ControlsRecord { widgets: mut controls, mut grounds } = controls;
         let regions_known =
@@ -169,12 +174,14 @@ impl Page {
         let regions = regions.into_iter().map(|it| zone(it.id, it.place, it.cursor)).collect();
         let stances = stances.into_iter().map(|it| zone(it.label, it.place, CursorRule::default())).collect();
         let page = Self {
+            version,
             title,
             units,
             regions,
             stances,
             pages,
             kinds,
+            targets,
             grounds,
             controls,
             regions_known,
@@ -216,6 +223,7 @@ impl Page {
                 behaviour: kind.behaviour,
                 feel: kind.feel,
                 look: kind.look,
+                send: control.send.iter().map(|sending| sending.value.clone()).collect(),
             })
         });
         Some(Layout {
@@ -223,6 +231,7 @@ impl Page {
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
             pages: self.pages.iter().map(PageRecord::checked).collect(),
+            targets: self.targets.iter().map(TargetRecord::checked).collect(),
             grounds: self
                 .grounds
                 .iter()

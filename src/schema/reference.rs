@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::ground;
+use super::send_codecs;
 use super::suggest::did_you_mean;
 use crate::feel::{EffectKind, Feel, Manner};
 use crate::layout::Look;
@@ -74,6 +75,11 @@ pub fn reference() -> Vec<Chapter> {
         Chapter::new("feel", "Haptics of a control: `feel` of a kind or widget.", vec![Feel::describe()]),
         Chapter::new("look", "Appearance of a control: `look` of a kind or widget.", vec![Look::describe()]),
         effects,
+        Chapter::new(
+            "messages",
+            "Messages to other programs: in `send` of a kind or widget; their targets are in `targets` of the layout.",
+            send_codecs::describe(),
+        ),
         Chapter::new(
             "grounds",
             "Material that the floor seems to be made of: in `grounds`, each with `at`, `size`, `seed`, `surface` and `deep`.",

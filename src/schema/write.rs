@@ -1,6 +1,8 @@
 //! Writing of layouts made in code.
 
 use super::layout_record::LayoutRecord;
+use super::send;
+use super::targets;
 use super::units::Units;
 use super::version::FORMAT_VERSION;
 use crate::floor::Rect;
@@ -47,6 +49,7 @@ pub(super) fn written(layout: &Layout) -> Vec<Entry> {
         ("title", quoted(&layout.title)),
         ("regions", Text::List(regions.collect())),
         ("stances", Text::List(stances.collect())),
+        ("targets", targets::write_all(&layout.targets)),
         ("kinds", Text::List(kinds.collect())),
     ];
     of_page(layout, &names, None, &mut entries);
@@ -86,6 +89,9 @@ fn of_page(layout: &Layout, kinds: &[String], page: Option<usize>, entries: &mut
         }
         if let Some(page) = widget.goto.and_then(|goto| layout.pages.get(goto)) {
             entries.push(("goto", quoted(page.id.as_str())));
+        }
+        if !widget.send.is_empty() {
+            entries.push(("send", send::write_all(&widget.send)));
         }
         Text::Record("Widget", entries)
     });

@@ -22,6 +22,7 @@ mod number;
 mod off_reason;
 mod pad;
 mod pedal;
+mod possible;
 mod press;
 #[cfg(test)]
 mod random;
@@ -60,6 +61,7 @@ pub use track::Track;
 pub use control::Control;
 pub use event::Emitted;
 pub use input::Input;
+pub(crate) use possible::possible_events;
 
 use underfoot_format::Named;
 

@@ -92,6 +92,7 @@ pub(crate) fn widget(
         behaviour,
         feel: Feel::default(),
         look,
+        send: Vec::new(),
     }
 }
 
@@ -128,6 +129,7 @@ pub(crate) fn map() -> Layout {
         }],
         stances: vec![Stance { area: tiles(1.75, 0.35, 2.5, 1.4), label: "stand here".into() }],
         pages: vec![],
+        targets: Vec::new(),
         grounds: vec![],
         widgets: vec![
             widget("zoom-in", "Zoom in", [0.25, 4.55], [1.0, 1.0], button(), blue(Shape::Box)),

@@ -42,6 +42,7 @@ fn line(entry: &AddressEntry) -> String {
         MessageDirection::In => "in",
         MessageDirection::Out => "out",
         MessageDirection::Answer => "answer",
+        MessageDirection::Target => "target",
     };
     let arguments: Vec<String> = entry
         .arguments

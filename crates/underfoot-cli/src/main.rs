@@ -24,6 +24,7 @@ mod feel;
 mod fitted_floor;
 mod floor_args;
 mod fonts;
+mod guardian;
 mod latency;
 mod layout_args;
 mod measure;
@@ -43,6 +44,7 @@ mod reference;
 mod render;
 mod replay;
 mod run;
+mod send_args;
 mod senders;
 mod sense;
 mod session;
@@ -119,6 +121,9 @@ enum Command {
     /// Make the paper's figures and the accuracy tables on a simulated floor.
     #[cfg(feature = "lab")]
     Experiment(experiment::Args),
+    /// Hold what a server holds down, and release it when the server fails; the server starts it.
+    #[command(hide = true)]
+    Guardian,
     /// Print completions for a shell.
     Completions {
         /// The shell.
@@ -177,6 +182,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Plan(args)) => plan::run(&args),
         #[cfg(feature = "lab")]
         Some(Command::Experiment(args)) => experiment::run(&args),
+        Some(Command::Guardian) => guardian::run(),
         Some(Command::Completions { shell }) => {
             // A direct write to standard output would panic after the reader has gone.
             let mut script = Vec::new();

@@ -32,6 +32,7 @@ use super::latency::LatencyArgs;
 use super::layout_args::LayoutArgs;
 use super::number::{lifetime, threads};
 use super::outputs::OutputArgs;
+use super::send_args::SendArgs;
 use super::senders::{BoardArgs, CommandArgs};
 use super::stop::{panic_flag, stop_flag};
 use super::watch::FileWatch;
@@ -62,6 +63,8 @@ pub(crate) struct Args {
     commands: CommandArgs,
     #[command(flatten)]
     outputs: OutputArgs,
+    #[command(flatten)]
+    send: SendArgs,
     #[command(flatten)]
     web: WebArgs,
     #[command(flatten)]
@@ -124,6 +127,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(web) = &web {
         outputs.push(web.sink()?);
     }
+    let (sender, messages) = args.send.open(&layout)?;
+    outputs.push(sender);
     if let Some(recorder) = &recorder {
         outputs.push(recorder.events()?);
     }
@@ -146,10 +151,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .start()?;
     let told = session.clone();
     let (geometry, here) = (served.geometry, served);
+    let (reloaded, send) = (messages.clone(), args.send.clone());
     let watch = FileWatch::start(&args.layout, geometry, move |read| match read {
         Ok(layout) => {
             info!("the changed layout is on the floor");
-            told.set_layout(here.layout(layout));
+            let layout = here.layout(layout);
+            send.reload(&reloaded, &layout);
+            told.set_layout(layout);
         }
         Err(diagnostics) => {
             errln!("{diagnostics}The last good layout stays on the floor.");
@@ -163,7 +171,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         );
     }
     let apps = args.commands.apps().to_vec();
-    let web = web.map(|web| web.serve(session.clone(), floor, method, apps)).transpose()?;
+    let web = web.map(|web| web.serve(session.clone(), floor, method, apps, messages)).transpose()?;
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }

@@ -64,6 +64,7 @@ impl Stage {
             regions: vec![],
             stances: vec![],
             pages: vec![],
+            targets: vec![],
             grounds: vec![],
             widgets: vec![],
         };

@@ -18,6 +18,7 @@
 //! here the record is the type that the program uses. Towards apps the records are values like any other
 //! ([`mod@filed`]): `ron` writes them through [`serde::Serialize`] and reads them through [`serde::Deserialize`].
 
+pub mod call;
 pub mod codec;
 mod complaint;
 mod context;

@@ -1,7 +1,9 @@
 //! Values as they are written to files: trees that serde passes on and the `ron` crate writes.
 
 use ron::ser::{PrettyConfig, to_string_pretty};
-use serde::ser::{SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple};
+use serde::ser::{
+    SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple, SerializeTupleVariant,
+};
 use serde::{Serialize, Serializer};
 
 /// A named field of a record.
@@ -32,6 +34,8 @@ pub enum Text {
     Record(&'static str, Vec<Entry>),
     /// Named fields in round brackets behind a name, which tells them from other variants.
     Variant(&'static str, Vec<Entry>),
+    /// Values in round brackets behind a name.
+    Call(&'static str, Vec<Text>),
 }
 
 /// Maximum length of a line that holds a whole record, in characters.
@@ -87,7 +91,9 @@ impl Text {
         // `ron` would also escape apostrophes and the joiners of emoji, which people can read as they are.
         match self {
             Self::Quoted(text) => text.contains(|c: char| c.is_control() || matches!(c, '"' | '\\')),
-            Self::Tuple(values) | Self::List(values) => values.iter().any(Self::needs_escapes),
+            Self::Tuple(values) | Self::List(values) | Self::Call(_, values) => {
+                values.iter().any(Self::needs_escapes)
+            }
             Self::Record(_, entries) | Self::Variant(_, entries) => {
                 entries.iter().any(|(_, value)| value.needs_escapes())
             }
@@ -148,6 +154,11 @@ impl Serialize for Text {
                 let mut list = serializer.serialize_seq(Some(values.len()))?;
                 values.iter().try_for_each(|value| list.serialize_element(value))?;
                 list.end()
+            }
+            Self::Call(name, values) => {
+                let mut call = serializer.serialize_tuple_variant(ENUM, 0, name, values.len())?;
+                values.iter().try_for_each(|value| call.serialize_field(value))?;
+                call.end()
             }
             Self::Record(name, entries) => {
                 let mut record = serializer.serialize_struct(name, entries.len())?;

@@ -32,6 +32,7 @@ pub fn unit(field: &str) -> &'static str {
 pub fn example(field: &str) -> Option<&'static str> {
     Some(match field {
         "version" => "version: 1",
+        "to" => "to: Keyboard, or to: Osc(\"127.0.0.1:53000\")",
         "title" => "title: \"Map navigation\"",
         "id" => "id: \"home\"",
         "kind" => "kind: \"button\"",

@@ -1,16 +1,14 @@
 //! Every OSC address of a floor with a layout, in and out, made from the tables of the decoder and the encoder.
 
 mod arguments;
-mod events;
 
 use serde::Serialize;
 
 use self::arguments::{argument, indicators, pages, taken, values};
-use self::events::events;
 use crate::floor::Floor;
 use crate::ground::GroundMaterial;
 use crate::layout::{Layout, Widget};
-use crate::widget::{Behaviour, Control, Detail, OffReason};
+use crate::widget::{Behaviour, Control, Detail, OffReason, possible_events};
 use crate::wire::sent::{self, Arguments, Field, FieldRange, Sent};
 use crate::wire::{ArgumentKind, COMMANDS, Prefix};
 
@@ -24,6 +22,8 @@ pub enum MessageDirection {
     Out,
     /// From the floor to the program that asked.
     Answer,
+    /// From a control to a target of its layout.
+    Target,
 }
 
 /// One argument.
@@ -186,7 +186,7 @@ impl Maker<'_> {
             }
         }
         let held = control.value().map(|value| values(&widget.behaviour, value)).unwrap_or_default();
-        for (kind, says) in events(&widget.behaviour, control.value()) {
+        for (kind, says) in possible_events(&widget.behaviour, control.value()) {
             let mut arguments = match kind.detail() {
                 None => Vec::new(),
                 Some(Detail::Value(_)) => held.clone(),
@@ -213,5 +213,13 @@ impl Maker<'_> {
             _ => {}
         }
         self.answer_of::<sent::PageOfControl>(id);
+        for sending in &widget.send {
+            self.entries.push(AddressEntry {
+                direction: MessageDirection::Target,
+                address: format!("{}: {}", sending.target, sending.payload),
+                arguments: Vec::new(),
+                says: format!("{id} sends it {}.", sending.when),
+            });
+        }
     }
 }

@@ -3,6 +3,7 @@
 mod by_ron;
 mod ergonomics;
 mod language;
+mod messages;
 mod random_files;
 mod reference;
 mod shipped;

@@ -156,6 +156,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         None => args.floor.load()?,
     };
     let (layout, warnings) = args.layout.reviewed(&floor)?;
+    super::send_args::tell_off(&layout, "only `underfoot run` sends");
     let stage = args.stage(&floor, &layout)?;
 
     let (window, ProgramChannels { events, layouts, notices, commands }) = channels();

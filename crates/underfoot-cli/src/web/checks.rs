@@ -10,6 +10,7 @@ use underfoot::runtime::Session;
 use underfoot::schema::{self, Diagnostics, Kinds};
 use underfoot::sink::step_back;
 use underfoot::widget::Guard;
+use underfoot_io::targets::LoadedPlan;
 
 use super::MOST;
 
@@ -36,14 +37,14 @@ impl Checks {
     ///
     /// # Errors
     /// An error if the system provides no thread.
-    pub(super) fn start(session: Session, geometry: Geometry) -> std::io::Result<Self> {
+    pub(super) fn start(session: Session, geometry: Geometry, messages: LoadedPlan) -> std::io::Result<Self> {
         // Each client has at most one layout in the queue.
         let (jobs, asked) = sync_channel::<Job>(MOST);
         let work = move || {
             step_back();
             for Job { text, answer } in asked {
                 // The client may have left.
-                let _ = answer.try_send(put(&text, &session, &geometry));
+                let _ = answer.try_send(put(&text, &session, &geometry, &messages));
             }
         };
         Builder::new().name("layout checks".into()).spawn(work)?;
@@ -60,7 +61,7 @@ impl Checks {
 }
 
 /// Puts a layout on the floor once no foot is engaged.
-fn put(text: &str, session: &Session, geometry: &Geometry) -> Checked {
+fn put(text: &str, session: &Session, geometry: &Geometry, messages: &LoadedPlan) -> Checked {
     let read = schema::parse_layout(text, "the layout", &Kinds::builtin(), geometry);
     let layout = read.map_err(|problems| first_of(&problems))?.layout;
     // Clients may not add, move or remove controls that act while they are held.
@@ -73,6 +74,8 @@ fn put(text: &str, session: &Session, geometry: &Geometry) -> Checked {
         }
     }
     tracing::info!("a layout from elsewhere is on the floor");
+    // Only a layout that the operator has named may press keys of this computer.
+    messages.stop(&layout, "it came from a web page, and only a layout named on the command line may send");
     session.set_layout(layout);
     Ok(())
 }

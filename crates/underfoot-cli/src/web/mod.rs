@@ -28,6 +28,8 @@ use underfoot::source::FloorInput;
 
 use super::failure::Failure;
 use broadcast::{Broadcast, Clients};
+use underfoot_io::targets::LoadedPlan;
+
 use checks::Checks;
 use origin::PageOrigin;
 use rooms::{Refusals, Rooms};
@@ -127,11 +129,13 @@ impl WebListener {
         floor: Floor,
         method: Method,
         apps: Vec<Network>,
+        messages: LoadedPlan,
     ) -> Result<WebServer, Failure> {
         let Self { listener, origins, takes_layouts, clients, feed } = self;
         let failed = |error| Failure::Other(format!("web pages can't be served: {error}"));
         errln!("The floor as a web page: http://{}/", listener.local_addr().map_err(failed)?);
-        let checks = takes_layouts.then(|| Checks::start(session.clone(), floor.geometry)).transpose();
+        let start = || Checks::start(session.clone(), floor.geometry, messages);
+        let checks = takes_layouts.then(start).transpose();
         let shared = Arc::new(Shared {
             session,
             floor,

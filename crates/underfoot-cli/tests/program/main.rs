@@ -41,6 +41,8 @@ mod storage;
 mod strange_boards;
 mod systemd;
 mod tables;
+#[cfg(target_os = "linux")]
+mod targets;
 mod unit_files;
 mod web;
 mod wiring;

@@ -22,6 +22,7 @@ fn layout() -> Layout {
         label: String::new(),
         behaviour,
         feel: Feel::default(),
+        send: Vec::new(),
         look: Look {
             shape: Shape::Box,
             face: Colour::default(),
@@ -43,6 +44,7 @@ fn layout() -> Layout {
         }],
         stances: Vec::new(),
         pages: Vec::new(),
+        targets: Vec::new(),
         grounds: Vec::new(),
         widgets: vec![
             widget("zoom_in", "button", tiles(2.6, 1.6, 0.6, 0.6), button.clone()),

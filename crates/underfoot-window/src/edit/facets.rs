@@ -113,6 +113,7 @@ fn kind_fields(document: &Document, facet: Facet, name: &str) -> Vec<(String, St
         behaviour: widget.behaviour.clone(),
         feel: widget.feel.clone(),
         look: widget.look,
+        send: widget.send.clone(),
     };
     facet.of_kind(document, &kind)
 }

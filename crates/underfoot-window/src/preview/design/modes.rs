@@ -144,7 +144,14 @@ impl Designer {
             false => (self.edited.selected.is_empty(), !self.edited.selected.is_empty() && stage.has_side),
         };
         if things || self.panes.pane == Some(Pane::Things) {
-            self.things.panel(ui, theme, palette, &mut self.edited, &mut self.canvas.placing, &mut self.panes);
+            self.things.panel(
+                ui,
+                theme,
+                palette,
+                &mut self.edited,
+                &mut self.canvas.placing,
+                &mut self.panes,
+            );
         }
         if fields || self.panes.pane == Some(Pane::Fields) {
             self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes);

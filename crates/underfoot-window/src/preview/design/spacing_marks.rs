@@ -2,9 +2,9 @@
 
 use eframe::egui::{self, Align2, Stroke, vec2};
 
-use super::labels::label;
 use super::trial::GestureResult;
 use crate::edit::NeighbourGap;
+use crate::preview::labels::label;
 use underfoot::floor::Rect;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
 use underfoot_scene::scene::Theme;

@@ -1,7 +1,7 @@
 //! The first steps of a new user, as cards on the floor: press, drag, stand. Each gets its tick once it is done.
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{self, Rect, Sense, Ui, WidgetInfo};
+use eframe::egui::{Rect, Sense, Ui, WidgetInfo};
 use glam::Vec2;
 
 use crate::preview::labels::{Labels, StepCard};

@@ -30,6 +30,7 @@ use super::{
     EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions,
     ProgramChannels, ScopeFeed, Warnings, channels,
 };
+use crate::preview::Notice;
 use crate::preview::sample::{at_rest, map, pressing};
 use underfoot::engine::Snapshot;
 use underfoot::feel::{DeviceState, DeviceStatus};
@@ -60,7 +61,7 @@ pub(super) struct Room {
     snapshots: triple_buffer::Input<Snapshot>,
     events: SyncSender<EventNews>,
     layouts: SyncSender<LayoutNews>,
-    notices: SyncSender<String>,
+    notices: SyncSender<Notice>,
     commands: Receiver<PreviewCommand>,
     feet: Arc<Mutex<Vec<PreviewFoot>>>,
     /// The folder for the projection's corners.

@@ -80,6 +80,7 @@ pub(in crate::preview::design) fn draw_thing(
         behaviour: kind.behaviour.clone(),
         feel: kind.feel.clone(),
         look: kind.look,
+        send: Vec::new(),
     };
     draw_widget(ui, theme, palette, document, &widget, false, rect);
 }

@@ -9,7 +9,7 @@ fn crowded() -> Desk {
     let doc = desk.designer_mut();
     let floor = doc.edited.document.floor().geometry;
     let small = Rect::from_min_size(floor.bounds().min, glam::Vec2::splat(0.05));
-    let control = palette::PaletteThing::Control("button".into());
+    let control = super::super::palette::PaletteThing::Control("button".into());
     assert!(doc.edited.put(&control, small), "{:?}", doc.edited.message.as_ref().map(|it| &it.text));
     doc.edited.selected.clear();
     desk.window.run_steps(3);

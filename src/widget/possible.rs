@@ -1,11 +1,11 @@
 //! The events of each behaviour.
 
-use crate::widget::{ActsOn, Behaviour, Direction, EventKind, Guard, Value};
+use super::{ActsOn, Behaviour, Direction, EventKind, Guard, Value};
 
 /// Returns the possible events of a control with this behaviour, with their meaning.
 ///
 /// `held` is its value. The value or direction of an event is an example.
-pub(super) fn events(behaviour: &Behaviour, held: Option<Value>) -> Vec<(EventKind, &'static str)> {
+pub(crate) fn possible_events(behaviour: &Behaviour, held: Option<Value>) -> Vec<(EventKind, &'static str)> {
     use EventKind::{
         Armed, Cancelled, Changed, Clicked, Disarmed, DoubleTapped, HardPressed, HardReleased, LongPressed,
         Pressed, Refused, Released, Swiped, Ticked, Warned,

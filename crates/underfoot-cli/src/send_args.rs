@@ -1,0 +1,75 @@
+//! Options for the messages of a layout to other programs.
+
+use std::process::Command;
+
+use underfoot::layout::Layout;
+use underfoot::messages::MessagePlan;
+use underfoot_io::targets::{LoadedPlan, TargetSink, redirect};
+
+use super::failure::Failure;
+
+/// Options for messages of controls.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub(crate) struct SendArgs {
+    /// Move a target of the layout: another host and port for OSC (`desk=10.0.0.5:53000`, `desk=tcp:10.0.0.5:53000`),
+    /// another X display for a keyboard (`viewer=:1`). May be given several times.
+    #[arg(long = "target", value_name = "NAME=PLACE", value_parser = moved)]
+    targets: Vec<(String, String)>,
+    /// Send no messages of controls to the layout's targets.
+    #[arg(long)]
+    no_send: bool,
+}
+
+fn moved(text: &str) -> Result<(String, String), String> {
+    let (name, place) = text.split_once('=').ok_or("write it like desk=127.0.0.1:53000")?;
+    Ok((name.to_owned(), place.to_owned()))
+}
+
+/// Says that the messages of `layout` are off, if it has any.
+pub(crate) fn tell_off(layout: &Layout, reason: &str) {
+    if !layout.plan().is_empty() {
+        errln!("The messages of this layout to other programs are off: {reason}.");
+    }
+}
+
+impl SendArgs {
+    /// Opens the way to the targets of `layout`, which the operator has named; says where its messages go.
+    pub(crate) fn open(&self, layout: &Layout) -> Result<(TargetSink, LoadedPlan), Failure> {
+        let plan = self.plan(layout).map_err(Failure::Other)?;
+        if !plan.is_empty() {
+            let names: Vec<&str> = plan.targets.iter().map(|target| target.name.as_str()).collect();
+            errln!("Controls send to {}; -v shows every message.", names.join(", "));
+        } else if self.no_send {
+            tell_off(layout, "--no-send");
+        }
+        let program = std::env::current_exe()
+            .map_err(|error| Failure::Other(format!("this program can't be found: {error}")))?;
+        let command = move || {
+            let mut command = Command::new(&program);
+            command.arg("guardian");
+            command
+        };
+        TargetSink::start(plan, Box::new(command))
+            .map_err(|error| Failure::Other(format!("messages can't be sent: {error}")))
+    }
+
+    /// Uses the messages of the layout's file after it was saved.
+    pub(crate) fn reload(&self, messages: &LoadedPlan, layout: &Layout) {
+        match self.plan(layout) {
+            Ok(plan) => messages.load(plan),
+            Err(problem) => messages.stop(layout, &problem),
+        }
+    }
+
+    /// The messages, with the targets where this command line puts them.
+    fn plan(&self, layout: &Layout) -> Result<MessagePlan, String> {
+        if self.no_send {
+            return Ok(MessagePlan::default());
+        }
+        let mut plan = layout.plan();
+        for (name, place) in &self.targets {
+            redirect(&mut plan.targets, name, place)?;
+        }
+        Ok(plan)
+    }
+}

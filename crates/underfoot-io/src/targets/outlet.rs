@@ -1,0 +1,49 @@
+//! One way out: the seam between messages and the systems that receive them.
+
+use thiserror::Error;
+use underfoot::messages::{Act, Destination, Holdable, SendTarget};
+
+use super::osc::OscOutlet;
+
+/// Carries out orders at one target.
+pub trait Outlet: Send {
+    /// Carries out `act` at once.
+    ///
+    /// # Errors
+    /// The act was not carried out: [`OutletError::Refused`] for this one only, [`OutletError::Gone`] if the target
+    /// must be opened again.
+    fn carry_out(&mut self, act: &Act) -> Result<(), OutletError>;
+
+    /// Lets `what` come up, also if another program holds it down.
+    ///
+    /// # Errors
+    /// As [`Outlet::carry_out`].
+    fn release(&mut self, what: &Holdable) -> Result<(), OutletError>;
+}
+
+/// Reasons why an act was not carried out.
+#[derive(Debug, Error)]
+pub enum OutletError {
+    /// The target does not take this act; it takes others.
+    #[error("{0}")]
+    Refused(String),
+    /// The target cannot be reached.
+    #[error("{0}")]
+    Gone(String),
+}
+
+/// Opens the way to `target`.
+///
+/// # Errors
+/// The target cannot be reached now.
+pub(super) fn open(target: &SendTarget) -> Result<Box<dyn Outlet>, OutletError> {
+    match &target.to {
+        Destination::Osc(osc) => Ok(Box::new(OscOutlet::open(osc)?)),
+        #[cfg(all(unix, not(target_os = "macos")))]
+        Destination::Keyboard(keyboard) => Ok(Box::new(super::x11::X11Outlet::open(keyboard)?)),
+        #[cfg(not(all(unix, not(target_os = "macos"))))]
+        Destination::Keyboard(_) => {
+            Err(OutletError::Gone("keys and pointer work under X11 only so far".into()))
+        }
+    }
+}

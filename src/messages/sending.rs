@@ -1,0 +1,163 @@
+//! The messages of one control, as its layout writes them.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+use underfoot_format::Named;
+
+use super::key::KeyStroke;
+use super::trigger::Trigger;
+
+/// Maximum number of messages of one control (our choice).
+pub const MAX_MESSAGES: usize = 16;
+
+/// One message of a control: its time, its target and its content.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sending {
+    /// When it goes out.
+    pub when: When,
+    /// The name of its target.
+    pub target: String,
+    /// Its content.
+    pub payload: Payload,
+}
+
+/// When a message goes out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// At once, at each such event.
+    On(Trigger),
+    /// It goes down when a foot presses the control and comes up when the hold ends, under the rules of `HoldToRun`.
+    While,
+    /// It follows the value of the control.
+    Value,
+}
+
+/// The content of a message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Payload {
+    /// A key with its modifiers.
+    Key(KeyStroke),
+    /// A button of the mouse.
+    Button(MouseButton),
+    /// Steps of the mouse wheel, positive away from the user: at an event, or over the whole range of a value.
+    Wheel(i32),
+    /// The pointer, at this speed (pixels per second) at full deflection; north is up.
+    Pointer(f32),
+    /// An OSC message.
+    Osc(String, OscSettings),
+}
+
+/// The arguments of an OSC message.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OscSettings {
+    /// The ends that the range of the control's value is scaled to; `None` sends the value as it is.
+    pub range: Option<[f32; 2]>,
+    /// The arguments; `None` sends the value where the message follows one, 1 and 0 for a hold, nothing at an event.
+    pub arguments: Option<Vec<OscArgument>>,
+}
+
+/// One argument of an OSC message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OscArgument {
+    /// A constant integer.
+    Int(i32),
+    /// A constant number.
+    Float(f32),
+    /// A constant text.
+    Text(String),
+    /// The value of the control: one number, or two for a pad.
+    Value,
+    /// The force of the foot in newtons.
+    Force,
+    /// The place of the foot eastwards, in floor metres.
+    X,
+    /// The place of the foot northwards, in floor metres.
+    Y,
+}
+
+/// A button of the mouse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Deserialize, Serialize)]
+pub enum MouseButton {
+    /// The left one.
+    Left,
+    /// The wheel as a button.
+    Middle,
+    /// The right one.
+    Right,
+}
+
+impl MouseButton {
+    /// Its name in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, button)| *button == self).map_or("", |(name, _)| name)
+    }
+}
+
+impl Named for MouseButton {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("left", Self::Left), ("middle", Self::Middle), ("right", Self::Right)];
+}
+
+impl fmt::Display for When {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::On(trigger) => write!(f, "at each event {}", trigger.name()),
+            Self::While => f.write_str("while a foot holds it"),
+            Self::Value => f.write_str("as its value changes"),
+        }
+    }
+}
+
+impl fmt::Display for Payload {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Key(key) => write!(f, "key {key}"),
+            Self::Button(button) => write!(f, "{} button", button.name()),
+            Self::Wheel(steps) => write!(f, "wheel {steps:+}"),
+            Self::Pointer(speed) => write!(f, "pointer at {speed} pixels/s"),
+            Self::Osc(address, OscSettings { range: Some([from, to]), .. }) => {
+                write!(f, "{address} {from} to {to}")
+            }
+            Self::Osc(address, _) => f.write_str(address),
+        }
+    }
+}
+
+impl OscSettings {
+    /// No range and the usual arguments.
+    pub const PLAIN: Self = Self { range: None, arguments: None };
+}
+
+impl Payload {
+    /// Its name in files.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Key(_) => "Key",
+            Self::Button(_) => "Button",
+            Self::Wheel(_) => "Wheel",
+            Self::Pointer(_) => "Pointer",
+            Self::Osc(..) => "Osc",
+        }
+    }
+
+    /// Whether a target of keyboards, and not of OSC, receives it.
+    #[must_use]
+    pub const fn is_for_a_keyboard(&self) -> bool {
+        !matches!(self, Self::Osc(..))
+    }
+
+    /// Whether it can go out at that time.
+    #[must_use]
+    pub const fn suits(&self, when: When) -> bool {
+        match (self, when) {
+            (Self::Osc(..), _) => true,
+            (Self::Key(_) | Self::Button(_), When::On(_) | When::While) => true,
+            (Self::Wheel(_), When::On(_) | When::Value) => true,
+            (Self::Pointer(_), When::Value) => true,
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! A key that goes down comes up, after any history of feet, floor and link.
+
+use std::collections::BTreeSet;
+
+use glam::Vec2;
+use proptest::prelude::*;
+
+use super::*;
+use crate::sense::ContactId;
+use crate::units::{Instant, Newtons};
+use crate::widget::{Behaviour, EventKind, HoldSpec, PadSpec, Scale, SliderSpec, Thresholds, Value};
+use crate::widget::{WidgetEvent, WidgetId};
+
+const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
+
+fn key(name: &str) -> Payload {
+    Payload::Key(name.parse().unwrap())
+}
+
+/// Two controls hold the same key, a third one another; all click it too; a slider sends its value and turns a wheel, a
+/// pad moves the pointer.
+fn plan() -> MessagePlan {
+    let target = |name: &str, to| SendTarget { name: name.into(), to };
+    let keyboard = Destination::Keyboard(KeyboardTarget { window: None, display: None });
+    let osc = Destination::Osc(OscTarget { address: "127.0.0.1:53000".into(), over: Transport::default() });
+    let mut plan = MessagePlan::new(vec![target("viewer", keyboard), target("desk", osc)]);
+    let hold = Behaviour::Hold(HoldSpec { thresholds: AT });
+    let slider = Behaviour::Slider(SliderSpec::new(AT, Scale::new(0.0, 10.0)));
+    let pad = Behaviour::Pad(PadSpec {
+        initial: Vec2::ZERO,
+        ..PadSpec::new(AT, Scale::new(-1.0, 1.0), Scale::new(-1.0, 1.0))
+    });
+    let sending = |when, target: &str, payload| Sending { when, target: target.into(), payload };
+    let osc = |range| Payload::Osc("/pan".into(), OscSettings { range, arguments: None });
+    let both = [
+        sending(When::While, "viewer", key("space")),
+        sending(When::On(Trigger::PRESSED), "viewer", key("space")),
+    ];
+    plan.add(&WidgetId::new("w0"), &hold, &both);
+    plan.add(&WidgetId::new("w1"), &hold, &both);
+    plan.add(
+        &WidgetId::new("w2"),
+        &hold,
+        &[
+            sending(When::While, "viewer", Payload::Button(MouseButton::Left)),
+            sending(When::While, "desk", osc(None)),
+        ],
+    );
+    let value = [
+        sending(When::Value, "desk", osc(Some([0.0, 1.0]))),
+        sending(When::Value, "viewer", Payload::Wheel(20)),
+    ];
+    plan.add(&WidgetId::new("w3"), &slider, &value);
+    plan.add(&WidgetId::new("w4"), &pad, &[sending(When::Value, "viewer", Payload::Pointer(800.0))]);
+    plan
+}
+
+fn event(id: &str, kind: EventKind, ms: u64) -> WidgetEvent {
+    WidgetEvent {
+        at: Instant::from_millis(ms),
+        id: WidgetId::new(id),
+        kind,
+        contact: Some(ContactId(1)),
+        force: Newtons(100.0),
+        position: Vec2::new(1.0, 2.0),
+    }
+}
+
+/// Carries out orders as a keyboard does: a second down, or a second up, is a fault.
+#[derive(Default)]
+struct PressedKeys {
+    down: BTreeSet<(usize, Holdable)>,
+}
+
+impl PressedKeys {
+    fn carry_out(&mut self, orders: &[MessageOrder]) {
+        for MessageOrder { target, act, .. } in orders {
+            match act {
+                Act::Down(what) => assert!(self.down.insert((*target, what.clone())), "down twice: {what}"),
+                Act::Up(what) => assert!(self.down.remove(&(*target, what.clone())), "up twice: {what}"),
+                Act::Stroke(what) => {
+                    assert!(!self.down.contains(&(*target, what.clone())), "a stroke would release {what}");
+                }
+                Act::Osc(_, values) => assert!(values.iter().all(|value| match value {
+                    OscValue::Float(number) => number.is_finite(),
+                    _ => true,
+                })),
+                Act::Wheel(_) | Act::Move(_) => {}
+            }
+        }
+    }
+}
+
+/// One thing that happens.
+#[derive(Clone, Debug)]
+enum Happening {
+    Event(usize, EventKind),
+    Held(Vec<usize>),
+    Lost,
+    Wait(u64),
+}
+
+fn happening() -> impl Strategy<Value = Happening> {
+    let kind = prop_oneof![
+        Just(EventKind::Pressed),
+        Just(EventKind::Released),
+        Just(EventKind::Cancelled),
+        Just(EventKind::Clicked),
+        (-5.0_f32..15.0).prop_map(|number| EventKind::Changed(Value::Number(number))),
+        (-1.0_f32..1.0).prop_map(|x| EventKind::Changed(Value::Pair(Vec2::new(x, -x)))),
+    ];
+    prop_oneof![
+        5 => (0..5_usize, kind).prop_map(|(control, kind)| Happening::Event(control, kind)),
+        3 => prop::collection::vec(0..5_usize, 0..4).prop_map(Happening::Held),
+        1 => Just(Happening::Lost),
+        3 => (0..120_u64).prop_map(Happening::Wait),
+    ]
+}
+
+/// Plays `history`; returns the machine, the board and the time after it.
+fn play(history: &[Happening]) -> (Messenger, PressedKeys, u64) {
+    let (mut messenger, mut board, mut ms) = (Messenger::new(plan()), PressedKeys::default(), 1000);
+    let mut orders = Vec::new();
+    for happening in history {
+        match happening {
+            Happening::Event(control, kind) => {
+                messenger.event(&event(&format!("w{control}"), *kind, ms), &mut orders);
+            }
+            Happening::Held(held) => {
+                let held: Vec<_> = held.iter().map(|it| WidgetId::new(&format!("w{it}"))).collect();
+                messenger.held(Instant::from_millis(ms), &held, &mut orders);
+            }
+            Happening::Lost => messenger.lost(&mut orders),
+            Happening::Wait(span) => {
+                ms += span;
+                messenger.advance(Instant::from_millis(ms), &mut orders);
+            }
+        }
+        board.carry_out(&orders);
+        orders.clear();
+        assert!(messenger.is_down().eq(board.down.iter()), "{happening:?}");
+    }
+    (messenger, board, ms)
+}
+
+proptest! {
+    #[test]
+    fn after_any_history_that_ends_in_a_lost_floor_all_is_up(
+        history in prop::collection::vec(happening(), 0..80),
+    ) {
+        let (mut messenger, mut board, _) = play(&history);
+        let mut orders = Vec::new();
+        messenger.lost(&mut orders);
+        board.carry_out(&orders);
+        prop_assert!(board.down.is_empty(), "{:?}", board.down);
+    }
+
+    #[test]
+    fn after_any_history_silence_alone_lets_all_come_up(history in prop::collection::vec(happening(), 0..80)) {
+        let (mut messenger, mut board, ms) = play(&history);
+        let mut orders = Vec::new();
+        messenger.advance(Instant::from_millis(ms + 71), &mut orders);
+        board.carry_out(&orders);
+        prop_assert!(board.down.is_empty(), "{:?}", board.down);
+    }
+}
+
+fn acts(orders: &mut Vec<MessageOrder>) -> Vec<String> {
+    orders.drain(..).map(|order| order.act.to_string()).collect()
+}
+
+#[test]
+fn a_key_is_down_for_as_long_as_reports_say_that_a_foot_holds_the_control() {
+    let mut messenger = Messenger::new(plan());
+    let mut orders = Vec::new();
+    messenger.event(&event("w2", EventKind::Pressed, 1000), &mut orders);
+    assert_eq!(acts(&mut orders), ["left button down", "/pan down"]);
+    for ms in (1020..2000).step_by(20) {
+        messenger.held(Instant::from_millis(ms), &[WidgetId::new("w2")], &mut orders);
+        messenger.advance(Instant::from_millis(ms + 10), &mut orders);
+    }
+    assert_eq!(acts(&mut orders), [""; 0]);
+    messenger.held(Instant::from_millis(2000), &[], &mut orders);
+    assert_eq!(acts(&mut orders), ["left button up", "/pan up"]);
+    messenger.held(Instant::from_millis(2020), &[WidgetId::new("w2")], &mut orders);
+    assert_eq!(acts(&mut orders), [""; 0], "only a new press holds it again");
+}
+
+#[test]
+fn a_key_that_two_controls_hold_comes_up_with_the_last() {
+    let mut messenger = Messenger::new(plan());
+    let mut orders = Vec::new();
+    messenger.event(&event("w0", EventKind::Pressed, 1000), &mut orders);
+    messenger.event(&event("w1", EventKind::Pressed, 1001), &mut orders);
+    messenger.event(&event("w0", EventKind::Released, 1002), &mut orders);
+    assert_eq!(acts(&mut orders), ["key space down"]);
+    messenger.event(&event("w1", EventKind::Released, 1003), &mut orders);
+    assert_eq!(acts(&mut orders), ["key space up"]);
+    assert_eq!(messenger.unsent().held, 2, "strokes of a held key are counted");
+}
+
+#[test]
+fn a_value_goes_out_scaled_at_most_100_times_a_second_and_its_last_state_always() {
+    let mut messenger = Messenger::new(plan());
+    let mut orders = Vec::new();
+    for ms in 0..1000_u32 {
+        let value = EventKind::Changed(Value::Number(ms as f32 / 100.0));
+        messenger.event(&event("w3", value, ms.into()), &mut orders);
+        messenger.advance(Instant::from_millis(ms.into()), &mut orders);
+    }
+    messenger.advance(Instant::from_millis(1020), &mut orders);
+    let acts = acts(&mut orders);
+    let sent: Vec<&String> = acts.iter().filter(|act| act.starts_with("/pan")).collect();
+    assert!((95..=101).contains(&sent.len()), "{}", sent.len());
+    assert_eq!(sent.last().unwrap().as_str(), "/pan 0.999");
+    let steps: i32 = acts.iter().filter_map(|act| act.strip_prefix("wheel ")?.parse::<i32>().ok()).sum();
+    assert_eq!(steps, 20, "over the whole range");
+}
+
+#[test]
+fn a_pad_moves_the_pointer_only_while_a_foot_is_on_it() {
+    let mut messenger = Messenger::new(plan());
+    let mut orders = Vec::new();
+    let run = |messenger: &mut Messenger, from: u64, held: bool| {
+        let mut orders = Vec::new();
+        for ms in (from..from + 500).step_by(10) {
+            if held {
+                messenger.held(Instant::from_millis(ms), &[WidgetId::new("w4")], &mut orders);
+            }
+            messenger.advance(Instant::from_millis(ms), &mut orders);
+        }
+        let moves = orders.into_iter().filter_map(|order| match order.act {
+            Act::Move(pixels) => Some(pixels),
+            _ => None,
+        });
+        moves.fold([0, 0], |sum, pixels| [sum[0] + pixels[0], sum[1] + pixels[1]])
+    };
+    messenger.event(&event("w4", EventKind::Pressed, 1000), &mut orders);
+    let north_east = EventKind::Changed(Value::Pair(Vec2::new(1.0, 0.5)));
+    messenger.event(&event("w4", north_east, 1000), &mut orders);
+    let [right, down] = run(&mut messenger, 1000, true);
+    assert!((right - 392).abs() < 3 && (down + 196).abs() < 3, "{right}, {down}");
+    messenger.event(&event("w4", EventKind::Released, 1500), &mut orders);
+    assert_eq!(run(&mut messenger, 1500, false), [0, 0]);
+}
+
+#[test]
+fn a_flood_of_events_is_bounded_and_counted() {
+    let mut messenger = Messenger::new(plan());
+    let mut orders = Vec::new();
+    for n in 0..10_000_u64 {
+        let at = WidgetEvent { at: Instant::from_micros(n * 100), ..event("w0", EventKind::Pressed, 0) };
+        messenger.event(&at, &mut orders);
+        messenger.event(&WidgetEvent { kind: EventKind::Released, ..at }, &mut orders);
+    }
+    let strokes = orders.iter().filter(|order| matches!(order.act, Act::Down(_) | Act::Stroke(_))).count();
+    assert!(strokes <= 241, "{strokes} in a second");
+    assert!(messenger.unsent().limited > 9000);
+    assert!(messenger.is_down().next().is_none());
+}

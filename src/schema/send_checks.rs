@@ -1,0 +1,122 @@
+//! Rules between the messages of controls, their targets and their kinds.
+
+use std::collections::HashMap;
+
+use super::control::Control;
+use super::page::Page;
+use super::pages;
+use super::problem::Problem;
+use super::reader::Reader;
+use super::suggest::did_you_mean;
+use crate::messages::{Destination, Payload, Sending, When};
+use crate::widget::{Behaviour, Guard};
+use underfoot_format::codec::Written;
+
+/// First version of the format with messages.
+const SINCE: u32 = 2;
+
+/// Reports messages without a target, messages that never go out or that nothing would end, and messages of two
+/// controls.
+pub(super) fn check(reader: &Reader<'_>, page: &Page) {
+    let mut told: Vec<(usize, &'static str)> = Vec::new();
+    let mut report = |at: &std::ops::Range<usize>, rule: &'static str, problem: Problem| {
+        // All controls of a grid have the message of one place.
+        if !told.contains(&(at.start, rule)) {
+            told.push((at.start, rule));
+            reader.report(problem);
+        }
+    };
+    let written = page.controls.iter().flat_map(|control| &control.send).next().map(|first| &first.at);
+    if let Some(at) = page.targets.first().map(|target| &target.name.at).or(written)
+        && page.version < SINCE
+    {
+        let problem = Problem::error(at.clone(), format!("messages need version {SINCE} of the format"));
+        let expected = format!("this layout says version {}", page.version);
+        reader.report(problem.expected(expected).help(format!("write version: {SINCE}")));
+    }
+    for control in &page.controls {
+        let Some(kind) = &control.kind else { continue };
+        for Written { value: sending, at } in &control.send {
+            let faults = [
+                ("target", of_target(page, sending)),
+                ("event", of_event(sending, &kind.behaviour)),
+                ("guard", of_guard(sending, &kind.behaviour)),
+            ];
+            for (rule, fault) in faults {
+                let Some((message, expected, help)) = fault else { continue };
+                let problem = Problem::error(at.clone(), message).expected(expected);
+                report(at, rule, problem.help_if(help));
+            }
+        }
+    }
+    twice(reader, page);
+}
+
+/// A problem: the message, the expected form, and advice.
+type SendFault = Option<(String, String, Option<String>)>;
+
+fn of_target(page: &Page, sending: &Sending) -> SendFault {
+    let name = &sending.target;
+    let Some(target) = page.targets.iter().find(|target| target.name.value == *name) else {
+        let names: Vec<&str> = page.targets.iter().map(|target| target.name.value.as_str()).collect();
+        let to = if sending.payload.is_for_a_keyboard() { "Keyboard" } else { "Osc(\"127.0.0.1:53000\")" };
+        let add = || format!("add targets: [(name: \"{name}\", to: {to})]");
+        let help = if names.is_empty() { add() } else { did_you_mean(name, &names, '"').unwrap_or_else(add) };
+        return Some((format!("there is no target \"{name}\""), "no target is called so".into(), Some(help)));
+    };
+    let is_keyboard = matches!(target.to(), Destination::Keyboard(_));
+    (is_keyboard != sending.payload.is_for_a_keyboard()).then(|| {
+        let message = format!("\"{name}\" can't receive {}", sending.payload.name());
+        (message, format!("that target is {}", target.to().noun()), None)
+    })
+}
+
+fn of_event(sending: &Sending, behaviour: &Behaviour) -> SendFault {
+    match sending.when {
+        When::On(trigger) if !trigger.is_given_by(behaviour) => Some((
+            format!("this {} never gives `{}`", behaviour.name(), trigger.name()),
+            "the message would never go out".into(),
+            Some("`underfoot addresses` lists the events of a layout's controls".into()),
+        )),
+        When::Value if behaviour.initial().is_none() => Some((
+            format!("this {} has no value", behaviour.name()),
+            "the message would never go out".into(),
+            Some("write On(clicked, ...)".into()),
+        )),
+        _ => None,
+    }
+}
+
+fn of_guard(sending: &Sending, behaviour: &Behaviour) -> SendFault {
+    let runs = matches!(behaviour.thresholds().guard, Guard::HoldToRun(_));
+    (sending.when == When::While && !runs).then(|| {
+        let message = "what is held down needs the guard HoldToRun".to_owned();
+        let expected = "this control may be held on a floor in doubt".to_owned();
+        (message, expected, Some("use the kind \"dead_man\", or write guard: HoldToRun(max_s: 60)".into()))
+    })
+}
+
+/// Warns of two controls that send the same message and can be pressed at the same time.
+fn twice(reader: &Reader<'_>, page: &Page) {
+    let mut first: HashMap<String, Vec<(&Control, usize)>> = HashMap::new();
+    for control in &page.controls {
+        for Written { value: sending, at } in &control.send {
+            // A wheel and a pointer may well be moved from several places.
+            if matches!(sending.payload, Payload::Wheel(_) | Payload::Pointer(_)) {
+                continue;
+            }
+            let message = format!("{:?} {:?}", sending.target, sending.payload);
+            let others = first.entry(message).or_default();
+            let other = others
+                .iter()
+                .find(|(other, _)| other.id != control.id && pages::can_both_show(other, control));
+            if let Some((other, line)) = other {
+                let problem = Problem::warning(at.clone(), "two controls send one message");
+                let id = other.id.as_deref().unwrap_or_default();
+                reader.report(problem.expected(format!("\"{id}\" on line {line} sends it too")));
+                return;
+            }
+            others.push((control, reader.line(at)));
+        }
+    }
+}

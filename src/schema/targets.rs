@@ -1,0 +1,107 @@
+//! The targets of a layout's messages: `(name: "desk", to: Osc("127.0.0.1:53000"))`.
+
+use super::node::Node;
+use super::problem::Problem;
+use crate::messages::{Destination, KeyboardTarget, MAX_TARGETS, OscTarget, SendTarget, Transport};
+use underfoot_format::codec::{At, By, Distinct, Written};
+use underfoot_format::describe::FieldType;
+use underfoot_format::text::Text;
+use underfoot_format::{Codec, Id, Name, Rec, Record, record};
+
+record! {
+    /// A program or device that messages go to.
+    pub(super) struct TargetRecord = "Target";
+    /// Its name in messages, unique in the layout.
+    pub(super) name: Written<String> = "name", At(Id);
+    /// The receiver: keyboard and pointer of the desktop, or a program that receives OSC.
+    to: Destination = "to", DESTINATION;
+}
+
+record! {
+    /// How OSC reaches a target.
+    struct OverRecord = "Osc", Copy, Eq;
+    /// The protocol below OSC; SLIP frames the messages on TCP.
+    over: Transport = "over", Name => Transport::Udp;
+}
+
+/// The targets of a layout.
+pub(super) const TARGETS: Distinct<TargetRecord> = Distinct {
+    entry: "target",
+    most: MAX_TARGETS,
+    about: |_, target, fields, seen| {
+        if !target.name.at.is_empty() {
+            seen.check(fields, format!("the target \"{}\"", target.name.value), target.name.at.clone());
+        }
+    },
+};
+
+const DESTINATION: By<Destination> = By {
+    shape: || {
+        FieldType::Words(
+            "Keyboard | Keyboard((window: \"part of a title\")) | Osc(\"host:port\") | Osc(\"host:port\", (over: Tcp))",
+        )
+    },
+    read: |node, ()| destination(node),
+    write: |to| match to {
+        Destination::Keyboard(keyboard) if *keyboard == ANY_WINDOW => Text::Name("Keyboard"),
+        Destination::Keyboard(keyboard) => Text::Call("Keyboard", vec![Rec.write(keyboard)]),
+        Destination::Osc(OscTarget { address, over }) => {
+            let address = Text::quoted(&**address);
+            Text::Call(
+                "Osc",
+                match over {
+                    Transport::Udp => vec![address],
+                    Transport::Tcp => vec![address, Rec.write(&OverRecord { over: *over })],
+                },
+            )
+        }
+    },
+    stand_in: || Destination::Keyboard(ANY_WINDOW),
+};
+
+/// A keyboard for any window of the usual display.
+const ANY_WINDOW: KeyboardTarget = KeyboardTarget { window: None, display: None };
+
+const OSC: &str = "Osc(\"127.0.0.1:53000\")";
+
+fn destination(node: Node<'_>) -> Option<Destination> {
+    let call = node.call(&["Keyboard", "Osc"])?;
+    if call.name == "Keyboard" {
+        let ([], settings) = call.values("Keyboard")?;
+        return settings.map_or(Some(ANY_WINDOW), |node| node.record(None, &())).map(Destination::Keyboard);
+    }
+    let ([address], settings) = call.values(OSC)?;
+    let over = settings
+        .map_or(Some(Transport::Udp), |node| node.record::<OverRecord>(None, &()).map(|record| record.over));
+    let address = Node { name: "address", ..address };
+    let text = address.text(255)?;
+    let port = text.rsplit_once(':').filter(|(host, _)| !host.is_empty());
+    if port.is_none_or(|(_, port)| !port.parse::<u16>().is_ok_and(|port| port > 0)) {
+        let problem = Problem::error(address.span(), "this is no address of a program");
+        let help = "write a host and a port, such as \"127.0.0.1:53000\"";
+        address.report(problem.expected("expected host:port").help(help));
+        return None;
+    }
+    Some(Destination::Osc(OscTarget { address: text.to_owned(), over: over? }))
+}
+
+impl TargetRecord {
+    /// Makes the target for the layout.
+    pub(super) fn checked(&self) -> SendTarget {
+        SendTarget { name: self.name.value.clone(), to: self.to.clone() }
+    }
+
+    /// The receiver.
+    pub(super) const fn to(&self) -> &Destination {
+        &self.to
+    }
+}
+
+/// Writes the targets of a layout.
+pub(super) fn write_all(targets: &[SendTarget]) -> Text {
+    let write = |target: &SendTarget| {
+        let entries = vec![("name", Text::quoted(&*target.name)), ("to", DESTINATION.write(&target.to))];
+        Text::Record(TargetRecord::NAME, entries)
+    };
+    Text::List(targets.iter().map(write).collect())
+}
