@@ -60,7 +60,7 @@ struct Room {
     snapshots: triple_buffer::Input<Snapshot>,
     events: SyncSender<EventNews>,
     layouts: SyncSender<LayoutNews>,
-    notices: SyncSender<String>,
+    notices: SyncSender<crate::preview::Notice>,
     commands: Receiver<PreviewCommand>,
     feet: Arc<Mutex<Vec<PreviewFoot>>>,
     /// The folder for the projection's corners.
