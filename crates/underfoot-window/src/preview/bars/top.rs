@@ -127,16 +127,13 @@ impl App {
         if room > 0.0 {
             ui.add_space(room);
         }
-        let end = ui.scope(|ui| {
-            ui.horizontal(|ui| {
-                mutes(ui, theme, &self.shown, self.rehearsal.as_ref());
-                self.appearance.menu(ui, is_compact, &mut self.shown.messages);
-                let activity = self.activity();
-                help_menu(ui, theme, activity, is_compact, &mut self.appearance, &mut self.shown.messages);
-                link_state(ui, theme, &self.shown, self.time_line.is_some());
-            });
-        });
-        let width = end.response.rect.width();
+        let left = ui.cursor().left();
+        mutes(ui, theme, &self.shown, self.rehearsal.as_ref());
+        self.appearance.menu(ui, is_compact, &mut self.shown.messages);
+        let activity = self.activity();
+        help_menu(ui, theme, activity, is_compact, &mut self.appearance, &mut self.shown.messages);
+        link_state(ui, theme, &self.shown, self.time_line.is_some());
+        let width = ui.min_rect().right() - left;
         if (width - self.top_bar.end_width).abs() > 0.5 {
             self.top_bar.end_width = width;
             ui.ctx().request_repaint();

@@ -4,7 +4,7 @@ mod feet;
 mod first_steps;
 
 use eframe::egui;
-use eframe::egui::accesskit::{Action, Role};
+use eframe::egui::accesskit::Role;
 use eframe::egui::{
     Align2, CursorIcon, EventFilter, FontId, Id, Key, PointerButton, Pos2, Rect, Response, Sense, Ui,
     WidgetInfo, vec2,
@@ -107,7 +107,9 @@ impl FloorView {
         }
         feet.focus(name_controls(ui, map, shown, &mut self.controls));
         if has_steps && !draws_walks {
-            self.steps.show(ui, rect, map, theme, shown);
+            let missed = self.misses.latest();
+            let missed = missed.filter(|miss| shown.snapshot().at.since(miss.at) < scene::TOLD);
+            self.steps.show(ui, rect, map, theme, shown, missed.map(|miss| miss.place));
         }
         if self.zoom.is_closer() {
             self.zoom_out_button(ui, rect);
@@ -243,8 +245,7 @@ fn name_controls(ui: &Ui, map: ScreenFromFloor, shown: &ShownFloor, controls: &m
         let id = ui.scope_id().with(("floor control", index));
         controls.push(id);
         // The focus gets these controls before all other widgets: see `FocusRing::begin`.
-        let node = ui.interact(map.rect(widget.area), id, Sense::hover());
-        ui.ctx().accesskit_node_builder(id, |builder| builder.add_action(Action::Focus));
+        let node = ui.interact(map.rect(widget.area), id, Sense::focusable_noninteractive());
         let off = why_off(snapshot, index);
         if node.has_focus() {
             focused = Some(index);

@@ -92,6 +92,7 @@ impl App {
                 self.panel.other_parts = ui.cursor().top() - top;
             });
             let left = ui.available_height();
+            ui.set_width(ui.available_width() - 8.0);
             events::events_part(ui, &theme, &self.shown.messages, &mut self.panel.search, left);
         });
     }

@@ -179,8 +179,10 @@ fn the_panel_shows_the_control_that_is_dragged_not_the_one_before() {
     room.write(pressed_home());
     assert!(room.says("Control Home"));
     let mut dragging = pressed_home();
-    let mut widgets = map().widgets.into_iter();
-    let slider = widgets.find(|it| matches!(it.behaviour, underfoot::widget::Behaviour::Slider(_))).unwrap();
+    let page = map();
+    let is_slider =
+        |it: &&underfoot::layout::Widget| matches!(it.behaviour, underfoot::widget::Behaviour::Slider(_));
+    let slider = page.widgets.iter().find(is_slider).unwrap();
     dragging.held = vec![slider.id.clone()];
     room.write(dragging);
     assert!(room.says(&format!("Control {}", slider.label)));
