@@ -3,12 +3,13 @@
 //     avr SKETCH.elf SCRIPT [--out FILE] [--until MS] [--hx711 CLOCK]
 //
 // Each line of the script is `ms pin millivolts`, in order of time: from then on, analogue input A<pin> has this
-// voltage. With `--hx711 CLOCK`, the numbers are those of load-cell amplifiers behind the pins A0 to A3 instead.
+// voltage; pin -1 is a mark, which prints `mark MS SECONDS`, by the clock of the system. With `--hx711 CLOCK`, the
+// numbers are those of load-cell amplifiers behind the pins A0 to A3 instead.
 //
 // Without --out, the sketch runs in real time with its serial port at a pseudo terminal. Its path is the first line
-// printed. Each opening of the terminal resets the board, as the port of an Uno does, and starts the script anew; a
-// line `reset SECONDS`, by the clock of the system, says when that was. With --out, the bytes of the port go to a file as
-// fast as the machine runs the sketch, up to --until, and a line says when the sketch first reads an input.
+// printed. Each opening of the terminal resets the board, as the port of an Uno does, and starts the script anew. With
+// --out, the bytes of the port go to a file as fast as the machine runs the sketch, up to --until, and a line says when
+// the sketch first reads an input.
 //
 // At the end, the last line says how many bytes nobody took, and by how much the emulator was late at most.
 
@@ -87,10 +88,13 @@ static avr_cycle_count_t each_turn(avr_t *avr, avr_cycle_count_t when, void *par
     const struct change *change;
     double now_ms = (double)avr->cycle / CYCLES_PER_MS;
     while ((change = script_next(&board->script, now_ms))) {
-        if (board->has_amplifiers) {
+        if (change->pin == MARK) {
+            port_mark(change->ms);
+        } else if (board->has_amplifiers) {
             amplifiers_set(&board->amplifiers, change->pin, change->value);
         } else {
-            avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + change->pin), (uint32_t)change->value);
+            avr_irq_t *input = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + change->pin);
+            avr_raise_irq(input, (uint32_t)change->value);
         }
     }
     int byte = port_take(&board->port);
@@ -122,7 +126,9 @@ int main(int arguments, char **argument) {
     const char *out = NULL;
     double until_ms = 0;
     int clock_pin = -1;
-    if (arguments < 3 || arguments % 2 == 0) die("usage: avr SKETCH.elf SCRIPT [--out FILE] [--until MS] [--hx711 CLOCK]", "");
+    if (arguments < 3 || arguments % 2 == 0) {
+        die("usage: avr SKETCH.elf SCRIPT [--out FILE] [--until MS] [--hx711 CLOCK]", "");
+    }
     for (int i = 3; i < arguments; i += 2) {
         if (!strcmp(argument[i], "--out")) out = argument[i + 1];
         else if (!strcmp(argument[i], "--until")) until_ms = atof(argument[i + 1]);

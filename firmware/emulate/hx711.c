@@ -13,10 +13,10 @@ static void all_data(struct amplifiers *amplifiers, int level) {
 }
 
 static avr_cycle_count_t convert(avr_t *avr, avr_cycle_count_t when, void *parameter) {
-    (void)avr;
     struct amplifiers *amplifiers = parameter;
-    // A sample that is read meanwhile stays.
-    if (amplifiers->pulses == 0) {
+    // A sample that is read meanwhile stays; pulses that end in the middle of one do not keep it.
+    if (amplifiers->pulses == 0 || avr->cycle - amplifiers->clocked > amplifiers->interval / 4) {
+        amplifiers->pulses = 0;
         for (int i = 0; i < AMPLIFIERS; i++) amplifiers->converted[i] = amplifiers->values[i];
         amplifiers->is_ready = 1;
         all_data(amplifiers, 0);
@@ -30,6 +30,7 @@ static void clocked(struct avr_irq_t *irq, uint32_t level, void *parameter) {
     struct amplifiers *amplifiers = parameter;
     if (!level || !amplifiers->is_ready) return;
     amplifiers->pulses++;
+    amplifiers->clocked = amplifiers->avr->cycle;
     if (amplifiers->pulses == PULSES) {
         amplifiers->pulses = 0;
         amplifiers->is_ready = 0;
@@ -46,12 +47,15 @@ void amplifiers_connect(struct amplifiers *amplifiers, avr_t *avr, int clock, lo
     for (int i = 0; i < AMPLIFIERS; i++) {
         amplifiers->data[i] = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), IOPORT_IRQ_PIN0 + i);
     }
-    avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('D'), IOPORT_IRQ_PIN0 + clock), clocked, amplifiers);
+    avr_irq_t *pulses = avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('D'), IOPORT_IRQ_PIN0 + clock);
+    avr_irq_register_notify(pulses, clocked, amplifiers);
 }
 
 void amplifiers_restart(struct amplifiers *amplifiers) {
     amplifiers->pulses = 0;
     amplifiers->is_ready = 0;
+    // simavr passes on changes alone, and the reset has cleared the pins.
+    all_data(amplifiers, 0);
     all_data(amplifiers, 1);
     avr_cycle_timer_register(amplifiers->avr, amplifiers->interval, convert, amplifiers);
 }

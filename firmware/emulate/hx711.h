@@ -16,7 +16,8 @@ struct amplifiers {
     // Pulses since the last conversion; 0 while a sample waits.
     int pulses;
     int is_ready;
-    uint64_t interval;
+    // Cycles between two conversions, and the cycle of the last pulse.
+    avr_cycle_count_t interval, clocked;
 };
 
 // Connects them; `clock` is a pin of 0 to 7.

@@ -63,8 +63,6 @@ static int is_open(const struct port *port) {
 int port_await(struct port *port) {
     while (!has_to_end && !is_open(port)) wait_seconds(0.001);
     port->begun = seconds(CLOCK_MONOTONIC);
-    if (!has_to_end) printf("reset %.6f\n", seconds(CLOCK_REALTIME));
-    fflush(stdout);
     return !has_to_end;
 }
 
@@ -73,6 +71,11 @@ int port_keep_time(struct port *port, double ms) {
     if (early > 0) wait_seconds(early);
     else if (-early * 1000 > port->late_ms) port->late_ms = -early * 1000;
     return !has_to_end && is_open(port);
+}
+
+void port_mark(double ms) {
+    printf("mark %.3f %.6f\n", ms, seconds(CLOCK_REALTIME));
+    fflush(stdout);
 }
 
 void port_send(struct port *port, unsigned char byte) {
@@ -92,5 +95,6 @@ int port_take(struct port *port) {
 
 void port_end(struct port *port) {
     if (port->file && fclose(port->file) != 0) port->lost++;
-    printf("sent %lu bytes, of which nobody took %lu; late by %.1f ms at most\n", port->sent, port->lost, port->late_ms);
+    printf("sent %lu bytes, of which nobody took %lu; ", port->sent, port->lost);
+    printf("late by %.1f ms at most\n", port->late_ms);
 }

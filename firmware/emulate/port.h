@@ -18,11 +18,14 @@ struct port {
 const char *port_to_file(struct port *port, const char *path);
 const char *port_to_terminal(struct port *port);
 
-// Waits until a program opens the terminal, and says so; zero if this program has to end.
+// Waits until a program opens the terminal; zero if this program has to end.
 int port_await(struct port *port);
 
 // Waits for the time `ms` after the reset; zero if the terminal has been closed, or this program has to end.
 int port_keep_time(struct port *port, double ms);
+
+// Says when the script has come to this time.
+void port_mark(double ms);
 
 // Sends a byte of the board; counts it as lost if nobody takes it.
 void port_send(struct port *port, unsigned char byte);

@@ -16,7 +16,7 @@ const char *script_read(struct script *script, const char *path) {
     int found;
     while (!wrong && (found = fscanf(file, "%lf %d %ld", &change.ms, &change.pin, &change.value)) != EOF) {
         if (found != 3) wrong = "a line is not `ms pin value`: ";
-        else if (change.pin < 0 || change.pin >= PINS) wrong = "pins are 0 to 7: ";
+        else if (change.pin < MARK || change.pin >= PINS) wrong = "pins are 0 to 7, or -1: ";
         else if (change.ms < last_ms) wrong = "a line is earlier than the one before: ";
         if (script->count == room) {
             room = room ? 2 * room : 1024;

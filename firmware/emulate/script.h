@@ -5,6 +5,9 @@
 
 #include <stddef.h>
 
+// The pin of a line that marks a time.
+#define MARK (-1)
+
 // From this time on, this input has this value.
 struct change {
     double ms;

@@ -27,7 +27,7 @@ const uint8_t INPUTS[] = {A0, A1, A2, A3};
 const bool AMPLIFIERS = false;
 
 // The pin that clocks all amplifiers.
-const uint8_t CLOCK = 2;
+const uint8_t CLOCK = 4;
 
 // The byte that asks for a line, as 'v'; 0 for a board that sends by itself.
 const char REQUEST = 0;
@@ -82,8 +82,7 @@ void waitUntilDue() {
 // no line is sent and the link is lost: better than a number that nobody measured.
 void readAmplifiers() {
   for (uint8_t i = 0; i < COUNT; i++) {
-    while (digitalRead(INPUTS[i]) == HIGH) {
-    }
+    while (digitalRead(INPUTS[i]) == HIGH) delayMicroseconds(20);
     samples[i] = 0;
   }
   // 24 bits, and a 25th pulse, which chooses input A with gain 128 for the next sample.
