@@ -52,12 +52,18 @@ class Emulator:
         return first_ms, out.read_text()
 
 
+def start(command, **options):
+    """A process whose lines are read, before others."""
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=come_first, **options)
+
+
 class Pad(typing.NamedTuple):
     """A sketch, its floor file, and the sensors at its inputs."""
 
     name: str
     sketch: str
     floor: pathlib.Path
+    side_m: float
     sensor: typing.Callable
     options: tuple = ()
 
@@ -66,17 +72,29 @@ class Served:
     """A sketch in real time, and `underfoot run` on its port; both end with it."""
 
     def __init__(self, emulator, pad, script, underfoot):
-        command = [emulator.made / "avr", emulator.made / f"{pad.sketch}.elf", script, *pad.options]
-        self.board = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=come_first)
-        port = self.board.stdout.readline().strip()
+        self.command = [emulator.made / "avr", emulator.made / f"{pad.sketch}.elf"], pad.options
+        # A name that stays, as the one by the number of a USB device does.
+        self.port = emulator.folder / "port"
+        self.events, self.marks = queue.Queue(), queue.Queue()
+        self.plug_in(script)
         layout = FIRMWARE / "arduino/go.ron"
-        command = [underfoot, "run", layout, "--floor", pad.floor, "--serial", port, "--json", "--no-osc"]
+        command = [underfoot, "run", layout, "--floor", pad.floor, "--serial", self.port, "--json", "--no-osc"]
         command += ["--listen", "127.0.0.1:0", "--wav", emulator.folder / "out.wav", "--seconds", "30"]
         self.log = open(emulator.folder / "log.txt", "w+")
-        self.program = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True, preexec_fn=come_first)
-        self.events, self.marks = queue.Queue(), queue.Queue()
-        for source, sink in (self.program.stdout, self.events), (self.board.stdout, self.marks):
-            threading.Thread(target=self.read, args=(source, sink), daemon=True).start()
+        self.program = start(command, stderr=self.log)
+        self.listen(self.program, self.events)
+
+    def plug_in(self, script):
+        """Starts the board, whose script begins when the program opens its port."""
+        program, options = self.command
+        self.board = start([*program, script, *options])
+        path = self.board.stdout.readline().strip()
+        self.port.unlink(missing_ok=True)
+        self.port.symlink_to(path)
+        self.listen(self.board, self.marks)
+
+    def listen(self, process, sink):
+        threading.Thread(target=self.read, args=(process.stdout, sink), daemon=True).start()
 
     @staticmethod
     def read(source, sink):
@@ -113,7 +131,7 @@ class Served:
                 sys.exit(f"firmware/test: an event is missing; the program says: {self.said()}")
             event = json.loads(line)
             if event.get("id") == "go" and event.get("event") in ("pressed", "released", "clicked", "cancelled"):
-                return event["event"], at
+                return event, at
 
     def pull_cable(self):
         at = time.time()
