@@ -37,6 +37,17 @@ tool_packages() {
     python3 -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
 }
 
+# Debian's packages that build firmware and run it in an emulator.
+emulator_packages() {
+    ! is_left_out emulators || return 0
+    command -v avr-g++ >/dev/null || echo gcc-avr
+    [ -e /usr/lib/avr/include/avr/io.h ] || echo avr-libc
+    [ -d /usr/share/arduino/hardware/arduino/avr/cores ] || echo arduino-core-avr
+    [ -e /usr/include/simavr/sim_avr.h ] || echo libsimavr-dev
+    [ -e /usr/include/libelf.h ] || echo libelf-dev
+    command -v make >/dev/null || echo make
+}
+
 # Whether LEAVE_OUT, words with blanks between them, has this one.
 is_left_out() { [[ " ${LEAVE_OUT:-} " == *" $1 "* ]]; }
 
@@ -54,17 +65,20 @@ install_step() {
     fi
 }
 
+# Each list by itself: a package that cannot be had costs only the others of its list.
 install_tool_packages() {
-    local packages
-    mapfile -t packages < <(tool_packages | sort -u)
-    [ ${#packages[@]} -gt 0 ] || return 0
-    if ! command -v apt-get >/dev/null; then
-        lacks "tests skip what needs the equivalents of these Debian packages: ${packages[*]}"
-    elif ! as_root true 2>/dev/null; then
-        lacks "tests skip what needs these packages, which take root: apt-get install ${packages[*]}"
-    else
-        install_step apt_install "${packages[@]}"
-    fi
+    local list packages
+    for list in tool_packages emulator_packages; do
+        mapfile -t packages < <("$list" | sort -u)
+        [ ${#packages[@]} -gt 0 ] || continue
+        if ! command -v apt-get >/dev/null; then
+            lacks "tests skip what needs the equivalents of these Debian packages: ${packages[*]}"
+        elif ! as_root true 2>/dev/null; then
+            lacks "tests skip what needs these packages, which take root: apt-get install ${packages[*]}"
+        else
+            install_step apt_install "${packages[@]}"
+        fi
+    done
 }
 
 apt_install() {
