@@ -187,6 +187,8 @@ pub(super) struct Page {
     pub(super) stances: Vec<Zone>,
     pub(super) pages: Vec<PageRecord>,
     pub(super) targets: Vec<TargetRecord>,
+    /// Whether all targets could be read.
+    pub(super) targets_known: bool,
     /// The grounds of all pages.
     pub(super) grounds: Vec<GroundDefinition>,
     /// The controls of all pages.
@@ -211,6 +213,7 @@ impl Page {
         Units::default().apply_to(node.reader);
         let record = LayoutRecord::read_fields(&mut fields, None);
         let good = fields.are_read();
+        let targets_known = !fields.have_failed(&["targets"]);
         let regions_at = fields.value_span("regions").unwrap_or_else(|| node.span());
         let widgets_at = fields.span("widgets");
         fields.finish();
@@ -236,6 +239,7 @@ impl Page {
             stances,
             pages,
             targets,
+            targets_known,
             grounds,
             controls,
             regions_known,

@@ -56,6 +56,9 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
 type SendFault = Option<(String, String, Option<String>)>;
 
 fn of_target(page: &Page, sending: &Sending) -> SendFault {
+    if !page.targets_known {
+        return None;
+    }
     let name = &sending.target;
     let Some(target) = page.targets.iter().find(|target| target.name.value == *name) else {
         let names: Vec<&str> = page.targets.iter().map(|target| target.name.value.as_str()).collect();
