@@ -14,7 +14,7 @@ use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
-use super::version::{self, FORMAT_VERSION, VERSION};
+use super::version::{self, FIRST_VERSION, FORMAT_VERSION, VERSION};
 use crate::floor::{
     ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
 };
@@ -188,7 +188,7 @@ impl FloorRecord {
         let is_usual =
             floor.actuators == usual.actuators && actuators.iter().all(|one| one.response.is_empty());
         Self {
-            version: FORMAT_VERSION,
+            version: FIRST_VERSION,
             geometry: floor.geometry,
             areas: floor.areas.iter().map(AreaRecord::of).collect(),
             gateway: floor.gateway,

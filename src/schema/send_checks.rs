@@ -8,12 +8,10 @@ use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
+use super::version::WITH_MESSAGES;
 use crate::messages::{Destination, Payload, Sending, When};
 use crate::widget::{Behaviour, Guard};
 use underfoot_format::codec::Written;
-
-/// First version of the format with messages.
-const SINCE: u32 = 2;
 
 /// Reports messages without a target, messages that never go out or that nothing would end, and messages of two
 /// controls.
@@ -28,11 +26,12 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
     };
     let written = page.controls.iter().flat_map(|control| &control.send).next().map(|first| &first.at);
     if let Some(at) = page.targets.first().map(|target| &target.name.at).or(written)
-        && page.version < SINCE
+        && page.version < WITH_MESSAGES
     {
-        let problem = Problem::error(at.clone(), format!("messages need version {SINCE} of the format"));
+        let problem =
+            Problem::error(at.clone(), format!("messages need version {WITH_MESSAGES} of the format"));
         let expected = format!("this layout says version {}", page.version);
-        reader.report(problem.expected(expected).help(format!("write version: {SINCE}")));
+        reader.report(problem.expected(expected).help(format!("write version: {WITH_MESSAGES}")));
     }
     for control in &page.controls {
         let Some(kind) = &control.kind else { continue };

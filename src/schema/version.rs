@@ -5,8 +5,14 @@ use super::problem::Problem;
 use super::reader::Reader;
 use underfoot_format::{Num, num};
 
-/// The version of the formats that this program writes; it reads the older ones too. Version 2 has targets and messages.
+/// The newest version of the formats that this program reads and writes: version 2 added targets and messages.
 pub const FORMAT_VERSION: u32 = 2;
+
+/// The version that is written to files without anything that a later version added, so that older programs read them.
+pub(super) const FIRST_VERSION: u32 = 1;
+
+/// The first version with targets and messages.
+pub(super) const WITH_MESSAGES: u32 = 2;
 
 /// The version field of a file.
 pub(super) const VERSION: Num = num(1.0..=FORMAT_VERSION as f64).explicit();
