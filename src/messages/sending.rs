@@ -152,12 +152,12 @@ impl Payload {
     /// Whether it can go out at that time.
     #[must_use]
     pub const fn suits(&self, when: When) -> bool {
-        match (self, when) {
-            (Self::Osc(..), _) => true,
-            (Self::Key(_) | Self::Button(_), When::On(_) | When::While) => true,
-            (Self::Wheel(_), When::On(_) | When::Value) => true,
-            (Self::Pointer(_), When::Value) => true,
-            _ => false,
-        }
+        matches!(
+            (self, when),
+            (Self::Osc(..), _)
+                | (Self::Key(_) | Self::Button(_), When::On(_) | When::While)
+                | (Self::Wheel(_), When::On(_) | When::Value)
+                | (Self::Pointer(_), When::Value)
+        )
     }
 }

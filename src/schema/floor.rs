@@ -16,7 +16,7 @@ use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
-use super::version::{self, FORMAT_VERSION, VERSION};
+use super::version::{self, FIRST_VERSION, FORMAT_VERSION, VERSION, WITH_SERIAL_PORTS};
 use crate::floor::{
     ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network, PortName,
 };
@@ -78,7 +78,16 @@ fn floor(node: Node<'_>, absent: &dyn Fn(&PortName) -> Option<String>) -> Option
     let mut fields = node.fields(FloorRecord::NAME)?;
     let record = FloorRecord::read(&mut fields);
     let good = fields.are_read();
+    let serial_at = fields.value_span("serial");
     fields.finish();
+    if let Some(at) = serial_at {
+        version::require(
+            node.reader,
+            at,
+            ("serial ports", WITH_SERIAL_PORTS),
+            ("floor", record.head.version),
+        );
+    }
     let floor = record.floor();
     record.check_channels(node.reader, &floor);
     floor_serial::check(node.reader, &record.parts.serial, &floor);
@@ -260,7 +269,8 @@ impl FloorRecord {
         let (response, actuators) = all_actuators(floor);
         let is_usual =
             floor.actuators == usual.actuators && actuators.iter().all(|one| one.response.is_empty());
-        let head = FloorHeadRecord { version: FORMAT_VERSION, geometry: floor.geometry };
+        let version = if floor.serial.is_empty() { FIRST_VERSION } else { WITH_SERIAL_PORTS };
+        let head = FloorHeadRecord { version, geometry: floor.geometry };
         let parts = FloorPartsRecord {
             areas: floor.areas.iter().map(AreaRecord::of).collect(),
             gateway: floor.gateway,

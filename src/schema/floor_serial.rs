@@ -246,6 +246,15 @@ mod tests {
     }
 
     #[test]
+    fn an_older_file_cannot_have_ports() {
+        let problems = parse_floor("Floor(version: 1, columns: 2, rows: 2, serial: [()])", "floor.ron");
+        let problems = problems.unwrap_err().to_string();
+        assert!(problems.contains("serial ports need version 2") && problems.contains("write version: 2"));
+        let floor = parse_floor("Floor(version: 1, columns: 2, rows: 2)", "floor.ron").unwrap();
+        assert!(write_floor(&floor).contains("version: 1,"), "older programs read what has nothing new");
+    }
+
+    #[test]
     fn a_port_carries_osc_unless_lines_are_described() {
         let floor = read("(port: \"usb:A9\"), (baud: 1000000)");
         let slip = SerialWire::slip(PortName::Usb("A9".into()));

@@ -132,6 +132,8 @@ pub(super) struct Page {
     /// The kinds of which its controls can be made.
     kinds: Kinds,
     pub(super) targets: Vec<TargetRecord>,
+    /// Whether all targets could be read.
+    pub(super) targets_known: bool,
     /// The grounds of all pages.
     pub(super) grounds: Vec<GroundDefinition>,
     /// The controls of all pages.
@@ -155,6 +157,7 @@ impl Page {
         let mut fields = node.fields(LayoutRecord::NAME)?;
         let record = LayoutRecord::read(&mut fields, kinds);
         let good = fields.are_read();
+        let targets_known = !fields.have_failed(&["targets"]);
         let regions_at = fields.value_span("regions").unwrap_or_else(|| node.span());
         let widgets_at = fields.span("widgets");
         fields.finish();
@@ -182,6 +185,7 @@ impl Page {
             pages,
             kinds,
             targets,
+            targets_known,
             grounds,
             controls,
             regions_known,

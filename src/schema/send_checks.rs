@@ -8,12 +8,10 @@ use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
+use super::version::{self, WITH_MESSAGES};
 use crate::messages::{Destination, Payload, Sending, When};
 use crate::widget::{Behaviour, Guard};
 use underfoot_format::codec::Written;
-
-/// First version of the format with messages.
-const SINCE: u32 = 2;
 
 /// Reports messages without a target, messages that never go out or that nothing would end, and messages of two
 /// controls.
@@ -27,12 +25,8 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
         }
     };
     let written = page.controls.iter().flat_map(|control| &control.send).next().map(|first| &first.at);
-    if let Some(at) = page.targets.first().map(|target| &target.name.at).or(written)
-        && page.version < SINCE
-    {
-        let problem = Problem::error(at.clone(), format!("messages need version {SINCE} of the format"));
-        let expected = format!("this layout says version {}", page.version);
-        reader.report(problem.expected(expected).help(format!("write version: {SINCE}")));
+    if let Some(at) = page.targets.first().map(|target| &target.name.at).or(written) {
+        version::require(reader, at.clone(), ("messages", WITH_MESSAGES), ("layout", page.version));
     }
     for control in &page.controls {
         let Some(kind) = &control.kind else { continue };
@@ -56,6 +50,9 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
 type SendFault = Option<(String, String, Option<String>)>;
 
 fn of_target(page: &Page, sending: &Sending) -> SendFault {
+    if !page.targets_known {
+        return None;
+    }
     let name = &sending.target;
     let Some(target) = page.targets.iter().find(|target| target.name.value == *name) else {
         let names: Vec<&str> = page.targets.iter().map(|target| target.name.value.as_str()).collect();

@@ -25,7 +25,7 @@ record! {
 record! {
     /// The pointer, moved by a pad or by leaning.
     pub(super) struct PointerRecord = "Pointer", Copy;
-    /// Speed at full deflection, in pixels per second.
+    /// Speed at full deflection.
     pub(super) speed_px_s: f32 = "speed_px_s", num(1.0..=20_000.0) => 800.0;
 }
 

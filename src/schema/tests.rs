@@ -62,7 +62,7 @@ mod geometry_and_boards {
         // A floor: where its tiles are and what is wired to them.
         // Tiles are (column, row) from the south-west, lengths in metres, forces in newtons.
         Floor(
-            version: 2,
+            version: 1,
             columns: 2,
             rows: 1,
             tile_m: 0.304,

@@ -1,15 +1,41 @@
 //! The version of the file formats.
 
+use std::ops::Range;
+
 use super::diagnostic::Diagnostics;
 use super::problem::Problem;
 use super::reader::Reader;
 use underfoot_format::{Num, num};
 
-/// The version of the formats that this program writes; it reads the older ones too. Version 2 has targets and messages.
+/// The newest version of the formats that this program reads and writes: version 2 added targets, messages and
+/// serial ports.
 pub const FORMAT_VERSION: u32 = 2;
+
+/// The version that is written to files without anything that a later version added, so that older programs read them.
+pub(super) const FIRST_VERSION: u32 = 1;
+
+/// The first version with targets and messages.
+pub(super) const WITH_MESSAGES: u32 = 2;
+
+/// The first version with serial ports.
+pub(super) const WITH_SERIAL_PORTS: u32 = 2;
 
 /// The version field of a file.
 pub(super) const VERSION: Num = num(1.0..=FORMAT_VERSION as f64).explicit();
+
+/// Reports that `things`, which stand at `at` in a file of the version `written`, need version `first`.
+pub(super) fn require(
+    reader: &Reader<'_>,
+    at: Range<usize>,
+    (things, first): (&str, u32),
+    (file, written): (&str, u32),
+) {
+    if written < first {
+        let problem = Problem::error(at, format!("{things} need version {first} of the format"));
+        let expected = format!("this {file} says version {written}");
+        reader.report(problem.expected(expected).help(format!("write version: {first}")));
+    }
+}
 
 /// Returns the only problem of a file with a newer version than this program supports.
 pub(super) fn newer(reader: &Reader<'_>, kind: &'static str) -> Option<Diagnostics> {

@@ -4,7 +4,7 @@ use super::layout_record::LayoutRecord;
 use super::send;
 use super::targets;
 use super::units::Units;
-use super::version::FORMAT_VERSION;
+use super::version::{FIRST_VERSION, WITH_MESSAGES};
 use crate::floor::Rect;
 use crate::ground::GroundMaterial;
 use crate::layout::{Ground, HEX, Layout, Widget};
@@ -13,7 +13,7 @@ use underfoot_format::{Codec, Name, Rec, Record, Variants};
 
 /// Writes the file that describes `layout`, in metres; [`super::parse_layout`] reads it.
 ///
-/// Places are rounded to a ten thousandth of a millimetre. Behaviour, feel and look of widgets are written once, in
+/// The version is the lowest one that holds the layout. Places are rounded to a ten thousandth of a millimetre. Behaviour, feel and look of widgets are written once, in
 /// kinds of the layout's own. Reading puts the controls of all pages before those of the first page and so on, each
 /// group in its order here.
 #[must_use]
@@ -43,8 +43,10 @@ pub(super) fn written(layout: &Layout) -> Vec<Entry> {
         place(stance.area, &mut entries);
         Text::Record("Stance", entries)
     });
+    let sends = !layout.targets.is_empty() || layout.widgets.iter().any(|widget| !widget.send.is_empty());
+    let version = if sends { WITH_MESSAGES } else { FIRST_VERSION };
     let mut entries = vec![
-        ("version", Text::Whole(FORMAT_VERSION.into())),
+        ("version", Text::Whole(version.into())),
         ("units", Name.write(&Units::Metres)),
         ("title", quoted(&layout.title)),
         ("regions", Text::List(regions.collect())),

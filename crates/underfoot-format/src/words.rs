@@ -2,7 +2,8 @@
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
 pub fn unit(field: &str) -> &'static str {
-    const UNITS: [(&str, &str); 21] = [
+    const UNITS: [(&str, &str); 22] = [
+        ("_px_s", " pixels per second"),
         ("_n_s_m", " N s/m"),
         ("_n_m", " N/m"),
         ("_kg", " kg"),

@@ -199,9 +199,11 @@ fn held_for(site: &Site, observer: &mut impl Observer, end: fn(&Run, &Boards)) -
 
 fn comes_up_soon(site: &Site, observer: &mut impl Observer) {
     for (name, end) in ENDS {
-        let mut times = Vec::new();
-        while times.last().is_none_or(|took| *took > SOON) {
-            assert!(times.len() < TRIES, "{name}: never within {SOON:?}: {times:?}");
+        let mut times: Vec<Duration> = Vec::new();
+        // An X server may lose the last requests of a client that ends: once is not enough there.
+        let rounds = if name.starts_with("server") { 4 } else { 1 };
+        while times.iter().filter(|took| **took <= SOON).count() < rounds {
+            assert!(times.len() < TRIES + rounds, "{name}: never within {SOON:?}: {times:?}");
             times.push(held_for(site, observer, end));
         }
         println!("{name}: up after {times:?}");

@@ -14,6 +14,7 @@ use x11rb::protocol::xproto::{
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
+use x11rb::wrapper::ConnectionExt as _;
 
 use self::keymap::Keymap;
 use super::outlet::{Outlet, OutletError};
@@ -133,8 +134,10 @@ impl X11Outlet {
         Err(OutletError::Refused(format!("the keyboard is in {there}, not in {wanted:?}")))
     }
 
-    fn flush(&self) -> Result<(), OutletError> {
-        self.connection.flush().map_err(|error| lost(&error))
+    /// Waits until the X server has carried everything out: it drops the requests of a client that closes its connection
+    /// before they were read.
+    fn settle(&self) -> Result<(), OutletError> {
+        self.connection.sync().map_err(|error| lost(&error))
     }
 }
 
@@ -167,14 +170,14 @@ impl Outlet for X11Outlet {
             }
             Act::Osc(..) => return Err(OutletError::Refused("a keyboard receives no OSC".into())),
         }
-        self.flush()
+        self.settle()
     }
 
     fn release(&mut self, what: &Holdable) -> Result<(), OutletError> {
         match self.up(what, true) {
             // A key that the keyboard lacks is not down.
             Err(OutletError::Refused(_)) => Ok(()),
-            done => done.and_then(|()| self.flush()),
+            done => done.and_then(|()| self.settle()),
         }
     }
 }
