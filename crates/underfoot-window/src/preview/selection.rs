@@ -84,6 +84,8 @@ impl Selection {
 
     pub(super) fn unpin(&mut self) {
         self.pinned = false;
+        // The last press counts again, so that its control returns at once.
+        self.pressed_at = None;
     }
 
     pub(super) fn tile(&self) -> TileId {

@@ -14,7 +14,7 @@ use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::{Theme, in_drawn_order};
 
 /// Width of the window below which the tools of the mode get a line of their own, in points.
-const TWO_LINES: f32 = 1180.0;
+const TWO_LINES: f32 = 1200.0;
 
 /// Width of the window below which the right end of the bar has icons without words, in points.
 const COMPACT: f32 = 760.0;
@@ -24,6 +24,9 @@ const LINE: f32 = 27.0;
 
 /// Width of the title or the name of the file, in points: constant, so that the tools keep their places.
 const TITLE: f32 = 150.0;
+
+/// Width of the name of the file beside the title, in points.
+const FILE: f32 = 88.0;
 
 /// The choice of layouts, whether the warnings are listed, and the width of the bar's right end.
 #[derive(Default)]
@@ -75,7 +78,7 @@ impl App {
             line(ui, |ui| {
                 self.mode_switch(ui);
                 ui.add_space(4.0);
-                self.heading(ui, &theme);
+                self.heading(ui, &theme, is_compact);
                 if !has_two_lines {
                     ui.add_space(4.0);
                     self.tools(ui, &theme);
@@ -99,8 +102,8 @@ impl App {
         }
     }
 
-    /// The title of the layout, or in Design mode its file.
-    fn heading(&mut self, ui: &mut Ui, theme: &Theme) {
+    /// The title of the layout and its file, or in Design mode the file alone; a compact bar has no room for both.
+    fn heading(&mut self, ui: &mut Ui, theme: &Theme, is_compact: bool) {
         ui.allocate_ui_with_layout(vec2(TITLE, LINE), Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_size(vec2(TITLE, LINE));
             ui.set_max_width(TITLE);
@@ -114,10 +117,18 @@ impl App {
                 }
             }
         });
-        // Without an editor, only the bar names the file.
-        if let (None, Some(file)) = (&self.designer, &self.shown.messages.file) {
-            ui.add(egui::Label::new(quiet(theme, &file.name)).truncate());
+        if self.is_designing() || is_compact {
+            return;
         }
+        ui.allocate_ui_with_layout(vec2(FILE, LINE), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_size(vec2(FILE, LINE));
+            ui.set_max_width(FILE);
+            if let Some(designer) = &self.designer {
+                file_name(ui, theme, designer);
+            } else if let Some(file) = &self.shown.messages.file {
+                ui.add(egui::Label::new(quiet(theme, &file.name)).truncate());
+            }
+        });
     }
 
     /// The part at the right: the states of the floor, appearance and help.

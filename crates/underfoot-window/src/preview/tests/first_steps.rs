@@ -4,7 +4,7 @@ use super::*;
 
 fn steps(room: &Room) -> Vec<String> {
     let nodes = room.window.query_all_by_label_contains("Step ");
-    nodes.filter_map(|node| node.accesskit_node().label()).collect()
+    nodes.filter_map(|node| node.accesskit_node().value()).collect()
 }
 
 /// A change of a value by a foot.

@@ -34,6 +34,10 @@ fn one_switch_leads_to_each_mode_and_back() {
 fn the_floor_stays_where_it_is_when_the_mode_changes_or_a_message_appears() {
     for (width, height) in [(1280.0, 800.0), (1600.0, 1000.0), (1100.0, 700.0)] {
         let mut room = Room::of(true, width, height);
+        // The floor shows the layout of the editor.
+        let designed = room.window.state().designer.as_ref().map(|designer| designer.layout().clone());
+        room.layouts.send(loaded(Arc::new(designed.unwrap()), "map".into())).unwrap();
+        room.run(2);
         // The widths of the panels are known once each of them was on the screen.
         for _ in 0..2 {
             room.window.key_press(Key::F2);
@@ -49,7 +53,7 @@ fn the_floor_stays_where_it_is_when_the_mode_changes_or_a_message_appears() {
         assert_eq!(area(&room, "Home"), before, "a file with problems at {width}");
         room.window.key_press(Key::F2);
         room.run(6);
-        let designed = area(&room, "On the floor: Home");
+        let designed = area(&room, "On the floor: home");
         assert!((designed.min - before.min).length() < 1.0, "{before} moved to {designed} at {width}");
         assert!((designed.size() - before.size()).length() < 1.0, "{before} became {designed}");
     }

@@ -7,8 +7,8 @@ fn crowded() -> Desk {
     let text = builtin_layout("map").unwrap();
     let mut desk = Desk::on(text, None);
     let doc = desk.designer_mut();
-    let floor = doc.edited.document.floor().geometry;
-    let small = Rect::from_min_size(floor.bounds().min, glam::Vec2::splat(0.05));
+    let corner = doc.layout().regions[0].area.max;
+    let small = Rect::from_min_size(corner - glam::Vec2::splat(0.12), glam::Vec2::splat(0.05));
     let control = super::super::palette::PaletteThing::Control("button".into());
     assert!(doc.edited.put(&control, small), "{:?}", doc.edited.message.as_ref().map(|it| &it.text));
     doc.edited.selected.clear();
