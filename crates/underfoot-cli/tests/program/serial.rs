@@ -1,10 +1,12 @@
 //! Boards behind serial ports of the program, here pseudo terminals.
 
 use std::io::{BufRead, BufReader, Read, Write};
+use std::os::fd::{AsRawFd, BorrowedFd};
 use std::process::Stdio;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use nix::fcntl::{FcntlArg, FdFlag, fcntl};
 use serialport::{SerialPort, TTYPort};
 
 use crate::end_to_end::{Served, underfoot};
@@ -27,6 +29,13 @@ fn line(ms: u64) -> Vec<u8> {
     }
 }
 
+/// Keeps the board's end of the terminal from the program under test, so that dropping it pulls the cable.
+fn keep_from_programs(pad: &TTYPort) {
+    // SAFETY: `pad` holds the descriptor open during the call.
+    let end = unsafe { BorrowedFd::borrow_raw(pad.as_raw_fd()) };
+    fcntl(end, FcntlArg::F_SETFD(FdFlag::FD_CLOEXEC)).unwrap();
+}
+
 // N16, N17
 #[test]
 fn a_foot_on_a_pad_presses_despite_garbage_and_a_pulled_cable_cancels_its_hold() {
@@ -34,6 +43,7 @@ fn a_foot_on_a_pad_presses_despite_garbage_and_a_pulled_cable_cancels_its_hold()
     std::fs::write(folder.path().join("floor.ron"), FLOOR).unwrap();
     std::fs::write(folder.path().join("page.ron"), PAGE).unwrap();
     let (mut pad, port) = TTYPort::pair().unwrap();
+    keep_from_programs(&pad);
     let listen = format!("127.0.0.1:{}", crate::ports::free_port());
     let mut server = underfoot()
         .current_dir(folder.path())
