@@ -7,7 +7,7 @@ mod thing;
 use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
-    Key, Margin, Panel, Response, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
+    Id, Key, Margin, Panel, Response, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
 };
 
 use super::edited::EditedLayout;
@@ -183,9 +183,7 @@ impl ThingList {
                 ui.label(RichText::new(heading).size(12.0).strong().color(color(theme.quiet)));
             }
             let is_chosen = placing == Some(&row.thing) && !row.is_recent;
-            // A row keeps the keyboard when rows appear or disappear above.
-            let id = (row.thing.name(), row.is_recent);
-            let response = ui.push_id(id, |ui| show_row(ui, theme, palette, edited, &row, is_chosen)).inner;
+            let response = show_row(ui, theme, palette, edited, &row, is_chosen);
             if response.drag_started() || response.clicked() {
                 let is_key = response.clicked()
                     && ui.input(|i| i.key_pressed(Key::Enter) || i.key_pressed(Key::Space));
@@ -212,7 +210,10 @@ fn show_row(
     is_chosen: bool,
 ) -> Response {
     let size = vec2(ui.available_width(), PICTURE.y + 6.0);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let (_, rect) = ui.allocate_space(size);
+    // A row keeps the keyboard when rows appear or disappear above.
+    let id = Id::unique(("palette", row.thing.name(), row.is_recent));
+    let response = ui.interact(rect, id, Sense::click_and_drag());
     if response.gained_focus() {
         response.scroll_to_me(None);
     }

@@ -214,7 +214,7 @@ fn several_are_moved_by_a_typed_amount() {
     let (north, south) = (desk.place("pan_north"), desk.place("pan_south"));
     desk.drag(north + vec2(-130.0, -60.0), south + vec2(130.0, 40.0));
     let before = (desk.area("pan_north"), desk.area("pan_west"));
-    desk.field("all north").focus();
+    desk.window.get_by_label("all north").focus();
     desk.window.run_steps(2);
     desk.type_over("+0.1");
     let pitch = Floor::default().geometry.pitch_m();
