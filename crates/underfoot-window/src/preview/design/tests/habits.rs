@@ -166,7 +166,7 @@ fn the_menu_pastes_the_appearance_and_the_feel_alone() {
     let (first, before) = (desk.text(), look(&desk, &other));
     let place = desk.place(&other);
     desk.open_menu(place);
-    assert_eq!(desk.selected_ids(), [other.clone()]);
+    assert_eq!(desk.selected_ids(), std::slice::from_ref(&other));
     desk.choose_entry("Paste appearance");
     desk.window.event(Event::Paste(copied.clone()));
     desk.window.run_steps(3);
