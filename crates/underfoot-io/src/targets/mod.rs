@@ -37,7 +37,7 @@ const BEAT: Duration = Duration::from_millis(20);
 
 /// Longest time without a heartbeat, or without its acknowledgement, before everything is released.
 ///
-/// With a heartbeat that is [`BEAT`] old, a poll that is [`POLLED`] old and one turn of the threads this stays below
+/// With a heartbeat that is `BEAT` old, a poll that is `POLLED` old and one turn of the threads this stays below
 /// 150 ms.
 pub const PATIENCE: Duration = Duration::from_millis(80);
 
