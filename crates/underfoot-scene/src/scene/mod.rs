@@ -6,7 +6,7 @@
 //! ```
 //! use underfoot_scene::scene::{self, Scene, Theme, View};
 //! # use underfoot::{engine::Snapshot, floor::Geometry, layout::Layout};
-//! # let layout = Layout { title: "Empty".into(), regions: vec![], stances: vec![], pages: vec![], grounds: vec![], widgets: vec![] };
+//! # let layout = Layout { title: "Empty".into(), regions: vec![], stances: vec![], targets: vec![], pages: vec![], grounds: vec![], widgets: vec![] };
 //! let mut scene = Scene::new();
 //! let (geometry, snapshot) = (Geometry::default(), Snapshot::default());
 //! scene::draw(&mut scene, &View::new(&geometry, &layout, &snapshot, &Theme::LIGHT));
