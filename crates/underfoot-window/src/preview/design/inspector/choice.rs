@@ -11,7 +11,7 @@ use underfoot_format::describe::{Description, FieldType};
 use underfoot_format::outline::Outline;
 
 /// Width of a drop-down, in points.
-const CHOICE_PX: f32 = 136.0;
+const CHOICE_PX: f32 = 126.0;
 
 /// The choices for a field, as the file writes them; `None` for a field that is no choice.
 pub(super) fn choices(field: &ShownField<'_>) -> Option<Vec<String>> {

@@ -14,7 +14,7 @@ use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
 
 /// Width of a field's name, in points.
-const NAME_PX: f32 = 94.0;
+const NAME_PX: f32 = 104.0;
 
 /// Width of the mark before it, in points.
 const MARK_PX: f32 = 8.0;

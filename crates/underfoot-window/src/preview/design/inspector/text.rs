@@ -10,7 +10,7 @@ use super::words::label;
 use crate::edit::{FieldOrigin, quoted};
 
 /// Width of a text field, in points.
-pub(super) const TYPED_PX: f32 = 136.0;
+pub(super) const TYPED_PX: f32 = 126.0;
 
 /// A text field of this width; asks for its text once the user has finished. Text in quotes is shown without them if
 /// `is_text`.
