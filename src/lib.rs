@@ -82,7 +82,7 @@ pub mod outgoing;
 pub mod parallel;
 #[cfg(not(feature = "threads"))]
 mod parallel;
-mod rate_limit;
+pub mod rate_limit;
 #[cfg(feature = "record")]
 pub mod recording;
 #[cfg(feature = "net")]

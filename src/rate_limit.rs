@@ -10,7 +10,7 @@ use crate::units::Instant;
 /// passes if `full_at - now <= every * (burst - n)`, and then sets `full_at = max(full_at, now) + every * n`. A
 /// limiter stores two numbers and needs no clock.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RateLimit {
+pub struct RateLimit {
     every: Duration,
     burst: u32,
     /// Time at which the bucket is full again.
@@ -21,7 +21,8 @@ pub(crate) struct RateLimit {
 
 impl RateLimit {
     /// At most `burst` (0 counts as 1) at once, and one per `every` in the long run.
-    pub(crate) const fn new(burst: u32, every: Duration) -> Self {
+    #[must_use]
+    pub const fn new(burst: u32, every: Duration) -> Self {
         Self { every, burst, full_at: Instant::START, held_back: 0 }
     }
 
@@ -29,12 +30,12 @@ impl RateLimit {
     /// rejection.
     ///
     /// A clock that goes back adds no tokens.
-    pub(crate) fn take(&mut self, now: Instant) -> Option<u64> {
+    pub fn take(&mut self, now: Instant) -> Option<u64> {
         self.take_many(now, 1)
     }
 
     /// Takes `count` tokens at once. More than the burst may be taken when the bucket is full.
-    pub(crate) fn take_many(&mut self, now: Instant, count: u32) -> Option<u64> {
+    pub fn take_many(&mut self, now: Instant, count: u32) -> Option<u64> {
         let spent = self.full_at.since(now);
         if spent > self.every * self.burst.saturating_sub(count) {
             self.held_back += 1;

@@ -25,5 +25,5 @@ pub use messenger::Messenger;
 pub use order::{Act, Holdable, MessageOrder, OscValue, Unsent};
 pub use plan::MessagePlan;
 pub use sending::{MAX_MESSAGES, MouseButton, OscArgument, OscSettings, Payload, Sending, When};
-pub use target::{Destination, KeyboardTarget, MAX_TARGETS, OscTarget, SendTarget, Transport};
+pub use target::{Destination, KeyboardTarget, MAX_TARGETS, OscTarget, OscTransport, SendTarget};
 pub use trigger::Trigger;

@@ -39,12 +39,21 @@ pub struct OscTarget {
     /// Host and port, such as `127.0.0.1:53000`.
     pub address: String,
     /// The protocol below OSC.
-    pub over: Transport,
+    pub over: OscTransport,
+}
+
+impl OscTarget {
+    /// Whether `text` is a host and a port other than 0, such as `localhost:53000`; the host may be unknown.
+    #[must_use]
+    pub fn is_address(text: &str) -> bool {
+        text.rsplit_once(':')
+            .is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok_and(|port| port > 0))
+    }
 }
 
 /// The protocol below OSC.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-pub enum Transport {
+pub enum OscTransport {
     /// A datagram for each message.
     #[default]
     Udp,
@@ -52,7 +61,7 @@ pub enum Transport {
     Tcp,
 }
 
-impl Named for Transport {
+impl Named for OscTransport {
     const ALL: &'static [(&'static str, Self)] = &[("Udp", Self::Udp), ("Tcp", Self::Tcp)];
 }
 

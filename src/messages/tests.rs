@@ -22,7 +22,8 @@ fn key(name: &str) -> Payload {
 fn plan() -> MessagePlan {
     let target = |name: &str, to| SendTarget { name: name.into(), to };
     let keyboard = Destination::Keyboard(KeyboardTarget { window: None, display: None });
-    let osc = Destination::Osc(OscTarget { address: "127.0.0.1:53000".into(), over: Transport::default() });
+    let osc =
+        Destination::Osc(OscTarget { address: "127.0.0.1:53000".into(), over: OscTransport::default() });
     let mut plan = MessagePlan::new(vec![target("viewer", keyboard), target("desk", osc)]);
     let hold = Behaviour::Hold(HoldSpec { thresholds: AT });
     let slider = Behaviour::Slider(SliderSpec::new(AT, Scale::new(0.0, 10.0)));

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::tap::Entries;
 use super::writer::Job;
 use crate::outgoing::json::Head;
 use crate::units::Instant;
@@ -13,6 +14,14 @@ pub(super) trait JobSink {
 
     /// Counts entries or lines that could not be queued.
     fn note_lost(&self, count: u64);
+
+    /// Queues `entries`; returns them if they do not fit.
+    fn hand_entries(&self, entries: Entries) -> Option<Entries> {
+        match self.hand_job(Job::Entries(entries))? {
+            Job::Entries(entries) => Some(entries),
+            Job::Event(..) => None,
+        }
+    }
 }
 
 /// Receives JSON lines, each as a message of its own.

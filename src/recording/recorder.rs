@@ -141,10 +141,7 @@ impl EntrySink for Recorder {
     }
 
     fn hand(&self, entries: Entries) -> Option<Entries> {
-        match self.hand_job(Job::Entries(entries))? {
-            Job::Entries(entries) => Some(entries),
-            Job::Event(..) => None,
-        }
+        self.hand_entries(entries)
     }
 
     fn count_lost(&self, entries: u64) {

@@ -2,7 +2,7 @@
 
 use super::node::Node;
 use super::problem::Problem;
-use crate::messages::{Destination, KeyboardTarget, MAX_TARGETS, OscTarget, SendTarget, Transport};
+use crate::messages::{Destination, KeyboardTarget, MAX_TARGETS, OscTarget, OscTransport, SendTarget};
 use underfoot_format::codec::{At, By, Distinct, Written};
 use underfoot_format::describe::FieldType;
 use underfoot_format::text::Text;
@@ -21,7 +21,7 @@ record! {
     /// How OSC reaches a target.
     struct OverRecord = "Osc", Copy, Eq;
     /// The protocol below OSC; SLIP frames the messages on TCP.
-    over: Transport = "over", Name => Transport::Udp;
+    over: OscTransport = "over", Name => OscTransport::Udp;
 }
 
 /// The targets of a layout.
@@ -50,8 +50,8 @@ const DESTINATION: By<Destination> = By {
             Text::Call(
                 "Osc",
                 match over {
-                    Transport::Udp => vec![address],
-                    Transport::Tcp => vec![address, Rec.write(&OverRecord { over: *over })],
+                    OscTransport::Udp => vec![address],
+                    OscTransport::Tcp => vec![address, Rec.write(&OverRecord { over: *over })],
                 },
             )
         }
@@ -71,12 +71,12 @@ fn destination(node: Node<'_>) -> Option<Destination> {
         return settings.map_or(Some(ANY_WINDOW), |node| node.record(None, &())).map(Destination::Keyboard);
     }
     let ([address], settings) = call.values(OSC)?;
-    let over = settings
-        .map_or(Some(Transport::Udp), |node| node.record::<OverRecord>(None, &()).map(|record| record.over));
+    let over = settings.map_or(Some(OscTransport::Udp), |node| {
+        node.record::<OverRecord>(None, &()).map(|record| record.over)
+    });
     let address = Node { name: "address", ..address };
     let text = address.text(255)?;
-    let port = text.rsplit_once(':').filter(|(host, _)| !host.is_empty());
-    if port.is_none_or(|(_, port)| !port.parse::<u16>().is_ok_and(|port| port > 0)) {
+    if !OscTarget::is_address(text) {
         let problem = Problem::error(address.span(), "this is no address of a program");
         let help = "write a host and a port, such as \"127.0.0.1:53000\"";
         address.report(problem.expected("expected host:port").help(help));

@@ -3,7 +3,7 @@
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::messages::{
-    Destination, KeyboardTarget, MouseButton, OscArgument, OscTarget, Payload, Transport, Trigger, When,
+    Destination, KeyboardTarget, MouseButton, OscArgument, OscTarget, OscTransport, Payload, Trigger, When,
 };
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout, write_layout};
 
@@ -41,7 +41,7 @@ fn a_layout_says_what_its_controls_send() {
     let [viewer, desk] = layout.targets.as_slice() else { panic!("{:?}", layout.targets) };
     let keyboard = KeyboardTarget { window: Some("Weasis".into()), display: None };
     assert_eq!(viewer.to, Destination::Keyboard(keyboard));
-    let osc = OscTarget { address: "127.0.0.1:53000".into(), over: Transport::Tcp };
+    let osc = OscTarget { address: "127.0.0.1:53000".into(), over: OscTransport::Tcp };
     assert_eq!(desk.to, Destination::Osc(osc));
     let of = |id: &str| layout.widgets[layout.widget_index(id).unwrap()].send.as_slice();
     let [key, wheel] = of("next") else { panic!() };

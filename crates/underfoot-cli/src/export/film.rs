@@ -6,23 +6,20 @@ use std::path::Path;
 use std::time::Duration;
 
 use underfoot::engine::Snapshot;
-use underfoot::recording::{Recording, Speed};
-use underfoot::serve::{Ended, Server};
+use underfoot::serve::Ended;
 use underfoot_scene::picture::Film;
 use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 
 use super::super::failure::Failure;
 use super::super::fonts::fonts;
-use super::super::replay::whole;
 use super::part::RecordedPart;
-use super::{Exported, Tell};
+use super::{Exported, PlayedRecording, Tell, exported};
 
 /// Time from one drawing to the next: viewers of GIF files show shorter ones too slowly or not at all on slow
 /// machines, and feet still move smoothly.
 const STEP: Duration = Duration::from_millis(80);
 
-/// Writes the floor of a part as a GIF file, drawn as the window draws it; fails at the end if the recording is
-/// incomplete.
+/// Writes the floor of a part as a GIF file, drawn as the window draws it.
 pub(super) fn write(
     file: &Path,
     to: &Path,
@@ -31,12 +28,7 @@ pub(super) fn write(
     tell: Tell<'_>,
 ) -> Result<Exported, Failure> {
     let failed = |error| Failure::File(to.into(), error);
-    let recording = Recording::open(file)?;
-    let floor = recording.floor().clone();
-    let (layout, method) = (recording.layout().clone(), recording.method());
-    let source = recording.source(Speed::Max);
-    let progress = source.progress();
-    let mut server = Server::new(&floor, layout, method, source);
+    let PlayedRecording { floor, mut server, progress } = PlayedRecording::open(file)?;
     let mut film = Film::new(BufWriter::new(File::create(to).map_err(failed)?), width_px);
     let (mut scene, mut snapshot, mut next) = (Scene::new(), Snapshot::default(), part.from);
     loop {
@@ -66,6 +58,5 @@ pub(super) fn write(
     let out = film.finish(end)?;
     let written = out.into_inner().map_err(io::Error::from).and_then(|file| file.sync_all());
     written.map_err(failed)?;
-    whole(&progress)?;
-    Ok(Exported::Whole)
+    Ok(exported(&progress))
 }

@@ -6,11 +6,15 @@ mod tables;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use underfoot::recording::Recording;
+use underfoot::floor::Floor;
+use underfoot::recording::{Progress, Recording, Speed};
+use underfoot::serve::Server;
 use underfoot_scene::picture;
 
 use super::failure::Failure;
+use super::replay::whole;
 pub(crate) use part::RecordedPart;
 
 /// Options of `underfoot export`.
@@ -56,10 +60,12 @@ fn width(text: &str) -> Result<u32, String> {
 pub(crate) type Tell<'a> = &'a mut dyn FnMut(f64) -> bool;
 
 /// How an export ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub(crate) enum Exported {
     /// The files are complete.
     Whole,
+    /// The files end where the recording breaks off or is damaged.
+    UpToBreak(Failure),
     /// It was stopped.
     Stopped,
 }
@@ -87,7 +93,7 @@ pub(crate) fn export(
         Form::Tables => tables::write(file, to, part, tell),
         Form::Film(width_px) => {
             let exported = film::write(file, to, width_px, part, tell)?;
-            if exported == Exported::Stopped {
+            if matches!(exported, Exported::Stopped) {
                 fs::remove_file(to).map_err(|error| Failure::File(to.into(), error))?;
             }
             Ok(exported)
@@ -98,11 +104,11 @@ pub(crate) fn export(
                 None => Ok(Exported::Stopped),
                 Some(trimmed) => match trimmed.broken {
                     None => Ok(Exported::Whole),
-                    Some(why) => Err(Failure::Other(format!(
+                    Some(why) => Ok(Exported::UpToBreak(Failure::Other(format!(
                         "{} has all of {} up to its break ({why})",
                         to.display(),
                         file.display()
-                    ))),
+                    )))),
                 },
             }
         }
@@ -120,9 +126,36 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut ended = Ok(());
     for (to, form, words) in forms {
         let Some(to) = to else { continue };
-        let exported = export(&args.file, &part, form, to, &mut |_| true);
+        let exported = export(&args.file, &part, form, to, &mut |_| true)?;
         outln!("{words} {}.", to.display());
-        ended = ended.and(exported.map(drop));
+        if let Exported::UpToBreak(failure) = exported {
+            ended = ended.and(Err(failure));
+        }
     }
     ended
+}
+
+/// A recording played by a server as fast as it goes.
+struct PlayedRecording {
+    floor: Floor,
+    server: Server,
+    progress: Arc<Progress>,
+}
+
+impl PlayedRecording {
+    /// Opens the recording at `file`.
+    fn open(file: &Path) -> Result<Self, Failure> {
+        let recording = Recording::open(file)?;
+        let floor = recording.floor().clone();
+        let (layout, method) = (recording.layout().clone(), recording.method());
+        let source = recording.source(Speed::Max);
+        let progress = source.progress();
+        let server = Server::new(&floor, layout, method, source);
+        Ok(Self { floor, server, progress })
+    }
+}
+
+/// How an export ends that has read all of its part.
+fn exported(progress: &Progress) -> Exported {
+    whole(progress).map_or_else(Exported::UpToBreak, |()| Exported::Whole)
 }

@@ -9,16 +9,15 @@ use std::time::Duration;
 use serde_json::Value;
 use underfoot::recording::{Recording, Speed};
 use underfoot::sense::{Assembler, Tare};
-use underfoot::serve::{Ended, Server};
+use underfoot::serve::Ended;
 use underfoot::sink::{EventSink, Report};
 use underfoot::source::{FloorInput, SourceError};
 
 use super::super::failure::Failure;
-use super::super::replay::whole;
 use super::part::RecordedPart;
-use super::{Exported, Tell};
+use super::{Exported, PlayedRecording, Tell, exported};
 
-/// Writes the tables of a part into a folder; fails at the end if the recording is incomplete.
+/// Writes the tables of a part into a folder.
 pub(super) fn write(
     file: &Path,
     folder: &Path,
@@ -28,7 +27,7 @@ pub(super) fn write(
     std::fs::create_dir_all(folder).map_err(|error| Failure::File(folder.into(), error))?;
     // Each of the two replays is half of the work; the lines of events take no time.
     let mut first = |share: f64| tell(0.5 * share);
-    if forces(file, &folder.join("forces.csv"), part, &mut first)? == Exported::Stopped {
+    if let Exported::Stopped = forces(file, &folder.join("forces.csv"), part, &mut first)? {
         return Ok(Exported::Stopped);
     }
     events(file, &folder.join("events.csv"), part)?;
@@ -108,16 +107,11 @@ fn events(file: &Path, to: &Path, part: &RecordedPart) -> Result<(), Failure> {
 /// Writes the contacts of each frame.
 fn contacts(file: &Path, to: &Path, part: &RecordedPart, tell: Tell<'_>) -> Result<Exported, Failure> {
     let failed = |error| Failure::File(to.into(), error);
-    let recording = Recording::open(file)?;
-    let floor = recording.floor().clone();
-    let (layout, method) = (recording.layout().clone(), recording.method());
-    let source = recording.source(Speed::Max);
-    let progress = source.progress();
+    let PlayedRecording { server, progress, .. } = PlayedRecording::open(file)?;
     let mut out = create(to)?;
     writeln!(out, "t_s,id,x_m,y_m,force_n,x_velocity_m_s,y_velocity_m_s,ambiguous").map_err(failed)?;
     let rows = Arc::<Mutex<Vec<u8>>>::default();
-    let mut server = Server::new(&floor, layout, method, source)
-        .with_events(Box::new(ContactRows { rows: Arc::clone(&rows), part: *part }));
+    let mut server = server.with_events(Box::new(ContactRows { rows: Arc::clone(&rows), part: *part }));
     loop {
         let ended = server.turn()?;
         let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
@@ -132,8 +126,7 @@ fn contacts(file: &Path, to: &Path, part: &RecordedPart, tell: Tell<'_>) -> Resu
         }
     }
     out.flush().map_err(failed)?;
-    whole(&progress)?;
-    Ok(Exported::Whole)
+    Ok(exported(&progress))
 }
 
 /// Collects the contacts of a part as lines of a table.

@@ -216,6 +216,7 @@ impl Clerk {
         shared.state().work = None;
         Ok(match exported? {
             Exported::Whole => format!("Exported to {name}."),
+            Exported::UpToBreak(failure) => failure.to_string(),
             Exported::Stopped => format!("The export to {name} was stopped."),
         })
     }

@@ -223,12 +223,17 @@ fn an_osc_address_that_is_held_comes_up_whatever_dies() {
 #[test]
 fn a_key_that_is_held_comes_up_whatever_dies() {
     let Some(mut screen) = VirtualScreen::open() else { return };
-    let desk = OscDesk::new();
-    let site = Site::new();
+    let (site, _desk) = site_with_key(&screen);
+    comes_up_soon(&site, &mut screen);
+}
+
+/// A site whose pedal holds a key on `screen` and an address of a desk.
+fn site_with_key(screen: &VirtualScreen) -> (Site, OscDesk) {
+    let (site, desk) = (Site::new(), OscDesk::new());
     let targets = format!("{}, {}", screen.target(), desk.target());
     let page = page(&targets, r#"While(pressed, Key("viewer", "space"))"#);
     std::fs::write(site.folder().join("page.ron"), page).unwrap();
-    comes_up_soon(&site, &mut screen);
+    (site, desk)
 }
 
 /// Twenty rounds of each end, the median and the longest time: for an idle machine, in a release build.
@@ -236,11 +241,7 @@ fn a_key_that_is_held_comes_up_whatever_dies() {
 #[ignore = "takes ten minutes; figures of a machine that is busy say nothing"]
 fn twenty_rounds_of_each_end_of_a_key() {
     let Some(mut screen) = VirtualScreen::open() else { return };
-    let desk = OscDesk::new();
-    let site = Site::new();
-    let targets = format!("{}, {}", screen.target(), desk.target());
-    let page = page(&targets, r#"While(pressed, Key("viewer", "space"))"#);
-    std::fs::write(site.folder().join("page.ron"), page).unwrap();
+    let (site, _desk) = site_with_key(&screen);
     let mut late = Vec::new();
     for (name, end) in ENDS {
         let mut times: Vec<Duration> = (0..20).map(|_| held_for(&site, &mut screen, end)).collect();

@@ -22,7 +22,6 @@ mod beside;
 mod decode;
 mod device;
 mod find;
-mod notices;
 mod sequence;
 mod thread;
 

@@ -9,13 +9,16 @@ use std::time::Duration;
 
 use tracing::{info, warn};
 use underfoot::floor::{Floor, PortName, SerialWire};
+use underfoot::rate_limit::RateLimit;
 use underfoot::units::{HostClock, Instant};
 use underfoot::wire::{LinkCause, LinkCounters};
 
 use super::decode::{PortContent, PortDecoder};
 use super::device::{self, Device, PortRead};
-use super::notices::PortNotices;
 use super::{News, SerialError};
+
+/// Minimum time between two notices of the same sort about one port.
+const NOTICE_EVERY: Duration = Duration::from_secs(60);
 
 /// Interval between attempts to open a port that is gone.
 const AGAIN: Duration = Duration::from_millis(50);
@@ -51,8 +54,8 @@ pub(super) struct PortThread {
     news: SyncSender<News>,
     /// Counts that did not reach the sensing thread yet.
     counted: LinkCounters,
-    refusals: PortNotices,
-    failures: PortNotices,
+    refusals: RateLimit,
+    failures: RateLimit,
 }
 
 impl PortThread {
@@ -70,8 +73,8 @@ impl PortThread {
             clock,
             news,
             counted: LinkCounters::default(),
-            refusals: PortNotices::default(),
-            failures: PortNotices::default(),
+            refusals: RateLimit::new(1, NOTICE_EVERY),
+            failures: RateLimit::new(1, NOTICE_EVERY),
         }
     }
 
@@ -105,7 +108,7 @@ impl PortThread {
             Err(SerialError::Absent { .. }) => None,
             // Rights may come a moment after the port.
             Err(error) => {
-                if self.failures.pass((self.clock)()).is_some() {
+                if self.failures.take((self.clock)()).is_some() {
                     warn!("{error}; trying again");
                 }
                 None
@@ -162,7 +165,7 @@ impl PortThread {
             }
         }
         if let Some(why) = content.fault.take() {
-            if let Some(others) = self.refusals.pass(now) {
+            if let Some(others) = self.refusals.take(now) {
                 warn!(others_like_it = others, "the serial port {} is not understood: {why}", self.name);
             }
             // The sensing thread needs the latest fault only; without room, an earlier one waits there.

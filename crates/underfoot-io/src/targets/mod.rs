@@ -17,7 +17,6 @@ mod outlet;
 mod outlets;
 mod redirect;
 mod sink;
-mod slip;
 mod supervisor;
 #[cfg(all(test, unix))]
 mod tests;

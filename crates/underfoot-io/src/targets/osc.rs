@@ -7,10 +7,10 @@ use std::thread::Builder;
 use std::time::Duration;
 
 use rosc::{OscMessage, OscPacket, OscType, encoder};
-use underfoot::messages::{Act, Holdable, OscTarget, OscValue, Transport};
+use underfoot::messages::{Act, Holdable, OscTarget, OscTransport, OscValue};
+use underfoot::wire::write_slip;
 
 use super::outlet::{Outlet, OutletError};
-use super::slip::framed;
 
 /// Longest wait for a connection, on a thread of its own.
 const CONNECT: Duration = Duration::from_secs(2);
@@ -36,7 +36,7 @@ impl OscOutlet {
     pub(super) fn open(target: &OscTarget) -> Result<Self, OutletError> {
         let gone = |error: io::Error| OutletError::Gone(format!("{}: {error}", target.address));
         let way = match (target.address.parse(), target.over) {
-            (Ok(address), Transport::Udp) => datagrams(address),
+            (Ok(address), OscTransport::Udp) => datagrams(address),
             _ => open_meanwhile(target.clone()),
         };
         Ok(Self { address: target.address.clone(), way: way.map_err(gone)? })
@@ -56,7 +56,11 @@ impl OscOutlet {
             },
             OscWay::Opening(_) => Err(OutletError::Refused(format!("{} is not connected yet", self.address))),
             // A stream that takes only a part of a frame is of no use any more.
-            OscWay::Tcp(stream) => stream.write_all(&framed(&packet)).map_err(gone),
+            OscWay::Tcp(stream) => {
+                let mut frame = Vec::with_capacity(packet.len() + 2);
+                write_slip(&packet, &mut frame);
+                stream.write_all(&frame).map_err(gone)
+            }
         }
     }
 
@@ -100,8 +104,8 @@ fn open_meanwhile(target: OscTarget) -> io::Result<OscWay> {
     let (done, opened) = channel();
     let open = move || {
         let way = looked_up(&target.address).and_then(|address| match target.over {
-            Transport::Udp => datagrams(address),
-            Transport::Tcp => stream(address),
+            OscTransport::Udp => datagrams(address),
+            OscTransport::Tcp => stream(address),
         });
         // The outlet may be gone.
         let _ = done.send(way);

@@ -1,6 +1,6 @@
 //! Targets that the command line moves: `desk=10.0.0.5:53000`, `viewer=:1`.
 
-use underfoot::messages::{Destination, SendTarget, Transport};
+use underfoot::messages::{Destination, OscTarget, OscTransport, SendTarget};
 
 /// Moves the target called `name` in `targets` to `place`: for OSC a host and a port, after `tcp:` or `udp:` for
 /// another protocol; for a keyboard an X display such as `:1`.
@@ -25,12 +25,11 @@ pub fn redirect(targets: &mut [SendTarget], name: &str, place: &str) -> Result<(
         }
         Destination::Osc(osc) => {
             let (over, address) = match place.split_once(':') {
-                Some(("tcp", address)) => (Transport::Tcp, address),
-                Some(("udp", address)) => (Transport::Udp, address),
+                Some(("tcp", address)) => (OscTransport::Tcp, address),
+                Some(("udp", address)) => (OscTransport::Udp, address),
                 _ => (osc.over, place),
             };
-            let port = address.rsplit_once(':').filter(|(host, _)| !host.is_empty());
-            if !port.is_some_and(|(_, port)| port.parse::<u16>().is_ok_and(|port| port > 0)) {
+            if !OscTarget::is_address(address) {
                 return Err(format!("{name} receives OSC: write {name}=127.0.0.1:53000"));
             }
             (osc.address, osc.over) = (address.to_owned(), over);

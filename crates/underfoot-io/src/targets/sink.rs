@@ -1,8 +1,8 @@
 //! The sink of a session that sends the messages of its controls.
 
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
-use std::sync::{Arc, mpsc};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Instant as HostInstant;
 
@@ -17,6 +17,9 @@ use super::supervisor::{GuardianCommand, GuardianSupervisor, TargetJob, TargetSt
 
 /// Maximum number of orders that wait: a second of the fastest ones.
 const QUEUE: usize = 1024;
+
+/// Maximum number of loaded plans that wait for the sensing thread, which takes them every 5 ms and uses the latest.
+const MAX_PLANS: usize = 4;
 
 /// Sends the messages of the controls of one layout, through a guardian.
 pub struct TargetSink {
@@ -36,16 +39,17 @@ pub struct TargetSink {
 
 /// Changes the messages of a running [`TargetSink`].
 #[derive(Clone, Debug)]
-pub struct LoadedPlan(mpsc::Sender<MessagePlan>);
+pub struct LoadedPlan(SyncSender<MessagePlan>);
 
 impl LoadedPlan {
-    /// Uses these targets and messages, of a layout that the operator has named; everything comes up first.
+    /// Uses these targets and messages, of a layout that the operator has named; everything comes up first. Waits while
+    /// four earlier plans wait for the sensing thread.
     pub fn load(&self, plan: MessagePlan) {
         // The session may have ended.
         let _ = self.0.send(plan);
     }
 
-    /// Sends nothing any more: the layout on the floor is not the operator's.
+    /// Sends nothing any more: the layout on the floor is not the operator's. Waits as [`Self::load`] does.
     pub fn stop(&self, layout: &Layout, reason: &str) {
         if !layout.plan().is_empty() {
             warn!("the messages of this layout are off: {reason}");
@@ -61,7 +65,7 @@ impl TargetSink {
     /// The system gives no thread.
     pub fn start(plan: MessagePlan, command: GuardianCommand) -> std::io::Result<(Self, LoadedPlan)> {
         let (jobs, queue) = sync_channel(QUEUE);
-        let (load, plans) = channel();
+        let (load, plans) = sync_channel(MAX_PLANS);
         let (shared, begun) = (Arc::new(TargetStatus::default()), HostInstant::now());
         let supervisor =
             GuardianSupervisor { command, shared: Arc::clone(&shared), begun, plan: plan.clone() };

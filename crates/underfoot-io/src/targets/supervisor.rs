@@ -4,7 +4,7 @@ use std::io::{self, BufReader};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
@@ -26,6 +26,9 @@ const STARTING: Duration = Duration::from_secs(10);
 
 /// Time for the guardian to end after its input has ended.
 const FAREWELL: Duration = Duration::from_secs(4);
+
+/// Maximum number of the guardian's answers that wait: more than it gives in a second. It waits when they are full.
+const MAX_ANSWERS: usize = 256;
 
 /// A job for the supervisor.
 pub(super) enum TargetJob {
@@ -126,7 +129,7 @@ impl GuardianSupervisor {
         let missing = || io::Error::other("it has no pipe");
         let mut input = child.stdin.take().ok_or_else(missing)?;
         let output = child.stdout.take().ok_or_else(missing)?;
-        let (tell, answers) = channel();
+        let (tell, answers) = sync_channel(MAX_ANSWERS);
         Builder::new().name("guardian out".into()).spawn(move || read(output, &tell))?;
         put(&mut input, &plan_for(&self.plan))?;
         let (beaten, waits) = (Instant::now(), None);
@@ -203,7 +206,7 @@ fn plan_for(plan: &MessagePlan) -> ToGuardian {
 }
 
 /// Reads the guardian's answers until it ends.
-fn read(output: ChildStdout, tell: &Sender<FromGuardian>) {
+fn read(output: ChildStdout, tell: &SyncSender<FromGuardian>) {
     let mut output = BufReader::new(output);
     while let Some(answer) = next(&mut output) {
         if tell.send(answer).is_err() {

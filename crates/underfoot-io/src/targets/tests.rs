@@ -9,14 +9,14 @@ use std::time::{Duration, Instant};
 
 use rosc::{OscPacket, OscType, decoder};
 use underfoot::messages::{
-    Act, Destination, Holdable, KeyboardTarget, OscTarget, OscValue, SendTarget, Transport,
+    Act, Destination, Holdable, KeyboardTarget, OscTarget, OscTransport, OscValue, SendTarget,
 };
 
 use super::link::{FromGuardian, ToGuardian, next, put};
 use super::outlets::Outlets;
 use super::{PATIENCE, guard, redirect};
 
-fn desk(address: String, over: Transport) -> SendTarget {
+fn desk(address: String, over: OscTransport) -> SendTarget {
     SendTarget { name: "desk".into(), to: Destination::Osc(OscTarget { address, over }) }
 }
 
@@ -41,7 +41,7 @@ fn osc_arrives_over_udp_with_its_types() {
     let receiver = UdpSocket::bind("127.0.0.1:0").unwrap();
     receiver.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
     let address = receiver.local_addr().unwrap().to_string();
-    let mut outlets = Outlets::new(vec![desk(address, Transport::Udp)]);
+    let mut outlets = Outlets::new(vec![desk(address, OscTransport::Udp)]);
     let mut notices = Vec::new();
     assert!(outlets.carry_out(0, &pan(), &mut |text| notices.push(text)), "{notices:?}");
     let mut bytes = [0; 256];
@@ -59,7 +59,7 @@ fn osc_arrives_over_udp_with_its_types() {
 fn osc_arrives_over_tcp_in_slip_frames_and_nothing_waits_for_a_receiver_that_is_gone() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
-    let mut outlets = Outlets::new(vec![desk(address, Transport::Tcp)]);
+    let mut outlets = Outlets::new(vec![desk(address, OscTransport::Tcp)]);
     let mut notices = Vec::new();
     // While the connection is made, messages are lost and counted.
     let begun = Instant::now();
@@ -98,7 +98,7 @@ impl GuardedServer {
         let mut server = Self { input, answers: BufReader::new(answers), receiver, guardian: Some(guardian) };
         let address = server.receiver.local_addr().unwrap().to_string();
         let drive = (0, Holdable::Osc("/drive".into()));
-        server.say(&ToGuardian::Setup(vec![desk(address, Transport::Udp)], vec![drive]));
+        server.say(&ToGuardian::Setup(vec![desk(address, OscTransport::Udp)], vec![drive]));
         assert_eq!(server.heard(), "/drive 0", "before the first message all is released");
         server.beat(1);
         server
@@ -160,10 +160,10 @@ fn a_server_that_ends_lets_everything_come_up_and_the_guardian_ends() {
 fn the_command_line_moves_a_target_to_where_it_fits() {
     let keyboard = Destination::Keyboard(KeyboardTarget { window: None, display: None });
     let viewer = SendTarget { name: "viewer".into(), to: keyboard };
-    let mut targets = vec![desk("127.0.0.1:1".into(), Transport::Udp), viewer];
+    let mut targets = vec![desk("127.0.0.1:1".into(), OscTransport::Udp), viewer];
     redirect(&mut targets, "desk", "tcp:10.0.0.5:53000").unwrap();
     redirect(&mut targets, "viewer", ":1").unwrap();
-    assert_eq!(targets[0], desk("10.0.0.5:53000".into(), Transport::Tcp));
+    assert_eq!(targets[0], desk("10.0.0.5:53000".into(), OscTransport::Tcp));
     assert!(matches!(&targets[1].to, Destination::Keyboard(it) if it.display.as_deref() == Some(":1")));
     for (name, place) in [("desk", "nowhere"), ("viewer", "10.0.0.5"), ("desc", "10.0.0.5:53000")] {
         assert!(redirect(&mut targets, name, place).is_err(), "{name}={place}");

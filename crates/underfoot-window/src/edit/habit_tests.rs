@@ -25,7 +25,7 @@ fn random_change(rng: &mut Pcg32, document: &Document) -> Option<Vec<Edit>> {
         1 => facet_edits(document, facet, &document.copy(&records[..1]), &[other]).ok(),
         2 => {
             let number = PlaceNumber::ALL[rng.random_range(0..4)];
-            let change = NumberChange::By(rng.random_range(-0.1..0.1));
+            let change = TypedChange::By(rng.random_range(-0.1..0.1));
             changing(document, &[one, other], number, change).ok()
         }
         3 => {

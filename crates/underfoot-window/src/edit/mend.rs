@@ -287,6 +287,18 @@ mod tests {
     }
 
     #[test]
+    fn a_neighbour_moves_where_a_control_has_no_other_place() {
+        // Only the east end of the region is free: `a` cannot get there past `b`.
+        let mut document = read(
+            "Layout(version: 1, regions: [(id: \"r\", at: (0, 0), size: (1.7, 0.6))], widgets: [\
+             (id: \"a\", kind: \"button\", at: (0, 0), size: (0.6, 0.6), label: \"A\"),\
+             (id: \"b\", kind: \"button\", at: (0.65, 0), size: (0.6, 0.6), label: \"B\")])",
+        );
+        mended(&mut document, "U102", "Move them apart");
+        assert_eq!(document.layout().widgets[0].area.min.x, 0.0, "{}", document.text());
+    }
+
+    #[test]
     fn a_crowd_of_controls_is_mended_at_once_and_undone_at_once() {
         let rows: String = (0..6)
             .map(|n| {

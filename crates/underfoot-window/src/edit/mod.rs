@@ -54,7 +54,7 @@ pub use mend::{Mend, mend, mend_all, mend_warning};
 pub use merge::{Merge, merge};
 pub use refit::refit;
 pub use refusal::EditRefusal;
-pub use shared::{NumberChange, PlaceNumber, SharedNumber, changing, shared_number};
+pub use shared::{PlaceNumber, SharedNumber, TypedChange, changing, shared_number};
 pub use snap::{Edges, SnapGrid, SnapGuide, SnapReason, round_step_m};
 pub use spacing::{NeighbourGap, gaps_around};
 pub use template::Template;

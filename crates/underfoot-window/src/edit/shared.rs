@@ -73,7 +73,7 @@ pub enum SharedNumber {
 
 /// A change of a number, as people type it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NumberChange {
+pub enum TypedChange {
     /// All get this value: `1.5`.
     To(f64),
     /// Each grows by this amount: `+0.2`, `-0.2`.
@@ -82,7 +82,7 @@ pub enum NumberChange {
     Times(f64),
 }
 
-impl NumberChange {
+impl TypedChange {
     /// Reads a change; `None` for anything else. A number behind `+` or `-` is an amount, so an absolute negative
     /// number follows `=`.
     #[must_use]
@@ -136,7 +136,7 @@ pub fn changing(
     document: &Document,
     items: &[&Item],
     number: PlaceNumber,
-    change: NumberChange,
+    change: TypedChange,
 ) -> Result<Vec<Edit>, EditRefusal> {
     let has_no_size = |item: &&&Item| item.is_group || item.widgets.len() > 1;
     if let Some(item) = items.iter().find(has_no_size).filter(|_| number.is_size()) {
@@ -174,18 +174,18 @@ mod tests {
     #[test]
     fn changes_are_read_as_people_type_them() {
         for (text, change) in [
-            ("1.5", Some(NumberChange::To(1.5))),
-            (" 1,5 ", Some(NumberChange::To(1.5))),
-            ("+0.2", Some(NumberChange::By(0.2))),
-            ("-0.2", Some(NumberChange::By(-0.2))),
-            ("=-0.2", Some(NumberChange::To(-0.2))),
-            ("*2", Some(NumberChange::Times(2.0))),
-            ("/4", Some(NumberChange::Times(0.25))),
+            ("1.5", Some(TypedChange::To(1.5))),
+            (" 1,5 ", Some(TypedChange::To(1.5))),
+            ("+0.2", Some(TypedChange::By(0.2))),
+            ("-0.2", Some(TypedChange::By(-0.2))),
+            ("=-0.2", Some(TypedChange::To(-0.2))),
+            ("*2", Some(TypedChange::Times(2.0))),
+            ("/4", Some(TypedChange::Times(0.25))),
             ("/0", None),
             ("inf", None),
             ("a", None),
         ] {
-            assert_eq!(NumberChange::parse(text), change, "{text}");
+            assert_eq!(TypedChange::parse(text), change, "{text}");
         }
     }
 
@@ -198,12 +198,12 @@ mod tests {
         assert_eq!(shared_number(&document, &both, PlaceNumber::East), Some(SharedNumber::Same(1.9)));
         assert_eq!(shared_number(&document, &both, PlaceNumber::North), Some(SharedNumber::Mixed(2.2, 2.9)));
         assert_eq!(shared_number(&document, &[], PlaceNumber::North), None);
-        let up = changing(&document, &both, PlaceNumber::North, NumberChange::By(0.1)).unwrap();
+        let up = changing(&document, &both, PlaceNumber::North, TypedChange::By(0.1)).unwrap();
         document.edit(&up).unwrap();
         let items = pair(&document);
         let both: Vec<&Item> = items.iter().collect();
         assert_eq!(shared_number(&document, &both, PlaceNumber::North), Some(SharedNumber::Mixed(2.3, 3.0)));
-        let wide = changing(&document, &both, PlaceNumber::Width, NumberChange::Times(0.5)).unwrap();
+        let wide = changing(&document, &both, PlaceNumber::Width, TypedChange::Times(0.5)).unwrap();
         document.edit(&wide).unwrap();
         assert!(document.text().contains("at: (1.9, 3), size: (0.3, 0.5)"), "{}", document.text());
         document.undo().unwrap();
@@ -219,8 +219,8 @@ mod tests {
         document.edit(&edits).unwrap();
         let items = document.items();
         let group = items.iter().find(|item| item.is_group).unwrap();
-        let refused = changing(&document, &[group], PlaceNumber::Depth, NumberChange::By(0.1));
+        let refused = changing(&document, &[group], PlaceNumber::Depth, TypedChange::By(0.1));
         assert_eq!(refused, Err(EditRefusal::NoSize(group.record.clone())));
-        assert!(changing(&document, &[group], PlaceNumber::East, NumberChange::By(0.1)).is_ok());
+        assert!(changing(&document, &[group], PlaceNumber::East, TypedChange::By(0.1)).is_ok());
     }
 }

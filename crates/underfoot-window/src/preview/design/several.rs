@@ -7,7 +7,7 @@ use eframe::egui::{self, Ui, WidgetInfo};
 
 use super::edited::EditedLayout;
 use super::inspector::unit_name;
-use crate::edit::{EditRefusal, NumberChange, PlaceNumber, SharedNumber, changing, shared_number};
+use crate::edit::{EditRefusal, PlaceNumber, SharedNumber, TypedChange, changing, shared_number};
 use crate::preview::style::{is_entered, quiet};
 use underfoot_format::text::Text;
 use underfoot_scene::scene::Theme;
@@ -55,13 +55,13 @@ pub(super) fn shared_place(
         });
     }
     let Some((number, text)) = wanted else { return };
-    match NumberChange::parse(&text) {
+    match TypedChange::parse(&text) {
         Some(change) => apply(edited, number, change),
         None => edited.complain(format!("\"{text}\" is neither a number nor a change such as +0.2 or *2")),
     }
 }
 
-fn apply(edited: &mut EditedLayout, number: PlaceNumber, change: NumberChange) {
+fn apply(edited: &mut EditedLayout, number: PlaceNumber, change: TypedChange) {
     if edited.holds_locked() {
         return;
     }
