@@ -6,6 +6,7 @@ use glam::Vec2;
 
 use super::field::{FieldAnswer, FieldEdits, ROW_PX, ShownField, unit_name};
 use super::number::two_numbers;
+use super::text::TYPED_PX;
 use super::words::label;
 use crate::edit::{Edit, FieldOrigin};
 use underfoot::floor::Rect;
@@ -24,7 +25,9 @@ pub(super) fn place(ui: &mut Ui, field: &ShownField<'_>, before: [f64; 2]) -> Fi
             .max_decimals(4)
             .custom_parser(move |text| length(text, unit))
             .update_while_editing(false);
-        let drag = ui.add_sized([66.0, ROW_PX], drag);
+        // Both numbers are as wide as one text.
+        let width = 0.5 * (TYPED_PX - ui.spacing().item_spacing.x);
+        let drag = ui.add_sized([width, ROW_PX], drag);
         let name = format!("{spoken}: {}", names[side]);
         drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &name));
         let unit = unit_name(&field.edited.document);
