@@ -115,6 +115,11 @@ impl Sensor {
         self.sudden = true;
     }
 
+    /// Starts the probation of a broken sensor again: of a block with gaps, nothing shows that its readings were right.
+    pub(super) fn interrupt(&mut self) {
+        self.good_for = 0.0;
+    }
+
     /// Reviews its mean reading over `seconds`, and whether that is the required one; `alone` means that nothing
     /// stands on the tiles around.
     ///
@@ -162,6 +167,20 @@ mod tests {
             sensor.review(0.0, true, true, 0.064);
         }
         assert_eq!(sensor.trouble(), None);
+    }
+
+    #[test]
+    fn the_second_of_right_readings_has_no_gap() {
+        let mut sensor = Sensor::default();
+        sensor.find(Trouble::Offset, 50.0);
+        let reads_right = |sensor: &mut Sensor, blocks: usize| {
+            (0..blocks).for_each(|_| sensor.review(0.0, true, true, 0.064));
+            sensor.trouble()
+        };
+        assert_eq!(reads_right(&mut sensor, 15), Some(Trouble::Offset), "0.96 s");
+        sensor.interrupt();
+        assert_eq!(reads_right(&mut sensor, 15), Some(Trouble::Offset), "0.96 s since the gap");
+        assert_eq!(reads_right(&mut sensor, 1), None);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::averages::SHARES;
 use super::creep::AverageGains;
 use super::slow::GAP_S;
+use super::trouble::Sensor;
 use super::{Health, RangeEnd, is_connected};
 use crate::floor::{Geometry, TileBlock, TileId};
 use crate::sense::ForceFrame;
@@ -86,6 +87,8 @@ impl Health {
                 zeros.learn_creep(tile, &block);
             }
             zeros.follow_drift(tile, &mut slow.drift, &block, alone, sensors);
+        } else {
+            sensors.iter_mut().for_each(Sensor::interrupt);
         }
         let has_trouble = sensors.map(|sensor| sensor.trouble());
         if had_trouble != has_trouble {

@@ -46,6 +46,27 @@ fn s7_a_noisy_sensor_is_named() {
     assert_eq!(bench.events, []);
 }
 
+/// A quarter of a second of right readings does not count once nonsense has come: here an impossible force, a strange
+/// load, and readings that are not numbers, 0.2 s in all.
+#[test]
+fn right_readings_before_nonsense_are_no_evidence() {
+    let mut bench = Bench::new(SimulatedSensors::Newtons(PartConfig::default()));
+    for (value, millis) in [(-87.0, 1), (0.0, 272), (3.7e25, 79), (-90.0, 34), (f32::NAN, 162), (0.0, 800)] {
+        bench.run_with(millis, |_, channel, force| {
+            if channel == (0, 0) {
+                *force = value
+            }
+        });
+    }
+    assert!(bench.snapshot().tiles[0].quality[0] >= Quality::Degraded, "0.8 s of evidence");
+    bench.run_with(400, |_, channel, force| {
+        if channel == (0, 0) {
+            *force = 0.0
+        }
+    });
+    assert_eq!(bench.snapshot().tiles[0].quality[0], Quality::Live);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
