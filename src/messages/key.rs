@@ -64,10 +64,14 @@ impl FromStr for KeyStroke {
     /// The part of the text that names no key.
     type Err = String;
 
-    /// Reads a key such as `Right`, `a` or `Control+Shift+z`; `+` itself is `plus`.
+    /// Reads a key such as `Right`, `a`, `Control+Shift+z`, `+` or `Control++`; the last two are written with `plus`.
     fn from_str(text: &str) -> Result<Self, String> {
-        let mut parts: Vec<&str> = text.split('+').collect();
-        let last = parts.pop().unwrap_or_default();
+        let (before, last) = match text.strip_suffix('+') {
+            Some("") => (None, "plus"),
+            Some(before) if before.ends_with('+') => (before.strip_suffix('+'), "plus"),
+            _ => text.rsplit_once('+').map_or((None, text), |(before, last)| (Some(before), last)),
+        };
+        let parts = before.into_iter().flat_map(|before| before.split('+'));
         let key = KeySymbol::named(last).ok_or_else(|| last.to_owned())?;
         let mut modifiers = Vec::new();
         for part in parts {
@@ -124,6 +128,18 @@ mod tests {
         }
         for (text, wrong) in [("Rihgt", "Rihgt"), ("", ""), ("Ctrl+a", "Ctrl"), ("Shift+Shift+a", "Shift")] {
             assert_eq!(text.parse::<KeyStroke>().unwrap_err(), wrong);
+        }
+    }
+
+    #[test]
+    fn plus_is_a_key_beside_being_the_sign_between_keys() {
+        for (text, written) in
+            [("+", "plus"), ("Control++", "Control+plus"), ("Control+Shift++", "Control+Shift+plus")]
+        {
+            assert_eq!(text.parse::<KeyStroke>().unwrap().to_string(), written);
+        }
+        for (text, wrong) in [("Control+", ""), ("++", ""), ("+a", ""), ("+++", ""), ("a++", "a")] {
+            assert_eq!(text.parse::<KeyStroke>().unwrap_err(), wrong, "{text}");
         }
     }
 
