@@ -52,9 +52,11 @@ pub(super) const EFFECTS: [(&str, &str); 22] = [
 ];
 
 /// The shipped layouts: name and text.
-const LAYOUTS: [(&str, &str); 6] = [
+const LAYOUTS: [(&str, &str); 8] = [
     ("all_controls", include_str!("../../layouts/all_controls.ron")),
+    ("dicom_viewer", include_str!("../../layouts/dicom_viewer.ron")),
     ("first_steps", include_str!("../../layouts/first_steps.ron")),
+    ("globe", include_str!("../../layouts/globe.ron")),
     ("map", include_str!("../../layouts/map.ron")),
     ("pond", include_str!("../../layouts/pond.ron")),
     ("surgical", include_str!("../../layouts/surgical.ron")),

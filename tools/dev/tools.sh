@@ -48,6 +48,16 @@ emulator_packages() {
     command -v make >/dev/null || echo make
 }
 
+# Debian's packages of the programs that are worked by feet.
+app_packages() {
+    ! is_left_out apps || return 0
+    command -v aeskulap >/dev/null || echo aeskulap
+    command -v marble >/dev/null || echo marble
+    command -v import >/dev/null || echo imagemagick
+    command -v Xvfb >/dev/null || echo xvfb
+    command -v xdotool >/dev/null || echo xdotool
+}
+
 # Whether LEAVE_OUT, words with blanks between them, has this one.
 is_left_out() { [[ " ${LEAVE_OUT:-} " == *" $1 "* ]]; }
 
@@ -68,7 +78,7 @@ install_step() {
 # Each list by itself: a package that cannot be had costs only the others of its list.
 install_tool_packages() {
     local list packages
-    for list in tool_packages emulator_packages; do
+    for list in tool_packages emulator_packages app_packages; do
         mapfile -t packages < <("$list" | sort -u)
         [ ${#packages[@]} -gt 0 ] || continue
         if ! command -v apt-get >/dev/null; then

@@ -15,7 +15,8 @@ use super::output::{colours, print_json};
 /// Options of `underfoot check`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Layout files, or names of built-in layouts (map, surgical, first_steps, all_controls, pond, winter_walk).
+    /// Layout files, or names of built-in layouts (map, surgical, first_steps, all_controls, pond,
+    /// winter_walk, dicom_viewer, globe).
     #[arg(required_unless_present_any = ["explain", "rules"], value_name = "LAYOUT")]
     layouts: Vec<PathBuf>,
     #[command(flatten)]

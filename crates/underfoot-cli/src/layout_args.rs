@@ -19,7 +19,8 @@ use super::fonts::fonts;
 /// Options that choose the layout.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LayoutArgs {
-    /// Layout file, or the name of a built-in one (map, surgical, first_steps, all_controls, pond, winter_walk).
+    /// Layout file, or the name of a built-in one (map, surgical, first_steps, all_controls, pond,
+    /// winter_walk, dicom_viewer, globe).
     #[arg(value_name = "LAYOUT")]
     pub(crate) layout: Option<PathBuf>,
     #[command(flatten)]
