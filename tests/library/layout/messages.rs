@@ -90,7 +90,8 @@ fn messages_are_written_and_read_again() {
 /// Files of version 1 have no messages, and stay as they are.
 #[test]
 fn older_layouts_send_nothing() {
-    for name in builtin_layouts() {
+    let written = |name: &&str| !["dicom_viewer", "globe"].contains(name);
+    for name in builtin_layouts().filter(written) {
         let layout = read(builtin_layout(name).unwrap());
         assert!(layout.targets.is_empty() && layout.plan().is_empty(), "{name}");
     }

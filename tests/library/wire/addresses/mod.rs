@@ -398,7 +398,8 @@ fn the_shipped_layouts_have_references_without_an_address_twice() {
         let page = layout(builtin_layout(name).unwrap());
         let reference = Reference::of(&page, &Floor::default(), &Prefix::default());
         let mut seen = BTreeSet::new();
-        for entry in &reference.entries {
+        // Messages to programs of others have no address here.
+        for entry in reference.entries.iter().filter(|entry| !entry.address.contains(": ")) {
             assert!(
                 seen.insert((entry.address.as_str(), entry.direction as u8)),
                 "{name}: {}",
