@@ -2,6 +2,7 @@
 import json
 import os
 import queue
+import socket
 import subprocess
 import threading
 import time
@@ -57,7 +58,6 @@ class Floor:
 
 
 def free_port():
-    import socket
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found:
         found.bind(("127.0.0.1", 0))
         return found.getsockname()[1]

@@ -54,8 +54,6 @@ app_packages() {
     command -v aeskulap >/dev/null || echo aeskulap
     command -v marble >/dev/null || echo marble
     command -v import >/dev/null || echo imagemagick
-    command -v Xvfb >/dev/null || echo xvfb
-    command -v xdotool >/dev/null || echo xdotool
 }
 
 # Whether LEAVE_OUT, words with blanks between them, has this one.
