@@ -2,9 +2,9 @@
 
 use glam::Vec2;
 
+use super::face_colours::FaceColours;
 use super::fit::{Fitted, fit};
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
-use super::theme::{contrast, readable};
 use super::widths::{CAP_HEIGHT, LINE_HEIGHT};
 use super::{Scene, TextDirection, Theme, icon, outline};
 use underfoot::engine::WidgetState;
@@ -42,29 +42,27 @@ pub(super) struct Face<'a> {
     pub(super) colour: Colour,
     /// Colour of the letters.
     pub(super) ink: Colour,
+    /// The colours from which the current ones come.
+    colours: FaceColours,
 }
 
 impl<'a> Face<'a> {
     /// Creates the face of `widget`; `lit` mixes its colour at rest (0) with its lit one (1).
     pub(super) fn new(widget: &'a Widget, state: WidgetState, theme: &'a Theme, lit: f32) -> Self {
-        let look = &widget.look;
-        let (rest, lit_up, ink) =
-            theme.faces.map_or((look.face, look.lit, look.ink), |all| (all.rest, all.lit, all.ink));
-        let at_rest = rest.mix(lit_up, lit);
+        let colours = FaceColours::of(&widget.look, theme);
         let is_off = off(&state).is_some();
         let out_of_use = is_off || state.needs_lift;
-        let colour = if out_of_use { at_rest.mix(theme.plate, 0.72) } else { at_rest };
-        let ink = readable(ink, colour);
-        // The text of a control that is off is fainter, but stays legible.
-        let faded = ink.mix(colour, 0.4);
-        let ink = if is_off && contrast(faded, colour) >= 3.0 { faded } else { ink };
+        let face = colours.face(if out_of_use && colours.mark.is_some() { 0.0 } else { lit });
+        let colour = if out_of_use { face.mix(theme.plate, 0.72) } else { face };
+        let ink = theme.readable(colours.ink, colour);
+        let ink = if is_off { faded(ink, colour, theme) } else { ink };
         let area = widget.area.grown(if state.pressed { -SINK_M } else { 0.0 });
         let shape = widget.look.shape;
         let radius_m = match shape {
             Shape::Box => (0.16 * area.size().min_element()).min(0.028),
             Shape::Round => 0.5 * area.size().min_element(),
         };
-        Self { widget, state, theme, shape, area, radius_m, colour, ink }
+        Self { widget, state, theme, shape, area, radius_m, colour, ink, colours }
     }
 
     /// The label; may be empty.
@@ -77,15 +75,55 @@ impl<'a> Face<'a> {
         off(&self.state).is_some() || self.state.needs_lift
     }
 
-    /// Colour of the lit face.
-    fn lit_up(&self) -> Colour {
-        self.theme.faces.map_or(self.widget.look.lit, |all| all.lit)
-    }
-
     /// Colour of lit elements on the face.
     pub(super) fn lit(&self) -> Colour {
-        let lit = self.lit_up();
+        let lit = self.colours.lit;
         if self.is_out_of_use() { lit.mix(self.theme.plate, 0.6) } else { lit }
+    }
+
+    /// Colour of a line along which a handle slides.
+    pub(super) fn groove(&self) -> Colour {
+        match self.colours.mark {
+            Some(mark) => self.colour.mix(mark, 0.45),
+            None => self.colour.mix(self.theme.shadow, 0.14),
+        }
+    }
+
+    /// Paint of a field in which a handle slides, or of one of several parts.
+    pub(super) fn sunk(&self) -> Paint {
+        match self.colours.mark {
+            // On black a shade is invisible, so that the field has an edge.
+            Some(_) => Paint::fill(Ink::solid(self.colour))
+                .with_stroke(Stroke::new(0.003, Ink::solid(self.groove()))),
+            None => Paint::fill(Ink::solid(self.colour.mix(self.theme.shadow, 0.13))),
+        }
+    }
+
+    /// Colour of icon and guard on the face: its hue with high contrast, otherwise that of the letters.
+    fn mark(&self) -> Colour {
+        let mark =
+            self.colours.mark.filter(|mark| !self.is_out_of_use() && mark.contrast(self.colour) >= 3.0);
+        mark.unwrap_or(self.ink)
+    }
+
+    /// The edge of the face in its present state.
+    fn edge(&self) -> Stroke {
+        let theme = self.theme;
+        let is_outlined = self.colours.mark.is_some();
+        match (self.state.needs_lift, off(&self.state).is_some()) {
+            (true, _) => Stroke::new(0.005, Ink::solid(theme.warning)).dashed(0.018, 0.012),
+            (_, true) => Stroke::new(0.003, Ink::solid(theme.quiet)).dashed(0.010, 0.010),
+            _ if self.state.warned => Stroke::new(0.008, Ink::solid(theme.warning)),
+            _ if self.state.armed => Stroke::new(0.008, Ink::solid(theme.accent)),
+            _ if self.state.locked => Stroke::new(0.005, Ink::solid(theme.quiet)),
+            _ if self.state.pressed && is_outlined => Stroke::new(0.010, Ink::solid(theme.ink)),
+            _ if self.state.pressed => Stroke::new(0.004, Ink::solid(self.colour.mix(theme.ink, 0.45))),
+            _ => match self.colours.mark {
+                // With high contrast only the edge separates a face from the plate.
+                Some(mark) => Stroke::new(0.006, Ink::solid(mark)),
+                None => Stroke::new(0.002, Ink::faint(self.colour.mix(theme.ink, 0.28), 0.8)),
+            },
+        }
     }
 
     /// Draws shadow, face, edge, guard mark, and the ring that fills as the force grows.
@@ -96,21 +134,7 @@ impl<'a> Face<'a> {
         } else if !flat {
             self.shadow(scene);
         }
-        let edge = self.colour.mix(self.theme.ink, 0.28);
-        let stroke = match (self.state.needs_lift, off(&self.state).is_some()) {
-            (true, _) => Stroke::new(0.005, Ink::solid(self.theme.warning)).dashed(0.018, 0.012),
-            (_, true) => Stroke::new(0.003, Ink::solid(self.theme.quiet)).dashed(0.010, 0.010),
-            _ if self.state.warned => Stroke::new(0.008, Ink::solid(self.theme.warning)),
-            _ if self.state.armed => Stroke::new(0.008, Ink::solid(self.theme.accent)),
-            _ if self.state.locked => Stroke::new(0.005, Ink::solid(self.theme.quiet)),
-            _ if self.state.pressed => Stroke::new(0.004, Ink::solid(self.colour.mix(self.theme.ink, 0.45))),
-            _ => match self.theme.faces {
-                // With the high-contrast colours only the edge separates a face from the plate.
-                Some(all) => Stroke::new(0.005, Ink::solid(all.ink)),
-                None => Stroke::new(0.002, Ink::faint(edge, 0.8)),
-            },
-        };
-        self.outlined(scene, 0.0, Paint::fill(Ink::solid(self.colour)).with_stroke(stroke));
+        self.outlined(scene, 0.0, Paint::fill(Ink::solid(self.colour)).with_stroke(self.edge()));
         if !flat {
             self.guard(scene);
             self.ring(scene);
@@ -120,7 +144,10 @@ impl<'a> Face<'a> {
     /// A second line inside the edge of a guarded control: solid if a second press confirms, dashed if it must be
     /// held.
     fn guard(&self, scene: &mut Scene) {
-        let line = Stroke::new(0.003, Ink::faint(self.ink, 0.55));
+        let line = match self.colours.mark {
+            Some(_) => Stroke::new(0.005, Ink::solid(self.mark())),
+            None => Stroke::new(0.003, Ink::faint(self.ink, 0.55)),
+        };
         let stroke = match self.widget.behaviour.thresholds().guard {
             Guard::Free => return,
             Guard::Confirm { .. } => line,
@@ -136,7 +163,7 @@ impl<'a> Face<'a> {
             Shape::Box => self.area.max - Vec2::splat(0.005),
             Shape::Round => self.area.centre() + 0.5 * self.area.size() * std::f32::consts::FRAC_1_SQRT_2,
         };
-        let edge = Stroke::new(0.003, Ink::solid(readable(self.theme.ink, self.colour)));
+        let edge = Stroke::new(0.003, Ink::solid(self.theme.readable(self.theme.ink, self.colour)));
         let radius = 0.0095;
         let paint = |colour: Colour| Paint::fill(Ink::solid(colour)).with_stroke(edge);
         match self.state.indicator {
@@ -163,7 +190,7 @@ impl<'a> Face<'a> {
 
     /// A halo in the lit colour around a pressed face.
     fn glow(&self, scene: &mut Scene) {
-        self.halo(scene, self.area, 0.030, Ink::faint(self.lit_up(), 0.55));
+        self.halo(scene, self.area, 0.030, Ink::faint(self.colours.lit, 0.55));
     }
 
     fn halo(&self, scene: &mut Scene, area: Rect, reach_m: f32, ink: Ink) {
@@ -267,7 +294,7 @@ impl<'a> Face<'a> {
             WidgetState { warned: true, .. } => self.theme.warning,
             _ => self.theme.accent,
         };
-        let ink = Ink::solid(readable(self.theme.plate, ground));
+        let ink = Ink::solid(self.theme.readable(self.theme.plate, ground));
         scene.add_badge(middle, SMALL_M, ink, Paint::fill(Ink::solid(ground)), format_args!("{text}"));
     }
 
@@ -312,11 +339,11 @@ impl<'a> Face<'a> {
         }
         if beside {
             let middle = Vec2::new(room.min.x + 0.5 * side, room.centre().y);
-            icon::draw(scene, icon, middle, side, self.ink);
+            icon::draw(scene, icon, middle, side, self.mark());
             return Rect::new(Vec2::new(room.min.x + 1.15 * side, room.min.y), room.max);
         }
         let top = room.centre().y + 0.5 * (side + strip);
-        icon::draw(scene, icon, Vec2::new(room.centre().x, top - 0.5 * side), side, self.ink);
+        icon::draw(scene, icon, Vec2::new(room.centre().x, top - 0.5 * side), side, self.mark());
         let label = Rect::new(Vec2::new(room.min.x, top - side - strip), Vec2::new(room.max.x, top - side));
         Rect::new(label.min.max(room.min), label.max)
     }
@@ -325,6 +352,12 @@ impl<'a> Face<'a> {
     pub(super) fn write_in(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour) {
         set(scene, text, room, anchor, ink, &fit(text, room.size(), LABEL_M, SMALL_M));
     }
+}
+
+/// The ink of a control that is off: as faint as text may be.
+fn faded(ink: Colour, ground: Colour, theme: &Theme) -> Colour {
+    let mixed = [0.4, 0.3, 0.2, 0.1].map(|share| ink.mix(ground, share));
+    mixed.into_iter().find(|ink| ink.contrast(ground) >= theme.least_contrast()).unwrap_or(ink)
 }
 
 /// Reason why a control is drawn as off. While the floor waits for its first frame, controls are drawn as ready.
