@@ -162,7 +162,6 @@ impl App {
         let begun = self.designer.as_mut().filter(|designer| designer.is_open).map(|it| it.begin_frame(ui));
         let first: &[egui::Id] = if begun.is_none() { self.view.controls() } else { &[] };
         self.window.focus.begin(ui, first);
-        let window = ui.available_rect_before_wrap();
         self.show_top_bar(ui);
         let theme = self.appearance.theme();
         self.status.show(ui, &theme, &self.shown);
@@ -170,13 +169,9 @@ impl App {
         if let Some(line) = &mut self.time_line {
             line.show(ui, &theme);
         }
-        let mut stage = StageOfWindow {
-            window,
-            canvas: ui.available_rect_before_wrap(),
-            widths: self.window.widths,
-            designs: self.designer.is_some(),
-            has_side: self.panel.is_shown(window.width(), self.is_designing()),
-        };
+        let (room, widths) = (ui.available_rect_before_wrap(), self.window.widths);
+        let has_side = self.panel.is_shown(room.width(), self.is_designing());
+        let mut stage = StageOfWindow::new(room, widths, self.designer.is_some(), has_side);
         match (&mut self.designer, begun) {
             (Some(designer), Some(before)) => {
                 // A click on the switch of the modes leaves Design mode some frames later.
@@ -219,17 +214,18 @@ impl App {
     /// Draws the floor with the panels around it.
     fn show_floor(&mut self, ui: &mut Ui, stage: &mut StageOfWindow) {
         let theme = self.appearance.theme();
+        let tunes = self.tuner.as_ref().is_some_and(|tuner| tuner.is_open);
         match self.floor_check.as_mut().filter(|check| check.is_running()) {
             Some(check) => check.panel(ui, &theme, &self.shown, self.feet.are_led()),
+            // A narrow window has room for one panel.
+            None if tunes && !stage.is_wide() => {}
             None => {
                 self.show_side_panel(ui);
-                if stage.is_wide() {
-                    stage.widths.note_right(stage.window, ui.available_rect_before_wrap());
-                }
+                stage.note_right(ui.available_rect_before_wrap());
             }
         }
         if let Some(tuner) = &mut self.tuner {
-            tuner.panel(ui, &theme, &self.shown, self.selection.tile());
+            tuner.panel(ui, &theme, &self.shown, self.selection.tile(), stage);
         }
         if let Some(visit) = &mut self.visit {
             visit.show(ui, &theme, self.time_line.as_ref().and_then(TimeLine::part));
@@ -245,7 +241,7 @@ impl App {
                 check: self.floor_check.as_ref(),
                 has_steps,
             };
-            self.view.show(ui, &theme, &self.shown, on_floor, stage.floor());
+            self.view.show(ui, &theme, &self.shown, on_floor, stage.view_room());
         });
         self.projection.show(ui, &mut self.shown, &self.appearance);
     }

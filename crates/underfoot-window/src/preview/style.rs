@@ -58,8 +58,8 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
     visuals.warn_fg_color = color(theme.warning);
     visuals.error_fg_color = color(theme.fault);
     visuals.weak_text_color = Some(color(theme.quiet));
-    visuals.selection.bg_fill = color(theme.accent.mix(panel, 0.7));
-    visuals.selection.stroke = Stroke::new(1.0, color(theme.accent));
+    visuals.selection.bg_fill = color(selected_ground(theme));
+    visuals.selection.stroke = Stroke::new(1.0, color(theme.legible(theme.accent, selected_ground(theme))));
     visuals.striped = false;
     visuals.collapsing_header_frame = false;
     // The largest radius for which a corner takes four steps instead of eight: without a graphics card, buttons cost
@@ -85,6 +85,11 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
     visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, color(theme.accent));
     // Check boxes must be visible on the panel.
     visuals.widgets.inactive.bg_fill = color(panel.mix(theme.ink, 0.10));
+}
+
+/// The background of a button that is on, and of selected text.
+pub(super) fn selected_ground(theme: &Theme) -> Colour {
+    theme.accent.mix(panel_colour(theme), 0.7)
 }
 
 /// The background of panels: between canvas and plate.
@@ -157,9 +162,10 @@ pub(super) fn quiet(theme: &Theme, text: impl Into<String>) -> RichText {
 
 /// `text` on a small rounded background of `colour`.
 pub(super) fn pill(ui: &mut Ui, colour: Colour, theme: &Theme, text: &str) -> egui::Response {
-    let ground = color(panel_colour(theme).mix(colour, 0.16));
-    let frame = egui::Frame::new().fill(ground).corner_radius(9).inner_margin(Margin::symmetric(8, 2));
-    frame.show(ui, |ui| ui.label(RichText::new(text).color(color(colour)))).inner
+    let ground = panel_colour(theme).mix(colour, 0.16);
+    let frame = egui::Frame::new().fill(color(ground)).corner_radius(9).inner_margin(Margin::symmetric(8, 2));
+    let ink = color(theme.legible(colour, ground));
+    frame.show(ui, |ui| ui.label(RichText::new(text).color(ink))).inner
 }
 
 /// Whether Enter has just ended the typing in `field`, so that the dialog acts. Call it before the field regains the
@@ -199,4 +205,50 @@ pub(super) fn row<'a>(ui: &'a mut Ui, height: f32, size: f32, spoken: &str) -> T
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, spoken));
     TextRow { ui, rect, size }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The colours of every theme that stand on panels, as text or as the edge of something.
+    #[test]
+    fn words_on_buttons_pills_and_panels_can_be_read_in_every_theme() {
+        for (name, theme) in Theme::NAMED {
+            let mut style = egui::Visuals::default();
+            visuals(&mut style, &theme);
+            let least = theme.least_contrast();
+            let ratio = |ink: Color32, ground: Color32| {
+                let of = |it: Color32| Colour::rgb(it.r(), it.g(), it.b());
+                of(ink).contrast(of(ground))
+            };
+            let states = &style.widgets;
+            for (state, face) in [
+                ("inactive", &states.inactive),
+                ("hovered", &states.hovered),
+                ("active", &states.active),
+                ("open", &states.open),
+            ] {
+                assert!(ratio(face.fg_stroke.color, face.weak_bg_fill) >= least, "{name}: {state}");
+            }
+            let panel = style.panel_fill;
+            for ink in [
+                style.text_color(),
+                style.weak_text_color(),
+                style.hyperlink_color,
+                style.warn_fg_color,
+                style.error_fg_color,
+            ] {
+                for ground in [panel, style.extreme_bg_color, style.faint_bg_color] {
+                    assert!(ratio(ink, ground) >= least - 0.1, "{name}: {ink:?} on {ground:?}");
+                }
+            }
+            let Stroke { color: ink, .. } = style.selection.stroke;
+            assert!(ratio(ink, style.selection.bg_fill) >= least, "{name}: selected");
+            for colour in [theme.good, theme.warning, theme.fault, theme.accent, theme.quiet] {
+                let ground = panel_colour(&theme).mix(colour, 0.16);
+                assert!(theme.legible(colour, ground).contrast(ground) >= least, "{name}: {colour}");
+            }
+        }
+    }
 }

@@ -21,6 +21,7 @@ use eframe::egui::{Margin, Panel, ScrollArea, Ui};
 
 use super::app::App;
 use super::icons::Icon;
+use super::stage::BESIDE;
 use super::style::{panel_frame, switch_button};
 
 /// Minimum height of the list of events, in points.
@@ -41,7 +42,7 @@ impl SidePanel {
     /// Whether a window of this width, in points, shows the panel at the right: in Try, a window too narrow for panel
     /// and floor shows it only on request.
     pub(super) fn is_shown(&self, width: f32, designs: bool) -> bool {
-        self.wanted.unwrap_or(designs || width >= 2.2 * 304.0)
+        self.wanted.unwrap_or(designs || width >= BESIDE)
     }
 
     /// A button that opens or closes the panel at the right.

@@ -7,7 +7,8 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{self, Key, Margin, Modifiers, Panel, ProgressBar, RichText, Ui, WidgetInfo};
 
 use super::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState};
-use crate::preview::style::{panel_frame, quiet, selectable};
+use crate::preview::icons::{self, Icon};
+use crate::preview::style::{panel_frame, quiet, selectable, selected_ground};
 use underfoot::engine::Snapshot;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -74,12 +75,17 @@ impl VisitBar {
             }
         }
         let text = match &self.state.recording {
-            Some(size) => RichText::new(format!("Stop {}", written(size))).color(color(theme.fault)),
-            None => RichText::new("REC"),
+            Some(size) => format!("Stop {}", written(size)),
+            None => "REC".to_owned(),
         };
         let is_on = self.state.recording.is_some();
-        let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
+        let icon = if is_on { Icon::CircleStop } else { Icon::CircleDot };
+        let ink = theme.legible(theme.fault, selected_ground(theme));
+        let shown = RichText::new(icons::with(icon, &text));
+        let shown = if is_on { shown.color(color(ink)) } else { shown };
+        let button = egui::Button::selectable(is_on, shown).frame_when_inactive(true);
         let button = ui.add_enabled(self.state.off.is_none(), button);
+        button.widget_info(|| WidgetInfo::selected(Role::Button, button.enabled(), is_on, &text));
         let button = match &self.state.off {
             Some(why) => button.on_disabled_hover_text(why),
             None => button.on_hover_text("Record the floor; F9 does the same"),
