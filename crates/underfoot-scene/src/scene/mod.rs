@@ -17,6 +17,7 @@ mod board;
 mod control;
 mod face;
 mod face_colours;
+mod face_words;
 mod feet;
 mod fit;
 mod ground;

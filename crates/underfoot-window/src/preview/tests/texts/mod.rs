@@ -29,7 +29,7 @@ struct Gallery {
     layout: Arc<Layout>,
     theme: Theme,
     size: egui::Vec2,
-    /// What the window shows, for messages.
+    /// Layout, theme and width, for messages.
     name: String,
     found: Vec<String>,
     _notices: SyncSender<Notice>,
