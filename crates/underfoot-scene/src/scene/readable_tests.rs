@@ -230,3 +230,38 @@ fn grounds_are_dark_in_dark_themes_and_keep_their_own_colours_and_light() {
         }
     }
 }
+
+#[test]
+fn guards_have_lines_of_their_own_that_can_be_seen_in_every_theme() {
+    let text = "Layout(version: 1, regions: [(id: \"r\", at: (0, 0), size: (6, 6))], widgets: [
+        (id: \"free\", kind: \"button\", at: (0, 0), size: (1, 1)),
+        (id: \"confirm\", kind: \"confirm_button\", at: (2, 0), size: (1, 1)),
+        (id: \"hold\", kind: \"dead_man\", at: (4, 0), size: (1, 1)),
+    ])";
+    let geometry = Geometry::default();
+    let layout = parse_layout(text, "guards", &Kinds::builtin(), &geometry).unwrap().layout;
+    for (name, theme) in Theme::NAMED {
+        let mut scene = Scene::new();
+        let show = Show::PROJECTOR;
+        draw(&mut scene, &View { show, ..View::new(&geometry, &layout, &Snapshot::default(), &theme) });
+        // Solid and dashed lines inside each face, with their contrast.
+        let lines = |index: usize| -> Vec<(bool, f32)> {
+            let face = layout.widgets[index].area.grown(-0.01);
+            let inside = scene.marks().iter().filter_map(|mark| match mark {
+                Mark::Box { area, paint, .. } if face.contains(area.min) && face.contains(area.max) => {
+                    paint.stroke
+                }
+                _ => None,
+            });
+            let middle = layout.widgets[index].area.centre();
+            let ground =
+                scene.marks().iter().fold(theme.canvas, |under, mark| painted(&scene, mark, middle, under));
+            inside.map(|it| (it.dash.is_some(), blend(ground, it.ink).contrast(ground))).collect()
+        };
+        let least = if theme.least_contrast() > 5.0 { 5.0 } else { 2.0 };
+        let [free, confirm, hold] = [lines(0), lines(1), lines(2)];
+        assert!(free.is_empty(), "{name}");
+        assert!(matches!(confirm[..], [(false, ratio)] if ratio >= least), "{name}: {confirm:?}");
+        assert!(matches!(hold[..], [(true, ratio)] if ratio >= least), "{name}: {hold:?}");
+    }
+}
