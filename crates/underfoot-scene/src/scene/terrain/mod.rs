@@ -47,7 +47,7 @@ impl LandColours {
             },
             Faces::Outlined => {
                 let white = surface.mix(WHITE, 0.5);
-                Self { surface: dark(surface, 0.80), deep: dark(deep, 0.92), white, line: white }
+                Self { surface: dark(surface, 0.74), deep: dark(deep, 0.92), white, line: white }
             }
         }
     }

@@ -3,8 +3,8 @@
 mod screen;
 
 use super::*;
-use crate::preview::DesignInput;
 use crate::preview::sample::step_on;
+use crate::preview::{DesignInput, VisitDesk, VisitOrder, VisitSize, VisitState};
 use screen::{ScreenShapes, ScreenText, faults};
 use underfoot::engine::{Ignored, IgnoredPress};
 use underfoot_scene::egui_painter::color;
@@ -15,6 +15,18 @@ const SIZES: [(f32, f32); 4] = [(640.0, 800.0), (1280.0, 800.0), (1920.0, 1080.0
 
 /// The shipped layouts on display: every kind of control, grounds, and two apps.
 const LAYOUTS: [&str; 4] = ["map", "all_controls", "winter_walk", "surgical"];
+
+/// A desk that records and has a recording that is not saved: the bar has its most buttons then.
+struct BusyDesk;
+
+impl VisitDesk for BusyDesk {
+    fn state(&mut self) -> VisitState {
+        let size = Some(VisitSize { length_s: 72.0, bytes: 3_100_000 });
+        VisitState { recording: size, kept: size, is_unsaved: true, ..VisitState::default() }
+    }
+
+    fn lead(&mut self, _order: VisitOrder) {}
+}
 
 /// A window whose shapes are kept.
 struct SeenWindow {
@@ -47,6 +59,7 @@ impl Gallery {
         let input = PreviewInput {
             scopes: Some(Box::new(Silence)),
             feet: Some(sink),
+            visit: Some(Box::new(BusyDesk)),
             choices: LAYOUTS.map(str::to_owned).into(),
             effects: underfoot::schema::Effects::builtin().iter().cloned().collect(),
             design: Some(DesignInput {
@@ -94,6 +107,13 @@ impl Gallery {
     fn click(&mut self, label: &str) {
         let found = self.window.query_all_by_label(label).next();
         found.unwrap_or_else(|| panic!("{}: no {label}", self.name)).click();
+        self.run();
+    }
+
+    fn pointer(&mut self, at: Pos2, pressed: bool) {
+        self.window.event(Event::PointerMoved(at));
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        self.window.event(Event::PointerButton { pos: at, button, pressed, modifiers });
         self.run();
     }
 
@@ -145,7 +165,7 @@ impl Gallery {
             self.key(Modifiers::NONE, Key::Escape);
             self.run();
         }
-        for bar in ["Plots", "Effects"] {
+        for bar in ["Plots", "Effects", "Visit"] {
             self.click(bar);
             self.look(&format!("Try, {bar}"));
             self.click(bar);
@@ -170,13 +190,14 @@ impl Gallery {
             self.layout.widgets.iter().find(|widget| widget.is_on(0)).map(|widget| widget.id.to_string());
         if let Some(first) = first {
             let at = self.window.get_by_label(&format!("On the floor: {first}")).rect().center();
-            for pressed in [true, false] {
-                self.window.event(Event::PointerMoved(at));
-                let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-                self.window.event(Event::PointerButton { pos: at, button, pressed, modifiers });
-                self.run();
-            }
+            self.pointer(at, true);
+            self.pointer(at, false);
             self.look("Design, one selected");
+            self.pointer(at, true);
+            self.window.event(Event::PointerMoved(at + vec2(0.0, -30.0)));
+            self.look("Design, one moving");
+            self.window.event(Event::PointerMoved(at));
+            self.pointer(at, false);
         }
         self.click("Text");
         self.look("Design, Text");
