@@ -15,6 +15,7 @@ use super::palette::PaletteThing;
 use super::spacing_marks::spacing_marks;
 use super::trial::GestureResult;
 use crate::edit::{Address, Item, RecordList};
+use crate::preview::labels::Labels;
 use crate::preview::zoom::{ViewRoom, Zoom};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
@@ -81,9 +82,11 @@ impl Canvas {
         scene::draw(&mut self.scene, &view);
         let painter = ui.painter_at(rect);
         egui_painter::paint(&painter, palette, &self.scene, map);
-        self.scale.reach(&painter, map, theme, edited.layout());
-        marks(edited, ui, rect, map, theme, &trial);
-        spacing_marks(&painter, map, theme, geometry.bounds(), &trial);
+        let controls = shown.widgets.iter().filter(|widget| widget.is_on(edited.page));
+        let mut notes = Labels::within(rect, controls.map(|widget| map.rect(widget.area)));
+        self.scale.reach(&painter, map, theme, edited.layout(), &mut notes);
+        marks(edited, ui, map, theme, &trial, &mut notes);
+        spacing_marks(&painter, map, theme, geometry.bounds(), &trial, &mut notes);
         names(edited, ui, map);
         if let Some(mut editor) = self.in_place.take()
             && editor.show(ui, theme, map, edited)
