@@ -2,6 +2,7 @@
 
 use eframe::egui;
 use eframe::egui::epaint::FontColorTransferFunction;
+use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2,
 };
@@ -174,6 +175,21 @@ pub(super) fn is_entered(ui: &Ui, field: &egui::Response) -> bool {
     field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter))
 }
 
+/// Writes one line that begins at `at`, centred vertically there; text wider than `width` points ends with dots.
+pub(super) fn write_within(
+    painter: &egui::Painter,
+    at: egui::Pos2,
+    width: f32,
+    text: &str,
+    font: FontId,
+    color: Color32,
+) {
+    let mut job = LayoutJob::simple_singleline(text.to_owned(), font, color);
+    job.wrap = TextWrapping::truncate_at_width(width.max(0.0));
+    let galley = painter.layout_job(job);
+    painter.galley(at - vec2(0.0, 0.5 * galley.size().y), galley, color);
+}
+
 /// One line of a table: texts at the given places (shares of the width), numbers right-aligned there.
 pub(super) struct TextRow<'a> {
     pub(super) ui: &'a Ui,
@@ -182,14 +198,12 @@ pub(super) struct TextRow<'a> {
 }
 
 impl TextRow<'_> {
-    /// Draws from `share` of the width to the right, at most up to `end` of it.
+    /// Draws from `share` of the width to the right; text that would go beyond `end` of it ends with dots.
     pub(super) fn left(&self, share: f32, end: f32, text: &str, color: Color32) {
         let x = self.rect.left() + share * self.rect.width();
-        let clip =
-            egui::Rect::from_x_y_ranges(x..=self.rect.left() + end * self.rect.width(), self.rect.y_range());
-        let painter = self.ui.painter().with_clip_rect(clip.intersect(self.ui.clip_rect()));
-        let font = FontId::proportional(self.size);
-        painter.text(egui::pos2(x, self.rect.center().y), egui::Align2::LEFT_CENTER, text, font, color);
+        let at = egui::pos2(x, self.rect.center().y);
+        let width = (end - share) * self.rect.width();
+        write_within(self.ui.painter(), at, width, text, FontId::proportional(self.size), color);
     }
 
     /// Draws so that the text ends at `share` of the width.

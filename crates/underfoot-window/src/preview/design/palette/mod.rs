@@ -15,7 +15,7 @@ use super::edited::EditedLayout;
 use super::list::list;
 use super::list_keys::go_on;
 use super::{Pane, Panes};
-use crate::preview::style::{panel_frame, quiet, section};
+use crate::preview::style::{panel_frame, quiet, section, write_within};
 use thing::PaletteSection;
 use underfoot_scene::egui_painter::{Palette, color};
 use underfoot_scene::scene::Theme;
@@ -233,7 +233,7 @@ fn show_row(
         draw_thing(ui, theme, palette, &edited.document, &row.thing, picture);
         let at = egui::pos2(picture.right() + 7.0, rect.center().y);
         let font = egui::FontId::proportional(12.5);
-        ui.painter().with_clip_rect(rect).text(at, egui::Align2::LEFT_CENTER, &name, font, color(theme.ink));
+        write_within(ui.painter(), at, rect.right() - at.x - 4.0, &name, font, color(theme.ink));
     }
     response
         .on_hover_text("Click, then click on the floor; or drag it there; Enter puts it where there is room")
