@@ -315,10 +315,10 @@ impl App {
     }
 
     /// Shows the button that records, if anything can be recorded.
-    pub(super) fn show_visit_button(&mut self, ui: &mut Ui) {
+    pub(super) fn show_visit_button(&mut self, ui: &mut Ui, is_compact: bool) {
         let theme = self.appearance.theme();
         if let Some(visit) = &mut self.visit {
-            visit.button(ui, &theme, self.shown.snapshot());
+            visit.button(ui, &theme, self.shown.snapshot(), is_compact);
         }
     }
 

@@ -45,15 +45,15 @@ impl SidePanel {
         self.wanted.unwrap_or(designs || width >= BESIDE)
     }
 
-    /// A button that opens or closes the panel at the right.
-    pub(super) fn button(&mut self, ui: &mut Ui, designs: bool) {
+    /// A button that opens or closes the panel at the right; a compact one has an icon alone.
+    pub(super) fn button(&mut self, ui: &mut Ui, designs: bool, is_compact: bool) {
         let shown = self.is_shown(ui.ctx().content_rect().width(), designs);
         let hint = if designs {
             "The fields of what is selected, at the side"
         } else {
             "Figures, events and actuators at the side"
         };
-        if switch_button(ui, shown, Icon::PanelRight, "Panel", designs, hint) {
+        if switch_button(ui, shown, Icon::PanelRight, "Panel", is_compact, hint) {
             self.wanted = Some(!shown);
         }
     }
