@@ -108,7 +108,10 @@ impl App {
                 self.end(ui, &theme, is_compact);
             });
             if has_two_lines {
-                line(ui, |ui| self.tools(ui, &theme, ui.available_width()));
+                line(ui, |ui| {
+                    let room = ui.available_width();
+                    self.tools(ui, &theme, room);
+                });
             }
         });
     }
