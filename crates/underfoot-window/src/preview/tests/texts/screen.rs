@@ -1,6 +1,6 @@
 //! The texts on the screen in one frame, with what lies under each.
 
-use eframe::egui::epaint::{ClippedShape, TextureId};
+use eframe::egui::epaint::{ClippedShape, TextShape};
 use eframe::egui::{self, Color32, FontFamily, LayerId, Pos2, Rect, Shape};
 
 use underfoot::layout::Colour;
@@ -67,12 +67,7 @@ fn flat<'s>(shape: &'s Shape, each: &mut impl FnMut(&'s Shape)) {
     }
 }
 
-fn of_galley(
-    layer: LayerId,
-    clip: Rect,
-    shape: &egui::epaint::TextShape,
-    ground: Option<Color32>,
-) -> Option<ScreenText> {
+fn of_galley(layer: LayerId, clip: Rect, shape: &TextShape, ground: Option<Color32>) -> Option<ScreenText> {
     let job = &shape.galley.job;
     let format = &job.sections.first()?.format;
     let own = if format.color == Color32::PLACEHOLDER { shape.fallback_color } else { format.color };
@@ -89,10 +84,6 @@ fn under(shapes: &[(Rect, &Shape)], point: Pos2, canvas: Color32) -> Option<Colo
         let fill = match shape {
             Shape::Rect(it) if it.rect.contains(point) => it.fill,
             Shape::Circle(it) if it.center.distance(point) < it.radius => it.fill,
-            Shape::Mesh(it) if it.texture_id != TextureId::default() && it.calc_bounds().contains(point) => {
-                return None;
-            }
-            // Boxes of the floor: the colour of the triangles, where it is one.
             Shape::Mesh(it) if it.calc_bounds().contains(point) => return None,
             _ => return ground,
         };
