@@ -10,7 +10,7 @@ use eframe::egui::{
 use super::icons::{self, Icon};
 use underfoot::layout::Colour;
 use underfoot_scene::egui_painter::color;
-use underfoot_scene::scene::Theme;
+use underfoot_scene::scene::{Faces, Theme};
 
 /// The fonts of the window: those of pictures, and icons.
 pub(super) fn fonts() -> egui::FontDefinitions {
@@ -66,6 +66,8 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
     // The largest radius for which a corner takes four steps instead of eight: without a graphics card, buttons cost
     // as much as the floor's controls.
     let radius = CornerRadius::same(5);
+    // With high contrast, edges tell states apart, and not only shades.
+    let (width, touched) = if theme.faces == Faces::Outlined { (1.5, 2.5) } else { (1.0, 1.0) };
     let states = &mut visuals.widgets;
     let faces = [
         (&mut states.noninteractive, 0.0, 0.0),
@@ -78,12 +80,15 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
         let fill = color(panel.mix(theme.ink, shade));
         (face.bg_fill, face.weak_bg_fill) = (fill, fill);
         face.bg_stroke =
-            Stroke::new(1.0, if edge > 0.0 { color(theme.line.mix(theme.ink, shade)) } else { line });
+            Stroke::new(width, if edge > 0.0 { color(theme.line.mix(theme.ink, shade)) } else { line });
         face.fg_stroke = Stroke::new(1.0, ink);
         face.corner_radius = radius;
         face.expansion = 0.0;
     }
-    visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, color(theme.accent));
+    visuals.widgets.hovered.bg_stroke = Stroke::new(touched, color(theme.accent));
+    if theme.faces == Faces::Outlined {
+        visuals.widgets.active.bg_stroke = Stroke::new(touched, ink);
+    }
     // Check boxes must be visible on the panel.
     visuals.widgets.inactive.bg_fill = color(panel.mix(theme.ink, 0.10));
 }
