@@ -125,7 +125,8 @@ impl Gallery {
     /// Feet on the floor, one of them on a control, and presses that did nothing.
     fn step(&mut self) {
         let mut snapshot = at_rest(&self.layout);
-        let widgets: Vec<_> = self.layout.widgets.iter().filter(|widget| widget.is_on(0)).collect();
+        let layout = Arc::clone(&self.layout);
+        let widgets: Vec<_> = layout.widgets.iter().filter(|widget| widget.is_on(0)).collect();
         if let Some(widget) = widgets.last() {
             // A press beside a control, which ends at once.
             let mut before = Snapshot { at: Instant::from_millis(19_700), ..at_rest(&self.layout) };

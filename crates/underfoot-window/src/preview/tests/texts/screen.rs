@@ -42,7 +42,7 @@ impl ScreenShapes {
         let mut below: Vec<(Rect, &Shape)> = Vec::new();
         let mut texts = Vec::new();
         for (layer, shapes) in &self.0 {
-            for ClippedShape { clip_rect, shape } in shapes {
+            for ClippedShape { clip_rect, shape, .. } in shapes {
                 flat(shape, &mut |shape| {
                     match shape {
                         Shape::Text(text) => {
