@@ -199,11 +199,18 @@ fn beside(at: Rect, half: Vec2, view: &View<'_>, taken: &[Rect]) -> Vec2 {
     let floor = view.geometry.bounds();
     let low = (floor.min + half).min(floor.centre());
     let high = (floor.max - half).max(low);
-    let lines = (0..4_u8).flat_map(|line| {
+    let lines = (0..6_u8).flat_map(|line| {
         let away = half.y * (1.05 + 2.2 * f32::from(line));
         [at.min.y - away, at.max.y + away]
     });
-    let aside = [at.centre().x, at.max.x + half.x, at.min.x - half.x];
+    let far = 2.0 * half.x;
+    let aside = [
+        at.centre().x,
+        at.max.x + half.x,
+        at.min.x - half.x,
+        at.max.x + half.x + far,
+        at.min.x - half.x - far,
+    ];
     let places = lines.flat_map(|y| aside.map(|x| Vec2::new(x, y)));
     let level = [at.max.x + 1.1 * half.x, at.min.x - 1.1 * half.x].map(|x| Vec2::new(x, at.centre().y));
     let places: Vec<Vec2> = places.chain(level).map(|place| place.clamp(low, high)).collect();
@@ -355,7 +362,12 @@ mod tests {
 
     #[test]
     fn reasons_cover_no_control_where_there_is_room() {
-        let (layout, geometry) = (map(), Geometry::default());
+        let (mut layout, geometry) = (map(), Geometry::default());
+        let mut number = 0;
+        layout.widgets.retain(|_| {
+            number += 1;
+            number % 2 == 0
+        });
         let snapshot = at_rest(&layout);
         let view = View::new(&geometry, &layout, &snapshot, &Theme::LIGHT);
         for widget in &layout.widgets {

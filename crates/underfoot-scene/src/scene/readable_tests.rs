@@ -40,7 +40,7 @@ fn painted(scene: &Scene, mark: &Mark, point: Vec2, under: Colour) -> Colour {
             filled(paint)
         }
         Mark::Path { points, paint, .. } => {
-            let broad = paint.stroke.filter(|stroke| stroke.width_m > 0.012 && stroke.dash.is_none());
+            let broad = paint.stroke.filter(|stroke| stroke.width_m > 0.009 && stroke.dash.is_none());
             let points = scene.points(*points);
             let is_on = |stroke: &super::Stroke| {
                 points.windows(2).any(|ends| distance(point, ends[0], ends[1]) < 0.5 * stroke.width_m)

@@ -128,10 +128,10 @@ impl Theme {
         faces: Faces::Outlined,
     };
 
-    /// Returns true if text is lighter than the background.
+    /// Returns true if text is lighter than the plates.
     #[must_use]
     pub fn is_dark(&self) -> bool {
-        self.canvas.luminance() < self.ink.luminance()
+        self.plate.luminance() < self.ink.luminance()
     }
 
     /// Returns the colours of a projection onto real plates: black around the floor, and with a dark theme on the

@@ -83,7 +83,8 @@ impl Canvas {
         let painter = ui.painter_at(rect);
         egui_painter::paint(&painter, palette, &self.scene, map);
         let controls = shown.widgets.iter().filter(|widget| widget.is_on(edited.page));
-        let mut notes = Labels::within(rect, controls.map(|widget| map.rect(widget.area)));
+        let taken = controls.map(|widget| widget.area).chain(self.scene.written());
+        let mut notes = Labels::within(rect, taken.map(|area| map.rect(area)));
         self.scale.reach(&painter, map, theme, edited.layout(), &mut notes);
         marks(edited, ui, map, theme, &trial, &mut notes);
         spacing_marks(&painter, map, theme, geometry.bounds(), &trial, &mut notes);

@@ -34,7 +34,7 @@ pub(super) fn marks(
     let painter = ui.painter_at(rect);
     let accent = color(theme.accent);
     if trial.layout.is_none() {
-        badges(edited, ui, rect, map, theme);
+        badges(edited, ui, map, theme, notes);
     }
     let is_moving = !trial.areas.is_empty();
     for item in edited.selected_items() {
@@ -79,11 +79,10 @@ pub(super) fn marks(
 
 /// Draws one badge for each control with findings, in the colour of the worst; the texts appear beside the control
 /// under the pointer and beside those that are selected.
-fn badges(edited: &EditedLayout, ui: &Ui, rect: egui::Rect, map: ScreenFromFloor, theme: &Theme) {
+fn badges(edited: &EditedLayout, ui: &Ui, map: ScreenFromFloor, theme: &Theme, labels: &mut Labels) {
+    let rect = labels.within;
     let painter = ui.painter_at(rect);
     let widgets = &edited.layout().widgets;
-    let on_page = widgets.iter().filter(|widget| widget.is_on(edited.page));
-    let mut labels = Labels::within(rect, on_page.map(|widget| map.rect(widget.area)));
     let pointer = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at));
     for (index, widget) in widgets.iter().enumerate().filter(|(_, widget)| widget.is_on(edited.page)) {
         let record = |finding: &Finding| edited.document.found_in(finding);

@@ -160,7 +160,7 @@ impl Designer {
         self.panes.focus = None;
         let pressed = ui.input(|i| i.pointer.interact_pos().filter(|_| i.pointer.any_pressed()));
         if pressed.is_some_and(|at| stage.canvas.contains(at)) {
-            self.panes.pane = None;
+            self.panes.is_led = false;
         }
         // The floor of a server gets the edits only when the user tries them.
         if self.edited.document.revision() != before && shown.server.is_none() {
@@ -175,7 +175,7 @@ impl Designer {
     /// Whether the palette, the fields and the text are on display. A narrow window has room for one panel: the one to
     /// which F6 led, the text, the fields of the selection, or the palette.
     fn panes_on_display(&self, stage: &StageOfWindow) -> [bool; 3] {
-        let (pane, text) = (self.panes.pane, self.text.is_open);
+        let (pane, text) = (self.panes.pane.filter(|_| self.panes.is_led), self.text.is_open);
         if stage.is_wide() {
             return [true, stage.has_side || pane == Some(Pane::Fields), text];
         }

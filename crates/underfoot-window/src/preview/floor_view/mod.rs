@@ -108,9 +108,8 @@ impl FloorView {
         }
         feet.focus(name_controls(ui, map, shown, &mut self.controls));
         if has_steps && !draws_walks {
-            let missed = self.misses.latest();
-            let missed = missed.filter(|miss| shown.snapshot().at.since(miss.at) < scene::TOLD);
-            self.steps.show(ui, rect, map, theme, shown, missed.map(|miss| miss.place));
+            let written = self.scene.written().map(|area| map.rect(area));
+            self.steps.show(ui, rect, map, theme, shown, written);
         }
         if !self.zoom.is_fitted(extent, room) {
             self.fit_button(ui, rect, extent, room);

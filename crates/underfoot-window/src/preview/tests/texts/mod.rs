@@ -38,9 +38,11 @@ struct SeenWindow {
 struct Gallery {
     window: Harness<'static, SeenWindow>,
     snapshots: triple_buffer::Input<Snapshot>,
+    snapshot: Snapshot,
     layout: Arc<Layout>,
     theme: Theme,
-    size: egui::Vec2,
+    /// Whether all panels of Design have room beside the floor.
+    is_wide: bool,
     /// Layout, theme and width, for messages.
     name: String,
     found: Vec<String>,
@@ -76,6 +78,7 @@ impl Gallery {
         let window = Harness::builder()
             .with_size(vec2(width, height))
             .with_step_dt(1.0 / 60.0)
+            .with_theme(if theme.is_dark() { egui::Theme::Dark } else { egui::Theme::Light })
             .with_context_setup(move |ctx| {
                 ctx.set_fonts(crate::preview::style::fonts());
                 crate::preview::style::apply(ctx, &theme);
@@ -88,19 +91,29 @@ impl Gallery {
                 seen,
             );
         let name = format!("{layout_name}, {}, {width} wide", theme.name().unwrap());
-        let (size, found) = (vec2(width, height), Vec::new());
-        Self { window, snapshots, layout, theme, size, name, found, _notices: notices }
+        let snapshot = at_rest(&layout);
+        let (is_wide, found) = (width > 1000.0, Vec::new());
+        Self { window, snapshots, snapshot, layout, theme, is_wide, name, found, _notices: notices }
     }
 
     fn run(&mut self) {
+        // A floor without news for a while is a fault of its own.
+        self.snapshots.write(self.snapshot.clone());
         self.window.run_steps(6);
     }
 
     /// Notes what is wrong with the texts on the screen.
     fn look(&mut self, at: &str) {
+        self.look_under(at, false);
+    }
+
+    /// The same; `panels` tells whether panels cover a part of the floor.
+    fn look_under(&mut self, at: &str, panels: bool) {
         self.run();
         let screen = self.window.ctx.content_rect();
-        let found = faults(&self.window.state().texts, screen, &self.theme);
+        let floor = ["Floor", "Drawing board"].into_iter().find_map(|name| self.window.query_by_label(name));
+        let covered = floor.map(|floor| floor.rect()).filter(|_| panels);
+        let found = faults(&self.window.state().texts, screen, covered, &self.theme);
         self.found.extend(found.into_iter().map(|fault| format!("{}, {at}: {fault}", self.name)));
     }
 
@@ -131,7 +144,7 @@ impl Gallery {
             // A press beside a control, which ends at once.
             let mut before = Snapshot { at: Instant::from_millis(19_700), ..at_rest(&self.layout) };
             step_on(&mut before, 20, widget.area.max + Vec2::splat(0.02), 60.0, Vec2::ZERO);
-            self.snapshots.write(before);
+            self.snapshot = before;
             self.run();
         }
         snapshot.at = Instant::from_millis(20_000);
@@ -151,7 +164,7 @@ impl Gallery {
                 why: Ignored::TooLight,
             });
         }
-        self.snapshots.write(snapshot);
+        self.snapshot = snapshot;
         self.run();
     }
 
@@ -168,24 +181,28 @@ impl Gallery {
         }
         for bar in ["Plots", "Effects", "Visit"] {
             self.click(bar);
-            self.look(&format!("Try, {bar}"));
+            self.look_under(&format!("Try, {bar}"), true);
             self.click(bar);
         }
+    }
+
+    fn design(&mut self, at: &str) {
+        self.look_under(at, !self.is_wide);
     }
 
     /// Design: nothing, one and all selected, menus and text.
     fn design_mode(&mut self) {
         self.key(Modifiers::NONE, Key::F2);
-        self.look("Design");
+        self.design("Design");
         for menu in ["File", "Show"] {
             self.click(menu);
-            self.look(&format!("Design, {menu}"));
+            self.design(&format!("Design, {menu}"));
             self.key(Modifiers::NONE, Key::Escape);
         }
         self.key(Modifiers::COMMAND, Key::A);
-        self.look("Design, all selected");
+        self.design("Design, all selected");
         self.click("Arrange");
-        self.look("Design, Arrange");
+        self.design("Design, Arrange");
         self.key(Modifiers::NONE, Key::Escape);
         let first =
             self.layout.widgets.iter().find(|widget| widget.is_on(0)).map(|widget| widget.id.to_string());
@@ -193,15 +210,15 @@ impl Gallery {
             let at = self.window.get_by_label(&format!("On the floor: {first}")).rect().center();
             self.pointer(at, true);
             self.pointer(at, false);
-            self.look("Design, one selected");
+            self.design("Design, one selected");
             self.pointer(at, true);
             self.window.event(Event::PointerMoved(at + vec2(0.0, -30.0)));
-            self.look("Design, one moving");
+            self.design("Design, one moving");
             self.window.event(Event::PointerMoved(at));
             self.pointer(at, false);
         }
         self.click("Text");
-        self.look("Design, Text");
+        self.look_under("Design, Text", true);
     }
 }
 

@@ -109,9 +109,15 @@ impl ScreenText {
         self.layer == other.layer && !is_double && both.width() > 1.0 && both.height() > 1.0
     }
 
-    /// The reason why the text is cut in a window of this size, if it is.
-    fn cut(&self, window: Rect) -> Option<&'static str> {
+    /// The reason why the text is cut in a window of this size, if it is; not if it is a text of the floor, whose
+    /// visible part is `covered`, under a panel.
+    fn cut(&self, window: Rect, covered: Option<Rect>) -> Option<&'static str> {
         let (area, clip) = (self.area, self.clip);
+        let is_floor =
+            |floor: Rect| floor.expand(1.0).contains_rect(clip) && clip.expand(1.0).contains_rect(floor);
+        if covered.is_some_and(is_floor) && window.contains_rect(area) {
+            return None;
+        }
         let is_level = area.top() < clip.bottom() && area.bottom() > clip.top();
         if is_level
             && !self.scrolls()
@@ -139,14 +145,20 @@ impl ScreenText {
     }
 }
 
-/// The faults of the texts of a window in this theme: covered, cut, or hard to read.
-pub(super) fn faults(texts: &[ScreenText], window: Rect, theme: &Theme) -> Vec<String> {
+/// The faults of the texts of a window in this theme: covered, cut, or hard to read. Panels lie over the floor except
+/// for its part `covered`.
+pub(super) fn faults(
+    texts: &[ScreenText],
+    window: Rect,
+    covered: Option<Rect>,
+    theme: &Theme,
+) -> Vec<String> {
     let mut found = Vec::new();
     for (index, text) in texts.iter().enumerate() {
         for other in texts.iter().take(index).filter(|other| text.covers(other)) {
             found.push(format!("“{}” covers “{}” at {:?}", text.text, other.text, text.area));
         }
-        if let Some(why) = text.cut(window) {
+        if let Some(why) = text.cut(window, covered) {
             found.push(format!("“{}” is {why}: {:?} in {:?}", text.text, text.area, text.clip));
         }
         if let Some(ratio) = text.contrast().filter(|ratio| *ratio < theme.least_contrast() - 0.1) {
@@ -174,7 +186,7 @@ mod tests {
             texts = ScreenShapes::of(ui.ctx()).texts(Color32::BLACK);
         });
         output.textures_delta.clear();
-        faults(&texts, window, &Theme::CONTRAST)
+        faults(&texts, window, None, &Theme::CONTRAST)
     }
 
     fn write(painter: &egui::Painter, at: Pos2, colour: Color32) {
