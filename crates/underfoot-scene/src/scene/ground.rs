@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::widths::CAP_HEIGHT;
-use super::{Scene, View, outline, terrain};
+use super::{Scene, View, names, outline, terrain};
 use underfoot::engine::TileState;
 use underfoot::floor::{Corner, Rect, TileId};
 use underfoot::sense::Quality;
@@ -26,7 +26,7 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     for (index, tile) in view.geometry.tiles().enumerate() {
         let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
         // Full colour at 700 N, one person on one foot; the square root makes light steps visible too.
-        let share = if view.show.loads { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
+        let share = if view.show.loads { (load / 700.0).sqrt().min(1.0) * MOST_LOAD } else { 0.0 };
         let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
         if terrain::hides(view, cell) {
             continue;
@@ -41,6 +41,9 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
         seams(scene, view, 0.0);
     }
 }
+
+/// Maximum share of the colour of loads in a plate.
+pub(super) const MOST_LOAD: f32 = 0.55;
 
 /// Share of the accent colour in an active area.
 const TINT: f32 = 0.045;
@@ -125,9 +128,9 @@ pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
             Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),
             Anchor::Start,
             size_m,
-            Ink::faint(theme.accent, 0.9),
+            names::ink(theme, theme.accent),
         );
-        scene.add_line_of(lettering, &region.id, area.size().x - 0.04, size_m);
+        names::write(scene, view, lettering, &region.id, (area.size().x - 0.04, size_m));
     }
 }
 
@@ -161,9 +164,9 @@ pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
             Vec2::new(area.centre().x, area.min.y + 0.022),
             Anchor::Middle,
             0.032,
-            Ink::solid(theme.quiet),
+            names::ink(theme, theme.quiet),
         );
-        scene.add_line_of(lettering, &stance.label, size.x - 0.03, 0.02);
+        names::write(scene, view, lettering, &stance.label, (size.x - 0.03, 0.02));
     }
 }
 

@@ -16,14 +16,19 @@
 mod board;
 mod control;
 mod face;
+mod face_colours;
+mod face_words;
 mod feet;
 mod fit;
 mod ground;
 mod icon;
 mod layers;
 mod mark;
+mod names;
 mod outline;
 mod pieces;
+#[cfg(test)]
+mod readable_tests;
 #[cfg(test)]
 #[path = "../../../../tests/support/sample.rs"]
 pub(crate) mod sample;
@@ -36,11 +41,12 @@ mod view;
 mod widths;
 
 pub use board::Scene;
+pub use face_colours::Faces;
 pub use layers::TOLD;
 pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::{outline_of, sole};
 pub use pieces::{TextDirection, TextPiece, in_drawn_order, pieces};
-pub use theme::{Faces, Theme};
+pub use theme::Theme;
 pub use view::{Layer, PressBeside, Shoe, Show, Trail, View};
 
 use glam::Vec2;

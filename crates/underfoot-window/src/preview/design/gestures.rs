@@ -9,6 +9,7 @@ use super::edited::EditedLayout;
 use super::trial::{GestureResult, Snapping, copying, moving, rect_between};
 use crate::edit::{Address, Edges, Item, RecordList};
 use crate::preview::pointer::way_while_down;
+use crate::preview::zoom::ViewRoom;
 use underfoot_scene::egui_painter::ScreenFromFloor;
 
 /// Half the side of a handle, and the distance within which the pointer grabs it, in points.
@@ -53,7 +54,7 @@ impl Canvas {
         ui: &Ui,
         canvas: &egui::Response,
         map: ScreenFromFloor,
-        screen: egui::Rect,
+        room: ViewRoom,
         edited: &mut EditedLayout,
     ) -> GestureResult {
         let (pointer, pressed, released, space, modifiers) = ui.input(|i| {
@@ -75,7 +76,7 @@ impl Canvas {
         };
         let panned = button.map_or(egui::Vec2::ZERO, |button| ui.input(|i| way_while_down(i, button)));
         if panned != egui::Vec2::ZERO {
-            self.view.pan(panned, screen);
+            self.view.pan(panned, room);
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         }
         if let Some(thing) = self.placing.clone() {

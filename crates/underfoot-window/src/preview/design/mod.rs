@@ -102,6 +102,10 @@ struct Panes {
     pane: Option<Pane>,
     /// The pane that gets the keyboard in this frame.
     focus: Option<Pane>,
+    /// Whether F6 led to the pane, and not a press on the floor away from it.
+    is_led: bool,
+    /// Whether the window shows one panel at a time, at the right.
+    is_narrow: bool,
 }
 
 impl Panes {

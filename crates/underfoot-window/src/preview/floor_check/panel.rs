@@ -38,7 +38,8 @@ impl FloorCheck {
     pub(in crate::preview) fn panel(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, led: bool) {
         let mut wish = None;
         let frame = panel_frame(theme, Margin { left: 14, right: 10, top: 8, bottom: 8 });
-        Panel::right("check panel").frame(frame).resizable(true).default_size(330.0).show(ui, |ui| {
+        let panel = Panel::right("check panel").frame(frame).resizable(true).default_size(330.0);
+        panel.max_size(0.5 * ui.available_width()).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.label(RichText::new("Check the floor").size(17.0).strong().color(color(theme.ink)));
             });

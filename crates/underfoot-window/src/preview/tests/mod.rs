@@ -10,7 +10,9 @@ mod panel;
 mod plots;
 mod presses;
 mod server;
+mod stage;
 mod status;
+mod texts;
 mod time_line;
 mod walks;
 

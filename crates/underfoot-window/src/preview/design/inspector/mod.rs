@@ -78,7 +78,7 @@ type FrameEdits = Option<(String, FieldEdits)>;
 const INSPECTOR_PX: f32 = 330.0;
 
 impl Inspector {
-    /// Shows the inspector.
+    /// Shows the inspector, at most `widest` points wide.
     pub(super) fn panel(
         &mut self,
         ui: &mut Ui,
@@ -86,11 +86,12 @@ impl Inspector {
         palette: &mut Palette,
         edited: &mut EditedLayout,
         panes: &mut Panes,
+        widest: f32,
     ) {
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         // A fixed width, whatever the content: the floor beside the panel must not move under the pointer.
         let panel = Panel::right("inspector").frame(frame).resizable(false);
-        panel.exact_size(INSPECTOR_PX).show(ui, |ui| {
+        panel.exact_size(INSPECTOR_PX.min(widest)).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_width(ui.available_width() - 8.0);
                 // The cached fields belong to a revision, and so must the records of which they are made.

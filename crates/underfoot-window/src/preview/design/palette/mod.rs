@@ -10,11 +10,12 @@ use eframe::egui::{
     Id, Key, Margin, Panel, Response, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
 };
 
+use super::canvas::Canvas;
 use super::edited::EditedLayout;
 use super::list::list;
 use super::list_keys::go_on;
 use super::{Pane, Panes};
-use crate::preview::style::{panel_frame, quiet, section};
+use crate::preview::style::{panel_frame, quiet, section, write_within};
 use thing::PaletteSection;
 use underfoot_scene::egui_painter::{Palette, color};
 use underfoot_scene::scene::Theme;
@@ -61,11 +62,13 @@ impl ThingList {
         theme: &Theme,
         palette: &mut Palette,
         edited: &mut EditedLayout,
-        placing: &mut Option<PaletteThing>,
+        canvas: &mut Canvas,
         panes: &mut Panes,
     ) {
         let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
-        let panel = Panel::left("palette").frame(frame).resizable(true);
+        // In a narrow window all panels have one place.
+        let panel = if panes.is_narrow { Panel::right("palette") } else { Panel::left("palette") };
+        let panel = panel.frame(frame).resizable(true);
         panel.default_size(204.0).size_range(150.0..=300.0).show(ui, |ui| {
             let half = 0.5 * ui.available_height();
             let below = Panel::bottom("on the floor").frame(egui::Frame::new()).resizable(true);
@@ -75,7 +78,7 @@ impl ThingList {
                     section(ui, theme, "On the floor", |_| {});
                     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                         ui.set_width(ui.available_width() - 8.0);
-                        list(ui, theme, edited, panes);
+                        list(ui, theme, edited, &mut canvas.in_place, panes);
                     });
                 },
             );
@@ -84,10 +87,10 @@ impl ThingList {
             let search = self.search(ui, is_led);
             let wish = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_width(ui.available_width() - 8.0);
-                self.show(ui, theme, palette, edited, placing.as_ref(), search)
+                self.show(ui, theme, palette, edited, canvas.placing.as_ref(), search)
             });
             if let Some(wish) = wish.inner {
-                self.obey(wish, edited, placing);
+                self.obey(wish, edited, &mut canvas.placing);
             }
         });
     }
@@ -230,7 +233,7 @@ fn show_row(
         draw_thing(ui, theme, palette, &edited.document, &row.thing, picture);
         let at = egui::pos2(picture.right() + 7.0, rect.center().y);
         let font = egui::FontId::proportional(12.5);
-        ui.painter().with_clip_rect(rect).text(at, egui::Align2::LEFT_CENTER, &name, font, color(theme.ink));
+        write_within(ui.painter(), at, rect.right() - at.x - 4.0, &name, font, color(theme.ink));
     }
     response
         .on_hover_text("Click, then click on the floor; or drag it there; Enter puts it where there is room")

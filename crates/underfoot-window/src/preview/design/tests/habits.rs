@@ -59,6 +59,18 @@ fn is_round(value: &str) -> bool {
 }
 
 #[test]
+fn a_row_of_the_list_has_the_menu_that_its_record_has_on_the_floor() {
+    let mut desk = Desk::map();
+    let row = desk.window.get_by_label("Control home").rect().center();
+    desk.open_menu(row);
+    assert_eq!(desk.selected_ids(), ["home"]);
+    desk.choose_entry("Rename");
+    desk.type_over("start");
+    assert!(desk.text().contains("id: \"start\"") && !desk.text().contains("id: \"home\""));
+    assert_eq!(desk.selected_ids(), ["start"]);
+}
+
+#[test]
 fn a_double_click_edits_the_label_where_the_foot_reads_it() {
     let mut desk = Desk::map();
     let first = desk.text();
