@@ -18,7 +18,7 @@ use super::mode::WindowMode;
 use super::panel::{SidePanel, Tuner, handle_undo_key};
 use super::plots::Plots;
 use super::presses::PressLog;
-use super::projection::Projection;
+use super::projection::{ConnectedScreens, Projection};
 use super::rehearsal::Rehearsal;
 use super::scopes::ActuatorScopes;
 use super::selection::Selection;
@@ -296,7 +296,10 @@ impl App {
         if let Some(designer) = self.designer.as_mut().filter(|designer| !designer.is_open) {
             designer.keys_to_save(ui);
         }
-        handle_mute_key(ui, &self.shown);
+        let is_adjusting = self.projection.takes_keys(ui.ctx());
+        if !is_adjusting {
+            handle_mute_key(ui, &self.shown);
+        }
         // A check of the floor excludes editing.
         let is_checking = self.is_checking();
         if let Some(designer) = self.designer.as_mut().filter(|_| !is_checking) {
@@ -306,7 +309,9 @@ impl App {
         if let Some(designer) = &mut self.designer {
             self.window.closing.ask(ui.ctx(), designer);
         }
-        handle_undo_key(ui, &self.shown, &mut self.presses, self.designer.as_mut());
+        if !is_adjusting {
+            handle_undo_key(ui, &self.shown, &mut self.presses, self.designer.as_mut());
+        }
         let is_designing = self.is_designing();
         if !is_designing {
             self.plots.handle_key(ui);
@@ -392,12 +397,30 @@ impl App {
     }
 }
 
+/// The screens connected to this computer; `None` if the system does not report them.
+#[cfg(not(target_arch = "wasm32"))]
+fn screens(frame: &eframe::Frame) -> Option<ConnectedScreens> {
+    let window = frame.winit_window()?;
+    let own = window.current_monitor();
+    let own = own.and_then(|own| window.available_monitors().position(|screen| screen == own));
+    Some(ConnectedScreens { count: window.available_monitors().count(), own })
+}
+
+/// A browser does not report its screens.
+#[cfg(target_arch = "wasm32")]
+fn screens(_: &eframe::Frame) -> Option<ConnectedScreens> {
+    None
+}
+
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.handle_close(ctx);
     }
 
-    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        if self.projection.is_open() {
+            self.projection.note_screens(screens(frame));
+        }
         self.show(ui);
     }
 
