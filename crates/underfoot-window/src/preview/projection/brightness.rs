@@ -31,7 +31,7 @@ impl Brightness {
 
     /// The brightness `by` per cent brighter, darker if negative; it ends at 0 and at 100.
     pub(super) fn changed(self, by: i32) -> Self {
-        let percent = (i32::from(self.0) + by).clamp(0, 100);
+        let percent = i32::from(self.0).saturating_add(by).clamp(0, 100);
         Self(u8::try_from(percent).unwrap_or(100))
     }
 

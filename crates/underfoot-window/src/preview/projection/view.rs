@@ -106,7 +106,7 @@ impl ProjectorView {
                 }
                 help(ui, picture, lines);
             }
-        } else {
+        } else if node.contains_pointer() {
             ui.ctx().set_cursor_icon(CursorIcon::None);
         }
         key
