@@ -15,7 +15,7 @@ const WHITE: Colour = Colour::rgb(255, 255, 255);
 
 /// Heights of the capital letters of the texts, in centimetres.
 ///
-/// From two metres, letters are comfortable to read at 1.2 cm: 20 minutes of arc (ISO 9241-303, 5.5.4).
+/// From two metres, letters are comfortable to read at 1.2 cm: 20 minutes of arc (ISO 9241-303).
 const TEXTS_CM: [f32; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0];
 
 /// Distance between the base lines of two texts, in heights of the capitals of the upper one.

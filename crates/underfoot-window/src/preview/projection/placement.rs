@@ -1,6 +1,6 @@
 //! The place of the floor on a projector's picture, as set by the user.
 
-use glam::{DVec2, Vec2};
+use glam::Vec2;
 
 use super::homography::{Homography, is_convex};
 use underfoot::floor::Rect;
@@ -79,6 +79,8 @@ impl Placement {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
 
     fn floor() -> Rect {

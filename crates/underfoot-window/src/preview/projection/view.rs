@@ -204,7 +204,7 @@ fn name_controls(ui: &Ui, shown: &ShownFloor, name: ProjectorName, onto: impl Fn
         let node = ui.interact(around, ui.scope_id().with(("projected", index)), Sense::hover());
         let label = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
         let spoken = name.label(&format!("Projected {label}"));
-        node.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken));
+        node.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     }
 }
 
