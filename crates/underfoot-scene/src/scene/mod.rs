@@ -48,6 +48,7 @@ pub use outline::{outline_of, sole};
 pub use pieces::{TextDirection, TextPiece, in_drawn_order, pieces};
 pub use theme::Theme;
 pub use view::{Layer, PressBeside, Shoe, Show, Trail, View};
+pub use widths::CAP_HEIGHT;
 
 use glam::Vec2;
 

@@ -284,7 +284,10 @@ impl App {
         if let Some(designer) = self.designer.as_mut().filter(|designer| !designer.is_open) {
             designer.keys_to_save(ui);
         }
-        handle_mute_key(ui, &self.shown);
+        let is_adjusting = self.projection.takes_keys(ui.ctx());
+        if !is_adjusting {
+            handle_mute_key(ui, &self.shown);
+        }
         // A check of the floor excludes editing.
         let is_checking = self.is_checking();
         if let Some(designer) = self.designer.as_mut().filter(|_| !is_checking) {
@@ -294,7 +297,9 @@ impl App {
         if let Some(designer) = &mut self.designer {
             self.window.closing.ask(ui.ctx(), designer);
         }
-        handle_undo_key(ui, &self.shown, &mut self.presses, self.designer.as_mut());
+        if !is_adjusting {
+            handle_undo_key(ui, &self.shown, &mut self.presses, self.designer.as_mut());
+        }
         let is_designing = self.is_designing();
         if !is_designing {
             self.plots.handle_key(ui);

@@ -72,11 +72,13 @@ impl HelpTopic {
             ],
             Self::Projecting => &[
                 ("In the projected window: C", "adjust the corners"),
-                ("1 to 4, Arrows", "move one of them"),
-                ("M", "mirror"),
-                ("F", "full screen"),
-                ("N", "next screen"),
-                ("F11", "close it"),
+                ("Tab, Arrows", "move one by a pixel"),
+                ("Ctrl-Z", "undo"),
+                ("F, N", "full screen, next screen"),
+                ("T", "check page"),
+                ("+, -", "brightness"),
+                ("M, R", "mirror, turn"),
+                ("F11", "close"),
             ],
             Self::Replaying => &[
                 ("Space", "pause"),

@@ -6,6 +6,7 @@ use eframe::egui::{Button, Key, PopupCloseBehavior, RichText, Ui};
 use crate::preview::app::App;
 use crate::preview::feed::PreviewCommand;
 use crate::preview::icons::{Icon, named, short, with};
+use crate::preview::mode::WindowMode;
 use crate::preview::shown::ShownFloor;
 use crate::preview::style::switch_button;
 use underfoot_scene::egui_painter::color;
@@ -14,6 +15,9 @@ use underfoot_scene::scene::{Show, Theme};
 impl App {
     /// The buttons that belong to the use of the floor; compact ones have icons alone.
     pub(super) fn try_tools(&mut self, ui: &mut Ui, theme: &Theme, is_compact: bool) {
+        if self.mode() == WindowMode::Project {
+            self.projection.menu(ui, theme);
+        }
         self.feet.stance_button(ui, &self.shown, is_compact);
         self.show_visit_button(ui, is_compact);
         if self.shown.scopes.is_fed() {
