@@ -143,7 +143,7 @@ impl Brush<'_> {
     }
 
     fn pixels_per_point(&self) -> f32 {
-        self.painter.ctx().pixels_per_point()
+        self.painter.pixels_per_point()
     }
 
     /// A box with round corners; an infinite radius makes a circle.
@@ -282,6 +282,42 @@ fn fill(paint: &Paint) -> Color32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::sample::{at_rest, map, others, step_on};
+    use crate::scene::{self, Show, Theme, View};
+
+    /// Number of draw calls for a page of `count` controls with all layers and one foot.
+    fn draw_calls(count: usize) -> usize {
+        let (mut layout, geometry) = (map(), floor::Geometry::default());
+        let shipped = std::mem::take(&mut layout.widgets);
+        let kinds = shipped.iter().map(|widget| widget.behaviour.clone()).chain(others());
+        let kinds: Vec<_> = kinds.collect();
+        layout.widgets.extend(kinds.iter().cycle().take(count).enumerate().map(|(number, behaviour)| {
+            let corner = Vec2::new((number % 10) as f32, (number / 10) as f32) * 0.18;
+            let area = floor::Rect::from_min_size(corner + 0.01, Vec2::splat(0.15));
+            let behaviour = behaviour.clone();
+            underfoot::layout::Widget { area, behaviour, ..shipped[0].clone() }
+        }));
+        let mut snapshot = at_rest(&layout);
+        step_on(&mut snapshot, 1, Vec2::new(0.9, 0.9), 400.0, Vec2::X);
+        let mut show = Show::WINDOW;
+        Show::LAYERS.iter().for_each(|(_, layer)| *layer(&mut show) = true);
+        let mut scene = Scene::new();
+        let view = View { show, ..View::new(&geometry, &layout, &snapshot, &Theme::LIGHT) };
+        scene::draw(&mut scene, &view);
+        let screen = Rect::from_min_size(Pos2::ZERO, egui::Vec2::splat(1000.0));
+        let map = ScreenFromFloor::fit(scene.bounds(), screen);
+        let input = egui::RawInput { screen_rect: Some(screen), ..Default::default() };
+        let (ctx, mut palette) = (egui::Context::default(), Palette::default());
+        let mut output = ctx.run_ui(input, |ui| paint(ui.painter(), &mut palette, &scene, map));
+        output.textures_delta.clear();
+        ctx.tessellate(output.shapes, 1.0).len()
+    }
+
+    #[test]
+    fn a_hundred_controls_take_hardly_more_draw_calls_than_twenty() {
+        let (few, many) = (draw_calls(20), draw_calls(100));
+        assert!(few < 24 && many < few + 8, "{few} for twenty, {many} for a hundred");
+    }
 
     /// The texts that are drawn for one line, from left to right, with the positions of their base lines.
     fn painted(text: &str, lettering: Lettering) -> Vec<(String, Pos2)> {
