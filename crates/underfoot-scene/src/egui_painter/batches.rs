@@ -10,10 +10,8 @@ const SOFT: f32 = 1.0;
 
 /// Shapes in drawing order, in as few groups of one texture as the order allows.
 ///
-/// Each change of the texture is a draw call, and without a graphics card one costs as much as a hundred triangles. So
-/// a shape joins an earlier group of its texture, unless a group after that one draws at the same place. The picture
-/// stays the same.
-#[derive(Default)]
+/// Each change of the texture is a draw call with buffers of its own. So a shape joins an earlier group of its
+/// texture, unless a group after that one draws at the same place. The picture stays the same.
 pub(super) struct Batches {
     area: Rect,
     /// For each cell of the area, row by row, the last group that draws there; 0 for none.
@@ -24,6 +22,12 @@ pub(super) struct Batches {
 struct Group {
     texture: TextureId,
     shapes: Vec<Shape>,
+}
+
+impl Default for Batches {
+    fn default() -> Self {
+        Self { area: Rect::NOTHING, last: Vec::new(), groups: Vec::new() }
+    }
 }
 
 impl Batches {
@@ -40,9 +44,9 @@ impl Batches {
         let shape = shape.into();
         let texture = shape.texture_id();
         let area = self.cells(shape.visual_bounding_rect().expand(beyond + SOFT));
-        let first = area.rows(&mut self.last).flatten().copied().max().unwrap_or(0);
-        let later = self.groups.iter().enumerate().skip(first as usize);
-        let joined = later.into_iter().find(|(_, group)| group.texture == texture).map(|(at, _)| at);
+        let first = area.rows(&mut self.last).flatten().map(|last| *last).max().unwrap_or(0);
+        let mut later = self.groups.iter().enumerate().skip(first as usize);
+        let joined = later.find(|(_, group)| group.texture == texture).map(|(at, _)| at);
         let at = joined.unwrap_or_else(|| {
             self.groups.push(Group { texture, shapes: Vec::new() });
             self.groups.len() - 1
@@ -101,7 +105,7 @@ mod tests {
     /// A rectangle with one of the textures; its colour is its number.
     fn shape(number: u8, texture: u64, rect: Rect) -> Shape {
         let mut mesh = Mesh::with_texture(TextureId::User(texture));
-        mesh.add_colored_rect(rect, Color32::from_gray(number));
+        mesh.add_rect_with_uv(rect, Rect::ZERO, Color32::from_gray(number));
         Shape::mesh(mesh)
     }
 
