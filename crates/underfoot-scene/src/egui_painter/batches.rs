@@ -16,10 +16,10 @@ pub(super) struct Batches {
     area: Rect,
     /// For each cell of the area, row by row, the last group that draws there; 0 for none.
     last: Vec<u32>,
-    groups: Vec<Group>,
+    groups: Vec<OneTexture>,
 }
 
-struct Group {
+struct OneTexture {
     texture: TextureId,
     shapes: Vec<Shape>,
 }
@@ -48,7 +48,7 @@ impl Batches {
         let mut later = self.groups.iter().enumerate().skip(first as usize);
         let joined = later.find(|(_, group)| group.texture == texture).map(|(at, _)| at);
         let at = joined.unwrap_or_else(|| {
-            self.groups.push(Group { texture, shapes: Vec::new() });
+            self.groups.push(OneTexture { texture, shapes: Vec::new() });
             self.groups.len() - 1
         });
         area.rows(&mut self.last).for_each(|row| row.fill(at as u32));
@@ -65,11 +65,11 @@ impl Batches {
     }
 
     /// The cells that `bounds` touches; those of the rim stand for all places outside the area.
-    fn cells(&self, bounds: Rect) -> Cells {
+    fn cells(&self, bounds: Rect) -> CellBlock {
         let cell = |share: f32| ((share * CELLS as f32).max(0.0) as usize).min(CELLS - 1);
         let column = |x: f32| cell((x - self.area.left()) / self.area.width().max(1.0));
         let row = |y: f32| cell((y - self.area.top()) / self.area.height().max(1.0));
-        Cells {
+        CellBlock {
             columns: (column(bounds.left()), column(bounds.right())),
             rows: (row(bounds.top()), row(bounds.bottom())),
         }
@@ -78,12 +78,12 @@ impl Batches {
 
 /// A rectangle of cells: the first and the last column and row.
 #[derive(Clone, Copy)]
-struct Cells {
+struct CellBlock {
     columns: (usize, usize),
     rows: (usize, usize),
 }
 
-impl Cells {
+impl CellBlock {
     /// These cells in `all`, row by row; none if they end before they begin.
     fn rows(self, all: &mut [u32]) -> impl Iterator<Item = &mut [u32]> {
         let (columns, (first, last)) = (self.columns, self.rows);
