@@ -34,11 +34,23 @@ class Window:
         self.program = subprocess.Popen([program, "preview", *arguments, "--no-osc", "--json"], env=self.env,
                                         cwd=self.folder, stdout=open(os.path.join(self.folder, "events"), "w"),
                                         stderr=open(os.path.join(self.folder, "messages"), "w"))
-        self.id = self.x("search", "--sync", "--onlyvisible", "--name", "underfoot").split()[-1]
+        self.id = self.appeared()
         self.x("windowsize", "--sync", self.id, *size)
         self.x("windowmove", self.id, 0, 0)
         self.x("windowfocus", self.id)
         time.sleep(2)
+
+    def appeared(self):
+        """The number of the program's window, once it is there."""
+        search = ["xdotool", "search", "--onlyvisible", "--name", "underfoot"]
+        while self.program.poll() is None:
+            found = subprocess.run(search, env=self.env, capture_output=True).stdout.split()
+            if found:
+                return found[-1].decode()
+            time.sleep(0.1)
+        self.server.terminate()
+        with open(os.path.join(self.folder, "messages")) as messages:
+            sys.exit(f"{self.program.args[0]} has ended: {messages.read()}")
 
     def x(self, *arguments):
         """One command of xdotool."""

@@ -5,6 +5,7 @@ mod commands;
 mod feeds;
 mod followed;
 mod joined;
+mod layers;
 mod player;
 mod visits;
 
@@ -28,6 +29,7 @@ use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
 use underfoot::source::{FloorInput, LinkFaults};
 use underfoot::units::HostClock;
+use underfoot_scene::scene::Show;
 use underfoot_sim::{
     ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
     feet_by_hand, watched,
@@ -41,6 +43,7 @@ use self::commands::{CommandHandler, Desk};
 use self::feeds::{Mouse, SignalScopes, ToWindow, shoe, stop_and_wait};
 use self::followed::FollowedFeed;
 use self::joined::Joined;
+use self::layers::read_layers;
 use self::player::ShownRecording;
 use self::visits::Visits;
 use super::actuate::ActuateArgs;
@@ -97,6 +100,10 @@ pub(crate) struct Args {
     /// File that remembers corners, brightness and screens of the projectors, in place of the usual one.
     #[arg(long, value_name = "FILE")]
     corners: Option<PathBuf>,
+    /// Layers over the floor at the start, separated by commas, as the menu *Layers* names them: `contacts,tile-forces`.
+    /// Also `usual`, `all` and `none`.
+    #[arg(long, value_name = "NAMES", value_parser = read_layers)]
+    layers: Option<Show>,
     #[command(flatten)]
     sim: SimArgs,
     #[command(flatten)]
@@ -359,7 +366,8 @@ impl Args {
             corners: self.corners.clone(),
         };
         let settings = Some(preview::usual_state().join("window"));
-        PreviewOptions { projection, settings, ..PreviewOptions::default() }
+        let usual = PreviewOptions::default();
+        PreviewOptions { projection, settings, layers: self.layers.unwrap_or(usual.layers), ..usual }
     }
 
     /// The address for the packets of a real floor; `None` for a simulated one.
@@ -458,9 +466,9 @@ mod tests {
     use super::{Args, read_monitors, served_here};
 
     /// Options of the view, for a floor served here or elsewhere, and the hidden one that explains where a layout stands.
-    const SHOWN: [&str; 11] = [
+    const SHOWN: [&str; 12] = [
         "_option", "layout", "widgets", "effects", "floor", "grid", "join", "follow", "project", "monitor",
-        "corners",
+        "corners", "layers",
     ];
 
     #[test]

@@ -84,7 +84,7 @@ impl App {
         wrong.into_iter().chain(unread).for_each(|wrong| messages.note(wrong));
         let floor = input.floor;
         Self {
-            view: FloorView::default(),
+            view: FloorView::new(options.layers),
             feet: FloorFeet::new(input.feet, input.shoes),
             selection: Selection::new(&floor.geometry),
             presses: if input.playback.is_some() { PressLog::recorded() } else { PressLog::default() },

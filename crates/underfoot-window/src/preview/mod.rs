@@ -71,7 +71,7 @@ use std::path::PathBuf;
 use eframe::egui;
 use thiserror::Error;
 
-use underfoot_scene::scene::Theme;
+use underfoot_scene::scene::{Show, Theme};
 
 /// The initial state of the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +84,8 @@ pub struct PreviewOptions {
     pub theme: Theme,
     /// File that stores the user's colours and text size; `None` to store nothing.
     pub settings: Option<PathBuf>,
+    /// The layers over the floor.
+    pub layers: Show,
     /// The window for a projector.
     pub projection: ProjectionOptions,
 }
@@ -95,6 +97,7 @@ impl Default for PreviewOptions {
             size: (1280.0, 800.0),
             theme: Theme::LIGHT,
             settings: None,
+            layers: Show::WINDOW,
             projection: ProjectionOptions::default(),
         }
     }

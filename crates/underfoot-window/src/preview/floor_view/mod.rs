@@ -55,22 +55,21 @@ pub(super) struct OnFloor<'a> {
     pub(super) has_steps: bool,
 }
 
-impl Default for FloorView {
-    fn default() -> Self {
+impl FloorView {
+    /// A view with these layers.
+    pub(super) fn new(show: Show) -> Self {
         Self {
             zoom: Zoom::default(),
             controls: Vec::new(),
             scene: Scene::new(),
             palette: Palette::default(),
-            show: Show::WINDOW,
+            show,
             trails: Trails::default(),
             misses: NearMissWatch::default(),
             steps: FirstSteps::default(),
         }
     }
-}
 
-impl FloorView {
     /// The controls of the last frame, in their order for the keyboard.
     pub(super) fn controls(&self) -> &[Id] {
         &self.controls
