@@ -12,7 +12,7 @@ use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
 use crate::outgoing::{
     write_alive, write_area, write_contacts, write_control, write_crack, write_device, write_event,
-    write_health, write_held, write_mute, write_page,
+    write_health, write_held, write_ignored, write_mute, write_page,
 };
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
@@ -22,7 +22,7 @@ use crate::wire::{LinkCause, LinkState, Prefix};
 ///
 /// Events go out at once, in order. The latest contacts go out 100 times a second while there are any, and once a
 /// second while there are none, also while no frames come. The held controls go out 50 times a second, and an alive
-/// message ten times. The messages are those of `write_event`, `write_contacts`, `write_held`, `write_alive`,
+/// message ten times. The messages are those of `write_event`, `write_ignored`, `write_contacts`, `write_held`, `write_alive`,
 /// `write_crack`, `write_page`, `write_health`, `write_device`, `write_mute` and `write_control`.
 #[derive(Debug)]
 pub struct OscSink {
@@ -169,6 +169,7 @@ impl Sender {
         let prefix = &self.prefix;
         match report {
             Report::Event(event) => write_event(prefix, event, bytes),
+            Report::Ignored(press) => write_ignored(prefix, press, bytes),
             Report::Contacts(_, contacts) => return self.contacts(contacts, bytes),
             Report::Page(shown) => write_page(prefix, shown.page.as_str(), bytes),
             // The queue has the cracks in their place.

@@ -5,6 +5,7 @@ mod arguments;
 use serde::Serialize;
 
 use self::arguments::{argument, indicators, pages, taken, values};
+use crate::engine::Ignored;
 use crate::floor::Floor;
 use crate::ground::GroundMaterial;
 use crate::layout::{Layout, Widget};
@@ -115,6 +116,9 @@ impl Maker<'_> {
                 let reasons = OffReason::ALL.map(OffReason::name).join(", ");
                 format!("{reasons}; empty if a foot can press it")
             }
+            FieldRange::IgnoredReasons => {
+                Ignored::all().map(Ignored::name).collect::<Vec<_>>().join(", ")
+            }
             FieldRange::Pages if direction == MessageDirection::Answer => "empty without pages".into(),
             FieldRange::Pages => pages(self.layout),
         };
@@ -200,6 +204,8 @@ impl Maker<'_> {
         }
         let repeated = self.listed(sent::Held::FIELDS, MessageDirection::Out);
         self.add(MessageDirection::Out, &sent::path_of::<sent::Held>(id), repeated, sent::Held::REPORT);
+        let ignored = self.listed(sent::Ignored::FIELDS, MessageDirection::Out);
+        self.add(MessageDirection::Out, &sent::path_of::<sent::Ignored>(id), ignored, sent::Ignored::REPORT);
         if !held.is_empty() {
             let path = sent::path_of::<sent::ValueOfControl>(id);
             self.add(MessageDirection::Answer, &path, held.clone(), sent::ValueOfControl::ANSWER);

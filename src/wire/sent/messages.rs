@@ -1,6 +1,6 @@
 //! The table: every message of a floor, apart from the events of its controls.
 
-use super::FieldRange::{Indicators, OffReasons, Pages, Text};
+use super::FieldRange::{IgnoredReasons, Indicators, OffReasons, Pages, Text};
 use super::{Sent, arguments};
 use crate::widget::Value;
 
@@ -90,6 +90,13 @@ messages! {
     report "Whether a foot holds it; 1 comes 50 times a second: not heard for 100 ms, it is released." {
         held: bool = Text("0 or 1"),
         sequence: i32 = Text("one more each time"),
+    }
+    Ignored "widget/<id>/ignored"
+    report "A foot has left it, and it had ignored the press." {
+        reason: String = IgnoredReasons,
+        text: String = Text("the reason in a sentence"),
+        force: f32 = Text("N, the greatest"),
+        contact: i32 = Text("the id of the foot"),
     }
     ValueOfControl "widget/<id>/value"
     answer "Its value; sent to all listeners when an app asks for it or changes it." {

@@ -10,7 +10,7 @@ use rosc::{OscMessage, OscPacket, OscType};
 
 use self::messages::PATHS;
 pub(crate) use self::messages::{
-    Alive, Area, Contacts, Crack, Device, Error, Health, Held, Mute, Off, OneContact, Page, PageOfControl,
+    Alive, Area, Contacts, Crack, Device, Error, Health, Held, Ignored, Mute, Off, OneContact, Page, PageOfControl,
     RangeOfChoices, RangeOfNumber, RangeOfPair, State, ValueOfControl,
 };
 pub(crate) use self::values::{Place, arguments_of_detail, arguments_of_value};
@@ -40,6 +40,8 @@ pub(crate) enum FieldRange {
     Indicators,
     /// The reasons why a control is off.
     OffReasons,
+    /// The reasons why a control ignored a press.
+    IgnoredReasons,
     /// The pages of the layout.
     Pages,
 }
