@@ -125,7 +125,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
     let mut outputs = args.outputs.open(&served.geometry)?;
     if let Some(web) = &web {
-        outputs.push(web.sink()?);
+        web.listen(&mut outputs)?;
     }
     let (sender, messages) = args.send.open(&layout)?;
     outputs.push(sender);

@@ -116,9 +116,7 @@ impl Maker<'_> {
                 let reasons = OffReason::ALL.map(OffReason::name).join(", ");
                 format!("{reasons}; empty if a foot can press it")
             }
-            FieldRange::IgnoredReasons => {
-                Ignored::all().map(Ignored::name).collect::<Vec<_>>().join(", ")
-            }
+            FieldRange::IgnoredReasons => Ignored::all().map(Ignored::name).collect::<Vec<_>>().join(", "),
             FieldRange::Pages if direction == MessageDirection::Answer => "empty without pages".into(),
             FieldRange::Pages => pages(self.layout),
         };

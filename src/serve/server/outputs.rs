@@ -33,7 +33,12 @@ impl Outputs {
         let page = step.page.into_iter().map(lent(Report::Page));
         let grounds = step.grounds.iter().map(lent(Report::Ground));
         let contacts = [Report::Contacts(at, Cow::Borrowed(step.contacts))];
-        events.chain(ignored).chain(page).chain(grounds).chain(contacts).for_each(|report| sink.report(&report));
+        events
+            .chain(ignored)
+            .chain(page)
+            .chain(grounds)
+            .chain(contacts)
+            .for_each(|report| sink.report(&report));
     }
 
     /// Reports events that must not wait.

@@ -10,8 +10,8 @@ use rosc::{OscMessage, OscPacket, OscType};
 
 use self::messages::PATHS;
 pub(crate) use self::messages::{
-    Alive, Area, Contacts, Crack, Device, Error, Health, Held, Ignored, Mute, Off, OneContact, Page, PageOfControl,
-    RangeOfChoices, RangeOfNumber, RangeOfPair, State, ValueOfControl,
+    Alive, Area, Contacts, Crack, Device, Error, Health, Held, Ignored, Mute, Off, OneContact, Page,
+    PageOfControl, RangeOfChoices, RangeOfNumber, RangeOfPair, State, ValueOfControl,
 };
 pub(crate) use self::values::{Place, arguments_of_detail, arguments_of_value};
 use super::prefix::Prefix;
