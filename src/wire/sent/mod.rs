@@ -32,8 +32,14 @@ pub(crate) struct Field {
 /// The unit, range or choices of an argument.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FieldRange {
-    /// These words; may be empty.
+    /// This sentence; may be empty.
     Text(&'static str),
+    /// A unit, and more about it, which may be empty.
+    Measure(&'static str, &'static str),
+    /// 0 or 1.
+    Flag,
+    /// One of these words.
+    Words(&'static [&'static str]),
     /// Those of the control's value.
     OfValue,
     /// The states of a lamp.
