@@ -1,6 +1,8 @@
 //! The server for web pages: events as JSON lines over WebSocket, requests the other way, and one page of ours. Windows
-//! that show the same floor join here, at `/mirror`; `watch` answers those who watch the floor for months.
+//! that show the same floor join here, at `/mirror`; `watch` answers those who watch the floor for months. `query` is a
+//! server of its own, for programs that ask for the floor's OSC addresses.
 
+mod accept;
 mod broadcast;
 mod budget;
 mod checks;
@@ -10,33 +12,31 @@ mod http;
 mod layout;
 mod origin;
 mod pages;
+mod query;
 mod request;
 mod rooms;
+mod socket;
 mod watch;
 
-use std::io::ErrorKind;
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::{self, Builder, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use tracing::warn;
 use underfoot::floor::{Floor, Geometry, Network, read_address};
 use underfoot::mirror::MirrorFeed;
 use underfoot::runtime::Session;
 use underfoot::sense::Method;
 use underfoot::sink::{Fanout, JsonSink};
 use underfoot::source::FloorInput;
-
-use super::failure::Failure;
-use broadcast::{Broadcast, ClientCounts, Clients};
 use underfoot_io::targets::LoadedPlan;
 
+use super::failure::Failure;
+use accept::Accepting;
+use broadcast::{Broadcast, ClientCounts, Clients};
 use checks::Checks;
 use http::{head, wait_for};
 use origin::PageOrigin;
-use rooms::{Refusals, Rooms};
+pub(crate) use query::QueryArgs;
 use watch::{CountingSink, EventCounts, FloorWatch};
 
 /// Options of the server for web pages.
@@ -63,9 +63,6 @@ const MOST_BYTES: usize = 4096;
 /// Maximum time for the head of a client's request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Interval between two checks for new connections.
-const LOOK_EVERY: Duration = Duration::from_millis(20);
-
 /// The server before the floor exists: its port is open, but it accepts no clients yet.
 pub(crate) struct WebListener {
     listener: TcpListener,
@@ -88,23 +85,21 @@ struct Shared {
     apps: Vec<Network>,
     clients: Arc<Clients>,
     watch: FloorWatch,
-    over: AtomicBool,
 }
 
 /// The running server; ends when dropped.
 pub(crate) struct WebServer {
     shared: Arc<Shared>,
     feed: MirrorFeed,
-    thread: Option<JoinHandle<()>>,
+    /// Present until the server ends.
+    accepting: Option<Accepting>,
 }
 
 impl WebArgs {
     /// Opens the port, if an address is given.
     pub(crate) fn open(&self) -> Result<Option<WebListener>, Failure> {
         let Some(address) = self.web else { return Ok(None) };
-        let failed = |error| Failure::Other(format!("can't listen on {address} for web pages: {error}"));
-        let listener = TcpListener::bind(address).map_err(failed)?;
-        listener.set_nonblocking(true).map_err(failed)?;
+        let listener = accept::open(address, "web pages")?;
         let clients = Arc::<Clients>::default();
         let told = Arc::clone(&clients);
         let feed = MirrorFeed::start(clients.windows(), move |frame| told.tell_frame(frame))?;
@@ -150,54 +145,24 @@ impl WebListener {
             apps,
             clients,
             watch: FloorWatch::new(events, messages),
-            over: AtomicBool::new(false),
         });
         let own = Arc::clone(&shared);
-        let serve = move || accept(&listener, &own);
-        let thread = Some(Builder::new().name("web server".into()).spawn(serve).map_err(failed)?);
-        Ok(WebServer { shared, feed, thread })
+        let serve = move |stream, peer| receive(stream, peer, &own);
+        let accepting = Some(Accepting::start(listener, serve).map_err(failed)?);
+        Ok(WebServer { shared, feed, accepting })
     }
 }
 
 impl Drop for WebServer {
     fn drop(&mut self) {
-        self.shared.over.store(true, Ordering::Relaxed);
-        // A panic of the thread has been reported.
-        let _ = self.thread.take().map(JoinHandle::join);
+        // Waits for the clients, so that the numbers are the last ones.
+        self.accepting = None;
         let ClientCounts { served, dropped, .. } = self.shared.clients.counts();
         errln!("Web: clients served {served}, dropped because they did not read {dropped}.");
         if self.feed.lost() > 0 {
             errln!("Web: {} packets could not be shown to windows.", self.feed.lost());
         }
     }
-}
-
-/// Accepts clients until the server ends, and waits for the connected ones.
-fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
-    let (mut rooms, refusals) = (Rooms::default(), Refusals::start());
-    while !shared.over.load(Ordering::Relaxed) {
-        match listener.accept() {
-            Ok((stream, peer)) => {
-                let now = Instant::now();
-                if let Some(why) = rooms.why_not(peer.ip(), now) {
-                    refusals.refuse(stream, why);
-                    continue;
-                }
-                let own = Arc::clone(shared);
-                match Builder::new().name("web client".into()).spawn(move || receive(stream, peer, &own)) {
-                    Ok(room) => rooms.take(peer.ip(), room, now),
-                    Err(error) => warn!("a web client can't be served: {error}"),
-                }
-            }
-            Err(error) => {
-                if error.kind() != ErrorKind::WouldBlock {
-                    warn!("a web client can't come in: {error}");
-                }
-                thread::sleep(LOOK_EVERY);
-            }
-        }
-    }
-    rooms.wait();
 }
 
 /// Answers one connection: with a page or a number, or with events for as long as it lasts.
