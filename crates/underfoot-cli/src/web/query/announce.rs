@@ -47,7 +47,7 @@ impl Announcement {
 }
 
 /// The interface with this address.
-const fn interface(ip: IpAddr) -> IfKind {
+fn interface(ip: IpAddr) -> IfKind {
     match ip {
         IpAddr::V4(ip) if ip.is_loopback() => IfKind::LoopbackV4,
         IpAddr::V6(ip) if ip.is_loopback() => IfKind::LoopbackV6,
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_server_of_this_machine_is_announced_on_this_machine_only() {
-        assert_eq!(interface(IpAddr::from([127, 0, 0, 1])), IfKind::LoopbackV4);
-        assert_eq!(interface(IpAddr::from([192, 168, 1, 5])), IfKind::Addr([192, 168, 1, 5].into()));
+        assert!(matches!(interface([127, 0, 0, 1].into()), IfKind::LoopbackV4));
+        assert!(matches!(interface([192, 168, 1, 5].into()), IfKind::Addr(ip) if ip.is_ipv4()));
     }
 }

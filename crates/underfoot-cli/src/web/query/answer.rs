@@ -10,7 +10,7 @@ use underfoot::serve::Reference;
 use super::super::http::{self, RequestHead, turn_away};
 use super::super::origin::{may_be_named, may_connect};
 use super::QueryShared;
-use super::tree::{Attribute, Node};
+use super::tree::{Attribute, QueryNode};
 use super::values::CurrentValues;
 
 /// The name under which the floor is found.
@@ -19,11 +19,11 @@ pub(super) fn name(layout: &Layout) -> String {
 }
 
 /// The addresses of the layout that is on the floor.
-pub(super) fn tree(shared: &QueryShared, layout: &Layout) -> Node {
+pub(super) fn tree(shared: &QueryShared, layout: &Layout) -> QueryNode {
     let reference = Reference::of(layout, &shared.floor, &shared.prefix);
     // Packets of sensors come from boards alone.
     let is_board = |address: &str| shared.floor.boards.iter().any(|board| board.address == address);
-    Node::tree(&reference, layout, is_board)
+    QueryNode::tree(&reference, layout, is_board)
 }
 
 /// Answers one request.

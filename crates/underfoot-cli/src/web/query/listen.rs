@@ -207,7 +207,7 @@ fn process(text: &str, peer: SocketAddr, shared: &QueryShared) {
         other => return debug!("the OSCQuery client {peer} sent the command {other:?}, which there is not"),
     };
     let root = tree(shared, &shared.session.snapshot().layout);
-    if !listens || root.find(&asked.data).is_some_and(super::tree::Node::is_sent) {
+    if !listens || root.find(&asked.data).is_some_and(super::tree::QueryNode::is_sent) {
         shared.listeners.set(peer, &asked.data, listens);
     } else {
         debug!("the OSCQuery client {peer} listens to {:?}, which this floor does not send", asked.data);

@@ -14,7 +14,7 @@ mod listen;
 mod tree;
 mod values;
 
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -30,9 +30,6 @@ use crate::failure::Failure;
 use announce::Announcement;
 use listen::Listeners;
 
-/// Default address of the server.
-const DISCOVER: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9012));
-
 /// Maximum time for the head of a client's request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -47,7 +44,7 @@ pub(crate) struct QueryArgs {
         value_parser = read_address,
         num_args = 0..=1,
         require_equals = true,
-        default_missing_value = DISCOVER.to_string()
+        default_missing_value = "127.0.0.1:9012"
     )]
     discover: Option<SocketAddr>,
 }

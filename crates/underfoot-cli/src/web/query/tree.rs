@@ -25,7 +25,7 @@ pub(super) enum Attribute {
 
 /// One address, or a part of addresses.
 #[derive(Debug, Default)]
-pub(super) struct Node {
+pub(super) struct QueryNode {
     path: String,
     description: Option<String>,
     /// 1 for addresses that the floor sends, 2 for those that it receives, 3 for both, 0 for a container.
@@ -34,7 +34,7 @@ pub(super) struct Node {
     contents: BTreeMap<String, Self>,
 }
 
-impl Node {
+impl QueryNode {
     /// The tree of all addresses of `reference`, except those in `left_out`; controls have the labels of `layout`.
     pub(super) fn tree(reference: &Reference, layout: &Layout, left_out: impl Fn(&str) -> bool) -> Self {
         let mut root = Self { path: "/".into(), ..Self::default() };
@@ -190,23 +190,24 @@ fn json_of(arg: &OscType) -> Value {
 mod tests {
     use underfoot::engine::{Engine, Snapshot};
     use underfoot::floor::{Floor, Geometry};
-    use underfoot::schema::builtin_layout;
+    use underfoot::schema::{Kinds, builtin_layout, parse_layout};
     use underfoot::sense::Method;
     use underfoot::wire::Prefix;
 
     use super::*;
 
     /// The shipped page of the map, with all values at their start.
-    fn map() -> (Node, CurrentValues) {
+    fn map() -> (QueryNode, CurrentValues) {
         let geometry = Geometry::default();
-        let layout = builtin_layout("map.ron", &geometry).unwrap().unwrap();
+        let text = builtin_layout("map").unwrap();
+        let layout = parse_layout(text, "map", &Kinds::builtin(), &geometry).unwrap().layout;
         let (floor, prefix) = (Floor::of(geometry), Prefix::default());
         let reference = Reference::of(&layout, &floor, &prefix);
         let left_out = |address: &str| floor.boards.iter().any(|board| board.address == address);
         let mut snapshot = Snapshot::default();
         Engine::new(geometry, layout.clone(), Method::default()).snapshot(&mut snapshot);
         let values = CurrentValues::of_floor(&layout, &snapshot, &prefix);
-        (Node::tree(&reference, &layout, left_out), values)
+        (QueryNode::tree(&reference, &layout, left_out), values)
     }
 
     fn attribute(path: &str, name: &str) -> Attribute {
@@ -218,7 +219,7 @@ mod tests {
     fn a_slider_has_a_value_a_range_and_a_type() {
         let value = "/underfoot/widget/zoom/value";
         assert_eq!(attribute(value, "TYPE"), Attribute::Present(json!("f")));
-        assert_eq!(attribute(value, "VALUE"), Attribute::Present(json!([0.0])));
+        assert_eq!(attribute(value, "VALUE"), Attribute::Present(json!([0.3])));
         assert_eq!(attribute(value, "ACCESS"), Attribute::Present(json!(1)));
         assert_eq!(attribute(value, "RANGE"), Attribute::Present(json!([{"MIN": 0.0, "MAX": 1.0}])));
         assert_eq!(attribute("/underfoot/widget/zoom/set", "ACCESS"), Attribute::Present(json!(2)));

@@ -31,7 +31,7 @@ impl FloorWatch {
     }
 }
 
-/// What a watcher asks for.
+/// A request of a watcher.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Watched {
     Health,
