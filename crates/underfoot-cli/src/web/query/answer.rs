@@ -77,7 +77,7 @@ fn answer(head: &RequestHead, shared: &QueryShared) -> Answer {
     }
 }
 
-/// What the server offers, and where the floor takes OSC.
+/// Extensions of the server, and the port to which the floor listens for OSC.
 fn host_info(shared: &QueryShared, layout: &Layout) -> Value {
     let mut info = json!({
         "NAME": name(layout),
