@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::net::SocketAddr;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -137,6 +137,50 @@ fn every_metric_has_its_help_and_its_type() {
         let sample = line.split(['{', ' ']).next().unwrap();
         assert!(names.iter().any(|name| sample.starts_with(name)), "{line}");
     }
+}
+
+/// The first value of the result of a query.
+fn queried(prometheus: SocketAddr, query: &str) -> Option<f64> {
+    let said = answer(prometheus, &format!("/api/v1/query?query={query}"), "Connection: close\r\n");
+    let (_, body) = said.split_once("\r\n\r\n")?;
+    let body = body.get(body.find('{')?..=body.rfind('}')?)?;
+    let found: Value = serde_json::from_str(body).ok()?;
+    found["data"]["result"][0]["value"][1].as_str()?.parse().ok()
+}
+
+/// Debian's package `prometheus`; without it nothing is tried, which `./dev test` prints beforehand.
+#[test]
+fn prometheus_scrapes_a_floor() {
+    let (site, folder) = (Site::new(), tempfile::tempdir().unwrap());
+    let (run, web) = run(&site, &[]);
+    let boards = Boards::start(&site, run.address);
+    let own = free_address();
+    let config = format!(
+        "global: {{scrape_interval: 1s}}\nscrape_configs: [{{job_name: floor, static_configs: [{{targets: ['{web}']}}]}}]\n"
+    );
+    std::fs::write(folder.path().join("prometheus.yml"), config).unwrap();
+    let started = Command::new("prometheus")
+        .current_dir(folder.path())
+        .args(["--config.file=prometheus.yml", "--storage.tsdb.path=data"])
+        .arg(format!("--web.listen-address={own}"))
+        .stderr(Stdio::null())
+        .spawn();
+    let Ok(mut prometheus) = started else {
+        println!("not run: there is no prometheus; apt-get install prometheus");
+        return;
+    };
+    // Until it has started, nobody listens there.
+    let end = Instant::now() + AT_LAST;
+    let is_up = || std::net::TcpStream::connect(own).is_ok() && queried(own, "up") == Some(1.0);
+    let pressed = || queried(own, "underfoot_events_total{kind=%22pressed%22}") == Some(2.0);
+    while !(is_up() && pressed()) && Instant::now() < end {
+        thread::sleep(Duration::from_millis(200));
+    }
+    let found = [is_up(), pressed(), queried(own, "sum(underfoot_board_packets_total)") > Some(100.0)];
+    prometheus.kill().unwrap();
+    prometheus.wait().unwrap();
+    assert_eq!(found, [true; 3], "up, events and packets");
+    drop(boards);
 }
 
 #[test]
