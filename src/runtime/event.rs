@@ -4,6 +4,7 @@ use std::fmt;
 
 use glam::Vec2;
 
+use crate::engine::Ignored;
 use crate::sense::ContactId;
 use crate::sink::Report;
 use crate::units::{Instant, Newtons};
@@ -35,6 +36,9 @@ pub struct Event {
 pub enum Kind {
     /// A foot acted on the control [`Event::id`].
     Control(EventKind),
+    /// The control [`Event::id`] ignored a foot, which has left it now: [`Event::force`] is the greatest force, and
+    /// [`Event::message`] has the reason in a sentence.
+    Ignored(Ignored),
     /// The state of the control [`Event::id`] changed or was requested: by an app (also this app), or because a
     /// control with the guard `HoldToRun` switched off or on ([`crate::engine::ControlState::off`]).
     State,
@@ -69,6 +73,7 @@ impl Kind {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Control(kind) => kind.name(),
+            Self::Ignored(_) => "ignored",
             Self::State => "state",
             Self::Page => "page",
             Self::Link(_) => "link",
@@ -127,7 +132,8 @@ impl Event {
         self.id.as_ref().map_or("", WidgetId::as_str)
     }
 
-    /// The error if the session ended with a failure, or the cause of [`Kind::LinkCause`]; empty otherwise.
+    /// The error if the session ended with a failure, the reason of [`Kind::Ignored`], or the cause of
+    /// [`Kind::LinkCause`]; empty otherwise.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
@@ -141,6 +147,11 @@ impl Event {
                 let (contact, force, position) = (event.contact, event.force, event.position);
                 let event = Self::new(at, Some(event.id.clone()), Kind::Control(event.kind));
                 return Some(Self { contact, force, position, ..event });
+            }
+            Report::Ignored(press) => {
+                let (contact, force, message) = (Some(press.contact), press.force, press.why.to_string());
+                let event = Self::new(at, Some(press.id.clone()), Kind::Ignored(press.why));
+                return Some(Self { contact, force, message, ..event });
             }
             Report::Control(_, state) => (Some(state.id.clone()), Kind::State),
             Report::Page(shown) => (Some(shown.page.clone()), Kind::Page),
@@ -186,7 +197,7 @@ impl Event {
             Kind::Control(kind) => {
                 matches!(kind, EventKind::Released | EventKind::Cancelled | EventKind::Disarmed)
             }
-            Kind::Crack { .. } => false,
+            Kind::Crack { .. } | Kind::Ignored(_) => false,
             _ => true,
         }
     }

@@ -37,7 +37,7 @@ mod sensing;
 mod table;
 mod track;
 
-pub use assembler::{Assembler, BoardStatus, Tare, TareOutcome, TareRules};
+pub use assembler::{Assembler, BoardCounts, BoardStatus, Tare, TareOutcome, TareRules};
 pub use calibration::{
     Candidate, Comparison, Errors, Fit, FitError, Judgement, LoadPoint, LoadTable, MapError, MapFit,
     PressTable, PressedPoint, SensorLoads, Sighting, TilePoints, Verdict,

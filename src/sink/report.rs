@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::{AreaNews, HeldReport};
-use crate::engine::{ControlState, PageShown};
+use crate::engine::{ControlState, IgnoredPress, PageShown};
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
@@ -20,6 +20,8 @@ use crate::wire::{LinkCause, LinkState};
 pub enum Report<'a> {
     /// An event of a control.
     Event(Cow<'a, WidgetEvent>),
+    /// A control ignored a foot, which has left it now.
+    Ignored(Cow<'a, IgnoredPress>),
     /// The contacts of one frame; reported for every frame, so a sink limits the rate itself.
     Contacts(Instant, Cow<'a, [Contact]>),
     /// Another page is shown, or an app has asked for the current one.
@@ -55,6 +57,7 @@ impl Report<'_> {
     pub fn owned(&self) -> Report<'static> {
         match self {
             Self::Event(event) => Report::Event(owned(event.as_ref())),
+            Self::Ignored(press) => Report::Ignored(owned(press.as_ref())),
             Self::Contacts(at, contacts) => Report::Contacts(*at, Cow::Owned(contacts.to_vec())),
             Self::Page(page) => Report::Page(owned(page.as_ref())),
             Self::Ground(event) => Report::Ground(owned(event.as_ref())),
@@ -85,6 +88,7 @@ impl Report<'_> {
     pub fn at(&self) -> Instant {
         match self {
             Self::Event(event) => event.at,
+            Self::Ignored(press) => press.at,
             Self::Page(page) => page.at,
             Self::Ground(event) => event.at,
             Self::Crack(news) => news.at,

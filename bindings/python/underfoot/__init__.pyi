@@ -19,6 +19,7 @@ from ._types import CrackEvent as CrackEvent
 from ._types import EndedEvent as EndedEvent
 from ._types import Event as Event
 from ._types import FloorEvent as FloorEvent
+from ._types import IgnoredEvent as IgnoredEvent
 from ._types import Lamp, LinkName
 from ._types import LinkCauseEvent as LinkCauseEvent
 from ._types import LinkEvent as LinkEvent

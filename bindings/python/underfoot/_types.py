@@ -31,6 +31,22 @@ OffName = Literal[
 ]
 """The reason why no foot can press a control."""
 
+IgnoredName = Literal[
+    "step",
+    "object",
+    "stance",
+    "outside_region",
+    "other_foot",
+    "slid_on",
+    "not_seen_unloaded",
+    "unbelieved",
+    "guard",
+    "too_light",
+    "too_short",
+    OffName,
+]
+"""The reason why a control ignored a press; for a control that is off, the reason for that."""
+
 ControlName = Literal[
     "pressed",
     "released",
@@ -101,7 +117,7 @@ class Event:
     t_s: float
     """Time of the event, on the floor's sample clock."""
     kind: Literal[
-        "control", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "ended"
+        "control", "ignored", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "ended"
     ]
     name: str
     """The word for the event, as in JSON lines: of a control "pressed", "released", "changed" and so on."""
@@ -116,7 +132,7 @@ class Event:
     """The number of the foot that caused it; None if no foot did."""
     text: str
     """Of a link "waiting", "live", "partial" or "lost"; of its cause a name, a colon and a sentence, empty when it is
-    over; of the end the reason; empty otherwise."""
+    over; of an ignored press likewise; of the end the reason; empty otherwise."""
 
 
 @dataclass(frozen=True)
@@ -147,6 +163,19 @@ class ControlEvent(Event):
     kind: Literal["control"]
     name: ControlName
     value: None
+
+
+@dataclass(frozen=True)
+class IgnoredEvent(Event):
+    """The control `id` ignored the foot `contact`, which has left it; `force_n` is the greatest force."""
+
+    __match_args__ = ("id", "reason")
+    kind: Literal["ignored"]
+    name: Literal["ignored"]
+    value: None
+    reason: IgnoredName
+    message: str
+    """The reason in a sentence."""
 
 
 @dataclass(frozen=True)
@@ -233,6 +262,7 @@ AnyEvent = Union[
     ChangedEvent,
     SwipedEvent,
     ControlEvent,
+    IgnoredEvent,
     StateEvent,
     PageEvent,
     LinkEvent,
@@ -258,6 +288,9 @@ def event_of(kind, name, id, value, text, message, when_and_where):  # type: ign
         return LinkCauseEvent(
             kind=kind, value=None, text=message, cause=cause or None, message=sentence, **seen
         )
+    if kind == "ignored":
+        said = "%s: %s" % (text, message)
+        return IgnoredEvent(kind=kind, value=None, text=said, reason=text, message=message, **seen)
     if kind == "ended":
         said = "%s: %s" % (text, message) if message else text
         return EndedEvent(kind=kind, value=None, text=said, reason=text, message=message, **seen)

@@ -143,6 +143,11 @@ impl CommandArgs {
         Ok(opened.map_err(|error| chosen_by("--commands", error))?)
     }
 
+    /// The port for apps: one of their own, or that of the sensors.
+    pub(crate) fn port(&self, sensors: SocketAddr) -> SocketAddr {
+        self.commands.unwrap_or(sensors)
+    }
+
     /// Networks from which requests are accepted.
     pub(crate) fn apps(&self) -> &[Network] {
         if self.allow_commands.is_empty() { &Network::LOOPBACK } else { &self.allow_commands }

@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::{
     AreaRecord, ClientsRecord, ContactsRecord, CrackRecord, DeviceRecord, EventRecord, GapRecord,
-    HealthRecord, HeldRecord, LinkCauseRecord, LinkRecord, MuteRecord, PageRecord, RefusalRecord,
-    StateRecord, Word,
+    HealthRecord, HeldRecord, IgnoredRecord, LinkCauseRecord, LinkRecord, MuteRecord, PageRecord,
+    RefusalRecord, StateRecord, Word,
 };
+use crate::engine::IgnoredPress;
 use crate::units::Instant;
 use crate::widget::{Direction, EventKind, Value, WidgetEvent};
 
@@ -49,6 +50,8 @@ pub enum Message {
     Gap(GapRecord),
     /// The contacts on the floor.
     Contacts(ContactsRecord),
+    /// A press that a control ignored.
+    Ignored(IgnoredRecord),
     /// The state of a control.
     State(StateRecord),
     /// A refused request.
@@ -139,6 +142,7 @@ fn message(event: Word, text: &[u8]) -> Result<Message, serde_json::Error> {
         "area" => Message::Area(serde_json::from_slice(text)?),
         "gap" => Message::Gap(serde_json::from_slice(text)?),
         "contacts" => Message::Contacts(serde_json::from_slice(text)?),
+        "ignored" => Message::Ignored(serde_json::from_slice(text)?),
         "state" => Message::State(serde_json::from_slice(text)?),
         "error" => Message::Error(serde_json::from_slice(text)?),
         "clients" => Message::Clients(serde_json::from_slice(text)?),
@@ -186,4 +190,10 @@ impl Line {
 #[must_use]
 pub fn event_line(event: &WidgetEvent) -> String {
     Line::new(event.at, Message::Control(event.into())).text()
+}
+
+/// Returns one ignored press as the sink of JSON lines writes it, without the end of the line.
+#[must_use]
+pub fn ignored_line(press: &IgnoredPress) -> String {
+    Line::new(press.at, Message::Ignored(press.into())).text()
 }

@@ -178,15 +178,6 @@ proptest! {
         let sensed = SensedRecord { t_s: 1.25, contacts, cursor: content.flags[0].then_some(cursor) };
         prop_assert_eq!(read_back(&sensed), sensed);
         let [first, second, ..] = content.words.clone();
-        let ignored = IgnoredRecord {
-            contact: ContactId(content.large[0]),
-            event: "ignored".into(),
-            force_n: 24.5,
-            id: first.clone(),
-            t_s: 0.15,
-            why: content.sentence(),
-        };
-        prop_assert_eq!(read_back(&ignored), ignored);
         let request = RequestRecord { args: vec![json!(0.5), json!("on"), json!(3)], request: first.0.clone() };
         prop_assert_eq!(read_back(&request), request);
         let state = json!({"id": "zoom", "value": 0.5}).as_object().cloned().unwrap();

@@ -19,7 +19,7 @@ mod write;
 
 use std::time::Duration;
 
-pub use status::BoardStatus;
+pub use status::{BoardCounts, BoardStatus};
 pub use tare::{Tare, TareOutcome, TareRules};
 
 use self::align::Alignment;
@@ -281,6 +281,7 @@ impl Assembler {
             board.stream.deliver(self.times.now_ns());
         }
         self.counters.packets += 1;
+        board.stream.counts.packets += 1;
         self.swaps.note(number, slot, self.buffers.sample(buffer, number), &self.boards);
         self.boards[number].set_swapped(self.swaps.of(number).is_some());
     }

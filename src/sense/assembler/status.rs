@@ -10,6 +10,17 @@ use crate::sense::{Quality, SensorHealth, Trouble};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, LinkState};
 
+/// Numbers of packets of one board since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BoardCounts {
+    /// Packets accepted.
+    pub packets: u64,
+    /// Packets that did not arrive, by gaps in the sequence numbers.
+    pub lost: u64,
+    /// Duplicate packets that were dropped.
+    pub duplicate: u64,
+}
+
 /// State of one board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardStatus {
@@ -23,6 +34,8 @@ pub struct BoardStatus {
     pub frozen: bool,
     /// Samples by which its crystal has run slower (positive) or faster than the common clock.
     pub slips: i64,
+    /// Numbers of its packets.
+    pub counts: BoardCounts,
 }
 
 impl Assembler {
@@ -62,6 +75,7 @@ impl Assembler {
             loss: board.stream.loss.share(),
             frozen: board.repeats() && !board.stream.presence.is_live(),
             slips: board.stream.slips(),
+            counts: board.stream.counts,
         })
     }
 

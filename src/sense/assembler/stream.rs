@@ -4,6 +4,7 @@ use super::clock::{LeastDelay, SLOT_NS, SlotClock};
 use super::pace::PacketPace;
 use super::presence::{LossMeter, Presence, SILENT_NS};
 use super::sequence::{PacketSequence, SequenceVerdict};
+use super::status::BoardCounts;
 use crate::wire::LinkCounters;
 
 /// Age beyond its board's usual delay above which a sample after silence is useless: it was held up on the way, and
@@ -28,6 +29,7 @@ pub(super) struct BoardStream {
     pub(super) loss: LossMeter,
     /// Whether frames wait for it.
     pub(super) awaited: bool,
+    pub(super) counts: BoardCounts,
     sequence: PacketSequence,
     arrivals: LeastDelay,
     pace: PacketPace,
@@ -129,10 +131,12 @@ impl BoardStream {
                 }
                 self.pace.note(now_ns, position);
                 counters.lost += u64::from(skipped);
+                self.counts.lost += u64::from(skipped);
                 (position, Some(skipped))
             }
             SequenceVerdict::Straggler { position, missed } => {
                 counters.lost = counters.lost.saturating_sub(u64::from(missed));
+                self.counts.lost = self.counts.lost.saturating_sub(u64::from(missed));
                 (position, None)
             }
             SequenceVerdict::Restart { position } => {
@@ -144,6 +148,7 @@ impl BoardStream {
             }
             SequenceVerdict::Duplicate => {
                 counters.duplicate += 1;
+                self.counts.duplicate += 1;
                 return None;
             }
             SequenceVerdict::OutOfOrder => {

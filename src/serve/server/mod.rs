@@ -33,7 +33,7 @@ use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
 use crate::floor::Floor;
 use crate::layout::Layout;
-use crate::sense::{Assembler, Method, Tare, TareOutcome};
+use crate::sense::{Assembler, BoardStatus, Method, Tare, TareOutcome};
 use crate::serve::{Neighbours, Refusal};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
 use crate::source::{FloorInput, Incoming, SensorSource, SourceError};
@@ -71,6 +71,8 @@ pub enum Command {
     /// Returns the tare in use, per tile and corner as in [`Floor::tare`]; `None` if it is the floor's own, or
     /// unknown.
     GiveTare(SyncSender<Option<Vec<[Newtons; 4]>>>),
+    /// Returns the state of each board, in the order of the floor file.
+    GiveBoards(SyncSender<Vec<BoardStatus>>),
     /// Plays an effect on one tile under a simulated foot; replaces an effect that is still playing.
     Audition {
         /// The effect.
@@ -446,6 +448,11 @@ impl Server {
                     let is_measured = self.assembler.tare_outcome() == TareOutcome::Taken;
                     // A caller that has stopped waiting needs no answer.
                     let _ = to.try_send(is_measured.then(|| self.assembler.tare()));
+                }
+                Command::GiveBoards(to) => {
+                    let boards = (0..).map_while(|number| self.assembler.board(number));
+                    // As above.
+                    let _ = to.try_send(boards.collect());
                 }
                 Command::Audition { effect, gesture, tile } => {
                     self.haptics.trial = Some(EffectTrial::new(effect, *gesture, tile));

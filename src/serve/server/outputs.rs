@@ -29,10 +29,16 @@ impl Outputs {
     pub(super) fn step(&mut self, step: &FrameResults<'_>, at: Instant) {
         let Some(sink) = &mut self.sink else { return };
         let events = self.changes.thin(step.events, at).iter().map(lent(Report::Event));
+        let ignored = step.ignored.iter().map(lent(Report::Ignored));
         let page = step.page.into_iter().map(lent(Report::Page));
         let grounds = step.grounds.iter().map(lent(Report::Ground));
         let contacts = [Report::Contacts(at, Cow::Borrowed(step.contacts))];
-        events.chain(page).chain(grounds).chain(contacts).for_each(|report| sink.report(&report));
+        events
+            .chain(ignored)
+            .chain(page)
+            .chain(grounds)
+            .chain(contacts)
+            .for_each(|report| sink.report(&report));
     }
 
     /// Reports events that must not wait.

@@ -25,6 +25,7 @@ use crate::wire::LinkState;
 ///
 /// ```json
 /// {"t_s":1.234,"event":"changed","id":"zoom","value":0.5,"force_n":120.5,"x_m":0.61,"y_m":1.2,"contact":3}
+/// {"t_s":2.345,"event":"ignored","id":"zoom","reason":"too_light","why":"too light","force_n":12.5,"contact":4}
 /// {"t_s":9.876,"event":"link","state":"lost"}
 /// {"t_s":9.9,"event":"link_cause","cause":"rate_low","board":0,"why":"board 0 sends 100 packets a second: 150 at least are needed, and 1000 are best"}
 /// {"t_s":9.9,"event":"page","page":"settings"}
@@ -97,7 +98,7 @@ fn worth(report: &Report<'static>) -> Worth<Key> {
                 _ => Worth::Each(key),
             }
         }
-        Report::Ground(_) | Report::Crack(_) | Report::Alive(..) => Worth::None,
+        Report::Ignored(_) | Report::Ground(_) | Report::Crack(_) | Report::Alive(..) => Worth::None,
         Report::Control(_, state) => Worth::Latest(Key::Control(state.id.clone())),
         Report::Area(news) => Worth::Latest(Key::Area(news.area.clone())),
         Report::Contacts(..)

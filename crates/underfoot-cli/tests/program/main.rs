@@ -29,6 +29,7 @@ mod mirror;
 mod output;
 mod page_commands;
 mod plan;
+mod query;
 mod rack;
 mod recordings;
 mod senders;
@@ -44,5 +45,6 @@ mod tables;
 #[cfg(target_os = "linux")]
 mod targets;
 mod unit_files;
+mod watch;
 mod web;
 mod wiring;

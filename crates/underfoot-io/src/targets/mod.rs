@@ -28,7 +28,7 @@ use std::time::Duration;
 pub use guardian::guard;
 pub use outlet::{Outlet, OutletError};
 pub use redirect::redirect;
-pub use sink::{LoadedPlan, TargetSink};
+pub use sink::{LoadedPlan, TargetCounts, TargetSink};
 pub use supervisor::GuardianCommand;
 
 /// Time between two heartbeats.

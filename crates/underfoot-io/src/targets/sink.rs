@@ -1,7 +1,7 @@
 //! The sink of a session that sends the messages of its controls.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Instant as HostInstant;
@@ -37,16 +37,37 @@ pub struct TargetSink {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Changes the messages of a running [`TargetSink`].
+/// Numbers of messages since the start; releases do not count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TargetCounts {
+    /// Messages that went on their way to their targets.
+    pub sent: u64,
+    /// Messages that did not reach them: the target refused or was gone, or they came too fast.
+    pub unsent: u64,
+}
+
+/// Changes the messages of a running [`TargetSink`], and counts them.
 #[derive(Clone, Debug)]
-pub struct LoadedPlan(SyncSender<MessagePlan>);
+pub struct LoadedPlan {
+    plans: SyncSender<MessagePlan>,
+    shared: Arc<TargetStatus>,
+}
 
 impl LoadedPlan {
     /// Uses these targets and messages, of a layout that the operator has named; everything comes up first. Waits while
     /// four earlier plans wait for the sensing thread.
     pub fn load(&self, plan: MessagePlan) {
         // The session may have ended.
-        let _ = self.0.send(plan);
+        let _ = self.plans.send(plan);
+    }
+
+    /// Returns the numbers of messages so far.
+    #[must_use]
+    pub fn counts(&self) -> TargetCounts {
+        let count = |number: &AtomicU64| number.load(Ordering::Relaxed);
+        let TargetStatus { undone, passed_on, left_out, .. } = &*self.shared;
+        let undone = count(undone);
+        TargetCounts { sent: count(passed_on).saturating_sub(undone), unsent: count(left_out) + undone }
     }
 
     /// Sends nothing any more: the layout on the floor is not the operator's. Waits as [`Self::load`] does.
@@ -54,7 +75,7 @@ impl LoadedPlan {
         if !layout.plan().is_empty() {
             warn!("the messages of this layout are off: {reason}");
         }
-        let _ = self.0.send(MessagePlan::default());
+        let _ = self.plans.send(MessagePlan::default());
     }
 }
 
@@ -74,7 +95,7 @@ impl TargetSink {
             messenger: Messenger::new(plan),
             plans,
             jobs: Some(jobs),
-            shared,
+            shared: Arc::clone(&shared),
             begun,
             orders: Vec::new(),
             overflowed: false,
@@ -82,7 +103,7 @@ impl TargetSink {
             told: Unsent::default(),
             thread: Some(thread),
         };
-        Ok((sink, LoadedPlan(load)))
+        Ok((sink, LoadedPlan { plans: load, shared }))
     }
 
     /// Passes the orders on; a queue that is full loses them and lets everything come up.
@@ -101,7 +122,10 @@ impl TargetSink {
     fn offer(&mut self, job: TargetJob) -> bool {
         let counts = matches!(&job, TargetJob::Send(order) if !matches!(order.act, Act::Up(_)));
         match self.jobs.as_ref().map(|jobs| jobs.try_send(job)) {
-            Some(Ok(())) => true,
+            Some(Ok(())) => {
+                self.shared.passed_on.fetch_add(u64::from(counts), Ordering::Relaxed);
+                true
+            }
             Some(Err(TrySendError::Full(_) | TrySendError::Disconnected(_))) | None => {
                 self.lost += u64::from(counts);
                 false
@@ -131,6 +155,7 @@ impl TargetSink {
             warn!("messages come faster than their target may get them; the rest is left out and counted");
         }
         self.told = unsent;
+        self.shared.left_out.store(self.lost + unsent.limited, Ordering::Relaxed);
     }
 }
 

@@ -47,6 +47,10 @@ pub(super) struct TargetStatus {
     pub(super) polled: AtomicU64,
     /// Orders that were not carried out.
     pub(super) undone: AtomicU64,
+    /// Orders that were passed on, without those that only let something come up.
+    pub(super) passed_on: AtomicU64,
+    /// Orders that were lost before they were passed on, or left out because they came too fast.
+    pub(super) left_out: AtomicU64,
 }
 
 /// The supervisor's state, on a thread of its own.

@@ -9,7 +9,7 @@ use super::super::messages::{Happened, WindowMessages};
 use super::super::near_misses::NearMiss;
 use super::super::style::{TextRow, quiet, section};
 use underfoot::engine::IgnoredPress;
-use underfoot::outgoing::json::{IgnoredRecord, event_line};
+use underfoot::outgoing::json::{event_line, ignored_line};
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, Value, WidgetEvent};
 use underfoot_scene::egui_painter::color;
@@ -86,17 +86,14 @@ fn is_wanted(happened: &Happened, wanted: &str) -> bool {
     wanted.split_whitespace().all(|word| words.to_lowercase().contains(word))
 }
 
-/// The listed events in the format of `--json`, oldest first; ignored presses, which `--json` leaves out, have the
-/// same form plus the reason.
+/// The listed events in the format of `--json`, oldest first; presses beside a control, which `--json` leaves out, have
+/// a line `missed`.
 fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
     let wanted = wanted.to_lowercase();
     let listed = recent.iter().rev().filter(|happened| is_wanted(happened, &wanted));
     let lines = listed.filter_map(|happened| match happened {
         Happened::Event(event) => Some(event_line(event) + "\n"),
-        Happened::Ignored(press) => {
-            let line = serde_json::to_string(&IgnoredRecord::from(press)).ok()?;
-            Some(line + "\n")
-        }
+        Happened::Ignored(press) => Some(ignored_line(press) + "\n"),
         Happened::NearMiss(miss) => {
             let (t_s, id, why) = (miss.at.secs(), miss.id.as_str(), &miss.text);
             let line = serde_json::json!({
