@@ -11,7 +11,7 @@ use super::message::ControlMessage;
 use super::sensor_message::RawMessage;
 use super::sent::is_sent_by_floors;
 use super::{LinkCause, LinkCounters, Prefix, SensorPacket};
-use crate::floor::Floor;
+use crate::floor::{CountRange, Floor};
 use crate::units::Instant;
 use underfoot_format::suggest::nearest;
 
@@ -37,7 +37,7 @@ pub enum WireError {
     },
     /// The arguments differ from those of this board in the floor file.
     #[error(
-        "{address:?} takes an int32 sequence and {channels} counts (i), newtons (f), or one blob of u16 counts, not {found}"
+        "{address:?} takes an int32 number and {channels} counts (i), newtons (f), or one blob of counts, not {found}"
     )]
     WrongReadings {
         /// The board's number.
@@ -117,6 +117,7 @@ pub struct Decoder {
 struct BoardShape {
     number: u16,
     channels: usize,
+    range: CountRange,
 }
 
 impl Decoder {
@@ -125,7 +126,7 @@ impl Decoder {
     pub fn new(floor: &Floor) -> Self {
         let mut boards = HashMap::new();
         for (number, board) in (0..=u16::MAX).zip(&floor.boards) {
-            let shape = BoardShape { number, channels: board.channels.len() };
+            let shape = BoardShape { number, channels: board.channels.len(), range: board.range };
             boards.entry(board.address.as_bytes().into()).or_insert(shape);
         }
         Self { boards, prefix: Prefix::default() }
@@ -146,7 +147,8 @@ impl Decoder {
 
     /// Reads `datagram`, which arrived at `received`, into `batch` and replaces its contents.
     ///
-    /// A count outside 0 to 65535 becomes `None` in its place; NaN and infinite newtons stay for
+    /// Counts are scaled by the range of their board ([`crate::floor::Board::range`]). A count outside of it becomes
+    /// `None` in its place, or stays beyond the scale of 16 bits where the readings have fractions; NaN and infinite newtons stay for
     /// [`crate::sense::Assembler`] to check. Messages of a bundle that are for another receiver or have the wrong
     /// shape are dropped and listed in [`Batch::refused`].
     ///
@@ -239,7 +241,7 @@ impl Decoder {
     /// Returns the packet, if the message belongs to a board of this floor.
     fn sensors(&self, raw: &RawMessage<'_>, received: Instant) -> Option<SensorPacket> {
         let shape = self.boards.get(raw.address)?;
-        let (sequence, readings) = raw.read(&DatagramLimits::SENSORS)?;
+        let (sequence, readings) = raw.read(&DatagramLimits::SENSORS, shape.channels, shape.range)?;
         let packet = SensorPacket { board: shape.number, sequence, received, readings };
         (packet.readings.len() == shape.channels).then_some(packet)
     }
