@@ -399,8 +399,6 @@ fn wrong_readings(f: &mut fmt::Formatter<'_>, board: u16, channels: usize, found
         "; 64-bit integers (h) must be sent as int32 (i)"
     } else if readings.contains('s') {
         "; numbers must not be sent as text (s)"
-    } else if readings.len() + 1 == channels && readings.bytes().all(|tag| tag == b'i') {
-        "; is the sequence number missing?"
     } else {
         ""
     };
@@ -543,7 +541,6 @@ mod tests {
             ("ihhhh", "64-bit integers (h) must be sent as int32"),
             ("issss", "numbers must not be sent as text"),
             ("fffff", "the first argument must be the sequence number"),
-            ("iiii", "is the sequence number missing?"),
             ("ib (a blob of 32 bytes)", "one blob (b) of 8 bytes"),
             ("no type tags", "the first argument must be the sequence number"),
         ] {

@@ -354,6 +354,57 @@ mod tests {
     }
 
     #[test]
+    fn a_message_without_a_number_has_number_0() {
+        let expected = Readings::Counts([Some(1), Some(2), Some(3), Some(4)].into_iter().collect());
+        let blob = OscType::Blob(vec![0, 1, 0, 2, 0, 3, 0, 4]);
+        for args in [ints(&[1, 2, 3, 4]), vec![blob]] {
+            let batch = decode(&bytes("/underfoot/board/0", args)).unwrap();
+            assert_eq!((batch.packets[0].sequence, &batch.packets[0].readings), (0, &expected));
+        }
+        let newtons = decode(&bytes("/underfoot/board/0", vec![OscType::Float(7.5); 4])).unwrap();
+        assert_eq!(newtons.packets[0].readings, Readings::Newtons([7.5; 4].into_iter().collect()));
+    }
+
+    #[test]
+    fn counts_of_other_converters_are_scaled() {
+        use crate::floor::CountSign::{OffsetBinary, Signed, Unsigned};
+        let read = |full_scale, sign, args| {
+            let mut floor = Floor::of(Geometry::of_paper_tiles(1, 1).unwrap());
+            floor.boards[0].range = CountRange { full_scale, sign };
+            let mut batch = Batch::default();
+            Decoder::new(&floor).decode(&bytes("/underfoot/board/0", args), NOW, &mut batch).unwrap();
+            batch.packets.remove(0).readings
+        };
+        let ten_bits = Readings::Counts([Some(0), Some(65_535), None, Some(32_800)].into_iter().collect());
+        assert_eq!(read(1023, Unsigned, ints(&[9, 0, 1023, 1024, 512])), ten_bits);
+        let near = |readings: Readings, expected: [f32; 4]| {
+            let Readings::Scaled(values) = readings else { panic!("{readings:?}") };
+            let is_near = |(value, expected): (&f32, f32)| (value - expected).abs() < 0.02;
+            assert!(values.iter().zip(expected).all(is_near), "{values:?}");
+        };
+        let expected = [0.0, -32_767.5, 32_767.5, -0.0078];
+        near(read(8_388_607, Signed, ints(&[9, 0, -4_194_304, 4_194_304, -1])), expected);
+        // The same words without their signs, and with the zero in the middle.
+        near(read(8_388_607, Signed, ints(&[9, 0, 12_582_912, 4_194_304, 16_777_215])), expected);
+        near(
+            read(16_777_215, OffsetBinary, ints(&[9, 8_388_608, 4_194_304, 12_582_912, 8_388_607])),
+            expected,
+        );
+        let words =
+            [0_i32, 0x40_0000, 0x80_0000, 0xFF_FFFF].iter().flat_map(|word| word.to_be_bytes()[1..].to_vec());
+        let blob = vec![OscType::Int(9), OscType::Blob(words.collect())];
+        near(read(16_777_215, Unsigned, blob), [0.0, 16_383.75, 32_767.5, 65_535.0]);
+    }
+
+    #[test]
+    fn a_finer_converter_than_the_floor_file_s_shows_its_counts() {
+        let Ok(Readings::Scaled(values)) = readings(ints(&[9, 8_388_700, 8_388_600, 8_388_650, 3])) else {
+            panic!("not scaled")
+        };
+        assert_eq!(values[0], 8_388_700.0);
+    }
+
+    #[test]
     fn the_sequence_has_no_sign() {
         let batch = decode(&bytes("/underfoot/board/0", ints(&[-1, 1, 2, 3, 4]))).unwrap();
         assert_eq!(batch.packets[0].sequence, u32::MAX);
@@ -376,7 +427,7 @@ mod tests {
 
     #[test]
     fn other_shapes_are_refused() {
-        let too_few = ints(&[9, 1, 2, 3]);
+        let too_few = ints(&[9, 1, 2]);
         let too_many = ints(&[9, 1, 2, 3, 4, 5]);
         let far_too_many = ints(&[9; 200]);
         let mixed =

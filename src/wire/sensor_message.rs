@@ -69,7 +69,8 @@ impl<'a> RawMessage<'a> {
         if self.address.len() > limits.address || tags.len() > limits.tags {
             return None;
         }
-        let is_unnumbered = matches!(tags, b"b" | [b'f', ..]) || tags.len() == channels;
+        let are_counts = || tags.len() == channels && tags.iter().all(|tag| *tag == b'i');
+        let is_unnumbered = matches!(tags, b"b" | [b'f', ..]) || are_counts();
         let (number, tags, arguments) = if is_unnumbered {
             (0, tags, arguments)
         } else {

@@ -28,6 +28,7 @@ impl Interaction {
             return;
         };
         if !is_news(held.contact, held.position, &self.geometry, at) {
+            self.ignored.note_stay(held.contact);
             return;
         }
         let force = at.contact(held.contact).map_or(held.force, |contact| contact.force);

@@ -1,6 +1,7 @@
 //! Frames by the clock: those of boards with a rate of their own.
 
 use super::Assembler;
+use super::board::BoardTrack;
 use super::clock::{SLOT_NS, SlotClock};
 use crate::sense::{HoldDoubt, TileSample};
 use crate::wire::SensorPacket;
@@ -20,14 +21,10 @@ impl Assembler {
 
     /// The next slot whose frame is due by the clock.
     pub(super) fn clocked_slot(&self) -> Option<i64> {
-        let needs_frames = || {
-            let own = self
-                .boards
-                .iter()
-                .filter_map(|board| Some((board.own_rate.as_ref()?, &board.stream.presence)));
-            own.into_iter().any(|(own, presence)| own.needs_frames(presence))
+        let sends = |board: &BoardTrack| {
+            board.own_rate.as_ref().is_some_and(|own| own.needs_frames(&board.stream.presence))
         };
-        if self.own_rates == 0 || !self.slots.is_empty() || !needs_frames() {
+        if self.own_rates == 0 || !self.slots.is_empty() || !self.boards.iter().any(sends) {
             return None;
         }
         let grace_ns = if self.slots.awaits_any() { GRACE_NS } else { 0 };

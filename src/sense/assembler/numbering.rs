@@ -136,11 +136,6 @@ impl PacketNumbers {
         }
         (2 * self.ones >= self.steps && sum > 0.0).then_some(TimeBase::Packets)
     }
-
-    /// Forgets all numbers: the board starts anew.
-    pub(super) fn forget(&mut self) {
-        *self = Self::default();
-    }
 }
 
 #[cfg(test)]

@@ -120,7 +120,7 @@ impl LinkWatch {
                         1e3 * timing.jitter.as_secs_f32()
                     ),
                 };
-                format!("board {board} sends {:.4} packets a second; {times}", timing.hz)
+                format!("board {board} sends {:.1} packets a second; {times}", timing.hz)
             });
         }
     }
