@@ -177,7 +177,7 @@ impl Range {
         let (least, greatest) = self.within.unwrap_or_default();
         Some(if self.is_newtons && self.up >= self.down && self.greatest_newtons < LIGHT_N {
             LinkCause::NewtonsSmall { board, greatest: self.greatest_newtons }
-        } else if !self.is_newtons && (greatest < NARROW || greatest - least < NARROW / 2) {
+        } else if !self.is_newtons && (greatest < NARROW || greatest - least < 0.5 * NARROW) {
             let [least, greatest] = [least, greatest].map(|scaled| self.range.count(scaled));
             LinkCause::CountsNarrow { board, least, greatest, full_scale: self.range.full_scale }
         } else if self.down > 5 * self.up {

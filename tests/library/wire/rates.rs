@@ -172,7 +172,7 @@ impl Bench {
             self.frames += 1;
             let results = self.engine.step(frame);
             let events = results.events.iter();
-            self.events.extend(events.map(|event| (event.at.secs(), event.kind, event.widget.to_string())));
+            self.events.extend(events.map(|event| (event.at.secs(), event.kind, event.id.to_string())));
         }
         if self.assembler.link_state() == LinkState::Lost && self.lost_s.is_none() {
             self.lost_s = Some(now.secs());
