@@ -3,6 +3,7 @@
 use super::Assembler;
 use super::board::BoardTrack;
 use super::clock::{SLOT_NS, SlotClock};
+use super::numbering::TimeBase;
 use crate::sense::{HoldDoubt, TileSample};
 use crate::wire::SensorPacket;
 
@@ -59,6 +60,18 @@ impl Assembler {
         self.has_news |= self.boards[number].stream.presence.has_news();
         self.align();
         true
+    }
+
+    /// Counts a packet of board `number` that came too late, or that lies so far ahead that its board sends several
+    /// packets a millisecond.
+    pub(super) fn note_unusable(&mut self, number: usize, clock: &SlotClock) {
+        let Self { boards, counters, alignment, times, .. } = self;
+        let board = &mut boards[number];
+        board.stream.note_late(counters);
+        if let Some(pace) = board.stream.fast_pace(times.now_ns(), clock) {
+            board.set_own_rate(TimeBase::Packets, pace, counters);
+            alignment.note_new_rate();
+        }
     }
 
     /// Passes the rates of the boards to all that depends on them.

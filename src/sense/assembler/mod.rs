@@ -270,7 +270,7 @@ impl Assembler {
         if place.usable {
             self.store(number, place.slot, packet);
         } else {
-            self.boards[number].stream.note_late(&mut self.counters);
+            self.note_unusable(number, &clock);
         }
         self.slots.reach(place.slot);
         self.align();

@@ -32,6 +32,12 @@ const SPAN_NS: i64 = 250 * SLOT_NS;
 /// Minimum number of packets in a span: a board at 20 Hz sends five.
 const FEWEST: u32 = 5;
 
+/// Packets with one number and different readings, from the start on, after which a board has no useful number.
+const UNNUMBERED: u32 = 3;
+
+/// Rates that so few packets may show, in packets a second.
+const FEW_HZ: [f32; 2] = [10.0, 4000.0];
+
 /// Share of repeated numbers above which a number stands still.
 const STANDS: f64 = 0.9;
 
@@ -80,7 +86,8 @@ impl PacketNumbers {
     }
 
     /// Notes the number of a packet that arrived at `now_ns`; `is_other`: its readings differ from those of the packet
-    /// before, if that has the same number. Returns the time base on which two spans agree, when a span ends.
+    /// before, if that has the same number. Returns the time base on which two spans agree, when a span ends, or that
+    /// of a board without useful numbers from the start on.
     pub(super) fn note(&mut self, number: u32, now_ns: i64, is_other: bool) -> Option<Numbered> {
         let Some(last) = self.last.replace(number) else {
             self.begun_ns = now_ns;
@@ -92,6 +99,11 @@ impl PacketNumbers {
             0 => {
                 self.same += 1;
                 self.same_news += u32::from(is_other);
+                if self.same_news == UNNUMBERED && self.same == self.steps && !self.has_moved {
+                    let ms = ((now_ns - self.begun_ns) as f32 / SLOT_NS as f32).max(0.1);
+                    let hz = (1000.0 * self.steps as f32 / ms).clamp(FEW_HZ[0], FEW_HZ[1]);
+                    return Some(Numbered { base: TimeBase::Arrival, hz });
+                }
             }
             step => {
                 self.sum += i64::from(step);

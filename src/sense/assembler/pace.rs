@@ -67,6 +67,20 @@ impl PacketPace {
         (self.exact_period_ns() as i64).max(1)
     }
 
+    /// The pace since the first mark, with a new measurement of it.
+    pub(super) fn so_far(&self, now_ns: i64, position: i64) -> Option<Self> {
+        let (begun, first) = self.marks.first()?;
+        let packets = position - first;
+        let slots = (now_ns - begun) as f64 / SLOT_NS as f64 / packets as f64;
+        (packets > 0 && slots > 0.0).then(|| Self { slots, ..Self::default() })
+    }
+
+    /// Whether several packets come in a millisecond, beyond any error of a short measurement.
+    pub(super) fn is_fast(&self) -> bool {
+        const FAST: f64 = 0.8;
+        self.slots < FAST
+    }
+
     /// Whether it is one packet a millisecond.
     pub(super) fn is_one(&self) -> bool {
         self.slots == ONE

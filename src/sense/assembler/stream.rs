@@ -90,6 +90,14 @@ impl BoardStream {
         position + self.offset
     }
 
+    /// The pace so far of a board whose slots have run far ahead of the receive clock, because it sends several packets a
+    /// millisecond.
+    pub(super) fn fast_pace(&self, now_ns: i64, clock: &SlotClock) -> Option<PacketPace> {
+        let position = self.sequence.position()?;
+        let is_ahead = now_ns - clock.at_ns(self.slot(position)) <= -AHEAD_NS;
+        is_ahead.then(|| self.pace.so_far(now_ns, position))?.filter(PacketPace::is_fast)
+    }
+
     /// The measured pace, if it is not one packet a millisecond.
     pub(super) fn other_pace(&mut self) -> Option<PacketPace> {
         self.pace.adopt().then(|| self.pace.anew()).filter(|pace| !pace.is_one())
