@@ -56,6 +56,7 @@ enum {
     UF_OFF_REPEATED_READINGS = 8,  /* sensors under it repeat their readings bit for bit */
     UF_OFF_COARSE_READINGS = 9,    /* readings under it are too coarse to notice a frozen sensor */
     UF_OFF_OTHER_HELD = 10,        /* another control that acts while it is held is held */
+    UF_OFF_SLOW_READINGS = 11,     /* boards under it send fewer than 50 packets a second */
     UF_OFF_OTHER = 100             /* a reason without a number in this header; the text names it */
 };
 

@@ -208,6 +208,12 @@ impl IgnoredPresses {
         }
     }
 
+    /// Notes that a contact is where it was, without new readings of it.
+    pub(super) fn note_stay(&mut self, contact: ContactId) {
+        let visits = self.visits.iter_mut().filter(|visit| visit.contact == contact);
+        visits.for_each(|visit| visit.is_there = true);
+    }
+
     /// Notes that the control responds to a contact, with a press or a refusal.
     pub(super) fn note_answer(&mut self, contact: ContactId, widget: usize, force: Newtons) {
         let visit = self.visit(contact, widget);

@@ -85,6 +85,7 @@ impl Floor {
                     |sensor: &Option<SensorId>| sensor.filter(|sensor| geometry.index(sensor.tile).is_some());
                 board.channels.iter().map(here).collect()
             },
+            ..*board
         });
         let own = |index: &usize| area.tiles.contains(self.geometry.tile_at_index(*index));
         let near = |at: Vec2| area.holds(&self.geometry, at);

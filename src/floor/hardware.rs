@@ -3,8 +3,8 @@
 use std::net::SocketAddr;
 
 use super::{
-    Area, Calibration, CalibrationRecord, Corner, Day, Drive, FloorFile, Geometry, Loudspeaker, MapRecord,
-    Network, PositionMap, Response, SensorId, SerialWire, TileId,
+    Area, Calibration, CalibrationRecord, Corner, CountRange, Day, Drive, FloorFile, Geometry, Loudspeaker,
+    MapRecord, Network, PositionMap, Response, SensorId, SerialWire, TileId,
 };
 use crate::units::Newtons;
 
@@ -161,6 +161,18 @@ pub struct Board {
     pub address: String,
     /// The sensor on each channel, in argument order; `None` for an unused channel.
     pub channels: Vec<Option<SensorId>>,
+    /// Packets a second, 10 to 4000; `None` if they are measured.
+    pub rate_hz: Option<f32>,
+    /// The range of its counts.
+    pub range: CountRange,
+}
+
+impl Board {
+    /// A board with these sensors that sends counts of 16 bits, at a rate to be measured.
+    #[must_use]
+    pub fn new(address: impl Into<String>, channels: Vec<Option<SensorId>>) -> Self {
+        Self { address: address.into(), channels, rate_hz: None, range: CountRange::WHOLE }
+    }
 }
 
 /// The vibrotactile actuator under one tile.
@@ -195,7 +207,7 @@ fn boards_by_row(geometry: &Geometry) -> Vec<Board> {
                     Corner::ALL.map(|corner| Some(SensorId { tile, corner }))
                 })
                 .collect();
-            boards.push(Board { address: format!("/underfoot/board/{}", boards.len()), channels });
+            boards.push(Board::new(format!("/underfoot/board/{}", boards.len()), channels));
         }
     }
     boards

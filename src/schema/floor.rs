@@ -16,9 +16,10 @@ use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
-use super::version::{self, FIRST_VERSION, FORMAT_VERSION, VERSION, WITH_SERIAL_PORTS};
+use super::version::{self, FIRST_VERSION, FORMAT_VERSION, VERSION, WITH_BOARD_RATES, WITH_SERIAL_PORTS};
 use crate::floor::{
-    ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network, PortName,
+    ADDRESS, Corner, CountRange, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
+    PortName,
 };
 use underfoot_format::codec::{Distinct, Text};
 use underfoot_format::describe::Description;
@@ -88,6 +89,7 @@ fn floor(node: Node<'_>, absent: &dyn Fn(&PortName) -> Option<String>) -> Option
             ("floor", record.head.version),
         );
     }
+    record.check_rates(node.reader);
     let floor = record.floor();
     record.check_channels(node.reader, &floor);
     floor_serial::check(node.reader, &record.parts.serial, &floor);
@@ -269,7 +271,13 @@ impl FloorRecord {
         let (response, actuators) = all_actuators(floor);
         let is_usual =
             floor.actuators == usual.actuators && actuators.iter().all(|one| one.response.is_empty());
-        let version = if floor.serial.is_empty() { FIRST_VERSION } else { WITH_SERIAL_PORTS };
+        let has_rates =
+            floor.boards.iter().any(|board| board.rate_hz.is_some() || board.range != CountRange::WHOLE);
+        let version = match (has_rates, floor.serial.is_empty()) {
+            (true, _) => WITH_BOARD_RATES,
+            (false, false) => WITH_SERIAL_PORTS,
+            (false, true) => FIRST_VERSION,
+        };
         let head = FloorHeadRecord { version, geometry: floor.geometry };
         let parts = FloorPartsRecord {
             areas: floor.areas.iter().map(AreaRecord::of).collect(),
@@ -277,7 +285,7 @@ impl FloorRecord {
             key: floor.key.clone(),
             boards,
             allow: floor.allow.clone(),
-            serial: floor.serial.iter().map(SerialRecord::of).collect(),
+            serial: floor.serial.iter().map(|wire| SerialRecord::of(wire, &floor.boards)).collect(),
             noiseless: floor.noiseless,
             tared: floor.tared,
             sensors: SensorRecord::all(floor),
@@ -288,6 +296,15 @@ impl FloorRecord {
             loudspeakers: floor.loudspeakers.iter().map(LoudspeakerRecord::of).collect(),
         };
         Self { head, parts }
+    }
+
+    /// Reports rates and ranges of boards in a file of an older version.
+    fn check_rates(&self, reader: &Reader<'_>) {
+        let boards = self.parts.boards.iter().flatten();
+        for at in boards.filter_map(BoardRecord::newer_at) {
+            let things = ("rates and ranges of boards", WITH_BOARD_RATES);
+            version::require(reader, at, things, ("floor", self.head.version));
+        }
     }
 
     /// Reports loudspeakers on the channels of actuators.

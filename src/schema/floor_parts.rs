@@ -5,8 +5,8 @@ use glam::Vec2;
 use super::fields::Fields;
 use super::floor_codecs::{CHANNEL as SENSOR_OF_CHANNEL, Points, TILE, Table, ValidTiles};
 use crate::floor::{
-    Actuator, Board, Calibration, CalibrationRecord, Corner, DAY, Day, Floor, Loudspeaker, MapRecord,
-    PositionMap, Response, SensorId, TileId,
+    Actuator, Board, Calibration, CalibrationRecord, Corner, CountRange, CountSign, DAY, Day, Floor,
+    Loudspeaker, MapRecord, PositionMap, Response, SensorId, TileId,
 };
 use crate::units::Newtons;
 use crate::wire::MAX_CHANNELS;
@@ -24,6 +24,12 @@ record! {
     /// The sensor on each channel, in the order of the packet's arguments.
     channels: Option<Vec<Written<Option<SensorId>>>> = "channels",
         Opt(list("channel", MAX_CHANNELS, At(SENSOR_OF_CHANNEL))) => None;
+    /// Packets a second; they are measured if it is not written.
+    rate_hz: Option<Written<f32>> = "rate_hz", Opt(At(num(10.0..=4000.0))) => None;
+    /// The greatest count, at the converter's full voltage: 1023 with 10 bits, 16777215 with 24 bits.
+    full_scale: Option<Written<u32>> = "full_scale", Opt(At(num(1.0..=CountRange::MOST as f64))) => None;
+    /// The sign of the counts.
+    counts: Option<Written<CountSign>> = "counts", Opt(At(Name)) => None;
 }
 
 /// A literal OSC address, without pattern characters.
@@ -92,7 +98,20 @@ impl BoardRecord {
     /// Makes the board with this number.
     pub(super) fn board(&self, number: usize) -> Board {
         let address = self.address.clone().unwrap_or_else(|| usual_address(number));
-        Board { address, channels: self.sensors().into_iter().map(|(sensor, _)| sensor).collect() }
+        let channels = self.sensors().into_iter().map(|(sensor, _)| sensor).collect();
+        let sign = self.counts.as_ref().map_or(CountSign::Unsigned, |sign| sign.value);
+        let usual = CountRange { full_scale: CountRange::usual(sign), sign };
+        let range =
+            self.full_scale.as_ref().map_or(usual, |full| CountRange { full_scale: full.value, sign });
+        Board { rate_hz: self.rate_hz.as_ref().map(|hz| hz.value), range, ..Board::new(address, channels) }
+    }
+
+    /// The place of its first field that needs a newer version of the format.
+    pub(super) fn newer_at(&self) -> Option<std::ops::Range<usize>> {
+        let rate = self.rate_hz.as_ref().map(|rate| rate.at.clone());
+        let full_scale = self.full_scale.as_ref().map(|full_scale| full_scale.at.clone());
+        let counts = self.counts.as_ref().map(|counts| counts.at.clone());
+        rate.or(full_scale).or(counts)
     }
 
     pub(super) fn of(board: &Board, number: usize) -> Self {
@@ -107,7 +126,15 @@ impl BoardRecord {
             board.channels.chunks(Corner::ALL.len()).map(whole).collect();
         let channels = board.channels.iter().map(|sensor| (*sensor).into());
         let channels = tiles.is_none().then(|| channels.collect());
-        Self { address, tiles, channels }
+        let CountRange { full_scale, sign } = board.range;
+        Self {
+            address,
+            tiles,
+            channels,
+            rate_hz: board.rate_hz.map(Written::from),
+            full_scale: (full_scale != CountRange::usual(sign)).then(|| full_scale.into()),
+            counts: (sign != CountSign::Unsigned).then(|| sign.into()),
+        }
     }
 }
 

@@ -28,6 +28,7 @@ OffName = Literal[
     "repeated_readings",
     "coarse_readings",
     "other_held",
+    "slow_readings",
 ]
 """The reason why no foot can press a control."""
 

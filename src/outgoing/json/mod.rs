@@ -29,7 +29,9 @@ mod web;
 pub use contact::{ContactRecord, ContactsRecord, CursorRecord, SensedRecord};
 pub use control::{EventRecord, HeldRecord, IgnoredRecord, StateRecord};
 pub use floor::{AreaRecord, CrackRecord, GapRecord, PageRecord};
-pub use hardware::{DeviceRecord, HealthRecord, LinkCauseRecord, LinkRecord, MuteRecord, TroubleRecord};
+pub use hardware::{
+    DeviceRecord, HealthRecord, LinkCauseRecord, LinkRecord, MuteRecord, RateRecord, TroubleRecord,
+};
 pub use line::{Head, Line, Message, event_line, ignored_line};
 pub use text::{Few, Sentence, Word};
 pub use value::JsonValue;

@@ -3,12 +3,14 @@
 mod calibration_fault;
 mod hold_doubt;
 mod quality;
+mod tile_sample;
 
 use glam::Vec2;
 
 pub use calibration_fault::CalibrationFault;
 pub use hold_doubt::HoldDoubt;
 pub use quality::Quality;
+pub use tile_sample::TileSample;
 
 use crate::floor::{Corner, Geometry};
 use crate::units::{Instant, Newtons};
@@ -37,6 +39,11 @@ pub struct ForceFrame {
     /// calibration.
     /// With a fault, controls with the guard `HoldToRun` are off.
     pub calibration_fault: Option<CalibrationFault>,
+    /// Per tile, the sample that its forces come from; empty where all boards sample once a frame.
+    pub samples: Vec<TileSample>,
+    /// Whether any force or quality may be new. Frames between the samples of slow boards are not: they repeat the
+    /// last forces.
+    pub is_new: bool,
 }
 
 impl ForceFrame {
@@ -52,7 +59,15 @@ impl ForceFrame {
             may_start: vec![true; tiles],
             hold_doubts: vec![None; tiles],
             calibration_fault: None,
+            samples: Vec::new(),
+            is_new: true,
         }
+    }
+
+    /// Whether the forces of the tile at this index are new in this frame.
+    #[must_use]
+    pub fn is_new_at(&self, tile: usize) -> bool {
+        self.samples.get(tile).map_or(self.is_new, |sample| sample.is_new)
     }
 
     /// Adds a point load, divided among the tile's four sensors as by an ideal rigid plate.

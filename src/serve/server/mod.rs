@@ -141,7 +141,7 @@ impl Server {
             answers: Answers::default(),
             link: LinkWatch::default(),
             link_checked: Instant::START,
-            causes: CauseWatch::new(floor.boards.iter().map(|board| board.address.clone())),
+            causes: CauseWatch::new(&floor.boards),
             sensors: SensorWatch::default(),
             off: OffWatch::default(),
             snapshots: None,
@@ -272,7 +272,9 @@ impl Server {
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.process_commands();
         let mut is_silent = false;
-        match self.source.next(PATIENCE) {
+        // Frames by the clock come even where no packet does.
+        let patience = if self.assembler.follows_clock() { FRAME } else { PATIENCE };
+        match self.source.next(patience) {
             Ok(Some(packet)) => {
                 self.haptics.note_packet(self.source.now());
                 self.causes.note(&packet);
@@ -347,6 +349,7 @@ impl Server {
         if let Some(status) = self.haptics.device_news(now) {
             self.outputs.report(&Report::Device(now, Cow::Borrowed(status)));
         }
+        self.link.note_timings(&self.assembler, now);
         self.tell_everything();
         let (counters, link) = (self.counters(), self.link.state());
         self.note_cause(&counters, now);

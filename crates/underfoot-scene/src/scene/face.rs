@@ -326,6 +326,7 @@ fn off_badge(reason: OffReason) -> Option<&'static str> {
         OffReason::RepeatedReadings => "frozen",
         OffReason::CoarseReadings => "coarse",
         OffReason::OtherHeld => "wait",
+        OffReason::SlowReadings => "too slow",
         OffReason::Waiting => return None,
         // A test checks that each known reason has its own.
         _ => UNNAMED_BADGE,

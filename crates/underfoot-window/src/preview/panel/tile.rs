@@ -74,7 +74,11 @@ pub(super) fn tile_part(
         || "too light to say where".to_owned(),
         |at| format!("acts at {:.3}, {:.3} m", at.x, at.y),
     );
-    ui.label(quiet(theme, format!("{:.1} N in all, {place}", clean(state.force.0))));
+    let age = match state.age.as_millis() {
+        0 => String::new(),
+        ms => format!(", {ms} ms ago"),
+    };
+    ui.label(quiet(theme, format!("{:.1} N in all, {place}{age}", clean(state.force.0))));
 }
 
 /// Whether an actuator moves this tile.
