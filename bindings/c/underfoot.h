@@ -73,6 +73,8 @@ enum {
     UF_END = 9,     /* the last event: `text` is "stopped", "source_ended", or "failed: ..." or "panicked: ..." */
     UF_LINK_CAUSE = 10, /* the reason why boards that send give no usable frame: `text` is a stable name, a colon and
                          * a sentence, such as "rate_low: board 0 sends ..."; "" when it is over */
+    UF_SENT = 11,   /* the control or region `id` gives a message to another program, which the session does not send:
+                     * `text` is the name of its target, a colon and its content, such as "viewer: key Right" */
     UF_OTHER = 100  /* a subject without a number in this header; `name` has the word */
 };
 

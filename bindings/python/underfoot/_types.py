@@ -101,7 +101,7 @@ class Event:
     t_s: float
     """Time of the event, on the floor's sample clock."""
     kind: Literal[
-        "control", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "ended"
+        "control", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "sent", "ended"
     ]
     name: str
     """The word for the event, as in JSON lines: of a control "pressed", "released", "changed" and so on."""
@@ -217,6 +217,20 @@ class CrackEvent(Event):
 
 
 @dataclass(frozen=True)
+class SentEvent(Event):
+    """The control or region `id` gives a message to another program, which the session does not send."""
+
+    __match_args__ = ("id", "target", "message")
+    kind: Literal["sent"]
+    name: Literal["sent"]
+    value: None
+    target: str
+    """The name of the target in the layout."""
+    message: str
+    """The content, such as "key Right"."""
+
+
+@dataclass(frozen=True)
 class EndedEvent(Event):
     """The last event: nothing is held any more, and no event follows."""
 
@@ -239,6 +253,7 @@ AnyEvent = Union[
     LinkCauseEvent,
     FloorEvent,
     CrackEvent,
+    SentEvent,
     EndedEvent,
 ]
 
@@ -258,6 +273,9 @@ def event_of(kind, name, id, value, text, message, when_and_where):  # type: ign
         return LinkCauseEvent(
             kind=kind, value=None, text=message, cause=cause or None, message=sentence, **seen
         )
+    if kind == "sent":
+        target, _, content = message.partition(": ")
+        return SentEvent(kind=kind, value=None, text=message, target=target, message=content, **seen)
     if kind == "ended":
         said = "%s: %s" % (text, message) if message else text
         return EndedEvent(kind=kind, value=None, text=said, reason=text, message=message, **seen)

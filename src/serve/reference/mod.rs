@@ -7,7 +7,7 @@ use serde::Serialize;
 use self::arguments::{argument, indicators, pages, taken, values};
 use crate::floor::Floor;
 use crate::ground::GroundMaterial;
-use crate::layout::{Layout, Widget};
+use crate::layout::{Layout, Region, Widget};
 use crate::widget::{Behaviour, Control, Detail, OffReason, possible_events};
 use crate::wire::sent::{self, Arguments, Field, FieldRange, Sent};
 use crate::wire::{ArgumentKind, COMMANDS, Prefix};
@@ -68,6 +68,7 @@ impl Reference {
         for widget in &layout.widgets {
             maker.control(widget);
         }
+        layout.regions.iter().for_each(|region| maker.region(region));
         Self { entries: maker.entries }
     }
 }
@@ -167,6 +168,20 @@ impl Maker<'_> {
         self.report::<sent::Mute>();
         self.answer::<sent::Mute>();
         self.answer::<sent::Error>();
+    }
+
+    fn region(&mut self, region: &Region) {
+        for sending in &region.send {
+            self.entries.push(AddressEntry {
+                direction: MessageDirection::Target,
+                address: format!("{}: {}", sending.target, sending.payload),
+                arguments: Vec::new(),
+                says: format!(
+                    "The feet on free floor of {} send it, from {} N on.",
+                    region.id, sending.press_n
+                ),
+            });
+        }
     }
 
     fn control(&mut self, widget: &Widget) {

@@ -6,6 +6,7 @@ mod heartbeat;
 mod inbox;
 mod limited;
 mod link;
+mod messages;
 mod off;
 mod outputs;
 mod requests;
@@ -269,6 +270,7 @@ impl Server {
     /// working without it.
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.process_commands();
+        self.outputs.follow(self.engine.layout(), self.engine.layout_revision(), self.source.now());
         let mut is_silent = false;
         match self.source.next(PATIENCE) {
             Ok(Some(packet)) => {
