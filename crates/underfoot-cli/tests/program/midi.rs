@@ -246,9 +246,9 @@ fn a_foot_on_free_floor_is_a_voice_and_a_slider_is_a_controller() {
     until("the voice ends", || !stage.is_down());
 }
 
-/// A port that is gone is told once, and comes back; nothing waits for it.
+/// A port that is gone gives one notice, and comes back; nothing waits for it.
 #[test]
-fn a_jack_server_that_ends_and_comes_back_is_told_and_gets_nothing_old() {
+fn a_jack_server_that_ends_and_comes_back_gets_nothing_old() {
     let Some(mut stage) = Stage::open() else { return };
     let site = stage.site(&page(&synth(), HOLD));
     let client = Client::new();

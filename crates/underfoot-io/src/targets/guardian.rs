@@ -214,7 +214,7 @@ impl<W: Write> Guardian<W> {
         self.connections.looked = Instant::now();
         self.outlets.settle();
         let now = self.outlets.receivers();
-        // None at the start: this guardian will be told those of the one before it.
+        // A new guardian has none, until the server names those of the one before it.
         let is_new =
             |it: &&(usize, Vec<String>)| match self.connections.told.iter().find(|told| told.0 == it.0) {
                 Some(told) => told.1 != it.1,
