@@ -201,9 +201,9 @@ impl PressureSettings {
     }
 }
 
-/// The whole number at `share` of the way from `from` to `to`.
+/// The whole number at `share` of the way from `from` to `to`; halves go upwards, so that the middle of a bend is 0.
 pub(super) fn between(from: f32, to: f32, share: f32) -> f32 {
-    (from + (to - from) * share.clamp(0.0, 1.0)).round()
+    (from + (to - from) * share.clamp(0.0, 1.0) + 0.5).floor()
 }
 
 impl fmt::Display for MidiNote {

@@ -155,8 +155,10 @@ impl GuardianSupervisor {
             match guardian.answers.try_recv() {
                 Ok(FromGuardian::Beat(number)) => {
                     guardian.is_ready = true;
-                    // Nobody may wait for it.
-                    self.ready.take().map(|ready| ready.try_send(()));
+                    if let Some(ready) = self.ready.take() {
+                        // Nobody may wait for it.
+                        let _ = ready.try_send(());
+                    }
                     guardian.waits = (number != guardian.beat).then(Instant::now);
                 }
                 Ok(FromGuardian::Notice(text)) => warn!("{text}"),

@@ -146,7 +146,8 @@ impl WindowMessages {
             let event = match event {
                 EventNews::Event(event) => event,
                 EventNews::Sent(news) => {
-                    self.note_sent(news);
+                    self.event_count += 1;
+                    note_sent(&mut self.recent, news);
                     continue;
                 }
                 EventNews::Restarted(layout) => {
@@ -192,26 +193,6 @@ impl WindowMessages {
             match notice {
                 Notice::Text(text) => self.note(text),
                 Notice::Sound(text) => self.silence = Some(text),
-            }
-        }
-    }
-
-    /// Lists a message; those that follow a value or move the pointer are one line for each control.
-    fn note_sent(&mut self, news: MessageNews) {
-        self.event_count += 1;
-        let is_same = |newest: &MessageNews| {
-            newest.is_replaceable() && news.is_replaceable() && newest.order.control == news.order.control
-        };
-        // The change of the value stands between two of its messages.
-        let newest = self.recent.iter_mut().take(2).find_map(|happened| match happened {
-            Happened::Sent(newest) if is_same(newest) => Some(newest),
-            _ => None,
-        });
-        match newest {
-            Some(newest) => *newest = news,
-            None => {
-                self.recent.truncate(KEPT - 1);
-                self.recent.push_front(Happened::Sent(news));
             }
         }
     }
@@ -272,6 +253,25 @@ impl WindowMessages {
         }
         while self.notes.len() > NOTICES {
             self.notes.pop_front();
+        }
+    }
+}
+
+/// Lists a message; those of a moving value or pointer are one line for each control.
+fn note_sent(recent: &mut VecDeque<Happened>, news: MessageNews) {
+    let is_same = |newest: &MessageNews| {
+        newest.is_replaceable() && news.is_replaceable() && newest.order.control == news.order.control
+    };
+    // The change of the value stands between two of its messages.
+    let newest = recent.iter_mut().take(2).find_map(|happened| match happened {
+        Happened::Sent(newest) if is_same(newest) => Some(newest),
+        _ => None,
+    });
+    match newest {
+        Some(newest) => *newest = news,
+        None => {
+            recent.truncate(KEPT - 1);
+            recent.push_front(Happened::Sent(news));
         }
     }
 }
