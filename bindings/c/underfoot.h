@@ -77,6 +77,8 @@ enum {
     UF_IGNORED = 11, /* the control `id` ignored the foot `contact`, which has left it: `force_n` is the greatest force,
                       * `text` a stable name, a colon and a sentence, such as "too_light: too light" or
                       * "not_calibrated: the floor is not calibrated" */
+    UF_SENT = 12,   /* the control or region `id` gives a message to another program, which the session does not send:
+                     * `text` is the name of its target, a colon and its content, such as "viewer: key Right" */
     UF_OTHER = 100  /* a subject without a number in this header; `name` has the word */
 };
 

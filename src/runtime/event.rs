@@ -63,6 +63,9 @@ pub enum Kind {
         /// Energy of the crack, in joules.
         energy_j: f32,
     },
+    /// The control or region [`Event::id`] gives a message to another program, which the session itself does not send:
+    /// [`Event::message`] has the name of its target and its content.
+    Message,
     /// The session has ended: nothing is held, and no more events follow.
     Ended(EndReason),
 }
@@ -82,6 +85,7 @@ impl Kind {
             Self::Device => "device",
             Self::Muted => "mute",
             Self::Crack { .. } => "crack",
+            Self::Message => "sent",
             Self::Ended(_) => "ended",
         }
     }
@@ -132,8 +136,8 @@ impl Event {
         self.id.as_ref().map_or("", WidgetId::as_str)
     }
 
-    /// The error if the session ended with a failure, the reason of [`Kind::Ignored`], or the cause of
-    /// [`Kind::LinkCause`]; empty otherwise.
+    /// The error if the session ended with a failure, the reason of [`Kind::Ignored`], the cause of
+    /// [`Kind::LinkCause`], or the target and content of [`Kind::Message`]; empty otherwise.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
@@ -167,6 +171,10 @@ impl Event {
             Report::Crack(news) => {
                 let kind = Kind::Crack { seed: news.seed, energy_j: news.energy_j };
                 return Some(Self { position: Vec2::new(news.x_m, news.y_m), ..Self::new(at, None, kind) });
+            }
+            Report::Message(news) => {
+                let id = Some(news.order.control.clone());
+                return Some(Self { message: news.to_string(), ..Self::new(at, id, Kind::Message) });
             }
             Report::Contacts(..) | Report::Held(_) | Report::Alive(..) => return None,
             // The sink makes cracks of these.

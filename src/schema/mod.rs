@@ -55,6 +55,8 @@ mod save;
 mod send;
 mod send_checks;
 mod send_codecs;
+mod send_contacts;
+mod send_midi;
 #[cfg(feature = "save")]
 mod state;
 mod targets;
@@ -83,6 +85,7 @@ pub use places::Places;
 pub use reference::{Chapter, reference, write_reference};
 #[cfg(feature = "save")]
 pub use save::{SaveError, Saved, save_floor, save_text, write_over};
+pub use send::written_messages;
 #[cfg(feature = "save")]
 pub use state::usual_state;
 pub use underfoot_format::describe::{Description, FieldDescription, FieldType};

@@ -100,6 +100,9 @@ impl OscSink {
 
 impl EventSink for OscSink {
     fn report(&mut self, report: &Report<'_>) {
+        if let Report::Message(_) = report {
+            return;
+        }
         if let Report::Contacts(at, contacts) = report {
             let queue = || self.worker.try_offer(Job::Contacts);
             if self.periodic.is_due(*at, contacts) && self.latest.store(*at, contacts, queue) {
@@ -204,6 +207,8 @@ impl<S: FnMut(&[u8])> Sender<S> {
             Report::Muted(_, muted) => write_mute(prefix, muted, bytes),
             Report::Control(_, state) => write_control(prefix, state, bytes),
             Report::Area(news) => write_area(prefix, news, bytes),
+            // They have targets of their own.
+            Report::Message(_) => return,
         }
         (self.send)(bytes);
     }

@@ -7,6 +7,7 @@ use super::{AreaNews, HeldReport};
 use crate::engine::{ControlState, IgnoredPress, PageShown};
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
+use crate::messages::MessageNews;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -47,6 +48,8 @@ pub enum Report<'a> {
     /// The state of a control: an app has changed it or asked for it, or it has the guard `HoldToRun` and has gone
     /// off or on.
     Control(Instant, Cow<'a, ControlState>),
+    /// A message of the layout to another program; what a control or a foot gives, whether or not somebody sends it.
+    Message(Cow<'a, MessageNews>),
     /// The state of one area of a floor that several computers serve has changed.
     Area(Cow<'a, AreaNews>),
 }
@@ -70,6 +73,7 @@ impl Report<'_> {
             Self::Alive(at, sequence) => Report::Alive(*at, *sequence),
             Self::Muted(at, muted) => Report::Muted(*at, owned(muted.as_ref())),
             Self::Control(at, state) => Report::Control(*at, owned(state.as_ref())),
+            Self::Message(news) => Report::Message(owned(news.as_ref())),
             Self::Area(news) => Report::Area(owned(news.as_ref())),
         }
     }
@@ -93,6 +97,7 @@ impl Report<'_> {
             Self::Ground(event) => event.at,
             Self::Crack(news) => news.at,
             Self::Held(report) => report.at,
+            Self::Message(news) => news.at,
             Self::Area(news) => news.at,
             Self::Contacts(at, _)
             | Self::Link(at, _)

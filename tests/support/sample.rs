@@ -126,6 +126,7 @@ pub(crate) fn map() -> Layout {
             id: "map".into(),
             area: tiles(0.0, 2.0, 6.0, 4.0),
             cursor: CursorRule::Largest,
+            send: Vec::new(),
         }],
         stances: vec![Stance { area: tiles(1.75, 0.35, 2.5, 1.4), label: "stand here".into() }],
         pages: vec![],

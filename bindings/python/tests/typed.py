@@ -38,6 +38,8 @@ def by_class(event: AnyEvent) -> str:
             return name
         case underfoot.CrackEvent(x_m, y_m, energy_j):
             return f"{x_m + y_m} {energy_j}"
+        case underfoot.SentEvent(id, target, message):
+            return f"{id} {target} {message}"
         case underfoot.EndedEvent(reason, message):
             assert_type(reason, Literal["stopped", "source_ended", "failed", "panicked"])
             return reason + message

@@ -25,6 +25,7 @@ from ._types import LinkCauseEvent as LinkCauseEvent
 from ._types import LinkEvent as LinkEvent
 from ._types import Off as Off
 from ._types import PageEvent as PageEvent
+from ._types import SentEvent as SentEvent
 from ._types import State as State
 from ._types import StateEvent as StateEvent
 from ._types import SwipedEvent as SwipedEvent

@@ -118,7 +118,18 @@ class Event:
     t_s: float
     """Time of the event, on the floor's sample clock."""
     kind: Literal[
-        "control", "ignored", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "ended"
+        "control",
+        "ignored",
+        "state",
+        "page",
+        "link",
+        "link_cause",
+        "health",
+        "device",
+        "mute",
+        "crack",
+        "sent",
+        "ended",
     ]
     name: str
     """The word for the event, as in JSON lines: of a control "pressed", "released", "changed" and so on."""
@@ -247,6 +258,20 @@ class CrackEvent(Event):
 
 
 @dataclass(frozen=True)
+class SentEvent(Event):
+    """The control or region `id` gives a message to another program, which the session does not send."""
+
+    __match_args__ = ("id", "target", "message")
+    kind: Literal["sent"]
+    name: Literal["sent"]
+    value: None
+    target: str
+    """The name of the target in the layout."""
+    message: str
+    """The content, such as "key Right"."""
+
+
+@dataclass(frozen=True)
 class EndedEvent(Event):
     """The last event: nothing is held any more, and no event follows."""
 
@@ -270,6 +295,7 @@ AnyEvent = Union[
     LinkCauseEvent,
     FloorEvent,
     CrackEvent,
+    SentEvent,
     EndedEvent,
 ]
 
@@ -292,6 +318,9 @@ def event_of(kind, name, id, value, text, message, when_and_where):  # type: ign
     if kind == "ignored":
         said = "%s: %s" % (text, message)
         return IgnoredEvent(kind=kind, value=None, text=said, reason=text, message=message, **seen)
+    if kind == "sent":
+        target, _, content = message.partition(": ")
+        return SentEvent(kind=kind, value=None, text=message, target=target, message=content, **seen)
     if kind == "ended":
         said = "%s: %s" % (text, message) if message else text
         return EndedEvent(kind=kind, value=None, text=said, reason=text, message=message, **seen)

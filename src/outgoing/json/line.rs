@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize, Serializer};
 use super::{
     AreaRecord, ClientsRecord, ContactsRecord, CrackRecord, DeviceRecord, EventRecord, GapRecord,
     HealthRecord, HeldRecord, IgnoredRecord, LinkCauseRecord, LinkRecord, MuteRecord, PageRecord,
-    RefusalRecord, StateRecord, Word,
+    RefusalRecord, SentRecord, StateRecord, Word,
 };
 use crate::engine::IgnoredPress;
+use crate::messages::MessageNews;
 use crate::units::Instant;
 use crate::widget::{Direction, EventKind, Value, WidgetEvent};
 
@@ -46,6 +47,8 @@ pub enum Message {
     Device(DeviceRecord),
     /// The state of an area.
     Area(AreaRecord),
+    /// A message of a control or a foot to another program.
+    Sent(SentRecord),
     /// Lines were left out.
     Gap(GapRecord),
     /// The contacts on the floor.
@@ -140,6 +143,7 @@ fn message(event: Word, text: &[u8]) -> Result<Message, serde_json::Error> {
         "health" => Message::Health(serde_json::from_slice(text)?),
         "device" => Message::Device(serde_json::from_slice(text)?),
         "area" => Message::Area(serde_json::from_slice(text)?),
+        "sent" => Message::Sent(serde_json::from_slice(text)?),
         "gap" => Message::Gap(serde_json::from_slice(text)?),
         "contacts" => Message::Contacts(serde_json::from_slice(text)?),
         "ignored" => Message::Ignored(serde_json::from_slice(text)?),
@@ -184,6 +188,12 @@ impl Line {
         // A record becomes a text in any case.
         serde_json::to_string(self).unwrap_or_default()
     }
+}
+
+/// Returns one message to another program as the sink of JSON lines writes it, without the end of the line.
+#[must_use]
+pub fn sent_line(news: &MessageNews) -> String {
+    Line::new(news.at, Message::Sent(news.into())).text()
 }
 
 /// Returns one event as the sink of JSON lines writes it, without the end of the line.

@@ -113,6 +113,7 @@ impl Content {
         let contacts = [self.contact(), self.full_contact(None), self.full_contact(Some([x_m, y_m]))];
         vec![
             Message::Page(PageRecord { page: self.flags[0].then(|| one.clone()) }),
+            Message::Sent(SentRecord { id: one.clone(), target: two.clone(), message: self.sentence() }),
             Message::Crack(CrackRecord { seed: sample_rate, energy_j, x_m, y_m, skipped: block }),
             Message::Link(LinkRecord { state: "lost".into() }),
             Message::LinkCause(LinkCauseRecord {

@@ -11,7 +11,7 @@ use self::limits::DescribedLimits;
 use crate::engine::Ignored;
 use crate::floor::Floor;
 use crate::ground::GroundMaterial;
-use crate::layout::{Layout, Widget};
+use crate::layout::{Layout, Region, Widget};
 use crate::widget::{Behaviour, Control, Detail, OffReason, possible_events};
 use crate::wire::sent::{self, Arguments, Field, FieldRange, Sent};
 use crate::wire::{ArgumentKind, COMMANDS, Prefix};
@@ -78,6 +78,7 @@ impl Reference {
         for widget in &layout.widgets {
             maker.control(widget);
         }
+        layout.regions.iter().for_each(|region| maker.region(region));
         Self { entries: maker.entries }
     }
 }
@@ -179,6 +180,20 @@ impl Maker<'_> {
         self.report::<sent::Mute>();
         self.answer::<sent::Mute>();
         self.answer::<sent::Error>();
+    }
+
+    fn region(&mut self, region: &Region) {
+        for sending in &region.send {
+            self.entries.push(AddressEntry {
+                direction: MessageDirection::Target,
+                address: format!("{}: {}", sending.target, sending.payload),
+                arguments: Vec::new(),
+                says: format!(
+                    "The feet on free floor of {} send it, from {} N on.",
+                    region.id, sending.press_n
+                ),
+            });
+        }
     }
 
     fn control(&mut self, widget: &Widget) {

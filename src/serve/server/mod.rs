@@ -6,6 +6,7 @@ mod heartbeat;
 mod inbox;
 mod limited;
 mod link;
+mod messages;
 mod off;
 mod outputs;
 mod requests;
@@ -271,6 +272,7 @@ impl Server {
     /// working without it.
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.process_commands();
+        self.outputs.follow(self.engine.layout(), self.engine.layout_revision(), self.source.now());
         let mut is_silent = false;
         // Frames by the clock come even where no packet does.
         let patience = if self.assembler.follows_clock() { FRAME } else { PATIENCE };

@@ -31,6 +31,7 @@ fn message(report: &Report<'_>) -> Option<Message> {
         Report::Muted(_, muted) => Message::Mute(muted.as_ref().into()),
         Report::Control(_, state) => Message::State(state.as_ref().into()),
         Report::Area(news) => Message::Area(news.as_ref().into()),
+        Report::Message(news) => Message::Sent(news.as_ref().into()),
         // The queue has the cracks in the place of ground events; alive reports have no line.
         Report::Ground(_) | Report::Alive(..) => return None,
     })

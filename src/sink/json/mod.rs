@@ -83,6 +83,7 @@ impl From<Gap> for Job {
 enum Key {
     Event(WidgetId, &'static str),
     Control(WidgetId),
+    Message(usize, WidgetId),
     Area(String),
     /// Every other kind of report has only one state.
     State(Discriminant<Report<'static>>),
@@ -97,6 +98,10 @@ fn worth(report: &Report<'static>) -> Worth<Key> {
                 EventKind::Changed(_) | EventKind::Ticked => Worth::Latest(key),
                 _ => Worth::Each(key),
             }
+        }
+        Report::Message(news) => {
+            let key = Key::Message(news.order.target, news.order.control.clone());
+            if news.is_replaceable() { Worth::Latest(key) } else { Worth::Each(key) }
         }
         Report::Ignored(_) | Report::Ground(_) | Report::Crack(_) | Report::Alive(..) => Worth::None,
         Report::Control(_, state) => Worth::Latest(Key::Control(state.id.clone())),

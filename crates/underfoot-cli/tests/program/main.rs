@@ -25,6 +25,8 @@ mod hostile_pages;
 mod input;
 #[cfg(target_os = "linux")]
 mod letters;
+#[cfg(target_os = "linux")]
+mod midi;
 mod mirror;
 mod output;
 mod page_commands;
@@ -42,7 +44,6 @@ mod storage;
 mod strange_boards;
 mod systemd;
 mod tables;
-#[cfg(target_os = "linux")]
 mod targets;
 mod unit_files;
 mod watch;

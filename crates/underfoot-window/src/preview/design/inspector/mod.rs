@@ -10,6 +10,8 @@ mod number;
 mod place;
 mod problems;
 mod sections;
+mod send_choices;
+mod sends;
 mod text;
 mod value;
 mod words;
@@ -20,7 +22,7 @@ use super::edited::EditedLayout;
 use super::findings::findings_list;
 use super::several::shared_place;
 use super::{Pane, Panes};
-use crate::edit::{Address, Edit, FieldSection};
+use crate::edit::{Address, Edit, FieldSection, RecordList};
 use crate::preview::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet, section};
 use effect::Waveforms;
@@ -170,6 +172,12 @@ impl Inspector {
         let shown = std::mem::take(&mut self.own.sections);
         let wanted = self.sections(ui, theme, palette, edited, &record, &shown);
         self.own.sections = shown;
+        let widget = item.as_ref().filter(|item| !item.is_group && !item.widgets.is_empty());
+        let widget = widget.and_then(|item| edited.layout().widgets.get(item.widgets.start)).cloned();
+        let wanted = match widget.filter(|_| record.list() == Some(RecordList::Widgets)) {
+            Some(widget) => self.sends(ui, theme, edited, &record, &widget).or(wanted),
+            None => wanted,
+        };
         let is_edited = wanted.is_some();
         self.apply(edited, &record, wanted);
         if !is_edited && item.is_some_and(|item| item.is_group) {
