@@ -91,7 +91,7 @@ fn sighting<R: BufRead>(
         return None;
     };
     let off = at.distance(estimate);
-    if off > geometry.pitch_m() {
+    if off > geometry.pitch_m().max_element() {
         table.report(row, 2, format!("{off:.2} m from where it was pressed: more than a tile"));
         return None;
     }
@@ -120,7 +120,7 @@ fn press<R: BufRead>(
     let at = Vec2::new(x, y) - geometry.centre(tile);
     let half = 0.5 * geometry.pitch_m();
     let mut is_on_tile = true;
-    for (field, along, written) in [(0, at.x, x), (1, at.y, y)] {
+    for (field, along, written, half) in [(0, at.x, x, half.x), (1, at.y, y, half.y)] {
         if along.abs() > half + 1e-4 {
             is_on_tile = false;
             let (least, most) = (written - along - half, written - along + half);
@@ -156,9 +156,9 @@ impl TilePoints {
     /// Those of [`MapFit::of_presses`] and [`MapFit::of_sightings`].
     pub fn fit(&self, floor: &Floor) -> Result<MapFit, MapError> {
         if self.presses.is_empty() {
-            MapFit::of_sightings(&self.sightings, &floor.geometry)
+            MapFit::of_sightings(&self.sightings, &floor.geometry, self.tile)
         } else {
-            MapFit::of_presses(&self.presses, &floor.geometry)
+            MapFit::of_presses(&self.presses, &floor.geometry, self.tile)
         }
     }
 }
