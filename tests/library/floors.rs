@@ -173,7 +173,7 @@ fn a_panel_of_a_dance_pad_is_pressed_and_released_in_the_millisecond_of_its_forc
         };
         let pressed = times(|kind| matches!(kind, EventKind::Pressed));
         let released = times(|kind| matches!(kind, EventKind::Released));
-        assert_eq!((pressed.len(), released.len()), (1, 1), "{tile}");
+        assert_eq!((pressed.len(), released.len()), (1, 1), "{tile}: {:?}", stage.events);
         assert!(pressed[0].abs_diff(begun + 30) <= 1, "{tile}: pressed {} ms after", pressed[0] - begun);
         assert!(released[0].abs_diff(top + 90) <= 1, "{tile}: released {} ms after", released[0] - top);
     }
@@ -229,16 +229,16 @@ fn a_person_who_stands_on_a_balance_board_presses_nothing_beside_the_own_centre_
     assert!(worst < 1e-4, "sway off by {} mm", 1e3 * worst);
 }
 
-/// The 95th percentile of the distance between the place of a load and the contact on one plate of 50 cm (cm).
-fn error_cm(places: &[Vec2], force: f32) -> f32 {
+/// Median and 95th percentile of the distance between the place of a load and the contact on a plate of 50 cm (cm).
+fn errors_cm(places: &[Vec2], force: f32) -> [f32; 2] {
     let places = SensorPlaces::at(places).unwrap();
     let geometry = Geometry::new(1, 1, 0.5, 0.5, 0.0).unwrap().with_sensors(places).unwrap();
     let page = "Layout(version: 1, title: \"empty\", units: Metres, regions: [(id: \"all\", at: (0, 0), size: (0.5, 0.5))], widgets: [])";
     let mut errors = Vec::new();
-    for seed in 0..4_u16 {
+    for seed in 0..20_u16 {
         let floor = Floor::of(geometry);
         let mut stage = Stage::of_parts(&floor, SimConfig::default(), page, seed.into());
-        for step in 0..24_u16 {
+        for step in 0..12_u16 {
             let spread = |by: f32| (f32::from(step + 31 * seed) * by).fract() - 0.5;
             // Within all triangles and squares of sensors.
             let at = Vec2::splat(0.25) + Vec2::new(0.2 * spread(0.7549), 0.2 * spread(0.5698));
@@ -247,9 +247,9 @@ fn error_cm(places: &[Vec2], force: f32) -> f32 {
             stage.run(120, |_| Vec::new());
         }
     }
-    assert!(errors.len() >= 90, "{} of 96 found", errors.len());
+    assert!(errors.len() >= 235, "{} of 240 found", errors.len());
     errors.sort_by(f32::total_cmp);
-    errors[errors.len() * 95 / 100]
+    [50, 95].map(|percent| errors[errors.len() * percent / 100])
 }
 
 #[test]
@@ -257,10 +257,16 @@ fn a_plate_on_three_legs_places_a_foot_about_as_well_as_one_on_four() {
     let three = [(-0.21, -0.19), (0.21, -0.19), (0.0, 0.21)].map(Vec2::from);
     let four = [(-0.21, -0.21), (0.21, -0.21), (-0.21, 0.21), (0.21, 0.21)].map(Vec2::from);
     for force in [100.0, 400.0] {
-        let (three, four) = (error_cm(&three, force), error_cm(&four, force));
-        println!("{force} N: three legs {three:.2} cm, four legs {four:.2} cm (95th percentile)");
-        assert!(three < 1.6 * four + 0.3, "{three} cm on three legs, {four} cm on four at {force} N");
-        assert!(four < 4.0, "{four} cm");
+        let [[three, most_three], [four, most_four]] =
+            [&three[..], &four[..]].map(|legs| errors_cm(legs, force));
+        println!(
+            "{force} N, median and 95 %: three legs {three:.2} and {most_three:.2} cm, four {four:.2} and {most_four:.2}"
+        );
+        assert!(
+            three < 1.6 * four && most_three < 1.6 * most_four,
+            "{three} and {most_three} cm at {force} N"
+        );
+        assert!(most_four < 4.0, "{most_four} cm");
     }
 }
 

@@ -80,7 +80,8 @@ pub fn mapped(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Mapping
 /// For a floor with boards that send newtons, the table has only its header.
 #[must_use]
 pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
-    let mut table = String::from("x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne,force_n\n");
+    let names = Corner::ALL.map(|sensor| sim.geometry().sensor_name(sensor));
+    let mut table = format!("x_m,y_m,col,row,f_{},force_n\n", names.join(",f_"));
     if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
         return table;
     }
