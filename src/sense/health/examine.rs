@@ -24,6 +24,8 @@ pub(super) struct TileReadings {
     pub(super) interval_ms: f32,
     /// Whether the laws of its sensors are known, so that the plate checks apply.
     pub(super) is_measured: bool,
+    /// Whether its four sensors form a parallelogram, so that a load on one of them has a response of the others.
+    pub(super) is_coupled: bool,
 }
 
 /// The result of an examination.
@@ -67,7 +69,10 @@ impl TileReadings {
 
     /// Finds broken sensors by the other sensors of the plate.
     fn find(&self, sensors: &mut [Sensor; 4], twist: &Twist, examined: &mut Examined) {
-        let Self { forces, before, ends, interval_ms, is_measured } = *self;
+        let Self { forces, before, ends, interval_ms, is_measured, is_coupled } = *self;
+        if !is_coupled {
+            return;
+        }
         let out = sensors.map(|sensor| sensor.is_out());
         let alone = plate::unanswered(forces, out);
         for (corner, sensor) in sensors.iter_mut().enumerate() {

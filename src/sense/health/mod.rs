@@ -95,6 +95,11 @@ pub(super) struct Health {
     zeros: Zeros,
     sensors: Vec<[Sensor; 4]>,
     queue: TileQueue,
+    /// Whether the four sensors of each tile form a parallelogram; without that, their readings show no faults of each
+    /// other.
+    coupled: Vec<bool>,
+    /// The tiles with three sensors.
+    three_legged: Vec<usize>,
     /// Flexibility of the floor's plates under twist.
     twist: Twist,
     shares: FloorShares,
@@ -122,6 +127,18 @@ impl Health {
             zeros: Zeros::new(floor),
             sensors: vec![[Sensor::default(); 4]; tiles],
             queue: TileQueue::new(tiles),
+            three_legged: floor
+                .geometry
+                .tiles()
+                .enumerate()
+                .filter(|(_, tile)| floor.geometry.sensors(*tile).len() == 3)
+                .map(|(index, _)| index)
+                .collect(),
+            coupled: floor
+                .geometry
+                .tiles()
+                .map(|tile| floor.geometry.sensor_places(tile).is_parallelogram())
+                .collect(),
             twist: Twist::default(),
             shares: FloorShares::new(&floor.geometry),
             averages: Averages::new(tiles),
@@ -148,12 +165,17 @@ impl Health {
         self.look_for_repeats(frame, sampled);
         self.visit_share(frame, sampled);
         self.jumps.mark(frame, &self.sensors, sampled);
+        // A plate that stands on three sensors is lost with one of them: the unused position counts as lost, too.
+        for &tile in &self.three_legged {
+            let [first, second, third, unused] = &mut frame.quality[tile];
+            *unused = (*first).max(*second).max(*third);
+        }
     }
 
     /// Examines the tiles with a load or a fault.
     fn examine(&mut self, frame: &mut ForceFrame) {
         let is_foreign = self.is_foreign();
-        let Self { number, intake, intervals, sensors, queue, twist, changes, found, .. } = self;
+        let Self { number, intake, intervals, sensors, queue, coupled, twist, changes, found, .. } = self;
         let ForceFrame { forces, quality, may_start, .. } = frame;
         queue.examine(
             *number,
@@ -166,6 +188,7 @@ impl Health {
                     ends: intake.ends[tile],
                     interval_ms: intervals.ms(tile),
                     is_measured: intake.has_laws(tile) && !is_foreign,
+                    is_coupled: coupled[tile],
                 };
                 let examined = readings.examine(&mut sensors[tile], &mut quality[tile], twist);
                 may_start[tile] = examined.may_start;

@@ -8,7 +8,7 @@ use glam::Vec2;
 use super::mark::{Ink, Paint, Stroke};
 use super::{Scene, View};
 use underfoot::engine::{Ignored, IgnoredPress};
-use underfoot::floor::{Corner, Rect};
+use underfoot::floor::Rect;
 use underfoot::layout::Widget;
 use underfoot::sense::{Covariance, Quality};
 use underfoot::wire::LinkState;
@@ -26,7 +26,11 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
     }
     let theme = view.theme;
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
-        let plate = view.geometry.plate(view.geometry.tile_at_index(index)).grown(-0.004);
+        let tile = view.geometry.tile_at_index(index);
+        if view.geometry.is_missing(tile) {
+            continue;
+        }
+        let plate = view.geometry.plate(tile).grown(-0.004);
         // A tile with live sensors gets only a frame, which needs no area without a graphics card.
         if state.quality == [Quality::Live; 4] {
             let frame = Paint::stroke(Stroke::new(0.005, Ink::faint(theme.good, 0.4)));
@@ -34,7 +38,8 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
             continue;
         }
         let half = 0.5 * plate.size();
-        for (corner, quality) in Corner::ALL.into_iter().zip(state.quality) {
+        for &corner in view.geometry.sensors(tile) {
+            let quality = state.quality[corner.index()];
             // Worse qualities are more opaque, so that the map is readable without its colours.
             let ink = match quality {
                 Quality::Live => Ink::faint(theme.good, 0.14),
@@ -42,11 +47,17 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
                 Quality::Stale => Ink::faint(theme.stale, 0.5),
                 Quality::Faulty => Ink::faint(theme.fault, 0.66),
             };
-            let side = Vec2::new(
-                f32::from(u8::from(matches!(corner, Corner::SouthEast | Corner::NorthEast))),
-                f32::from(u8::from(matches!(corner, Corner::NorthWest | Corner::NorthEast))),
-            );
-            let quarter = Rect::from_min_size(plate.min + side * half, half).grown(-0.002);
+            let quarter = match view.geometry.has_corners() {
+                true => {
+                    let side = 0.5 + 0.5 * corner.direction();
+                    Rect::from_min_size(plate.min + side * half, half).grown(-0.002)
+                }
+                // Sensors at other places have a square around each.
+                false => {
+                    let at = plate.min + plate.size() * view.geometry.share_of_plate(tile, corner);
+                    Rect::from_centre_size(at, Vec2::splat(0.5 * half.min_element()))
+                }
+            };
             scene.add_box(quarter, 0.004, Paint::fill(ink));
         }
     }

@@ -93,6 +93,7 @@ pub fn draw(scene: &mut Scene, view: &View<'_>) {
     scene.clear(bounds, view.theme.canvas);
     ground::plates(scene, view);
     terrain::draw(scene, view);
+    ground::holes(scene, view);
     layers::health(scene, view);
     ground::unknown(scene, view);
     if view.show.ruler {

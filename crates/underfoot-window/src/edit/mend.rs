@@ -1,6 +1,6 @@
 //! Repairs of findings: sizes, thresholds, and places that keep the rules for room and reach.
 
-use glam::{DVec2, Vec2};
+use glam::Vec2;
 
 use super::address::RecordList;
 use super::change::Edit;
@@ -138,9 +138,10 @@ fn is_crowded_grid(document: &Document, item: &Item) -> bool {
 /// Writes the gap that the cells of a grid need.
 fn wider_grid(document: &Document, item: &Item) -> Option<Mend> {
     let needed = needed_gap_m(document.layout().widgets.get(item.widgets.start)?);
-    let step = f64::from(round_step_m(document.unit_m(), &document.floor().geometry)) / document.unit_m();
-    let gap = (f64::from(needed - SLACK_M) / document.unit_m() / step).ceil() * step;
-    let edits = vec![Edit::set(&item.record, "repeat.gap", pair(DVec2::splat(gap)).inline())];
+    let unit = document.unit_m();
+    let step = round_step_m(unit, &document.floor().geometry).as_dvec2() / unit;
+    let gap = (f64::from(needed - SLACK_M) / unit / step).ceil() * step;
+    let edits = vec![Edit::set(&item.record, "repeat.gap", pair(gap).inline())];
     document.trial(&edits).ok().map(|_| Mend::new("Move them apart", edits))
 }
 

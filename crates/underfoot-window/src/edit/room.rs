@@ -79,7 +79,7 @@ pub(super) fn moved(document: &Document, item: &Item, rule: PlaceRule) -> Option
     let before = PlaceCost::of(document, item, Vec2::ZERO);
     // The nearest places first, in squares around the present one.
     for far in 1..=FARTHEST {
-        if f32::from(far) * step > region.size().max_element() {
+        if f32::from(far) * step.max_element() > region.size().max_element() {
             break;
         }
         let ring = (-far..=far).flat_map(|along| {

@@ -161,15 +161,15 @@ impl<'a> Land<'a> {
     fn seams(&self, scene: &mut Scene, view: &View<'_>) {
         let (area, pitch_m) = (self.area(), view.geometry.pitch_m());
         let paint = super::Paint::stroke(super::Stroke::new(0.0012, Ink::faint(self.line, 0.16)));
-        let lines = |low: f32, high: f32| {
+        let lines = |low: f32, high: f32, pitch_m: f32| {
             let (first, last) =
                 ((low / pitch_m).floor() as u32 + 1, (high / pitch_m - 1e-3).floor().max(0.0) as u32);
             (first..=last).map(move |line| line as f32 * pitch_m)
         };
-        for x in lines(area.min.x, area.max.x) {
+        for x in lines(area.min.x, area.max.x, pitch_m.x) {
             scene.add_line(Vec2::new(x, area.min.y), Vec2::new(x, area.max.y), paint);
         }
-        for y in lines(area.min.y, area.max.y) {
+        for y in lines(area.min.y, area.max.y, pitch_m.y) {
             scene.add_line(Vec2::new(area.min.x, y), Vec2::new(area.max.x, y), paint);
         }
     }

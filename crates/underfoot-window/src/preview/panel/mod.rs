@@ -117,7 +117,8 @@ impl App {
             controls::controls_part(ui, &theme, shown);
         }
         if let Some(rehearsal) = &mut self.rehearsal {
-            faults::faults_part(ui, &theme, rehearsal, self.selection.tile());
+            let geometry = &self.shown.floor.geometry;
+            faults::faults_part(ui, &theme, rehearsal, geometry, self.selection.tile());
         }
         let snapshot = shown.snapshot();
         grounds::grounds_part(ui, &theme, shown.layout(), snapshot);

@@ -86,7 +86,7 @@ impl ShownField<'_> {
 
 /// The unit of places of this document, in words.
 pub(in crate::preview::design) fn unit_name(document: &Document) -> &'static str {
-    if document.unit_m() == 1.0 { "m" } else { "tiles" }
+    if document.unit_m() == glam::DVec2::ONE { "m" } else { "tiles" }
 }
 
 /// The beginning of a row: the mark of the origin and the name, with the name in files on hover.

@@ -66,7 +66,7 @@ impl EditedLayout {
         let steps = ((within.size() - size) / step).max(Vec2::ZERO).floor();
         for row in 0..=steps.y as u32 {
             for column in 0..=steps.x as u32 {
-                let at = within.min + Vec2::new(column as f32, row as f32) * step + Vec2::splat(0.2 * step);
+                let at = within.min + Vec2::new(column as f32, row as f32) * step + 0.2 * step;
                 let area = Rect::from_min_size(at.min(within.max - size), size);
                 // Half a shoe of room (rule U102), where possible.
                 let wide = area.grown(0.06);

@@ -231,7 +231,7 @@ fn several_are_moved_by_a_typed_amount() {
     desk.type_over("+0.1");
     let pitch = Floor::default().geometry.pitch_m();
     for (id, before) in [("pan_north", before.0), ("pan_west", before.1)] {
-        assert!((desk.area(id).min.y - before.min.y - 0.1 * pitch).abs() < 1e-4, "{id}");
+        assert!((desk.area(id).min.y - before.min.y - 0.1 * pitch.y).abs() < 1e-4, "{id}");
     }
     assert_eq!(desk.designer().edited.selected.len(), 4);
     desk.undo();
