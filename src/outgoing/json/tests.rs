@@ -147,6 +147,13 @@ impl Content {
                 why: self.sentence(),
                 uncertainty_s: 0.25,
             }),
+            Message::Ignored(IgnoredRecord {
+                id: one.clone(),
+                reason: "too_light".into(),
+                why: self.sentence(),
+                force_n: energy_j,
+                contact: ContactId(block),
+            }),
             Message::Gap(GapRecord { dropped: block.into() }),
             Message::Contacts(ContactsRecord { contacts: contacts.into_iter().collect() }),
             Message::Error(RefusalRecord { request: one, why: self.sentence() }),

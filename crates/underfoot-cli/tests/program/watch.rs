@@ -198,6 +198,13 @@ fn a_press_on_a_control_that_an_app_switched_off_is_counted_and_named() {
     let web: SocketAddr = web.parse().unwrap();
     let (mut socket, _) = client(format!("ws://{web}/"), stream(web)).unwrap();
     socket.send(Message::text(json!({"request": "widget/home/disable", "args": []}).to_string())).unwrap();
+    let is_it = |line: &str| line.contains(r#""event":"ignored""#) && line.contains(r#""reason":"disabled""#);
+    // A client that does not read would be dropped.
+    let page = thread::spawn(move || {
+        std::iter::from_fn(|| socket.read().ok())
+            .filter_map(|message| message.into_text().ok())
+            .find(|line| is_it(line))
+    });
     let simulated = underfoot()
         .current_dir(folder.path())
         .args(["simulate", "--scenario", "visit.ron", "--send", &floor])
@@ -212,11 +219,7 @@ fn a_press_on_a_control_that_an_app_switched_off_is_counted_and_named() {
     assert!(press["force_n"].as_f64().unwrap() > 100.0);
     assert_eq!(samples(web)[r#"underfoot_presses_ignored_total{reason="disabled"}"#], 1.0);
     // The same over WebSocket and on standard output.
-    let line = std::iter::repeat_with(|| socket.read().unwrap())
-        .take(100_000)
-        .filter_map(|message| message.into_text().ok())
-        .find(|text| text.contains(r#""event":"ignored""#) && text.contains(r#""reason":"disabled""#))
-        .unwrap();
+    let line = page.join().unwrap().unwrap();
     served.kill().unwrap();
     let out = std::io::read_to_string(served.stdout.take().unwrap()).unwrap();
     served.wait().unwrap();

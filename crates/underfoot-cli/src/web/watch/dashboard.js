@@ -52,12 +52,13 @@ function showBoards(boards, now) {
     return old === undefined ? "" : grouped(Math.round((board.packets - old) / (now - before.at) * 1000));
   };
   $("boards").replaceChildren(...boards.map((board, index) => row(
-    cell(`${index} ${board.address}`),
+    cell(index),
+    cell(board.address, "wide"),
     cell(board.state, board.state === "live" ? "" : "bad"),
     cell(rate(board, index), "number"),
     cell(`${(board.loss * 100).toFixed(1)} %`, board.loss > 0.1 ? "number bad" : "number"),
     cell(grouped(board.lost), "number"),
-    cell(grouped(board.duplicate), "number"),
+    cell(grouped(board.duplicate), "number wide"),
     cell(board.age_s === null ? "never" : board.age_s < 0.1 ? "now" : `${span(board.age_s)} ago`, "number"),
   )));
   before = { at: now, packets: boards.map((board) => board.packets) };

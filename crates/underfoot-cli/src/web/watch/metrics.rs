@@ -43,7 +43,7 @@ impl Collector for ObservedFloor {
 
 impl ObservedFloor {
     fn write_program(&self, to: &mut MetricWriter<'_, '_>) -> fmt::Result {
-        to.info("build", "The program", &[("version", env!("CARGO_PKG_VERSION"))])?;
+        to.gauges("build_info", "The program", None, [([("version", env!("CARGO_PKG_VERSION"))], 1.0)])?;
         to.gauge("uptime", "Time since the start", Some(&Unit::Seconds), self.uptime.as_secs_f64())?;
         let (state, _) = self.health();
         let states = HealthState::ALL.map(|other| ([("state", other.name())], flag(other == state)));
@@ -211,10 +211,6 @@ fn count(number: usize) -> f64 {
 struct MetricWriter<'a, 'b>(&'a mut DescriptorEncoder<'b>);
 
 impl MetricWriter<'_, '_> {
-    fn info(&mut self, name: &str, help: &str, labels: &[(&str, &str)]) -> fmt::Result {
-        self.0.encode_descriptor(name, help, None, MetricType::Info)?.encode_info(&labels)
-    }
-
     fn counter(&mut self, name: &str, help: &str, value: u64) -> fmt::Result {
         ConstCounter::new(value).encode(self.0.encode_descriptor(name, help, None, MetricType::Counter)?)
     }
