@@ -15,7 +15,7 @@ use crate::floor::{
 use crate::units::Newtons;
 use crate::wire::MAX_CHANNELS;
 use underfoot_format::codec::{At, Beside, Seen, Spelled, Written};
-use underfoot_format::{Faults, Flat, Num, Opt, Pair, list, num, record};
+use underfoot_format::{Faults, Flat, Name, Num, Opt, Pair, list, num, record};
 
 record! {
     /// A board and its sensors, as whole tiles or sensor by sensor.

@@ -352,9 +352,9 @@ mod plates {
     #[test]
     fn an_older_version_says_what_it_cannot_hold() {
         for (fields, said) in [
-            (EDGES, "sensors at given places need version 2"),
-            ("missing: [(at: (0, 0))],", "missing tiles need version 2"),
-            ("tile_m: (0.3, 0.4),", "rectangular tiles need version 2"),
+            (EDGES, "sensors at given places need version 3"),
+            ("missing: [(at: (0, 0))],", "missing tiles need version 3"),
+            ("tile_m: (0.3, 0.4),", "rectangular tiles need version 3"),
         ] {
             let told = parse_floor(&format!("Floor(version: 1, {fields})"), "floor.ron").unwrap_err();
             assert!(told.to_string().contains(said), "{told}");

@@ -47,7 +47,6 @@ struct Run {
     log: std::sync::mpsc::Receiver<String>,
     osc: UdpSocket,
     board: UdpSocket,
-    begun: Instant,
     _folder: tempfile::TempDir,
 }
 
@@ -73,7 +72,7 @@ impl Run {
         let board = UdpSocket::bind("127.0.0.1:0").unwrap();
         board.connect(&address).unwrap();
         while !log.recv_timeout(AT_LAST).unwrap().starts_with("Listening on") {}
-        Self { _server: server, out, log, osc, board, begun: Instant::now(), _folder: folder }
+        Self { _server: server, out, log, osc, board, _folder: folder }
     }
 
     /// Sends the result of `make` for each packet, `hz` a second, until `fits` holds for a line of JSON.

@@ -56,11 +56,11 @@ impl AlignmentMarks {
         let size = bounds.size();
         let line = Paint::stroke(Stroke::new(LINE_M, Ink::faint(self.line, 0.7)));
         for column in 0..=geometry.columns() {
-            let south = bounds.min + Vec2::new(f32::from(column) * pitch_m, 0.0);
+            let south = bounds.min + Vec2::new(f32::from(column) * pitch_m.x, 0.0);
             scene.add_line(south, south + Vec2::new(0.0, size.y), line);
         }
         for row in 0..=geometry.rows() {
-            let west = bounds.min + Vec2::new(0.0, f32::from(row) * pitch_m);
+            let west = bounds.min + Vec2::new(0.0, f32::from(row) * pitch_m.y);
             scene.add_line(west, west + Vec2::new(size.x, 0.0), line);
         }
     }
@@ -69,7 +69,7 @@ impl AlignmentMarks {
     /// moves are seen, or in the middle of a smaller floor.
     fn foot_at(&self, geometry: &Geometry) -> Vec2 {
         let bounds = geometry.bounds();
-        let inwards = Vec2::splat(1.5 * geometry.pitch_m()).min(0.5 * bounds.size());
+        let inwards = (1.5 * geometry.pitch_m()).min(0.5 * bounds.size());
         self.corner + inwards * (bounds.centre() - self.corner).signum()
     }
 
@@ -113,9 +113,9 @@ mod tests {
             })
             .collect();
         for at in 0..=6 {
-            let x = at as f32 * pitch_m;
+            let Vec2 { x, y } = at as f32 * pitch_m;
             let upright = (Vec2::new(x, 0.0), Vec2::new(x, size.y));
-            let across = (Vec2::new(0.0, x), Vec2::new(size.x, x));
+            let across = (Vec2::new(0.0, y), Vec2::new(size.x, y));
             for (from, to) in [upright, across] {
                 let is_it = |line: &(Vec2, Vec2)| line.0.distance(from) < 1e-4 && line.1.distance(to) < 1e-4;
                 assert!(lines.iter().any(is_it), "{from} to {to}");
