@@ -32,8 +32,10 @@ const SPAN_NS: i64 = 250 * SLOT_NS;
 /// Minimum number of packets in a span: a board at 20 Hz sends five.
 const FEWEST: u32 = 5;
 
-/// Packets with one number and different readings, from the start on, after which a board has no useful number.
+/// Packets with one number and different readings, from the start on, after which a board has no useful number, and
+/// the time after which the first such packet is enough: a network repeats a packet sooner.
 const UNNUMBERED: u32 = 3;
+const UNNUMBERED_NS: i64 = 15 * SLOT_NS;
 
 /// Rates that so few packets may show, in packets a second.
 const FEW_HZ: [f32; 2] = [10.0, 4000.0];
@@ -45,8 +47,9 @@ const STANDS: f64 = 0.9;
 /// looks the same, and means the same time.
 const LEAST_STEP: f64 = 1.8;
 
-/// Minimum share of repeated numbers with other readings of a board that sends several packets a millisecond.
-const REPEATED: f64 = 0.1;
+/// Minimum share of repeated numbers with other readings of a board that sends several packets a millisecond. Packets
+/// that are damaged on the way and come again are fewer.
+const REPEATED: f64 = 0.3;
 
 /// Maximum relative difference between the steps of a clock of milliseconds and the time of arrival: a burst of
 /// delayed packets at one end of a span.
@@ -99,7 +102,8 @@ impl PacketNumbers {
             0 => {
                 self.same += 1;
                 self.same_news += u32::from(is_other);
-                if self.same_news == UNNUMBERED && self.same == self.steps && !self.has_moved {
+                let is_enough = self.same_news >= UNNUMBERED || now_ns - self.begun_ns >= UNNUMBERED_NS;
+                if self.same_news > 0 && is_enough && self.same == self.steps && !self.has_moved {
                     let ms = ((now_ns - self.begun_ns) as f32 / SLOT_NS as f32).max(0.1);
                     let hz = (1000.0 * self.steps as f32 / ms).clamp(FEW_HZ[0], FEW_HZ[1]);
                     return Some(Numbered { base: TimeBase::Arrival, hz });
@@ -165,7 +169,8 @@ mod tests {
 
     /// Pseudorandom, 0 to 1.
     fn chance(at: u32) -> f64 {
-        f64::from(at.wrapping_mul(2_654_435_761) >> 8) / f64::from(1_u32 << 24)
+        let mixed = at.wrapping_add(1).wrapping_mul(2_654_435_761);
+        f64::from((mixed ^ mixed >> 13).wrapping_mul(2_246_822_519) >> 8) / f64::from(1_u32 << 24)
     }
 
     const RATES: [u32; 9] = [20, 50, 80, 100, 200, 500, 1000, 2000, 4000];
@@ -198,6 +203,15 @@ mod tests {
         let packets = (0..6000_u32).map(|n| (n / 2, i64::from(n / 2) * SLOT_NS));
         let last = packets.filter_map(|(number, at)| numbers.note(number, at, false)).last();
         assert_ne!(last.map(|found| found.base), Some(TimeBase::Milliseconds));
+    }
+
+    #[test]
+    fn packets_that_are_damaged_and_come_again_are_no_clock() {
+        let packets = (0..3000).flat_map(|n| {
+            let again = (chance(n) < 0.2).then_some((n, f64::from(n) + 0.3));
+            [Some((n, f64::from(n))), again].into_iter().flatten()
+        });
+        assert_eq!(base(packets), Some(TimeBase::Packets));
     }
 
     #[test]
