@@ -57,7 +57,7 @@ const OFF: f64 = 0.12;
 
 /// The time base of a board's numbers, and the rate of its packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Numbered {
+pub(super) struct NumberVerdict {
     pub(super) base: TimeBase,
     /// Packets a second that arrived.
     pub(super) hz: f32,
@@ -91,7 +91,7 @@ impl PacketNumbers {
     /// Notes the number of a packet that arrived at `now_ns`; `is_other`: its readings differ from those of the packet
     /// before, if that has the same number. Returns the time base on which two spans agree, when a span ends, or that
     /// of a board without useful numbers from the start on.
-    pub(super) fn note(&mut self, number: u32, now_ns: i64, is_other: bool) -> Option<Numbered> {
+    pub(super) fn note(&mut self, number: u32, now_ns: i64, is_other: bool) -> Option<NumberVerdict> {
         let Some(last) = self.last.replace(number) else {
             self.begun_ns = now_ns;
             return None;
@@ -106,7 +106,7 @@ impl PacketNumbers {
                 if self.same_news > 0 && is_enough && self.same == self.steps && !self.has_moved {
                     let ms = ((now_ns - self.begun_ns) as f32 / SLOT_NS as f32).max(0.1);
                     let hz = (1000.0 * self.steps as f32 / ms).clamp(FEW_HZ[0], FEW_HZ[1]);
-                    return Some(Numbered { base: TimeBase::Arrival, hz });
+                    return Some(NumberVerdict { base: TimeBase::Arrival, hz });
                 }
             }
             step => {
@@ -120,13 +120,13 @@ impl PacketNumbers {
         self.end_span(now_ns)
     }
 
-    fn end_span(&mut self, now_ns: i64) -> Option<Numbered> {
+    fn end_span(&mut self, now_ns: i64) -> Option<NumberVerdict> {
         self.has_moved |= self.same < self.steps;
         let ms = (now_ns - self.begun_ns) as f64 / SLOT_NS as f64;
         let verdict = self.verdict(ms);
         let hz = (1000.0 * f64::from(self.steps) / ms) as f32;
         let agreed =
-            verdict.filter(|verdict| self.before == Some(*verdict)).map(|base| Numbered { base, hz });
+            verdict.filter(|verdict| self.before == Some(*verdict)).map(|base| NumberVerdict { base, hz });
         let Self { last, has_moved, .. } = *self;
         *self = Self { last, has_moved, begun_ns: now_ns, before: verdict, ..Self::default() };
         agreed
