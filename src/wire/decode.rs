@@ -547,7 +547,7 @@ mod tests {
 
     #[test]
     fn a_message_of_the_wrong_shape_costs_only_itself() {
-        let short = bytes("/underfoot/board/0", ints(&[9, 1, 2, 3]));
+        let short = bytes("/underfoot/board/0", ints(&[9, 1, 2]));
         let unclear = bytes("/underfoot/widget/zoom/set", vec![OscType::Nil]);
         let get = bytes("/underfoot/widget/zoom/get", vec![]);
         let batch = decode(&bundle(&[short, good_readings(), unclear, get])).unwrap();

@@ -32,8 +32,10 @@ const SPAN_NS: i64 = 250 * SLOT_NS;
 /// Minimum number of packets in a span: a board at 20 Hz sends five.
 const FEWEST: u32 = 5;
 
-/// Packets with one number and different readings, from the start on, after which a board has no useful number.
+/// Packets with one number and different readings, from the start on, after which a board has no useful number, and
+/// the time after which the first such packet is enough: a network repeats a packet sooner.
 const UNNUMBERED: u32 = 3;
+const UNNUMBERED_NS: i64 = 15 * SLOT_NS;
 
 /// Rates that so few packets may show, in packets a second.
 const FEW_HZ: [f32; 2] = [10.0, 4000.0];
@@ -45,8 +47,9 @@ const STANDS: f64 = 0.9;
 /// looks the same, and means the same time.
 const LEAST_STEP: f64 = 1.8;
 
-/// Minimum share of repeated numbers with other readings of a board that sends several packets a millisecond.
-const REPEATED: f64 = 0.1;
+/// Minimum share of repeated numbers with other readings of a board that sends several packets a millisecond. Packets
+/// that are damaged on the way and come again are fewer.
+const REPEATED: f64 = 0.3;
 
 /// Maximum relative difference between the steps of a clock of milliseconds and the time of arrival: a burst of
 /// delayed packets at one end of a span.
@@ -54,7 +57,7 @@ const OFF: f64 = 0.12;
 
 /// The time base of a board's numbers, and the rate of its packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Numbered {
+pub(super) struct NumberVerdict {
     pub(super) base: TimeBase,
     /// Packets a second that arrived.
     pub(super) hz: f32,
@@ -88,7 +91,7 @@ impl PacketNumbers {
     /// Notes the number of a packet that arrived at `now_ns`; `is_other`: its readings differ from those of the packet
     /// before, if that has the same number. Returns the time base on which two spans agree, when a span ends, or that
     /// of a board without useful numbers from the start on.
-    pub(super) fn note(&mut self, number: u32, now_ns: i64, is_other: bool) -> Option<Numbered> {
+    pub(super) fn note(&mut self, number: u32, now_ns: i64, is_other: bool) -> Option<NumberVerdict> {
         let Some(last) = self.last.replace(number) else {
             self.begun_ns = now_ns;
             return None;
@@ -99,10 +102,11 @@ impl PacketNumbers {
             0 => {
                 self.same += 1;
                 self.same_news += u32::from(is_other);
-                if self.same_news == UNNUMBERED && self.same == self.steps && !self.has_moved {
+                let is_enough = self.same_news >= UNNUMBERED || now_ns - self.begun_ns >= UNNUMBERED_NS;
+                if self.same_news > 0 && is_enough && self.same == self.steps && !self.has_moved {
                     let ms = ((now_ns - self.begun_ns) as f32 / SLOT_NS as f32).max(0.1);
                     let hz = (1000.0 * self.steps as f32 / ms).clamp(FEW_HZ[0], FEW_HZ[1]);
-                    return Some(Numbered { base: TimeBase::Arrival, hz });
+                    return Some(NumberVerdict { base: TimeBase::Arrival, hz });
                 }
             }
             step => {
@@ -116,13 +120,13 @@ impl PacketNumbers {
         self.end_span(now_ns)
     }
 
-    fn end_span(&mut self, now_ns: i64) -> Option<Numbered> {
+    fn end_span(&mut self, now_ns: i64) -> Option<NumberVerdict> {
         self.has_moved |= self.same < self.steps;
         let ms = (now_ns - self.begun_ns) as f64 / SLOT_NS as f64;
         let verdict = self.verdict(ms);
         let hz = (1000.0 * f64::from(self.steps) / ms) as f32;
         let agreed =
-            verdict.filter(|verdict| self.before == Some(*verdict)).map(|base| Numbered { base, hz });
+            verdict.filter(|verdict| self.before == Some(*verdict)).map(|base| NumberVerdict { base, hz });
         let Self { last, has_moved, .. } = *self;
         *self = Self { last, has_moved, begun_ns: now_ns, before: verdict, ..Self::default() };
         agreed
@@ -165,7 +169,8 @@ mod tests {
 
     /// Pseudorandom, 0 to 1.
     fn chance(at: u32) -> f64 {
-        f64::from(at.wrapping_mul(2_654_435_761) >> 8) / f64::from(1_u32 << 24)
+        let mixed = at.wrapping_add(1).wrapping_mul(2_654_435_761);
+        f64::from((mixed ^ mixed >> 13).wrapping_mul(2_246_822_519) >> 8) / f64::from(1_u32 << 24)
     }
 
     const RATES: [u32; 9] = [20, 50, 80, 100, 200, 500, 1000, 2000, 4000];
@@ -198,6 +203,15 @@ mod tests {
         let packets = (0..6000_u32).map(|n| (n / 2, i64::from(n / 2) * SLOT_NS));
         let last = packets.filter_map(|(number, at)| numbers.note(number, at, false)).last();
         assert_ne!(last.map(|found| found.base), Some(TimeBase::Milliseconds));
+    }
+
+    #[test]
+    fn packets_that_are_damaged_and_come_again_are_no_clock() {
+        let packets = (0..3000).flat_map(|n| {
+            let again = (chance(n) < 0.2).then_some((n, f64::from(n) + 0.3));
+            [Some((n, f64::from(n))), again].into_iter().flatten()
+        });
+        assert_eq!(base(packets), Some(TimeBase::Packets));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::board::BoardTrack;
 use super::clock::SlotClock;
-use super::numbering::{Numbered, TimeBase};
+use super::numbering::{NumberVerdict, TimeBase};
 use super::own_rate::OwnRate;
 use super::pace::PacketPace;
 use crate::sense::health::Health;
@@ -30,7 +30,8 @@ impl BoardTrack {
         is_other: bool,
         counters: &mut LinkCounters,
     ) -> bool {
-        let Some(Numbered { base, hz }) = self.stream.numbers.note(packet.sequence, now_ns, is_other) else {
+        let Some(NumberVerdict { base, hz }) = self.stream.numbers.note(packet.sequence, now_ns, is_other)
+        else {
             return false;
         };
         match &mut self.own_rate {

@@ -42,7 +42,7 @@ pub(super) struct BoardStream {
     slips: i64,
     /// Arrival of its last packet, usable or not; frames wait for boards that reported recently.
     last_packet_ns: i64,
-    /// Packets that were counted as lost, repeated and late since the stream began.
+    /// Packets that were counted as lost, repeated, out of order and late since the stream began.
     miscounts: Miscounts,
 }
 
@@ -51,6 +51,7 @@ pub(super) struct BoardStream {
 struct Miscounts {
     lost: u64,
     duplicate: u64,
+    out_of_order: u64,
     late: u64,
 }
 
@@ -107,9 +108,10 @@ impl BoardStream {
 
     /// Ends its mapping to slots: the board has a rate of its own. Takes back what was counted meanwhile.
     pub(super) fn leave_slots(&mut self, counters: &mut LinkCounters) {
-        let Miscounts { lost, duplicate, late } = std::mem::take(&mut self.miscounts);
+        let Miscounts { lost, duplicate, out_of_order, late } = std::mem::take(&mut self.miscounts);
         counters.lost = counters.lost.saturating_sub(lost);
         counters.duplicate = counters.duplicate.saturating_sub(duplicate);
+        counters.out_of_order = counters.out_of_order.saturating_sub(out_of_order);
         counters.late = counters.late.saturating_sub(late);
         self.awaited = false;
         self.sequence = PacketSequence::default();
@@ -187,6 +189,7 @@ impl BoardStream {
                 return None;
             }
             SequenceVerdict::OutOfOrder => {
+                self.miscounts.out_of_order += 1;
                 counters.out_of_order += 1;
                 return None;
             }

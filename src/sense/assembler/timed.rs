@@ -38,7 +38,7 @@ pub(super) struct TimedStream {
     position: i64,
     /// Mean deviation of the packets' way from the shortest one; without numbers, of their intervals from the period.
     jitter_ns: f64,
-    jump: Option<Jump>,
+    jump: Option<NumberJump>,
 }
 
 /// The last packet that was in order.
@@ -54,7 +54,7 @@ struct LastPacket {
 
 /// Numbers that do not follow the last ones, and may begin a new stream.
 #[derive(Clone, Copy, Debug)]
-struct Jump {
+struct NumberJump {
     number: u32,
     arrived_ns: i64,
     agreeing: u8,
@@ -214,7 +214,7 @@ impl TimedStream {
             }
             None => 1,
         };
-        self.jump = Some(Jump { number, arrived_ns: now_ns, agreeing });
+        self.jump = Some(NumberJump { number, arrived_ns: now_ns, agreeing });
         if agreeing < CONFIRMED {
             counters.out_of_order += 1;
             return None;

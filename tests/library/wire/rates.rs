@@ -269,7 +269,6 @@ fn boards_at_different_rates_share_a_floor() {
     assert_eq!(bench.assembler.troubles().count(), 0);
 }
 
-// N1
 #[test]
 fn a_hold_ends_100_ms_after_the_cable_is_pulled_and_150_at_the_latest() {
     for (hz, most_s) in [(20, 0.15), (25, 0.12), (50, 0.1), (100, 0.1), (500, 0.1), (1000, 0.1), (4000, 0.1)]

@@ -174,7 +174,8 @@ fn presses_at(hz: u64, numbering: Numbering, time: &str) {
     let told = told.into_inner();
     let name = format!("{hz} Hz by {time}: {told:?}");
     let at = |event: &str| told.iter().filter(|(_, line)| line["event"] == event).collect::<Vec<_>>();
-    let ([pressed], [released]) = (&at("pressed")[..], &at("released")[..]) else { panic!("{name}") };
+    let (presses, releases) = (at("pressed"), at("released"));
+    let ([pressed], [released]) = (&presses[..], &releases[..]) else { panic!("{name}") };
     assert!(at("link_cause").is_empty() && at("cancelled").is_empty(), "{name}");
     let health = at("health");
     assert!(health.iter().all(|(_, line)| line["faulty"] == 0 && line["stale"] == 0), "{name}");
