@@ -16,7 +16,7 @@ use crate::targets::{Observer, comes_up_soon, guardian, kill, page, twenty_round
 const LISTENER: &str = "midi_listener";
 
 /// A JACK server with the dummy driver, and a listener on it.
-struct Stage {
+struct JackStage {
     name: String,
     server: Child,
     listener: Option<Child>,
@@ -27,7 +27,7 @@ struct Stage {
     down: BTreeSet<(u8, u8)>,
 }
 
-impl Stage {
+impl JackStage {
     /// A server of its own; `None`, with the reason printed, where JACK or the listener is missing.
     fn open() -> Option<Self> {
         if !cfg!(feature = "midi-jack") {
@@ -115,14 +115,14 @@ impl Stage {
     }
 }
 
-impl Observer for Stage {
+impl Observer for JackStage {
     fn is_down(&mut self) -> bool {
         self.hear();
         !self.down.is_empty()
     }
 }
 
-impl Drop for Stage {
+impl Drop for JackStage {
     fn drop(&mut self) {
         for child in self.listener.iter_mut().chain([&mut self.server]) {
             let _ = child.kill();
@@ -162,7 +162,7 @@ const HOLD: &str = r#"While(pressed, Note("synth", "C4"))"#;
 
 #[test]
 fn a_note_that_is_held_ends_whatever_dies() {
-    let Some(mut stage) = Stage::open() else { return };
+    let Some(mut stage) = JackStage::open() else { return };
     let site = stage.site(&page(&synth(), HOLD));
     comes_up_soon(&site, &mut stage);
     let on = stage.all.iter().find(|message| message.first() == Some(&0x90));
@@ -173,7 +173,7 @@ fn a_note_that_is_held_ends_whatever_dies() {
 #[test]
 #[ignore = "takes ten minutes; figures of a machine that is busy say nothing"]
 fn twenty_rounds_of_each_end_of_a_note() {
-    let Some(mut stage) = Stage::open() else { return };
+    let Some(mut stage) = JackStage::open() else { return };
     let site = stage.site(&page(&synth(), HOLD));
     twenty_rounds(&site, &mut stage);
 }
@@ -182,7 +182,7 @@ fn twenty_rounds_of_each_end_of_a_note() {
 /// has the connection again.
 #[test]
 fn a_connection_that_another_program_made_outlives_the_guardian() {
-    let Some(mut stage) = Stage::open() else { return };
+    let Some(mut stage) = JackStage::open() else { return };
     let targets = format!("(name: \"synth\", to: Midi(\"underfoot\")), {NO_DESK}");
     let site = stage.site(&page(&targets, HOLD));
     let client = Client::new();
@@ -192,7 +192,7 @@ fn a_connection_that_another_program_made_outlives_the_guardian() {
     let connected = stage.tool("jack_connect").args(["underfoot:out", &input]).status().unwrap();
     assert!(connected.success(), "{ports}");
     // The server's own port follows.
-    let receives = |stage: &Stage, port: &str| {
+    let receives = |stage: &JackStage, port: &str| {
         let all = stage.connections();
         all.lines().skip_while(|line| *line != port).nth(1).is_some_and(|line| line.trim() == input)
     };
@@ -207,7 +207,7 @@ fn a_connection_that_another_program_made_outlives_the_guardian() {
 
 #[test]
 fn a_foot_on_free_floor_is_a_voice_and_a_slider_is_a_controller() {
-    let Some(mut stage) = Stage::open() else { return };
+    let Some(mut stage) = JackStage::open() else { return };
     let targets = synth();
     let text = format!(
         r#"Layout(
@@ -228,7 +228,7 @@ fn a_foot_on_free_floor_is_a_voice_and_a_slider_is_a_controller() {
     let run = site.run(&client, &[]);
     let boards = Boards::start(&site, run.address);
     until("the foot sounds", || stage.is_down());
-    let has = |stage: &mut Stage, status: u8, number: Option<u8>| {
+    let has = |stage: &mut JackStage, status: u8, number: Option<u8>| {
         stage.hear();
         let is_it = |message: &Vec<u8>| {
             message.first() == Some(&status) && number.is_none_or(|number| message.get(1) == Some(&number))
@@ -249,7 +249,7 @@ fn a_foot_on_free_floor_is_a_voice_and_a_slider_is_a_controller() {
 /// A port that is gone gives one notice, and comes back; nothing waits for it.
 #[test]
 fn a_jack_server_that_ends_and_comes_back_gets_nothing_old() {
-    let Some(mut stage) = Stage::open() else { return };
+    let Some(mut stage) = JackStage::open() else { return };
     let site = stage.site(&page(&synth(), HOLD));
     let client = Client::new();
     let run = site.run(&client, &[]);
