@@ -138,7 +138,8 @@ fn drag(room: &mut Room, corner: &str, by: egui::Vec2) {
 /// The corners that are shown as selected.
 fn selected(room: &Room) -> Vec<u8> {
     let is_on = |corner: &u8| {
-        let handle = room.window.get_by_label(&format!("Corner {corner}"));
+        let label = format!("Corner {corner}");
+        let handle = room.window.get_by_label(&label);
         handle.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
     };
     (1..=4).filter(is_on).collect()
