@@ -76,7 +76,7 @@ const NAMED_TILES: usize = 100;
 ///
 /// First the state of its link, a string: `waiting`, `live`, `partial` or `lost`. Then four numbers of sensors
 /// (ints): degraded, silent, faulty, and uncalibrated. Then, if boards send and no frame is usable, the cause, a
-/// string (`link: rate_low: board 0 sends 100 packets a second ...`). Then the sensors in trouble, a string each
+/// string (`link: rate_low: board 0 sends 12 packets a second ...`). Then the sensors in trouble, a string each
 /// (`tile (2, 1) sw: stuck`), eight at most.
 pub fn write_health(
     prefix: &Prefix,
