@@ -248,7 +248,7 @@ mod tests {
     proptest::proptest! {
         #[test]
         fn no_text_makes_it_panic(rows in "([0-9eE.,+\\-NaInf]{0,12},?\n?){0,40}") {
-            for columns in COLUMNS {
+            for columns in CORNERS {
                 let text = format!("{}\n{rows}", columns.join(","));
                 let _ = PressTable::read(text.as_bytes(), &floor());
             }
