@@ -199,7 +199,7 @@ impl NumberedFoot {
             }
             // Each arrival has paid for it.
             (ContactPayload::Osc(..), _) => {
-                orders.extend(self.acts(line, 0.0).into_iter().map(|act| line.order(act)))
+                orders.extend(self.acts(line, 0.0).into_iter().map(|act| line.order(act)));
             }
             _ => {}
         }
