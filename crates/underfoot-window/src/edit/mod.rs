@@ -19,6 +19,7 @@ mod comment_tests;
 mod document;
 mod facets;
 mod file;
+mod grid_room;
 mod group;
 #[cfg(test)]
 mod habit_tests;
@@ -26,8 +27,12 @@ mod history;
 mod inspect;
 mod item;
 mod mend;
+mod mend_all;
+#[cfg(test)]
+mod mend_all_tests;
 mod merge;
 mod place;
+mod place_plan;
 mod refit;
 mod refusal;
 mod rename;
@@ -40,6 +45,7 @@ mod template;
 #[cfg(test)]
 mod tests;
 mod threshold;
+mod zones;
 
 pub use address::{Address, RecordList};
 pub use arrange::{Align, align, distribute};
@@ -50,7 +56,8 @@ pub use file::{LayoutFile, Saving};
 pub use group::{grouping, ungrouping};
 pub use inspect::{FieldOrigin, FieldSection, Property};
 pub use item::{Item, around};
-pub use mend::{Mend, mend, mend_all, mend_warning};
+pub use mend::{Mend, mend, mend_warning};
+pub use mend_all::{mend_all, mends_together};
 pub use merge::{Merge, merge};
 pub use refit::refit;
 pub use refusal::EditRefusal;

@@ -25,12 +25,32 @@ impl Document {
     pub fn placing(&self, moved: &[(&Item, Rect)]) -> Result<Vec<Edit>, EditRefusal> {
         let mut edits = Vec::new();
         for (item, area) in moved {
-            self.place(item, *area, &mut edits)?;
+            self.place(item, *area, false, &mut edits)?;
         }
         Ok(edits)
     }
 
-    fn place(&self, item: &Item, area: Rect, edits: &mut Vec<Edit>) -> Result<(), EditRefusal> {
+    /// [`Self::placing`] for records whose neighbours move as well: each is written with a place of its own, also
+    /// where it stays.
+    ///
+    /// # Errors
+    /// As [`Self::placing`].
+    pub(super) fn placing_alone(&self, moved: &[(&Item, Rect)]) -> Result<Vec<Edit>, EditRefusal> {
+        let mut edits = Vec::new();
+        for (item, area) in moved {
+            self.place(item, *area, true, &mut edits)?;
+        }
+        Ok(edits)
+    }
+
+    /// With `is_alone`, a record beside a neighbour gets a place of its own even if it stays.
+    fn place(
+        &self,
+        item: &Item,
+        area: Rect,
+        is_alone: bool,
+        edits: &mut Vec<Edit>,
+    ) -> Result<(), EditRefusal> {
         let record = &item.record;
         let unit = self.unit_m();
         let written = self.pair(record, "at");
@@ -47,7 +67,7 @@ impl Document {
         let is_resized = (size - old).abs().max_element() > 1e-4;
         let is_whole = written.is_none() && !is_relative;
         let is_moved = written.is_none_or(|written| (written - at).abs().max_element() > 1e-6);
-        if is_moved && (!is_relative || area.min.distance(item.area.min) > 1e-5) {
+        if is_moved && (!is_relative || is_alone || area.min.distance(item.area.min) > 1e-5) {
             if is_relative {
                 let fields = RELATIVE.iter().filter(|field| self.written(record, field).is_some());
                 edits.extend(fields.map(|field| Edit::unset(record, field)));
@@ -94,7 +114,7 @@ impl Document {
         let mut edits = Vec::new();
         for item in items.iter().filter(|item| !item.is_group && item.widgets.len() <= 1) {
             let (middle, size) = (item.area.centre(), item.area.size());
-            self.place(item, Rect::from_centre_size(middle, Vec2::new(size.y, size.x)), &mut edits)?;
+            self.place(item, Rect::from_centre_size(middle, Vec2::new(size.y, size.x)), false, &mut edits)?;
             let widget = item.widgets.clone().next().and_then(|at| self.layout().widgets.get(at));
             let axis = match widget.map(|widget| &widget.behaviour) {
                 Some(Behaviour::Slider(slider)) => match slider.track {
