@@ -11,6 +11,7 @@
 //! only.
 
 mod address;
+mod alike;
 mod arrange;
 mod change;
 mod clipboard;
@@ -19,6 +20,7 @@ mod comment_tests;
 mod document;
 mod facets;
 mod file;
+mod free_row;
 mod grid_room;
 mod group;
 #[cfg(test)]
@@ -48,11 +50,13 @@ mod threshold;
 mod zones;
 
 pub use address::{Address, RecordList};
+pub use alike::alike_edits;
 pub use arrange::{Align, align, distribute};
 pub use change::{Edit, quoted};
 pub use document::Document;
 pub use facets::{Facet, facet_edits};
 pub use file::{LayoutFile, Saving};
+pub use free_row::free_row;
 pub use group::{grouping, ungrouping};
 pub use inspect::{FieldOrigin, FieldSection, Property};
 pub use item::{Item, around};

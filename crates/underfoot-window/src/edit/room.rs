@@ -9,11 +9,14 @@ use super::document::Document;
 use super::item::Item;
 use super::snap::round_step_m;
 use underfoot::floor::{Floor, Rect};
-use underfoot::layout::{Layout, Widget};
+use underfoot::layout::{Layout, Stance, Widget};
 use underfoot_scene::ergonomics::{REACH_M, free_tiles, gap_between_m, needed_gap_m, reach_m};
 
 /// Tolerance for rounding errors, in metres.
 pub(super) const SLACK_M: f32 = 1e-4;
+
+/// Half the width of a shoe, in metres: the gap of usual controls.
+const HALF_SHOE_M: f32 = 0.06;
 
 /// The rule that a control breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +76,18 @@ impl PlaceCost {
     pub(super) fn missing_m(self, pitch_m: f32) -> f32 {
         self.gap.max(0.0) + self.reach.max(0.0) + self.rows.max(0) as f32 * pitch_m
     }
+}
+
+/// Whether a new control at `area`, on the page with index `page`, has room for shoes, is in reach, and leaves a free row
+/// before those who stand there.
+pub(super) fn has_room(layout: &Layout, floor: &Floor, page: usize, area: Rect) -> bool {
+    let others = layout.widgets.iter().filter(|other| other.page.is_none_or(|own| own == page));
+    let is_apart = |other: &Widget| {
+        gap_between_m(area, other.area) >= needed_gap_m(other).max(HALF_SHOE_M) - SLACK_M
+    };
+    let is_reached = reach_m(&layout.stances, area.centre()).is_none_or(|far| far <= REACH_M);
+    let is_off = |stance: &Stance| free_tiles(&floor.geometry, area, stance.area) >= 1;
+    others.into_iter().all(is_apart) && is_reached && layout.stances.iter().all(is_off)
 }
 
 fn shares_page(one: &Widget, other: &Widget) -> bool {

@@ -11,7 +11,7 @@ use super::gestures::{PointerGesture, reachable_at, touched};
 use super::in_place::InPlace;
 use super::marks::marks;
 use super::menu::{begin, show_menu};
-use super::palette::PaletteThing;
+use super::palette::InHand;
 use super::spacing_marks::spacing_marks;
 use super::trial::GestureResult;
 use crate::edit::{Address, Item, RecordList};
@@ -30,7 +30,7 @@ pub(super) struct Canvas {
     pub(super) scale: DrawnToScale,
     pub(super) gesture: PointerGesture,
     /// The thing that the next click or drag puts down.
-    pub(super) placing: Option<PaletteThing>,
+    pub(super) placing: Option<InHand>,
     /// The text that is edited on the floor.
     pub(super) in_place: Option<InPlace>,
 }

@@ -1,5 +1,6 @@
 //! The palette of things to put down: searched by words, in sections of what feet do there, each with its picture.
 
+mod in_hand;
 mod picture;
 mod put;
 mod thing;
@@ -15,10 +16,12 @@ use super::list::list;
 use super::list_keys::go_on;
 use super::{Pane, Panes};
 use crate::preview::style::{panel_frame, quiet, section};
+use in_hand::PutOrder;
 use thing::PaletteSection;
 use underfoot_scene::egui_painter::{Palette, color};
 use underfoot_scene::scene::Theme;
 
+pub(super) use in_hand::InHand;
 pub(super) use picture::{draw_thing, draw_widget, is_shipped};
 pub(super) use thing::PaletteThing;
 
@@ -61,7 +64,7 @@ impl ThingList {
         theme: &Theme,
         palette: &mut Palette,
         edited: &mut EditedLayout,
-        placing: &mut Option<PaletteThing>,
+        placing: &mut Option<InHand>,
         panes: &mut Panes,
     ) {
         let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
@@ -92,18 +95,19 @@ impl ThingList {
         });
     }
 
-    fn obey(&mut self, wish: ThingWish, edited: &mut EditedLayout, placing: &mut Option<PaletteThing>) {
+    fn obey(&mut self, wish: ThingWish, edited: &mut EditedLayout, placing: &mut Option<InHand>) {
         let (ThingWish::Take(thing) | ThingWish::Put(thing)) = &wish;
         self.recent.retain(|known| known != thing);
         self.recent.insert(0, thing.clone());
         self.recent.truncate(RECENT);
         match wish {
             ThingWish::Put(thing) => {
-                edited.put_somewhere(&thing);
+                edited.put_all(PutOrder::of(&self.words).take(thing));
                 self.words.clear();
             }
             ThingWish::Take(thing) => {
-                *placing = if placing.as_ref() == Some(&thing) { None } else { Some(thing) };
+                let hand = PutOrder::of(&self.words).take(thing);
+                *placing = if placing.as_ref() == Some(&hand) { None } else { Some(hand) };
             }
         }
     }
@@ -120,17 +124,20 @@ impl ThingList {
         if field.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
             self.words.clear();
         }
-        field.on_hover_text("Enter puts the first one where there is room")
+        field.on_hover_text(
+            "Enter puts the first one where there is room; 6 button puts six of them; button: Map, Help gives labels",
+        )
     }
 
     /// The rows that fit the words of the search, the best first; all in their sections without words.
     fn rows(&self, edited: &EditedLayout) -> Vec<ThingRow> {
         let kinds = edited.document.all_kinds();
         let all = PaletteThing::all(kinds, |name| kinds.get(name).is_some_and(|kind| !is_shipped(kind)));
-        if !self.words.trim().is_empty() {
+        let words = PutOrder::of(&self.words).words;
+        if !words.is_empty() {
             let mut fits: Vec<(u8, PaletteThing)> = all
                 .into_iter()
-                .filter_map(|(section, thing)| Some((thing.rank(section, &self.words)?, thing)))
+                .filter_map(|(section, thing)| Some((thing.rank(section, words)?, thing)))
                 .collect();
             fits.sort_by_key(|(rank, _)| *rank);
             let row = |(_, thing)| ThingRow { heading: None, thing, is_recent: false };
@@ -164,7 +171,7 @@ impl ThingList {
         theme: &Theme,
         palette: &mut Palette,
         edited: &mut EditedLayout,
-        placing: Option<&PaletteThing>,
+        placing: Option<&InHand>,
         search: Response,
     ) -> Option<ThingWish> {
         let rows = self.rows(edited);
@@ -182,7 +189,7 @@ impl ThingList {
                 ui.add_space(4.0);
                 ui.label(RichText::new(heading).size(12.0).strong().color(color(theme.quiet)));
             }
-            let is_chosen = placing == Some(&row.thing) && !row.is_recent;
+            let is_chosen = placing.is_some_and(|hand| hand.thing == row.thing) && !row.is_recent;
             let response = show_row(ui, theme, palette, edited, &row, is_chosen);
             if response.drag_started() || response.clicked() {
                 let is_key = response.clicked()
@@ -233,5 +240,5 @@ fn show_row(
         ui.painter().with_clip_rect(rect).text(at, egui::Align2::LEFT_CENTER, &name, font, color(theme.ink));
     }
     response
-        .on_hover_text("Click, then click on the floor; or drag it there; Enter puts it where there is room")
+        .on_hover_text("Click, then click on the floor, with Shift for several; or drag it there; Enter puts it where there is room")
 }
