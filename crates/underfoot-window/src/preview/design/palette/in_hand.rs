@@ -5,7 +5,7 @@ use super::thing::PaletteThing;
 /// Maximum number of things that one search puts down.
 const MOST: usize = 24;
 
-/// The words of a search such as `3 slider` or `slider: Bass, Treble`.
+/// One part of a search such as `3 switch; slider: Bass, Treble`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct PutOrder<'w> {
     /// The words that name the thing.
@@ -25,8 +25,13 @@ pub(in crate::preview::design) struct InHand {
 }
 
 impl<'w> PutOrder<'w> {
-    pub(super) fn of(search: &'w str) -> Self {
-        let (name, labels) = search.split_once(':').unwrap_or((search, ""));
+    /// The parts of a search; none without words.
+    pub(super) fn all(search: &'w str) -> Vec<Self> {
+        search.split(';').filter(|part| !part.trim().is_empty()).map(Self::of).collect()
+    }
+
+    fn of(part: &'w str) -> Self {
+        let (name, labels) = part.split_once(':').unwrap_or((part, ""));
         let name = name.trim();
         let counted = name.split_once(char::is_whitespace).and_then(|(number, rest)| {
             let number = number.parse::<usize>().ok().filter(|number| (1..=MOST).contains(number))?;
@@ -45,6 +50,11 @@ impl<'w> PutOrder<'w> {
 }
 
 impl InHand {
+    /// One thing with its usual label.
+    pub(super) const fn one(thing: PaletteThing) -> Self {
+        Self { thing, left: 1, labels: Vec::new() }
+    }
+
     /// The label of the next one; `None` for the usual one.
     pub(in crate::preview::design) fn label(&self) -> Option<&str> {
         self.labels.first().map(String::as_str)
@@ -87,6 +97,9 @@ mod tests {
         assert_eq!(order("900 dial"), told("900 dial", 1, &[]));
         assert_eq!(order("6"), told("6", 1, &[]));
         assert_eq!(order(":"), told("", 1, &[]));
+        let parts = PutOrder::all("2 switch; dial: Bass;; ");
+        assert_eq!(parts.iter().map(|part| part.words).collect::<Vec<_>>(), ["switch", "dial"]);
+        assert_eq!(PutOrder::all(" ; "), []);
     }
 
     #[test]

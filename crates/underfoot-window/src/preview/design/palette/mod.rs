@@ -43,7 +43,7 @@ pub(super) struct ThingList {
 /// A thing in the list, under its heading.
 struct ThingRow {
     heading: Option<&'static str>,
-    thing: PaletteThing,
+    hand: InHand,
     /// Whether it stands in the list of the recently used ones.
     is_recent: bool,
 }
@@ -51,9 +51,9 @@ struct ThingRow {
 /// The wish of the user about a thing.
 enum ThingWish {
     /// Take it in hand, or put it back.
-    Take(PaletteThing),
-    /// Put it at the first free place: the keyboard has no pointer position.
-    Put(PaletteThing),
+    Take(InHand),
+    /// Put all of these at free places: the keyboard has no pointer position.
+    Put(Vec<InHand>),
 }
 
 impl ThingList {
@@ -96,17 +96,21 @@ impl ThingList {
     }
 
     fn obey(&mut self, wish: ThingWish, edited: &mut EditedLayout, placing: &mut Option<InHand>) {
-        let (ThingWish::Take(thing) | ThingWish::Put(thing)) = &wish;
-        self.recent.retain(|known| known != thing);
-        self.recent.insert(0, thing.clone());
+        let used = match &wish {
+            ThingWish::Take(hand) => std::slice::from_ref(hand),
+            ThingWish::Put(hands) => hands,
+        };
+        for hand in used {
+            self.recent.retain(|known| *known != hand.thing);
+            self.recent.insert(0, hand.thing.clone());
+        }
         self.recent.truncate(RECENT);
         match wish {
-            ThingWish::Put(thing) => {
-                edited.put_all(PutOrder::of(&self.words).take(thing));
+            ThingWish::Put(hands) => {
+                edited.put_all(hands);
                 self.words.clear();
             }
-            ThingWish::Take(thing) => {
-                let hand = PutOrder::of(&self.words).take(thing);
+            ThingWish::Take(hand) => {
                 *placing = if placing.as_ref() == Some(&hand) { None } else { Some(hand) };
             }
         }
@@ -125,7 +129,7 @@ impl ThingList {
             self.words.clear();
         }
         field.on_hover_text(
-            "Enter puts the first one where there is room; 6 button puts six of them; button: Map, Help gives labels",
+            "Enter puts the first one where there is room; several at once, with labels: 3 button: Map, Help, Home; switch",
         )
     }
 
@@ -133,20 +137,17 @@ impl ThingList {
     fn rows(&self, edited: &EditedLayout) -> Vec<ThingRow> {
         let kinds = edited.document.all_kinds();
         let all = PaletteThing::all(kinds, |name| kinds.get(name).is_some_and(|kind| !is_shipped(kind)));
-        let words = PutOrder::of(&self.words).words;
-        if !words.is_empty() {
-            let mut fits: Vec<(u8, PaletteThing)> = all
-                .into_iter()
-                .filter_map(|(section, thing)| Some((thing.rank(section, words)?, thing)))
-                .collect();
-            fits.sort_by_key(|(rank, _)| *rank);
-            let row = |(_, thing)| ThingRow { heading: None, thing, is_recent: false };
-            return fits.into_iter().map(row).collect();
+        let orders = PutOrder::all(&self.words);
+        if let Some((last, before)) = orders.split_last() {
+            let row = |hand| ThingRow { heading: None, hand, is_recent: false };
+            // The best one of each part, and all that fit the part that is being typed.
+            let best = before.iter().filter_map(|order| fits(&all, *order).into_iter().next());
+            return best.chain(fits(&all, *last)).map(row).collect();
         }
         let own = all.iter().filter(|(section, _)| *section == PaletteSection::Own).count();
         let row = |heading: &'static str, is_first: bool, thing: PaletteThing, is_recent: bool| ThingRow {
             heading: is_first.then_some(heading),
-            thing,
+            hand: InHand::one(thing),
             is_recent,
         };
         let mut rows = Vec::new();
@@ -176,25 +177,34 @@ impl ThingList {
     ) -> Option<ThingWish> {
         let rows = self.rows(edited);
         let mut wish = None;
-        if search.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && !self.words.trim().is_empty() {
-            wish = rows.first().map(|row| ThingWish::Put(row.thing.clone()));
+        let parts = PutOrder::all(&self.words).len();
+        if search.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && parts > 0 {
+            // A part that names nothing is seen in the list, and nothing is put down.
+            let hands: Vec<InHand> = rows.iter().take(parts).map(|row| row.hand.clone()).collect();
+            wish = (hands.len() == parts).then_some(ThingWish::Put(hands));
             search.request_focus();
         }
         if rows.is_empty() {
             ui.label(quiet(theme, "Nothing is called so."));
         }
-        let mut shown = vec![search];
+        let (mut shown, mut known) = (vec![search], Vec::new());
         for row in rows {
             if let Some(heading) = row.heading {
                 ui.add_space(4.0);
                 ui.label(RichText::new(heading).size(12.0).strong().color(color(theme.quiet)));
             }
-            let is_chosen = placing.is_some_and(|hand| hand.thing == row.thing) && !row.is_recent;
-            let response = show_row(ui, theme, palette, edited, &row, is_chosen);
+            let is_chosen = placing.is_some_and(|hand| hand.thing == row.hand.thing) && !row.is_recent;
+            // Two parts of a search may name the same thing.
+            let again = known.iter().filter(|thing| **thing == row.hand.thing).count();
+            known.push(row.hand.thing.clone());
+            let response = show_row(ui, theme, palette, edited, &row, is_chosen, again);
             if response.drag_started() || response.clicked() {
                 let is_key = response.clicked()
                     && ui.input(|i| i.key_pressed(Key::Enter) || i.key_pressed(Key::Space));
-                wish = Some(if is_key { ThingWish::Put(row.thing) } else { ThingWish::Take(row.thing) });
+                wish = Some(match is_key {
+                    true => ThingWish::Put(vec![row.hand]),
+                    false => ThingWish::Take(row.hand),
+                });
             }
             shown.push(response);
         }
@@ -207,6 +217,14 @@ impl ThingList {
     }
 }
 
+/// The things that fit a part of a search, the best first.
+fn fits(all: &[(PaletteSection, PaletteThing)], order: PutOrder<'_>) -> Vec<InHand> {
+    let ranked = all.iter().filter_map(|(section, thing)| Some((thing.rank(*section, order.words)?, thing)));
+    let mut ranked: Vec<(u8, &PaletteThing)> = ranked.collect();
+    ranked.sort_by_key(|(rank, _)| *rank);
+    ranked.into_iter().map(|(_, thing)| order.take(thing.clone())).collect()
+}
+
 /// One thing with its picture.
 fn show_row(
     ui: &mut Ui,
@@ -215,16 +233,17 @@ fn show_row(
     edited: &EditedLayout,
     row: &ThingRow,
     is_chosen: bool,
+    again: usize,
 ) -> Response {
     let size = vec2(ui.available_width(), PICTURE.y + 6.0);
     let (_, rect) = ui.allocate_space(size);
     // A row keeps the keyboard when rows appear or disappear above.
-    let id = Id::unique(("palette", row.thing.name(), row.is_recent));
+    let id = Id::unique(("palette", row.hand.thing.name(), row.is_recent, again));
     let response = ui.interact(rect, id, Sense::click_and_drag());
     if response.gained_focus() {
         response.scroll_to_me(None);
     }
-    let name = row.thing.name();
+    let name = row.hand.thing.name();
     let does = if row.is_recent { "Put down again" } else { "Put down" };
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{does}: {name}")));
     if ui.is_rect_visible(rect) {
@@ -234,7 +253,7 @@ fn show_row(
             ui.painter().rect_filled(rect, 6, color(theme.accent).gamma_multiply(0.2));
         }
         let picture = egui::Rect::from_min_size(rect.min + vec2(5.0, 3.0), PICTURE);
-        draw_thing(ui, theme, palette, &edited.document, &row.thing, picture);
+        draw_thing(ui, theme, palette, &edited.document, &row.hand.thing, picture);
         let at = egui::pos2(picture.right() + 7.0, rect.center().y);
         let font = egui::FontId::proportional(12.5);
         ui.painter().with_clip_rect(rect).text(at, egui::Align2::LEFT_CENTER, &name, font, color(theme.ink));

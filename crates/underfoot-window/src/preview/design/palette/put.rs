@@ -59,30 +59,33 @@ impl EditedLayout {
         done
     }
 
-    /// Puts down all that the user asked for, where there is room, and selects it.
-    pub(super) fn put_all(&mut self, hand: InHand) {
+    /// Puts down all that the user asked for, where there is room, and selects it; stops at the first thing without
+    /// room, which the message names.
+    pub(super) fn put_all(&mut self, hands: Vec<InHand>) {
         self.stroke += 1;
-        let size = hand.thing.size(&self.document.floor().geometry);
-        let row = match hand.thing {
-            PaletteThing::Control(_) => free_row(&self.document, self.page, size, hand.left()),
-            _ => None,
-        };
-        let mut places = row.unwrap_or_default().into_iter();
-        let (mut selected, mut hand) = (Vec::new(), Some(hand));
-        while let Some(next) = hand {
-            let is_put = match places.next() {
-                Some(area) => self.put(&next.thing, area, next.label()),
-                None => self.put_somewhere(&next.thing, next.label()),
+        let mut selected = Vec::new();
+        for hand in hands {
+            let size = hand.thing.size(&self.document.floor().geometry);
+            let row = match hand.thing {
+                PaletteThing::Control(_) => free_row(&self.document, self.page, size, hand.left()),
+                _ => None,
             };
-            if !is_put {
-                break;
+            let mut places = row.unwrap_or_default().into_iter();
+            let mut hand = Some(hand);
+            while let Some(next) = hand {
+                let is_put = match places.next() {
+                    Some(area) => self.put(&next.thing, area, next.label()),
+                    None => self.put_somewhere(&next.thing, next.label()),
+                };
+                if !is_put {
+                    self.selected.append(&mut selected);
+                    return;
+                }
+                selected.append(&mut self.selected);
+                hand = next.next(false);
             }
-            selected.append(&mut self.selected);
-            hand = next.next(false);
         }
-        if !selected.is_empty() {
-            self.selected = selected;
-        }
+        self.selected = selected;
     }
 
     /// Puts `thing` at the first place of a grid of half tiles that the reader accepts; returns whether there is one.

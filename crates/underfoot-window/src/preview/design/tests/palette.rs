@@ -96,6 +96,22 @@ fn several_with_labels_are_put_in_a_row_by_one_search_and_undone_at_once() {
 }
 
 #[test]
+fn a_search_of_several_parts_puts_all_of_them_or_none() {
+    let mut desk = Desk::on(&empty(), None);
+    let first = desk.text();
+    desk.search("2 switch; nothing like it");
+    desk.key(Key::Enter);
+    assert_eq!(desk.text(), first);
+    desk.key(Key::Escape);
+    desk.search("2 switch; dial: Volume; switch: Light");
+    desk.key(Key::Enter);
+    let ids: Vec<_> = desk.designer().layout().widgets.iter().map(|widget| widget.id.to_string()).collect();
+    assert_eq!(ids, ["switch", "switch_2", "volume", "light"], "{}", desk.text());
+    assert!(desk.designer().edited.findings.is_empty(), "{:?}", desk.designer().edited.findings);
+    assert!(desk.says("Put down again: dial"));
+}
+
+#[test]
 fn a_thing_stays_in_hand_while_shift_is_held_or_labels_are_left() {
     let mut desk = Desk::on(&empty(), None);
     let board = desk.window.get_by_label("Drawing board").rect().center();
