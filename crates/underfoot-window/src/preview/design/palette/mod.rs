@@ -135,8 +135,7 @@ impl ThingList {
 
     /// The rows that fit the words of the search, the best first; all in their sections without words.
     fn rows(&self, edited: &EditedLayout) -> Vec<ThingRow> {
-        let kinds = edited.document.all_kinds();
-        let all = PaletteThing::all(kinds, |name| kinds.get(name).is_some_and(|kind| !is_shipped(kind)));
+        let all = all_things(edited);
         let orders = PutOrder::all(&self.words);
         if let Some((last, before)) = orders.split_last() {
             let row = |hand| ThingRow { heading: None, hand, is_recent: false };
@@ -177,11 +176,13 @@ impl ThingList {
     ) -> Option<ThingWish> {
         let rows = self.rows(edited);
         let mut wish = None;
-        let parts = PutOrder::all(&self.words).len();
-        if search.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && parts > 0 {
-            // A part that names nothing is seen in the list, and nothing is put down.
-            let hands: Vec<InHand> = rows.iter().take(parts).map(|row| row.hand.clone()).collect();
-            wish = (hands.len() == parts).then_some(ThingWish::Put(hands));
+        let orders = PutOrder::all(&self.words);
+        if search.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && !orders.is_empty() {
+            let all = all_things(edited);
+            // A part that names nothing is off the list, and then nothing is put down.
+            let hands: Option<Vec<InHand>> =
+                orders.iter().map(|order| fits(&all, *order).into_iter().next()).collect();
+            wish = hands.map(ThingWish::Put);
             search.request_focus();
         }
         if rows.is_empty() {
@@ -195,8 +196,9 @@ impl ThingList {
             }
             let is_chosen = placing.is_some_and(|hand| hand.thing == row.hand.thing) && !row.is_recent;
             // Two parts of a search may name the same thing.
-            let again = known.iter().filter(|thing| **thing == row.hand.thing).count();
-            known.push(row.hand.thing.clone());
+            let own = (row.hand.thing.clone(), row.is_recent);
+            let again = known.iter().filter(|known| **known == own).count();
+            known.push(own);
             let response = show_row(ui, theme, palette, edited, &row, is_chosen, again);
             if response.drag_started() || response.clicked() {
                 let is_key = response.clicked()
@@ -215,6 +217,12 @@ impl ThingList {
         }
         wish
     }
+}
+
+/// All things that can be put down, by section.
+fn all_things(edited: &EditedLayout) -> Vec<(PaletteSection, PaletteThing)> {
+    let kinds = edited.document.all_kinds();
+    PaletteThing::all(kinds, |name| kinds.get(name).is_some_and(|kind| !is_shipped(kind)))
 }
 
 /// The things that fit a part of a search, the best first.
