@@ -115,7 +115,7 @@ def main():
         try:
             (by_keys if args.keys else by_mouse)(window, path)
             window.key("F2")
-            window.picture("6-saved")
+            window.shot("6-saved")
             events = window.events()
         finally:
             window.close()
@@ -129,14 +129,14 @@ def main():
 def by_keys(window, path):
     fields = Fields(window, True)
     window.key("F2", "F6", "F6", "F6")
-    window.picture("1-empty")
+    window.shot("1-empty")
     fields.fill("Title", "Map navigation")
     # The first row of the list is the region.
     window.key("shift+F6")
     window.until(lambda: window.has_focus("Region main"), "the keyboard in the list")
     window.key("Return", "F6")
     region(window, fields)
-    window.picture("2-region")
+    window.shot("2-region")
     for number, control in enumerate(CONTROLS):
         window.key("F6")
         window.until(lambda: window.has_focus("Search things"), "the keyboard in the search")
@@ -144,7 +144,7 @@ def by_keys(window, path):
         window.key("Return", "shift+F6")
         fill(fields, control)
         if number in (0, 4):
-            window.picture(f"{3 if number == 0 else 4}-{control[1]}")
+            window.shot(f"{3 if number == 0 else 4}-{control[1]}")
     fields.fill("Starts at", "0.3")
     save(window, path)
     # A foot on what has the keyboard: shift+Tab leads to the last control, the slider.
@@ -156,7 +156,7 @@ def by_keys(window, path):
     window.until(lambda: '"pressed"' in window.events(), "a press by keys")
     window.key("Right", "Right")
     window.until(lambda: '"changed"' in window.events(), "a slide by keys")
-    window.picture("5-tried")
+    window.shot("5-tried")
     window.release("Return")
     window.note("hold Return")
     window.until(lambda: '"released"' in window.events(), "the end of the press")
@@ -166,13 +166,13 @@ def by_mouse(window, path):
     fields = Fields(window, False)
     window.key("F2")
     window.until(lambda: is_on(window, "Design"), "Design")
-    window.picture("1-empty")
+    window.shot("1-empty")
     fields.fill("Title", "Map navigation")
     floor = Floor(window)
     window.click(*floor.at(3, 4.5), what="the region")
     window.until(lambda: is_on(window, "Region main"), "the region selected")
     region(window, fields)
-    window.picture("2-region")
+    window.shot("2-region")
     for number, control in enumerate(CONTROLS):
         kind, _, _, (east, north), (width, depth) = control
         window.click_on("Search things")
@@ -189,7 +189,7 @@ def by_mouse(window, path):
             window.click(*goal, what="the floor")
         fill(fields, control)
         if number in (0, 4):
-            window.picture(f"{3 if number == 0 else 4}-{control[1]}")
+            window.shot(f"{3 if number == 0 else 4}-{control[1]}")
     fields.fill("Starts at", "0.3")
     save(window, path)
     window.key("F2")

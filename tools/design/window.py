@@ -24,22 +24,23 @@ CALM_S, FRAMES = 0.04, 12
 class Window:
     """`underfoot preview` with `arguments`, its state and its files in a folder of their own; ends with `close`.
 
-    `actions` lists what a user did: each click, drag, key chord and typed word is one. With `pictures`, each entry of it
-    has a picture in the folder `shots`.
+    `actions` lists what a user did, and `count` counts it: each click, drag, key chord and typed word is one. With
+    `pictures`, each entry has a picture in the folder `shots`. The screen has `beside` pixels more at the right, as for
+    a projector.
     """
 
-    def __init__(self, program, arguments, folder=None, shots=None, size=SIZE, env=None, pictures=False):
+    def __init__(self, program, arguments, folder=None, shots=None, size=SIZE, env=None, beside=0):
         for needed in ("Xvfb", "xdotool", "import"):
             if shutil.which(needed) is None:
                 sys.exit(f"{needed} is missing: apt-get install xvfb xdotool imagemagick")
         self.folder = folder or tempfile.mkdtemp(prefix="underfoot-design-")
         self.reports = os.path.join(self.folder, "screen")
         os.makedirs(self.reports, exist_ok=True)
-        self.shots, self.pictures = shots, pictures
+        self.shots, self.pictures = shots, False
         self.actions, self.count = [], 0
         self.has_reports = reports_screen(program)
         read, write = os.pipe()
-        screen = ["-screen", "0", f"{size[0]}x{size[1]}x24"]
+        screen = ["-screen", "0", f"{size[0] + beside}x{size[1]}x24"]
         # Without -r, a key that a busy machine releases late repeats itself.
         self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-r", *screen], pass_fds=[write],
                                        stderr=subprocess.DEVNULL)
@@ -76,19 +77,35 @@ class Window:
     # What the program shows.
 
     def report(self, window=None):
-        """The last report of the main window, or of the one whose title contains `window`; empty before the first."""
+        """The last report of the main window, or of the one with this title; empty before the first."""
         if window is None:
-            return read_report(os.path.join(self.reports, "window.json"))
-        all_reports = (read_report(os.path.join(self.reports, name)) for name in os.listdir(self.reports)
-                       if name.startswith("window-") and name.endswith(".json"))
-        return next((report for report in all_reports if window in report.get("title", "")), {})
+            return read_report(os.path.join(self.reports, f"{self.program.pid}.json"))
+        return next((report for report in self.others() if report["title"] == window), {})
+
+    def others(self):
+        """The last reports of all windows but the main one, the latest first: windows that have closed come last."""
+        paths = [os.path.join(self.reports, name) for name in os.listdir(self.reports)
+                 if name.endswith(".json") and name != f"{self.program.pid}.json"]
+        paths.sort(key=os.path.getmtime, reverse=True)
+        return [report for report in map(read_report, paths) if report]
+
+    def opened(self, name):
+        """The title of the other window with a widget of this name, once there is one; it gets the keyboard."""
+        def title():
+            for report in self.others():
+                if any(widget["name"] == name for widget in report["widgets"]):
+                    return report["title"]
+            return None
+        found = self.until(title, f"a window with {name}")
+        self.x("windowfocus", self.appeared(f"^{re.escape(found)}$"))
+        return found
 
     def until(self, condition, what):
         """Waits for a condition, and returns its value."""
         begun = time.monotonic()
         while not (value := condition()):
             if self.program.poll() is not None or time.monotonic() - begun > NEVER:
-                self.picture("failed")
+                self.shot("failed")
                 with open(os.path.join(self.folder, "messages")) as messages:
                     sys.exit(f"it never came: {what}\nafter {', '.join(self.actions[-5:])}\n{messages.read()}")
             time.sleep(0.01)
@@ -133,7 +150,7 @@ class Window:
         self.x(*arguments)
         if not self.has_reports:
             return time.sleep(0.2)
-        taken = lambda: all(self.report(window).get(name, 0) >= before[name] + count
+        taken = lambda: all(self.report(window).get(name, 0) >= before.get(name, 0) + count
                             for name, count in counts.items())
         self.until(taken, f"the input {' '.join(map(str, arguments))}")
         self.calm(window)
@@ -164,7 +181,7 @@ class Window:
         """The place of a window on the screen; the main one is in the corner."""
         if window is None:
             return 0, 0
-        shell = self.x("getwindowgeometry", "--shell", self.appeared(window))
+        shell = self.x("getwindowgeometry", "--shell", self.appeared(f"^{re.escape(window)}$"))
         numbers = dict(line.split("=") for line in shell.split())
         return int(numbers["X"]), int(numbers["Y"])
 
@@ -198,7 +215,7 @@ class Window:
         if until:
             self.until(until, "what the drag does")
         if shot:
-            self.picture(shot)
+            self.shot(shot)
         self.send("mouseup", 1, window=window, buttons=1)
         self.release(*keys)
         self.note(f"{'+'.join([*keys, 'drag'])} {what or ''}".strip())
@@ -233,11 +250,11 @@ class Window:
         self.actions.append(action)
         self.count += count
         if self.pictures:
-            self.picture(f"{len(self.actions):02}-{re.sub('[^a-z0-9]+', '-', action.lower())[:40].strip('-')}")
+            self.shot(f"{len(self.actions):02}-{re.sub('[^a-z0-9]+', '-', action.lower())[:40].strip('-')}")
 
     # Pictures.
 
-    def picture(self, name):
+    def shot(self, name):
         if not self.shots:
             return
         os.makedirs(self.shots, exist_ok=True)

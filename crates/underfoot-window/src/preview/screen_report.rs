@@ -64,8 +64,18 @@ impl TakenInput {
     }
 }
 
-fn is_modifier(key: Key) -> bool {
-    ["Shift", "Control", "Alt", "Super"].iter().any(|name| key.name().starts_with(name))
+const fn is_modifier(key: Key) -> bool {
+    matches!(
+        key,
+        Key::ShiftLeft
+            | Key::ShiftRight
+            | Key::ControlLeft
+            | Key::ControlRight
+            | Key::AltLeft
+            | Key::AltRight
+            | Key::SuperLeft
+            | Key::SuperRight
+    )
 }
 
 impl ScreenReport {
@@ -153,13 +163,13 @@ impl egui::Plugin for ScreenReport {
     }
 }
 
-/// The file of a window: `window.json` for the main one.
+/// The file of a window: the number of its process, and for all but its main window a number of the window.
 fn file_of(folder: &Path, window: ViewportId) -> PathBuf {
-    let name = match window {
-        ViewportId::ROOT => "window".to_owned(),
-        ViewportId(id) => format!("window-{:016x}", id.value()),
-    };
-    folder.join(name + ".json")
+    let process = std::process::id();
+    folder.join(match window {
+        ViewportId::ROOT => format!("{process}.json"),
+        ViewportId(id) => format!("{process}-{:016x}.json", id.value()),
+    })
 }
 
 /// Replaces the file at once: a script never reads half of it.
@@ -186,12 +196,13 @@ mod tests {
         ctx.add_plugin(ScreenReport::into_folder(folder.path().into()));
         let mut text = String::new();
         let read = || -> Value {
-            serde_json::from_str(&fs::read_to_string(folder.path().join("window.json")).unwrap()).unwrap()
+            let file = file_of(folder.path(), ViewportId::ROOT);
+            serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
         };
         let mut frame = |events: Vec<Event>| {
             let screen = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 300.0));
             let input = egui::RawInput { screen_rect: Some(screen), events, ..Default::default() };
-            let drawn = ctx.run_ui(input, |ui| {
+            let mut drawn = ctx.run_ui(input, |ui| {
                 let _ = ui.button("Stand here");
                 ui.text_edit_singleline(&mut text).request_focus();
                 egui::ScrollArea::vertical().max_height(50.0).show(ui, |ui| {
@@ -199,7 +210,7 @@ mod tests {
                     let _ = ui.button("Far below");
                 });
             });
-            drop(drawn.textures_delta);
+            drawn.textures_delta.clear();
         };
         frame(Vec::new());
         let before = read();
