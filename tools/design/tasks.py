@@ -277,7 +277,7 @@ def project(bench, _):
     for corner, (east, north) in enumerate(((19, -17), (-18, -16), (19, 17), (-18, 16)), 1):
         x, y = window.at(f"Corner {corner}", window=other)
         window.drag((x, y), (x + east, y + north), window=other, what=f"corner {corner}")
-        moved = lambda: near(window.at(f"Corner {corner}", window=other), (x + east, y + north))
+        moved = lambda: not near(window.at(f"Corner {corner}", window=other), (x, y))
         window.until(moved, f"corner {corner} at its new place")
     window.key("c", window=other)
     window.until(lambda: not window.all("Corner 1", window=other), "the end of the adjustment")

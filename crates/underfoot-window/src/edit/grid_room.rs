@@ -62,7 +62,8 @@ impl GridRoom {
         let written = |length: Vec2| pair(length.as_dvec2() / document.unit_m()).inline();
         let size = Edit::set(&item.record, "size", written(self.size));
         let gap = Edit::set(&item.record, "repeat.gap", written(self.gap));
-        let is_new = [present.map(|it| it.size) != Some(self.size), present.map(|it| it.gap) != Some(self.gap)];
+        let is_new =
+            [present.map(|it| it.size) != Some(self.size), present.map(|it| it.gap) != Some(self.gap)];
         [size, gap].into_iter().zip(is_new).filter_map(|(edit, is_new)| is_new.then_some(edit)).collect()
     }
 

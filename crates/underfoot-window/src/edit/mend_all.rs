@@ -128,7 +128,7 @@ fn mended_once(document: &Document) -> Option<Document> {
     })
 }
 
-/// What is missing of room, reach and free rows in all, in metres.
+/// The sum of the missing room, reach and free rows, in metres.
 fn missing_m(document: &Document) -> f32 {
     let (layout, floor) = (document.layout(), document.floor());
     let items = document.items();

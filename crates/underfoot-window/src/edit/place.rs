@@ -108,7 +108,7 @@ impl Document {
     }
 
     /// The edits that turn `items` by a quarter: width and depth are exchanged, and an axis changes to the other one.
-    /// What would stick out of its region moves back into it.
+    /// A control that would stick out of its region moves back into it.
     ///
     /// # Errors
     /// As [`Document::placing`].

@@ -141,7 +141,8 @@ impl<'d> PlacePlan<'d> {
     fn is_broken(&self, item: &Item) -> bool {
         let (floor, pitch_m) = (self.document.floor(), self.document.floor().geometry.pitch_m());
         let cost = PlaceCost::of(&self.layout, floor, &item.widgets, Vec2::ZERO, |_| true);
-        let is_out = !self.region(item).zip(self.area(item)).is_some_and(|(region, area)| is_inside(area, region));
+        let is_out =
+            !self.region(item).zip(self.area(item)).is_some_and(|(region, area)| is_inside(area, region));
         cost.missing_m(pitch_m) > 0.0 || is_out
     }
 

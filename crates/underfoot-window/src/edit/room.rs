@@ -72,7 +72,7 @@ impl PlaceCost {
             && is_kept(rule == PlaceRule::Row, self.rows as f32, before.rows as f32)
     }
 
-    /// What is missing in all, in metres, with a row of tiles of `pitch_m` metres.
+    /// The sum of all that is missing, in metres, with a row of tiles of `pitch_m` metres.
     pub(super) fn missing_m(self, pitch_m: f32) -> f32 {
         self.gap.max(0.0) + self.reach.max(0.0) + self.rows.max(0) as f32 * pitch_m
     }
@@ -82,9 +82,8 @@ impl PlaceCost {
 /// before those who stand there.
 pub(super) fn has_room(layout: &Layout, floor: &Floor, page: usize, area: Rect) -> bool {
     let others = layout.widgets.iter().filter(|other| other.page.is_none_or(|own| own == page));
-    let is_apart = |other: &Widget| {
-        gap_between_m(area, other.area) >= needed_gap_m(other).max(HALF_SHOE_M) - SLACK_M
-    };
+    let is_apart =
+        |other: &Widget| gap_between_m(area, other.area) >= needed_gap_m(other).max(HALF_SHOE_M) - SLACK_M;
     let is_reached = reach_m(&layout.stances, area.centre()).is_none_or(|far| far <= REACH_M);
     let is_off = |stance: &Stance| free_tiles(&floor.geometry, area, stance.area) >= 1;
     others.into_iter().all(is_apart) && is_reached && layout.stances.iter().all(is_off)
@@ -120,9 +119,9 @@ pub(super) fn nearest(area: Rect, outer: Rect, step: f32, fits: impl Fn(Vec2) ->
             let (far, along) = (f32::from(far), f32::from(along));
             [Vec2::new(along, far), Vec2::new(along, -far), Vec2::new(far, along), Vec2::new(-far, along)]
         });
-        let fits = ring.map(|by| by * step).filter(|by| {
-            is_inside(Rect::new(area.min + *by, area.max + *by), outer) && fits(*by)
-        });
+        let fits = ring
+            .map(|by| by * step)
+            .filter(|by| is_inside(Rect::new(area.min + *by, area.max + *by), outer) && fits(*by));
         // A straight move is shorter, and leaves rows and columns in line.
         let best = fits.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
         if best.is_some() {

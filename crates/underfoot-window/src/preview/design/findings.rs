@@ -40,7 +40,9 @@ pub(super) fn findings_list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayou
     let all = egui::Button::new(format!("Mend all ({mendable} of {count})"));
     let is_all = ui
         .add_enabled(mendable > 0, all)
-        .on_hover_text("Moves controls together where one move is not enough; what it cannot mend stays in the list")
+        .on_hover_text(
+            "Moves controls together where one move is not enough; what it cannot mend stays in the list",
+        )
         .on_disabled_hover_text("None of these has only one repair: change the controls")
         .clicked();
     let (mut selected, mut chosen) = (None, None);

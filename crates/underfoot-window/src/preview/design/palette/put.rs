@@ -11,7 +11,7 @@ use underfoot_format::text::Text;
 
 impl EditedLayout {
     /// Puts `thing` on `area`, in floor metres, with this `label` in place of the usual one; returns whether the layout
-    /// accepts it. What is put down in the same stroke is one step of undo.
+    /// accepts it. Things of the same stroke are one step of undo.
     pub(in crate::preview::design) fn put(
         &mut self,
         thing: &PaletteThing,
