@@ -44,14 +44,9 @@ impl GridRoom {
     pub(super) fn needed(document: &Document, item: &Item) -> Option<Self> {
         let cells = document.layout().widgets.get(item.widgets.clone())?;
         let (present, first) = (Self::of(cells).filter(|_| cells.len() > 1)?, cells.first()?);
-        let is_close = |at: usize, one: &Widget| {
-            let mut others = cells.iter().skip(at + 1);
-            others.any(|other| gap_between_m(one.area, other.area) < needed_gap_m(one) - SLACK_M)
-        };
-        let is_crowded = cells.iter().enumerate().any(|(at, one)| is_close(at, one));
         let step = round_step_m(document.unit_m(), &document.floor().geometry);
         let wide = ((needed_gap_m(first) - SLACK_M) / step).ceil() * step;
-        let gap = if is_crowded { Vec2::splat(wide).max(present.gap) } else { present.gap };
+        let gap = if is_crowded(cells) { Vec2::splat(wide).max(present.gap) } else { present.gap };
         let needed = Self { size: good_size(first), gap };
         (needed != present).then_some(needed)
     }
@@ -83,6 +78,15 @@ impl GridRoom {
             cell.area = Rect::from_min_size(begin + number(cell) * new, self.size);
         }
     }
+}
+
+/// Whether any of the controls is too close to another one of them.
+pub(super) fn is_crowded(cells: &[Widget]) -> bool {
+    let is_close = |at: usize, one: &Widget| {
+        let mut others = cells.iter().skip(at + 1);
+        others.any(|other| gap_between_m(one.area, other.area) < needed_gap_m(one) - SLACK_M)
+    };
+    cells.iter().enumerate().any(|(at, one)| is_close(at, one))
 }
 
 fn corner(cells: &[Widget]) -> Vec2 {

@@ -3,7 +3,7 @@
 use super::address::{Address, RecordList};
 use super::change::Edit;
 use super::document::Document;
-use super::grid_room::{GridRoom, good_size};
+use super::grid_room::{GridRoom, good_size, is_crowded};
 use super::item::Item;
 use super::room::{PlaceRule, SLACK_M, is_inside, moved};
 use super::snap::Edges;
@@ -50,7 +50,7 @@ pub fn mend(document: &Document, finding: &Finding, items: &[Item]) -> Option<Me
             let written = fields.iter().filter(|field| document.written(&record, field).is_some());
             Some(Mend::new("Press as its kind", written.map(|field| Edit::unset(&record, field)).collect()))
         }
-        ("U102", _) if !item.is_group && GridRoom::needed(document, item).is_some() => {
+        ("U102", _) if !item.is_group && is_crowded(document.layout().widgets.get(item.widgets.clone())?) => {
             grid(document, item, "Move them apart")
         }
         ("U102", _) => {

@@ -120,13 +120,14 @@ impl<'d> PlacePlan<'d> {
             .filter(|item| self.can_move(item) && (way.moves_all || self.is_broken(item)))
             .collect();
         let mut is_there = vec![true; self.layout.widgets.len()];
-        for at in moved.iter().flat_map(|item| item.widgets.clone()) {
-            is_there[at] = false;
-        }
+        let note = |is_there: &mut Vec<bool>, item: &Item, is_it: bool| {
+            is_there.get_mut(item.widgets.clone()).into_iter().flatten().for_each(|there| *there = is_it);
+        };
+        moved.iter().for_each(|item| note(&mut is_there, item, false));
         moved.sort_by(|a, b| way.order.key(a).total_cmp(&way.order.key(b)));
         for item in moved {
             plan.put(item, &is_there, way)?;
-            item.widgets.clone().for_each(|at| is_there[at] = true);
+            note(&mut is_there, item, true);
         }
         Some(plan)
     }

@@ -276,7 +276,7 @@ fn design_begins_with_the_control_that_a_foot_used_and_turns_it_within_its_regio
     assert!((after.size() - glam::Vec2::new(before.y, before.x)).length() < 1e-3, "{after:?}");
     let region = layout.regions[0].area.grown(1e-3);
     assert!(region.contains(after.min) && region.contains(after.max), "{after:?} in {region:?}");
-    // What is selected by hand stays selected until a foot uses another control.
+    // The user's own selection stays until a foot uses another control.
     desk.click("Control home");
     for _ in 0..2 {
         desk.key(Key::F2);
