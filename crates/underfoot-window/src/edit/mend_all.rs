@@ -124,7 +124,7 @@ fn mended_once(document: &Document) -> Option<Document> {
         let mut tried = document.clone();
         tried.edit(&mend.edits).ok()?;
         let (left, still_missing) = measure(&tried);
-        (left < count || (left == count && still_missing < missing - 1e-3)).then_some(tried)
+        (left < count || (left == count && still_missing < missing - 0.01)).then_some(tried)
     })
 }
 
