@@ -29,9 +29,12 @@ impl ZoneRepair {
 
     /// Changes the zone in `layout`.
     pub(super) fn apply(self, layout: &mut Layout) {
-        match self {
-            Self::Stance(at, area) => drop(layout.stances.get_mut(at).map(|stance| stance.area = area)),
-            Self::Region(at, area) => drop(layout.regions.get_mut(at).map(|region| region.area = area)),
+        let (zone, area) = match self {
+            Self::Stance(at, area) => (layout.stances.get_mut(at).map(|stance| &mut stance.area), area),
+            Self::Region(at, area) => (layout.regions.get_mut(at).map(|region| &mut region.area), area),
+        };
+        if let Some(zone) = zone {
+            *zone = area;
         }
     }
 }

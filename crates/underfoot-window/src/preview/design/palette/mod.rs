@@ -98,7 +98,7 @@ impl ThingList {
     fn obey(&mut self, wish: ThingWish, edited: &mut EditedLayout, placing: &mut Option<InHand>) {
         let used = match &wish {
             ThingWish::Take(hand) => std::slice::from_ref(hand),
-            ThingWish::Put(hands) => hands,
+            ThingWish::Put(hands) => &hands[..],
         };
         for hand in used {
             self.recent.retain(|known| *known != hand.thing);
