@@ -102,17 +102,21 @@ impl ScreenReport {
             .filter_map(|(id, node)| widget(node, seen.get(&id.0).copied(), scale, *id == tree.focus))
             .collect();
         let next_s = output.viewport_output.get(&of).map(|output| output.repaint_delay.as_secs_f64());
+        // Longer than an hour is never.
+        let next_s = next_s.filter(|seconds| *seconds < 3600.0);
+        let pointer = taken.pointer.map(|at| [at.x * scale, at.y * scale]);
+        let size = [size.x * scale, size.y * scale];
         Some(json!({
             "frame": taken.frames,
-            "next_s": next_s.filter(|seconds| *seconds < 3600.0),
+            "next_s": next_s,
             "title": title,
-            "size": [size.x * scale, size.y * scale],
+            "size": size,
             "keys": taken.keys,
             "keys_down": held,
             "letters": taken.letters,
             "buttons": taken.buttons,
             "wheel": taken.wheel,
-            "pointer": taken.pointer.map(|at| [at.x * scale, at.y * scale]),
+            "pointer": pointer,
             "widgets": widgets,
         }))
     }
@@ -125,15 +129,17 @@ fn widget(node: &Node, seen: Option<Rect>, scale: f32, has_focus: bool) -> Optio
     let scale = f64::from(scale);
     let seen = seen.filter(|seen| seen.is_positive());
     let seen = seen.map(|it| [it.min.x, it.min.y, it.max.x, it.max.y].map(|at| f64::from(at) * scale));
+    let place = [bounds.x0, bounds.y0, bounds.x1, bounds.y1].map(|at| at * scale);
+    let (role, is_on) = (format!("{:?}", node.role()), node.toggled().map(|it| it == Toggled::True));
     Some(json!({
         "name": name,
-        "role": format!("{:?}", node.role()),
+        "role": role,
         "text": node.value(),
         "value": node.numeric_value(),
-        "is_on": node.toggled().map(|toggled| toggled == Toggled::True),
+        "is_on": is_on,
         "is_off": node.is_disabled(),
         "has_focus": has_focus,
-        "place": [bounds.x0, bounds.y0, bounds.x1, bounds.y1].map(|at| at * scale),
+        "place": place,
         "seen": seen,
     }))
 }
