@@ -36,7 +36,7 @@ impl GridRoom {
         let pitch = pitch(cells);
         let gap = (pitch - size).max(Vec2::ZERO);
         // A grid of one row has a gap in one direction only.
-        let gap = Vec2::select(pitch.cmpgt(Vec2::ZERO), gap, gap.yx());
+        let gap = Vec2::select(pitch.cmpgt(Vec2::ZERO), gap, Vec2::new(gap.y, gap.x));
         Some(Self { size, gap })
     }
 

@@ -9,14 +9,14 @@ use super::{Document, mend_all, mends_together};
 use underfoot::floor::Rect;
 
 /// A region, a place to stand, and controls of random sizes at random places, as `(at, size)` in tiles.
-struct Crowd {
+struct CrowdedFloor {
     region: Rect,
     /// Empty for a floor that people use from beside it.
     stance: Option<Rect>,
     controls: Vec<Rect>,
 }
 
-impl Crowd {
+impl CrowdedFloor {
     /// As many of `count` controls as find a place without overlap, with sides up to `widest` tiles.
     fn random(rng: &mut Pcg32, count: usize, widest: f32, stance: Option<Rect>) -> Self {
         let region = Rect::new(Vec2::new(0.0, 2.0), Vec2::new(6.0, 6.0));
@@ -89,7 +89,7 @@ fn a_crowd_in_reach_of_those_who_stand_is_mended_whole() {
         // Every third stance zone reaches into the region.
         let south = if number % 3 == 0 { 1.4 } else { 0.0 };
         let stance = Rect::from_min_size(Vec2::new(2.0, south), Vec2::new(2.0, 1.0));
-        let text = Crowd::random(&mut rng, 6, 0.5, Some(stance)).text();
+        let text = CrowdedFloor::random(&mut rng, 6, 0.5, Some(stance)).text();
         found += problems(&open("crowd", &text)).len();
         assert_eq!(mended(&text), Vec::<String>::new(), "{number}: {text}");
     }
@@ -101,7 +101,7 @@ fn a_dense_crowd_is_mended_whole_wherever_there_is_room() {
     let mut rng = Pcg32::seed_from_u64(14);
     for number in 0..30 {
         let count = rng.random_range(8..=14);
-        let text = Crowd::random(&mut rng, count, 0.7, None).text();
+        let text = CrowdedFloor::random(&mut rng, count, 0.7, None).text();
         assert_eq!(mended(&text), Vec::<String>::new(), "{number}: {text}");
     }
 }
@@ -110,7 +110,7 @@ fn a_dense_crowd_is_mended_whole_wherever_there_is_room() {
 fn a_crowd_without_enough_room_loses_problems_and_gains_none() {
     let mut rng = Pcg32::seed_from_u64(5);
     for _ in 0..6 {
-        let mut crowd = Crowd::random(&mut rng, 30, 0.9, None);
+        let mut crowd = CrowdedFloor::random(&mut rng, 30, 0.9, None);
         // The most that fits into this region with gaps is less than that.
         crowd.controls.truncate(24);
         mended(&crowd.text());

@@ -254,9 +254,7 @@ impl PlanOrder {
 }
 
 /// For each control, its index, and how far off a foot may be found there, in metres (rule U105).
-type ErrorLimits = Vec<(usize, f32)>;
-
-fn error_limits(document: &Document, planned: &Layout, own: &Range<usize>) -> ErrorLimits {
+fn error_limits(document: &Document, planned: &Layout, own: &Range<usize>) -> Vec<(usize, f32)> {
     let limit = |at: usize| {
         let (before, now) = (document.layout().widgets.get(at)?, planned.widgets.get(at)?);
         let press = before.behaviour.thresholds().press;
@@ -267,7 +265,7 @@ fn error_limits(document: &Document, planned: &Layout, own: &Range<usize>) -> Er
 }
 
 /// Whether feet are found well enough on the controls, moved by `by`.
-fn is_found(document: &Document, layout: &Layout, limits: &ErrorLimits, by: Vec2) -> bool {
+fn is_found(document: &Document, layout: &Layout, limits: &[(usize, f32)], by: Vec2) -> bool {
     limits.iter().all(|(at, limit)| {
         layout.widgets.get(*at).is_none_or(|widget| {
             let area = Rect::new(widget.area.min + by, widget.area.max + by);
