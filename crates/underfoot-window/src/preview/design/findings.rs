@@ -68,7 +68,7 @@ pub(super) fn findings_list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayou
                     }
                 }
                 None if row.is_mendable => {
-                    drop(ui.label(quiet(theme, "no single move helps: Mend all").size(11.5)));
+                    drop(ui.label(quiet(theme, "only with others: see above").size(11.5)));
                 }
                 None => drop(ui.label(quiet(theme, "yours to decide").size(11.5))),
             }
