@@ -294,15 +294,15 @@ TASKS = {
     "threshold": (threshold, "map", "set a threshold from three presses", 5, "three presses; Use this press; Ctrl+S"),
     "project": (project, "map", "project with corners", 8,
                 "F11; move the window; C; four drags; C"),
-    "museum": (museum, None, "six controls for a museum from nothing", 32,
-               "F2; six times: kind, floor, field of the label, Ctrl+A, a word; Ctrl+S"),
-    "alike": (alike, SLIDERS, "make three sliders alike", 22,
-              "F2; drag around them; three fields in common (click, Ctrl+A, value); twice: click, width and depth "
-              "(click, value, Tab, value); Ctrl+S"),
+    "museum": (museum, None, "six controls for a museum from nothing", 26,
+               "F2; six times: kind, floor, field of the label, a word; Ctrl+S"),
+    "alike": (alike, SLIDERS, "make three sliders alike", 20,
+              "F2; drag around them; two thresholds in common (click, value); the section Look; the face (click, "
+              "value); twice: click on one, its width and depth (click, value, Tab, value); Ctrl+S"),
     "twelve": (mend_twelve, TWELVE, "mend a layout with twelve findings", 26,
                "F2; twelve times: the count in the bar, then its repair or a drag; Ctrl+S"),
     "three": (why_three, "map", "find why three presses failed", 1, "the wheel, down to the list of events"),
-    "visit": (visit, "map", "record, trim and export a visit", 24,
+    "visit": (visit, "map", "record, trim and export a visit", 26,
               "Ctrl+Q; preview --record FILE LAYOUT (5 words); Enter; Ctrl+Q; preview FILE (3 words); Enter; drag with "
               "Shift; Ctrl+Q; export FILE --out FOLDER (5 words); Enter; in each of the three tables delete what is "
               "before and behind"),
@@ -310,10 +310,10 @@ TASKS = {
 # By keys alone: before, with the way.
 BY_KEYS = {
     "six": (9, "F2; F6; six times Enter; Ctrl+S"),
-    "upright": (11, "Shift+Tab; Enter; F2; F6, F6; End; Enter; Escape; R; an arrow; Ctrl+S"),
-    "museum": (68, "F2; six times: F6, arrows to the kind (3), Enter, Shift+F6, Tab, Tab, Ctrl+A, a word, Tab; Ctrl+S"),
-    "alike": (30, "F2; Ctrl+A; F6, F6, F6; three fields (4 Tabs, Ctrl+A, value); then the sizes one by one (F6, F6, "
-                  "an arrow, Enter, F6, ...); Ctrl+S"),
+    "upright": (18, "Shift+Tab; Enter; F2; F6, F6; eight arrows; Enter; R; Ctrl+Shift+arrow, Ctrl+arrow; Ctrl+S"),
+    "museum": (50, "F2; six times at least: F6, an arrow, Enter, Shift+F6, Tab, Tab, a word, Tab; Ctrl+S"),
+    "alike": (30, "F2; Ctrl+A; F6, F6, F6; three fields (Tab after Tab, value); twice: F6 to the list, an arrow, Enter, "
+                  "F6, Tab after Tab, width, Tab, depth, Tab; Ctrl+S: at least so many"),
 }
 
 
