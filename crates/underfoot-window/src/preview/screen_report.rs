@@ -172,10 +172,9 @@ impl egui::Plugin for ScreenReport {
 /// The file of a window: the number of its process, and for all but its main window a number of the window.
 fn file_of(folder: &Path, window: ViewportId) -> PathBuf {
     let process = std::process::id();
-    folder.join(match window {
-        ViewportId::ROOT => format!("{process}.json"),
-        ViewportId(id) => format!("{process}-{:016x}.json", id.value()),
-    })
+    let number =
+        if window == ViewportId::ROOT { String::new() } else { format!("-{:016x}", window.0.value()) };
+    folder.join(format!("{process}{number}.json"))
 }
 
 /// Replaces the file at once: a script never reads half of it.
