@@ -198,12 +198,13 @@ impl App {
         });
     }
 
-    /// Keeps the visible part of the floor when the mode changes.
+    /// Keeps the visible part of the floor when the mode changes; Design mode begins with the control in use.
     fn share_zoom(&mut self) {
         let designs = self.is_designing();
         if let Some(designer) = self.designer.as_mut().filter(|_| designs != self.window.was_designing) {
             if designs {
                 *designer.zoom_mut() = self.view.zoom;
+                designer.select_used(self.selection.control());
             } else {
                 self.view.zoom = *designer.zoom_mut();
             }

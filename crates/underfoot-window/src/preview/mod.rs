@@ -39,6 +39,7 @@ mod rehearsal;
 #[path = "../../../../tests/support/sample.rs"]
 mod sample;
 mod scopes;
+mod screen_report;
 mod selection;
 mod shown;
 mod stage;
@@ -142,6 +143,7 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         context.egui_ctx.add_font_provider(std::sync::Arc::new(underfoot_scene::letters::Installed::new()));
         // The window has its own text size, which it stores.
         context.egui_ctx.options_mut(|options| options.zoom_with_keyboard = false);
+        screen_report::report_screen(&context.egui_ctx);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     eframe::run_native(&title, native, start)

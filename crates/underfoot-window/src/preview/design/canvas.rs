@@ -11,7 +11,7 @@ use super::gestures::{PointerGesture, reachable_at, touched};
 use super::in_place::InPlace;
 use super::marks::marks;
 use super::menu::{begin, show_menu};
-use super::palette::PaletteThing;
+use super::palette::InHand;
 use super::spacing_marks::spacing_marks;
 use super::trial::GestureResult;
 use crate::edit::{Address, Item, RecordList};
@@ -33,7 +33,7 @@ pub(super) struct Canvas {
     pub(super) scale: DrawnToScale,
     pub(super) gesture: PointerGesture,
     /// The thing that the next click or drag puts down.
-    pub(super) placing: Option<PaletteThing>,
+    pub(super) placing: Option<InHand>,
     /// The text that is edited on the floor.
     pub(super) in_place: Option<InPlace>,
 }
@@ -174,8 +174,11 @@ fn without_hidden<'l>(edited: &EditedLayout, layout: &'l Layout) -> Cow<'l, Layo
     Cow::Owned(layout)
 }
 
-/// Gives screen readers and tests the name and place of each record.
+/// Gives screen readers, tests and scripts the place of the floor, and the name and place of each record.
 fn names(edited: &EditedLayout, ui: &Ui, map: ScreenFromFloor) {
+    let bounds = map.rect(edited.document.floor().geometry.bounds());
+    let floor = ui.interact(bounds, ui.scope_id().with("floor"), Sense::hover());
+    floor.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Whole floor"));
     let is_seen = |item: &&Item| item.is_on(edited.page) && !item.is_group && !edited.is_hidden(&item.record);
     for item in edited.items.iter().filter(is_seen) {
         let id = ui.scope_id().with(("record", item.record.to_string()));

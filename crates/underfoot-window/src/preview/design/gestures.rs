@@ -45,6 +45,8 @@ pub(super) struct Pressing {
     pub(super) released: bool,
     /// Whether it brings the thing from the palette and lets go of it.
     pub(super) dropped: bool,
+    /// Whether the thing to put down stays in hand for another one.
+    pub(super) stays: bool,
 }
 
 impl Canvas {
@@ -79,11 +81,11 @@ impl Canvas {
             self.view.pan(panned, room);
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         }
-        if let Some(thing) = self.placing.clone() {
+        if let Some(hand) = self.placing.clone() {
             // For a drag onto the canvas, the press began elsewhere.
             let dropped = released && !canvas.clicked() && !canvas.drag_stopped();
-            let pressing = Pressing { at, inside, pressed, released, dropped };
-            return self.put_down(edited, &thing, &pressing, snapping);
+            let pressing = Pressing { at, inside, pressed, released, dropped, stays: shift };
+            return self.put_down(edited, hand, &pressing, snapping);
         }
         if pressed && inside {
             canvas.request_focus();

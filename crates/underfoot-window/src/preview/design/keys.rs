@@ -74,6 +74,9 @@ impl Designer {
         if command(Key::D) {
             self.edited.duplicate();
         }
+        if command(Key::E) {
+            self.edited.make_alike();
+        }
         if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::G)) {
             self.edited.ungroup();
         }

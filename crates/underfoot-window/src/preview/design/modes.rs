@@ -13,6 +13,7 @@ use crate::preview::shown::ShownFloor;
 use crate::preview::stage::StageOfWindow;
 use crate::preview::zoom::Zoom;
 use underfoot::schema;
+use underfoot::widget::WidgetId;
 use underfoot_scene::egui_painter::Palette;
 use underfoot_scene::scene::Theme;
 
@@ -185,6 +186,17 @@ impl Designer {
             Some(Pane::Fields) => [false, true, false],
             _ if text => [false, false, true],
             _ => [!is_selected, is_selected && stage.has_side, false],
+        }
+    }
+
+    /// Selects the control that a foot used last, if it has used another one since the last time.
+    pub(in crate::preview) fn select_used(&mut self, used: Option<&WidgetId>) {
+        let Some(id) = used.filter(|id| self.used.as_ref() != Some(*id)) else { return };
+        self.used = Some(id.clone());
+        self.edited.refresh();
+        let index = self.edited.layout().widget_index(id.as_str());
+        if let Some(record) = index.and_then(|index| self.edited.document.record_of(index)) {
+            self.edited.select_only(record);
         }
     }
 

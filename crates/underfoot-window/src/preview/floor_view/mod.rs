@@ -230,9 +230,12 @@ fn look_at_tiles(
     }
 }
 
-/// Gives screen readers and tests the name and state of each control on the floor; returns the index of
-/// the control with the keyboard focus.
+/// Gives screen readers, tests and scripts the place of the floor, and the name and state of each control on it; returns
+/// the index of the control with the keyboard focus.
 fn name_controls(ui: &Ui, map: ScreenFromFloor, shown: &ShownFloor, controls: &mut Vec<Id>) -> Option<usize> {
+    let bounds = map.rect(shown.floor.geometry.bounds());
+    let floor = ui.interact(bounds, ui.scope_id().with("floor"), Sense::hover());
+    floor.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Whole floor"));
     let mut focused = None;
     controls.clear();
     let snapshot = shown.snapshot();
