@@ -22,12 +22,13 @@ pub fn free_row(document: &Document, page: usize, size: Vec2, count: usize) -> O
     let region = layout.regions.first()?.area;
     let middle = layout.stances.first().map_or(region.centre().x, |stance| stance.area.centre().x);
     let step = round_step_m(document.unit_m(), &floor.geometry);
-    let up = |length: f32| (length / step - 1e-3).ceil() * step;
-    let pitch = size + Vec2::splat(up(GAP_M));
-    let tries = |room: f32| (room / (STRIDE * step)).clamp(0.0, 1e3).floor() as u16;
+    let up = |lengths: Vec2| (lengths / step - 1e-3).ceil() * step;
+    let gap = up(Vec2::splat(GAP_M));
+    let pitch = size + gap;
+    let tries = |room: Vec2| (room / (STRIDE * step)).clamp(Vec2::ZERO, Vec2::splat(1e3)).floor();
     for rows in 1..=count {
         let columns = count.div_ceil(rows);
-        let block = pitch * Vec2::new(columns as f32, rows as f32) - Vec2::splat(up(GAP_M));
+        let block = pitch * Vec2::new(columns as f32, rows as f32) - gap;
         let room = region.size() - block;
         if room.y < 0.0 {
             break;
@@ -44,15 +45,16 @@ pub fn free_row(document: &Document, page: usize, size: Vec2, count: usize) -> O
             is_inside(Rect::from_min_size(*at, block), region)
                 && (0..count).all(|index| has_room(layout, floor, page, cell(*at, index)))
         };
-        let south = up(region.min.y) + 2.0 * step;
-        let west = up(middle - 0.5 * block.x);
-        let found = (0..=tries(room.y)).find_map(|north| {
-            let beside = (0..=2 * tries(region.size().x)).map(|turn| {
+        let Vec2 { x: west, y: south } =
+            up(Vec2::new(middle - 0.5 * block.x, region.min.y)) + Vec2::new(0.0, 2.0 * step.y);
+        // The casts from float saturate at the range of the integer.
+        let found = (0..=tries(room).y as u16).find_map(|north| {
+            let beside = (0..=2 * tries(region.size()).x as u16).map(|turn| {
                 // To and fro about the middle.
-                let far = f32::from(turn.div_ceil(2)) * STRIDE * step;
+                let far = f32::from(turn.div_ceil(2)) * STRIDE * step.x;
                 if turn % 2 == 0 { west - far } else { west + far }
             });
-            let y = south + f32::from(north) * STRIDE * step;
+            let y = south + f32::from(north) * STRIDE * step.y;
             beside.map(|x| Vec2::new(x, y)).find(&is_free)
         });
         if let Some(at) = found {
@@ -87,7 +89,7 @@ mod tests {
             assert!(document.warnings().is_empty(), "{}", document.warnings());
             assert!(document.layout().widget_index("room_0").is_some(), "{}", document.text());
             // Those that follow find places beside them.
-            let next = free_row(&document, 0, size, 1).unwrap();
+            let next = free_row(&document, 0, size, 1).unwrap()[0];
             assert!(places.iter().all(|place| !place.overlaps(next)));
         }
         let full = open("new", &text);

@@ -45,8 +45,8 @@ impl GridRoom {
         let cells = document.layout().widgets.get(item.widgets.clone())?;
         let (present, first) = (Self::of(cells).filter(|_| cells.len() > 1)?, cells.first()?);
         let step = round_step_m(document.unit_m(), &document.floor().geometry);
-        let wide = ((needed_gap_m(first) - SLACK_M) / step).ceil() * step;
-        let gap = if is_crowded(cells) { Vec2::splat(wide).max(present.gap) } else { present.gap };
+        let wide = (Vec2::splat(needed_gap_m(first) - SLACK_M) / step).ceil() * step;
+        let gap = if is_crowded(cells) { wide.max(present.gap) } else { present.gap };
         let needed = Self { size: good_size(first), gap };
         (needed != present).then_some(needed)
     }

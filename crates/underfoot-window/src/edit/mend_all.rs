@@ -134,5 +134,5 @@ fn missing_m(document: &Document) -> f32 {
     let items = document.items();
     let controls = items.iter().filter(|item| !item.is_group && !item.widgets.is_empty());
     let costs = controls.map(|item| PlaceCost::of(layout, floor, &item.widgets, Vec2::ZERO, |_| true));
-    costs.map(|cost| cost.missing_m(floor.geometry.pitch_m())).sum()
+    costs.map(|cost| cost.missing_m(floor.geometry.pitch_m().max_element())).sum()
 }

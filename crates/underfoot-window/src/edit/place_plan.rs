@@ -140,7 +140,8 @@ impl<'d> PlacePlan<'d> {
     }
 
     fn is_broken(&self, item: &Item) -> bool {
-        let (floor, pitch_m) = (self.document.floor(), self.document.floor().geometry.pitch_m());
+        let (floor, pitch_m) =
+            (self.document.floor(), self.document.floor().geometry.pitch_m().max_element());
         let cost = PlaceCost::of(&self.layout, floor, &item.widgets, Vec2::ZERO, |_| true);
         let is_out =
             !self.region(item).zip(self.area(item)).is_some_and(|(region, area)| is_inside(area, region));
@@ -279,20 +280,21 @@ fn is_found(document: &Document, layout: &Layout, limits: &[(usize, f32)], by: V
 fn filled(
     area: Rect,
     outer: Rect,
-    step: f32,
+    step: Vec2,
     [east, north]: [bool; 2],
     fits: impl Fn(Vec2) -> bool,
 ) -> Option<Vec2> {
     let room = outer.size() - area.size();
     let count = (room / step + 1e-3).max(Vec2::ZERO).floor();
-    let along = |is_far: bool, number: u16, room: f32| {
+    let along = |is_far: bool, number: u16, room: f32, step: f32| {
         if is_far { room - f32::from(number) * step } else { f32::from(number) * step }
     };
     // The cast from float saturates at the range of the integer.
     let rows = 0..=(count.y as u16);
     let mut places = rows.flat_map(|row| (0..=(count.x as u16)).map(move |column| (column, row)));
     places.find_map(|(column, row)| {
-        let at = outer.min + Vec2::new(along(east, column, room.x), along(north, row, room.y));
+        let at =
+            outer.min + Vec2::new(along(east, column, room.x, step.x), along(north, row, room.y, step.y));
         Some(at - area.min).filter(|by| fits(*by))
     })
 }

@@ -108,7 +108,8 @@ pub(super) fn moved(document: &Document, item: &Item, rule: PlaceRule) -> Option
     document.placing(&[(item, Rect::new(item.area.min + by, item.area.max + by))]).ok()
 }
 
-/// The shortest move of `area` within `outer`, by whole steps of `step` metres along each side, that `fits`; the present place is none.
+/// The shortest move of `area` within `outer`, by whole steps of `step` metres along each side, that `fits`; the
+/// present place is none.
 pub(super) fn nearest(area: Rect, outer: Rect, step: Vec2, fits: impl Fn(Vec2) -> bool) -> Option<Vec2> {
     // The nearest places first, in squares around the present one.
     for far in 1..=FARTHEST {
