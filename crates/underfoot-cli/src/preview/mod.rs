@@ -29,11 +29,11 @@ use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
 use underfoot::source::{FloorInput, LinkFaults};
 use underfoot::units::HostClock;
+use underfoot_scene::scene::Show;
 use underfoot_sim::{
     ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
     feet_by_hand, watched,
 };
-use underfoot_scene::scene::Show;
 use underfoot_window::preview::{
     self, DesignInput, FootSink, Notice, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
     ProjectionOptions, ScopeFeed, ShoeFeed, Warnings, channels,
