@@ -178,12 +178,17 @@ pub(super) struct TextRow<'a> {
 impl TextRow<'_> {
     /// Draws from `share` of the width to the right, at most up to `end` of it.
     pub(super) fn left(&self, share: f32, end: f32, text: &str, color: Color32) {
-        let x = self.rect.left() + share * self.rect.width();
-        let clip =
-            egui::Rect::from_x_y_ranges(x..=self.rect.left() + end * self.rect.width(), self.rect.y_range());
-        let painter = self.ui.painter().with_clip_rect(clip.intersect(self.ui.clip_rect()));
-        let font = FontId::proportional(self.size);
-        painter.text(egui::pos2(x, self.rect.center().y), egui::Align2::LEFT_CENTER, text, font, color);
+        let (x, end) =
+            (self.rect.left() + share * self.rect.width(), self.rect.left() + end * self.rect.width());
+        let galley =
+            self.ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(self.size), color);
+        let place = egui::Align2::LEFT_CENTER.anchor_size(egui::pos2(x, self.rect.center().y), galley.size());
+        // Each clip rectangle is a draw call, so only a text that is too long has one.
+        let clip = egui::Rect::from_x_y_ranges(x..=end, self.rect.y_range()).intersect(self.ui.clip_rect());
+        let is_long = place.right() > end;
+        let painter =
+            if is_long { self.ui.painter().with_clip_rect(clip) } else { self.ui.painter().clone() };
+        painter.galley(place.min, galley, color);
     }
 
     /// Draws so that the text ends at `share` of the width.

@@ -74,6 +74,9 @@ fn search_events(ui: &mut Ui, messages: &WindowMessages, search: &mut String) {
 /// Whether a line contains all words of `wanted`, which is in lower case: in its control, its event, the reason for
 /// an ignored press, or its material.
 fn is_wanted(happened: &Happened, wanted: &str) -> bool {
+    if wanted.is_empty() {
+        return true;
+    }
     let words = match happened {
         Happened::Event(event) => format!("{} {} {}", event.id, event.kind.name(), value(event.kind)),
         Happened::Ignored(press) => format!("{} ignored: {}", press.id, press.why),
