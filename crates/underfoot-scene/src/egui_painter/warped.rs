@@ -19,6 +19,7 @@ pub fn paint_warped(
     warp: impl Fn(Pos2) -> Pos2,
 ) {
     let ctx = painter.ctx();
+    palette.patches.are_warped = true;
     // A separate layer, emptied before it is displayed.
     let layer = LayerId::new(Order::Background, painter.layer_id().id.with("flat"));
     paint(&Painter::new(ctx.clone(), layer, Rect::EVERYTHING), palette, scene, map);

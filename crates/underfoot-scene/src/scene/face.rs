@@ -169,7 +169,7 @@ impl<'a> Face<'a> {
     fn halo(&self, scene: &mut Scene, area: Rect, reach_m: f32, ink: Ink) {
         let size = area.size();
         match self.shape {
-            Shape::Round if size.x != size.y => {
+            Shape::Round if !is_circle(size) => {
                 let stroke = Stroke::new(0.5 * reach_m, Ink::faint(ink.colour, 0.6 * ink.opacity));
                 scene.add_ellipse(area.centre(), 0.5 * size, Paint::stroke(stroke));
             }
@@ -209,6 +209,8 @@ impl<'a> Face<'a> {
                 let grown = 0.5 * (area.size().x - self.area.size().x);
                 scene.add_box(area, (self.radius_m + grown).max(0.0), paint);
             }
+            // Boxes lie on whole pixels, so all round faces of one size look the same.
+            Shape::Round if is_circle(area.size()) => scene.add_box(area, 0.5 * area.size().x, paint),
             Shape::Round => scene.add_ellipse(area.centre(), area.size() * 0.5, paint),
         }
     }
@@ -325,6 +327,11 @@ impl<'a> Face<'a> {
     pub(super) fn write_in(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour) {
         set(scene, text, room, anchor, ink, &fit(text, room.size(), LABEL_M, SMALL_M));
     }
+}
+
+/// True if an ellipse of this size is a circle, within the rounding errors of metres.
+fn is_circle(size: Vec2) -> bool {
+    (size.x - size.y).abs() < 1e-4
 }
 
 /// Reason why a control is drawn as off. While the floor waits for its first frame, controls are drawn as ready.
