@@ -164,10 +164,11 @@ fn a_panel_of_a_dance_pad_is_pressed_and_released_in_the_millisecond_of_its_forc
     for tile in floor.geometry.tiles() {
         stage.events.clear();
         let (at, begun) = (floor.geometry.centre(tile), stage.now.micros() / 1000);
-        // 2 N a millisecond: the button's 60 N after 30 ms; from 200 N down again, its 40 N after 80 ms.
-        stage.run(100, |ms| vec![disc(at, 2.0 * (ms + 1) as f32)]);
+        // 2 N a millisecond: the button's 60 N after 30 ms; from 160 N, which is no step yet, down again: its 40 N
+        // after 60 ms.
+        stage.run(80, |ms| vec![disc(at, 2.0 * (ms + 1) as f32)]);
         let top = stage.now.micros() / 1000;
-        stage.run(400, |ms| vec![disc(at, (200.0 - 2.0 * (ms + 1) as f32).max(0.0))]);
+        stage.run(400, |ms| vec![disc(at, (160.0 - 2.0 * (ms + 1) as f32).max(0.0))]);
         let times = |wanted: fn(&EventKind) -> bool| {
             stage.events.iter().filter(|(_, _, kind)| wanted(kind)).map(|(at, ..)| *at).collect::<Vec<_>>()
         };
@@ -175,7 +176,7 @@ fn a_panel_of_a_dance_pad_is_pressed_and_released_in_the_millisecond_of_its_forc
         let released = times(|kind| matches!(kind, EventKind::Released));
         assert_eq!((pressed.len(), released.len()), (1, 1), "{tile}: {:?}", stage.events);
         assert!(pressed[0].abs_diff(begun + 30) <= 1, "{tile}: pressed {} ms after", pressed[0] - begun);
-        assert!(released[0].abs_diff(top + 80) <= 1, "{tile}: released {} ms after", released[0] - top);
+        assert!(released[0].abs_diff(top + 60) <= 1, "{tile}: released {} ms after", released[0] - top);
     }
 }
 
@@ -253,7 +254,7 @@ fn errors_cm(places: &[Vec2], force: f32) -> [f32; 2] {
 }
 
 #[test]
-fn a_plate_on_three_legs_places_a_foot_about_as_well_as_one_on_four() {
+fn a_plate_on_three_legs_places_a_foot_within_two_and_a_half_times_the_error_of_four() {
     let three = [(-0.21, -0.19), (0.21, -0.19), (0.0, 0.21)].map(Vec2::from);
     let four = [(-0.21, -0.21), (0.21, -0.21), (-0.21, 0.21), (0.21, 0.21)].map(Vec2::from);
     for force in [100.0, 400.0] {
