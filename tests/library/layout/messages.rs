@@ -160,10 +160,10 @@ fn a_plan_knows_all_that_it_can_hold() {
 #[test]
 fn what_midi_lacks_is_refused_with_its_place() {
     let wrong = [
-        (r#"On(clicked, Note("synth", 128))"#, "from 0 to 127"),
+        (r#"On(clicked, Note("synth", 128))"#, "expected 0 to 127"),
         (r#"On(clicked, Note("synth", "H4"))"#, "there is no note called \"H4\""),
-        (r#"On(clicked, Note("synth", 60, (channel: 17)))"#, "from 1 to 16"),
-        (r#"On(clicked, Cc("synth", (number: 120)))"#, "from 0 to 119"),
+        (r#"On(clicked, Note("synth", 60, (channel: 17)))"#, "expected 1 to 16"),
+        (r#"On(clicked, Cc("synth", (number: 120)))"#, "expected 0 to 119"),
         (r#"On(clicked, Cc("synth", (number: 40, fine: true)))"#, "this controller has 7 bits only"),
         (r#"On(clicked, Cc("synth", (number: 7, to: 200)))"#, "more than 7 bits"),
         (r#"On(clicked, Bend("synth"))"#, "it follows a value"),
