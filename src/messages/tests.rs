@@ -370,7 +370,7 @@ fn each_foot_on_free_floor_is_a_voice_and_has_a_number() {
         "/foot 0 1.0 2.0 400.0",
         "pointer at 0.250 0.500",
     ];
-    assert_eq!(step(1000, &[west.clone()]), one);
+    assert_eq!(step(1000, std::slice::from_ref(&west)), one);
     let both = step(1001, &[west.clone(), east.clone()]);
     assert!(both.contains(&"note F#4 on channel 3 down, velocity 127".to_owned()), "{both:?}");
     assert!(both.iter().any(|act| act.starts_with("/foot 1 3.0 ")), "{both:?}");

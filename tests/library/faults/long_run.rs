@@ -54,14 +54,14 @@ fn right_readings_before_nonsense_are_no_evidence() {
     for (value, millis) in [(-87.0, 1), (0.0, 272), (3.7e25, 79), (-90.0, 34), (f32::NAN, 162), (0.0, 800)] {
         bench.run_with(millis, |_, channel, force| {
             if channel == (0, 0) {
-                *force = value
+                *force = value;
             }
         });
     }
     assert!(bench.snapshot().tiles[0].quality[0] >= Quality::Degraded, "0.8 s of evidence");
     bench.run_with(400, |_, channel, force| {
         if channel == (0, 0) {
-            *force = 0.0
+            *force = 0.0;
         }
     });
     assert_eq!(bench.snapshot().tiles[0].quality[0], Quality::Live);

@@ -28,7 +28,7 @@ pub(super) fn answer(stream: TcpStream, head: &RequestHead, shared: &Shared) {
             ),
             Some(watched) => watched.answer(stream, shared),
             None => {
-                turn_away(stream, "404 Not Found", "there are /, /dashboard, /health and /metrics here\n")
+                turn_away(stream, "404 Not Found", "there are /, /dashboard, /health and /metrics here\n");
             }
         },
     }
