@@ -80,15 +80,20 @@ fn of_galley(layer: LayerId, clip: Rect, shape: &TextShape, ground: Option<Color
 
 /// The colour at `point` after these shapes; `None` where a picture lies there.
 fn under(shapes: &[(Rect, &Shape)], point: Pos2, canvas: Color32) -> Option<Color32> {
-    shapes.iter().filter(|(clip, _)| clip.contains(point)).fold(Some(canvas), |ground, (_, shape)| {
+    let mut ground = Some(canvas);
+    for (_, shape) in shapes.iter().filter(|(clip, _)| clip.contains(point)) {
         let fill = match shape {
             Shape::Rect(it) if it.rect.contains(point) => it.fill,
             Shape::Circle(it) if it.center.distance(point) < it.radius => it.fill,
-            Shape::Mesh(it) if it.calc_bounds().contains(point) => return None,
-            _ => return ground,
+            Shape::Mesh(it) if it.calc_bounds().contains(point) => {
+                ground = None;
+                continue;
+            }
+            _ => continue,
         };
-        if fill.is_opaque() { Some(fill) } else { ground.map(|ground| ground.blend(fill)) }
-    })
+        ground = if fill.is_opaque() { Some(fill) } else { ground.map(|ground| ground.blend(fill)) };
+    }
+    ground
 }
 
 impl ScreenText {
