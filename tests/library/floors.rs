@@ -157,7 +157,7 @@ fn a_foot_presses_the_button_of_each_panel_of_each_floor_and_no_other() {
 }
 
 #[test]
-fn a_panel_of_a_dance_pad_is_pressed_and_released_in_the_millisecond_of_its_force() {
+fn a_panel_of_a_dance_pad_is_pressed_within_a_millisecond_and_released_within_six() {
     let floor = shipped("dance_pad");
     let page = a_button_on_each(&floor.geometry);
     let mut stage = Stage::new(&floor, SimConfig::ideal(), &page);
@@ -176,7 +176,11 @@ fn a_panel_of_a_dance_pad_is_pressed_and_released_in_the_millisecond_of_its_forc
         let released = times(|kind| matches!(kind, EventKind::Released));
         assert_eq!((pressed.len(), released.len()), (1, 1), "{tile}: {:?}", stage.events);
         assert!(pressed[0].abs_diff(begun + 30) <= 1, "{tile}: pressed {} ms after", pressed[0] - begun);
-        assert!(released[0].abs_diff(top + 60) <= 1, "{tile}: released {} ms after", released[0] - top);
+        assert!(
+            (top + 59..=top + 66).contains(&released[0]),
+            "{tile}: released {} ms after",
+            released[0] - top
+        );
     }
 }
 

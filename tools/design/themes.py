@@ -11,8 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-from build_map import Floor
-from window import Window
+from window import Floor, Window
 
 THEMES = [("light", "light"), ("dark", "dark"), ("contrast", "high contrast")]
 
@@ -45,31 +44,30 @@ LAYOUT = """Layout(
 """
 
 
-def pictures(program, layout, theme, size, folder, name, places):
-    """Draws both modes in one theme; returns the place of the floor, which is known by the colours of the light one."""
+def pictures(program, layout, theme, size, folder, name):
+    """Draws both modes in one theme."""
     state = tempfile.mkdtemp(prefix="underfoot-theme-")
     os.makedirs(os.path.join(state, "state", "underfoot"))
     with open(os.path.join(state, "state", "underfoot", "window"), "w") as settings:
         settings.write(f"underfoot window 1\nwindow {theme}\nprojected {theme}\ntext 10\nfirst_steps off\n")
     window = Window(program, [layout], folder=state, size=size)
     try:
-        places = places or Floor(window.look())
+        places = Floor(window)
         for place in [(0.6, 0.7), (1.3, 1.2), (0.9, 1.5)]:
-            window.drag(places.at(*place), places.at(place[0] + 0.05, place[1]), hold=0.4)
+            window.drag(places.at(*place), places.at(place[0] + 0.05, place[1]))
         window.move(*places.at(0.65, 5.3))
         window.x("mousedown", 1)
         window.move(*places.at(0.65, 5.25))
         subprocess.run(["sleep", "1"], check=True)
         save(window, os.path.join(folder, f"window-try-{name}.png"))
         window.x("mouseup", 1)
-        window.key("F2", settle=1.0)
-        window.click(*places.at(3.0, 5.3), settle=1.0)
+        window.key("F2")
+        window.click(*places.at(3.0, 5.3))
         window.move(*places.at(3.0, 1.9))
         subprocess.run(["sleep", "1"], check=True)
         save(window, os.path.join(folder, f"window-design-{name}.png"))
     finally:
         window.close()
-    return places
 
 
 def save(window, path):
@@ -93,9 +91,8 @@ def main():
         layout = os.path.join(tempfile.mkdtemp(prefix="underfoot-theme-"), "meaning.ron")
         with open(layout, "w") as file:
             file.write(LAYOUT)
-    places = None
     for name, theme in THEMES:
-        places = pictures(os.path.abspath(given.program), layout, theme, size, given.folder, name, places)
+        pictures(os.path.abspath(given.program), layout, theme, size, given.folder, name)
     for name, _ in THEMES:
         for mode in ("try", "design"):
             path = os.path.join(given.folder, f"window-{mode}-{name}.png")

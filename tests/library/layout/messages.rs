@@ -187,7 +187,8 @@ fn what_midi_lacks_is_refused_with_its_place() {
 /// Files of version 1 have no messages, and stay as they are.
 #[test]
 fn older_layouts_send_nothing() {
-    for name in builtin_layouts() {
+    let written = |name: &&str| !["dicom_viewer", "globe"].contains(name);
+    for name in builtin_layouts().filter(written) {
         let layout = read(builtin_layout(name).unwrap());
         assert!(layout.targets.is_empty() && layout.plan().is_empty(), "{name}");
     }

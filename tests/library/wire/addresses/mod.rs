@@ -340,6 +340,8 @@ fn every_event_is_listed_and_every_listed_event_comes() {
         .filter(|entry| entry.direction == MessageDirection::Out && entry.address.contains("/widget/"))
         // A repeated state, not an event.
         .filter(|entry| !entry.address.ends_with("/held"))
+        // A foot that the engine keeps from the control, which is alone here.
+        .filter(|entry| !entry.address.ends_with("/ignored"))
         .map(|entry| (entry.address.as_str(), entry.arguments.iter().map(|argument| argument.tag).collect()))
         .collect();
     let mut received = BTreeSet::new();
@@ -398,7 +400,8 @@ fn the_shipped_layouts_have_references_without_an_address_twice() {
         let page = layout(builtin_layout(name).unwrap());
         let reference = Reference::of(&page, &Floor::default(), &Prefix::default());
         let mut seen = BTreeSet::new();
-        for entry in &reference.entries {
+        // Messages to programs of others have no address here.
+        for entry in reference.entries.iter().filter(|entry| !entry.address.contains(": ")) {
             assert!(
                 seen.insert((entry.address.as_str(), entry.direction as u8)),
                 "{name}: {}",
