@@ -65,7 +65,7 @@ pub(super) fn holes(scene: &mut Scene, view: &View<'_>) {
 pub(super) const MOST_LOAD: f32 = 0.55;
 
 /// Share of the accent colour in an active area.
-const TINT: f32 = 0.045;
+pub(super) const TINT: f32 = 0.045;
 
 /// True if the plate of `cell` is tinted to show that it is active: a region of whole plates needs no extra rectangle
 /// over them, which would be painted pixel by pixel once more.

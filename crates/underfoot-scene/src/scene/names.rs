@@ -13,7 +13,8 @@ const PLATE: f32 = 0.9;
 
 /// Returns `wish` as far as it is readable on any plate of this theme.
 pub(super) fn ink(theme: &Theme, wish: Colour) -> Ink {
-    let loaded = theme.plate.mix(theme.load, ground::MOST_LOAD);
+    let active = theme.plate.mix(theme.accent, ground::TINT);
+    let loaded = active.mix(theme.load, ground::MOST_LOAD);
     // A colour that is readable there is readable on a plate at rest, which differs more from the theme's ink.
     Ink::solid(theme.legible(wish, loaded))
 }
