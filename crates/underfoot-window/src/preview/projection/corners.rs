@@ -150,15 +150,8 @@ impl CornerEditor {
         self.steps.add_undo(placement);
     }
 
-    /// Moves corners event by event: a window with slow frames gets press, drag and release at once. Presses count
-    /// where `is_free` is true for their place.
-    pub(super) fn drag(
-        &mut self,
-        events: &[Event],
-        now_s: f64,
-        adjusted: &mut Adjusted<'_>,
-        is_free: impl Fn(Pos2) -> bool,
-    ) {
+    /// Moves corners event by event: a window with slow frames gets press, drag and release at once.
+    pub(super) fn drag(&mut self, events: &[Event], now_s: f64, adjusted: &mut Adjusted<'_>) {
         if self.selected.is_none() {
             return;
         }
@@ -166,7 +159,7 @@ impl CornerEditor {
             let (to, is_release) = match event {
                 Event::PointerMoved(to) => (*to, false),
                 Event::PointerButton { pos, button: PointerButton::Primary, pressed, .. } => {
-                    if *pressed && is_free(*pos) {
+                    if *pressed {
                         self.take_corner(*pos, now_s, adjusted);
                     }
                     (*pos, !*pressed)

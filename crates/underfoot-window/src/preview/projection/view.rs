@@ -90,10 +90,7 @@ impl ProjectorView {
             self.corners.handle_keys(ui, &mut adjusted);
         }
         let (events, now_s) = ui.input(|i| (i.events.clone(), i.time));
-        let (ctx, layer) = (ui.ctx().clone(), ui.layer_id());
-        // Another window may lie over a picture that is not a window of the system.
-        let is_free = |at: Pos2| !ctx.embed_viewports() || ctx.layer_id_at(at) == Some(layer);
-        self.corners.drag(&events, now_s, &mut adjusted, is_free);
+        self.corners.drag(&events, now_s, &mut adjusted);
         let placement = adjusted.now();
         self.paint(ui, floor, placement, picture, (name, setup.brightness));
         if let Some(selected) = self.corners.selected() {

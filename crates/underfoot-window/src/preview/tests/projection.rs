@@ -215,6 +215,11 @@ fn a_key_moves_the_selected_corner_by_one_pixel_of_the_screen_whatever_the_size_
     let mut room = adjusting();
     room.window.set_pixels_per_point(1.5);
     room.run(3);
+    // Away from the edge, at which handles stop.
+    for _ in 0..3 {
+        room.window.key_press_modifiers(Modifiers::SHIFT, Key::ArrowDown);
+        room.run(2);
+    }
     for (shift, pixels) in [(Modifiers::NONE, 1.0), (Modifiers::SHIFT, 10.0)] {
         let before = room.place("Corner 1");
         room.window.key_press_modifiers(shift, Key::ArrowRight);
