@@ -34,7 +34,9 @@ pub(super) fn write(
         Anchor::End => -size.x,
     };
     let area = Rect::from_min_size(lettering.at + Vec2::new(west, 0.0), size).grown(0.008);
-    if !name.is_empty() && terrain::is_under(view, area) {
+    // In high contrast a load under a zone would be too light for any ink.
+    let is_strict = view.theme.least_contrast() > 5.0;
+    if !name.is_empty() && (is_strict || terrain::is_under(view, area)) {
         scene.add_box(area, 0.010, Paint::fill(Ink::faint(view.theme.plate, PLATE)));
     }
     scene.add_line_of(lettering, name, room_m, smallest_m);
