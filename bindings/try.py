@@ -118,7 +118,7 @@ class Reader:
         Each program assembles the packets itself: where the system lost or delayed one, forces differ a little."""
         told = []
         for line in self.lines:
-            if "id" not in line or line.get("event", "state") == "state":
+            if "id" not in line or line.get("event", "state") in ("state", "ignored"):
                 continue
             event = (line["event"], line["id"], line["value"])
             if told and told[-1][:2] == event[:2] == ("changed", event[1]):

@@ -63,6 +63,25 @@ static void simulates(const char *layout, const char *scenario)
     CHECK(!strcmp(error, "the path of the scenario is not UTF-8"));
 }
 
+/* A press on a control that an app has switched off is ignored, for that reason. */
+static void ignores(const char *layout, const char *scenario)
+{
+    uf_session *floor = uf_session_simulated(layout, scenario, NULL, error, sizeof error);
+    CHECK(floor);
+    CHECK(uf_set_enabled(floor, "home", 0) == UF_OK);
+    uf_event event = { .size = sizeof event };
+    int ignored = 0;
+    while (uf_next(floor, &event, -1) == UF_OK) {
+        CHECK(event.kind != UF_CONTROL || strcmp(event.id, "home"));
+        if (event.kind != UF_IGNORED || strcmp(event.id, "home") || ignored++) continue;
+        CHECK(!strcmp(event.name, "ignored") && !strcmp(event.text, "disabled: an app has switched it off"));
+        CHECK(event.force_n > 100 && event.contact >= 0 && event.value_type == UF_NOTHING);
+        uf_stop(floor);
+    }
+    CHECK(ignored == 1);
+    uf_close(floor);
+}
+
 static float number(const uf_session *floor, const char *id)
 {
     uf_value value = { .size = sizeof value };
@@ -132,6 +151,7 @@ int main(int argc, char **argv)
     CHECK(!strcmp(uf_last_error(), ""));
     replays(argv[1]);
     simulates(argv[2], argv[3]);
+    ignores(argv[2], argv[3]);
     uf_session *floor = uf_session_listen("127.0.0.1:0", argv[2], NULL, error, sizeof error);
     if (!floor) {
         fprintf(stderr, "%s\n", error);

@@ -56,6 +56,7 @@ enum {
     UF_OFF_REPEATED_READINGS = 8,  /* sensors under it repeat their readings bit for bit */
     UF_OFF_COARSE_READINGS = 9,    /* readings under it are too coarse to notice a frozen sensor */
     UF_OFF_OTHER_HELD = 10,        /* another control that acts while it is held is held */
+    UF_OFF_SLOW_READINGS = 11,     /* boards under it send fewer than 50 packets a second */
     UF_OFF_OTHER = 100             /* a reason without a number in this header; the text names it */
 };
 
@@ -73,6 +74,11 @@ enum {
     UF_END = 9,     /* the last event: `text` is "stopped", "source_ended", or "failed: ..." or "panicked: ..." */
     UF_LINK_CAUSE = 10, /* the reason why boards that send give no usable frame: `text` is a stable name, a colon and
                          * a sentence, such as "rate_low: board 0 sends ..."; "" when it is over */
+    UF_IGNORED = 11, /* the control `id` ignored the foot `contact`, which has left it: `force_n` is the greatest force,
+                      * `text` a stable name, a colon and a sentence, such as "too_light: too light" or
+                      * "not_calibrated: the floor is not calibrated" */
+    UF_SENT = 12,   /* the control or region `id` gives a message to another program, which the session does not send:
+                     * `text` is the name of its target, a colon and its content, such as "viewer: key Right" */
     UF_OTHER = 100  /* a subject without a number in this header; `name` has the word */
 };
 
@@ -103,7 +109,7 @@ typedef struct uf_event {
     double t_s;              /* on the floor's sample clock */
     char id[UF_ID_SIZE];     /* of the control or page; "" if it is about the floor */
     char name[UF_NAME_SIZE]; /* the word for the event, as in JSON lines */
-    char text[UF_TEXT_SIZE]; /* of a link, of its cause and of the end; "" otherwise */
+    char text[UF_TEXT_SIZE]; /* of a link, of its cause, of an ignored press and of the end; "" otherwise */
     uint32_t value_type;     /* UF_NOTHING ... */
     float value[2];
     float force_n;

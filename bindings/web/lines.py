@@ -62,7 +62,7 @@ def take(line):
         raise RuntimeError("as it was asked to")
     if "held" in line:
         held, held_at = line["held"], time.monotonic()
-    elif line.get("id") and line["event"] != "state":
+    elif line.get("id") and line["event"] not in ("state", "ignored"):
         print(json.dumps(line), flush=True)
 
 

@@ -34,7 +34,7 @@ const wire = await page.createCDPSession();
 await wire.send("Network.enable");
 wire.on("Network.webSocketFrameReceived", ({ response }) => {
   const line = JSON.parse(response.payloadData);
-  if (line.id && line.event !== "state") print(line);
+  if (line.id && !["state", "ignored"].includes(line.event)) print(line);
 });
 // The visible state, by the clock that all programs of this machine share.
 await page.exposeFunction("sayHeld", (held) => {

@@ -1,5 +1,7 @@
 //! The engine: sensing, interaction, grounds and responses, one frame at a time.
 
+use std::time::Duration;
+
 use crate::feel::{Cue, SustainedCues};
 use crate::floor::{FloorFile, Geometry, PositionMap};
 use crate::ground::{GroundEvent, Grounds};
@@ -135,7 +137,9 @@ impl Engine {
     ///
     /// A frame with missing tiles counts as an unsensed floor: every control is cancelled.
     pub fn step(&mut self, frame: &ForceFrame) -> FrameResults<'_> {
-        self.sensing.update(frame);
+        if frame.is_new {
+            self.sensing.update(frame);
+        }
         self.respond(frame, None)
     }
 
@@ -402,14 +406,14 @@ impl Engine {
         self.grounds.show(&mut snapshot.grounds);
         snapshot.tiles.clear();
         let frame = &self.last_frame;
-        snapshot.tiles.extend(self.sensing.tiles().zip(&frame.forces).zip(&frame.quality).map(
-            |((tile, forces), quality)| TileState {
-                forces: *forces,
-                quality: *quality,
-                force: tile.force,
-                centroid: tile.centroid,
-            },
-        ));
+        let tiles = self.sensing.tiles().zip(&frame.forces).zip(&frame.quality).enumerate();
+        snapshot.tiles.extend(tiles.map(|(index, ((tile, forces), quality))| TileState {
+            forces: *forces,
+            quality: *quality,
+            force: tile.force,
+            centroid: tile.centroid,
+            age: frame.samples.get(index).map_or(Duration::ZERO, |sample| sample.age),
+        }));
     }
 
     /// Takes over the page that a click requests.
@@ -488,8 +492,20 @@ impl Engine {
 
 /// Copies `frame` into `kept` without new memory; a derived `clone_from` would allocate.
 fn keep(kept: &mut ForceFrame, frame: &ForceFrame) {
-    let ForceFrame { at, received, forces, quality, may_start, hold_doubts, calibration_fault } = frame;
+    let ForceFrame {
+        at,
+        received,
+        forces,
+        quality,
+        may_start,
+        hold_doubts,
+        calibration_fault,
+        samples,
+        is_new,
+    } = frame;
     (kept.at, kept.received, kept.calibration_fault) = (*at, *received, *calibration_fault);
+    kept.is_new = *is_new;
+    kept.samples.clone_from(samples);
     kept.forces.clone_from(forces);
     kept.quality.clone_from(quality);
     kept.may_start.clone_from(may_start);

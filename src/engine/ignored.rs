@@ -56,6 +56,54 @@ pub enum Ignored {
     TooShort,
 }
 
+impl Ignored {
+    /// The reasons that say nothing about the state of the control, in the order of the enum.
+    const OF_THE_FOOT: [Self; 11] = [
+        Self::Step,
+        Self::Object,
+        Self::Stance,
+        Self::OutsideRegion,
+        Self::OtherFoot,
+        Self::SlidOn,
+        Self::NotSeenUnloaded,
+        Self::Unbelieved,
+        Self::Guard,
+        Self::TooLight,
+        Self::TooShort,
+    ];
+
+    /// Returns all reasons; those of a control that is off come last.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::OF_THE_FOOT.into_iter().chain(OffReason::ALL.map(Self::Off))
+    }
+
+    /// Its name in OSC, JSON, C, Python and metrics; it stays the same in later versions. A control that is off has
+    /// the name of that reason: [`OffReason::name`].
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Step => "step",
+            Self::Object => "object",
+            Self::Stance => "stance",
+            Self::OutsideRegion => "outside_region",
+            Self::OtherFoot => "other_foot",
+            Self::SlidOn => "slid_on",
+            Self::NotSeenUnloaded => "not_seen_unloaded",
+            Self::Unbelieved => "unbelieved",
+            Self::Guard => "guard",
+            Self::Off(reason) => reason.name(),
+            Self::TooLight => "too_light",
+            Self::TooShort => "too_short",
+        }
+    }
+
+    /// The reason with this [`Ignored::name`]; `None` for any other text.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::all().find(|reason| reason.name() == name)
+    }
+}
+
 impl fmt::Display for Ignored {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -160,6 +208,12 @@ impl IgnoredPresses {
         }
     }
 
+    /// Notes that a contact is where it was, without new readings of it.
+    pub(super) fn note_stay(&mut self, contact: ContactId) {
+        let visits = self.visits.iter_mut().filter(|visit| visit.contact == contact);
+        visits.for_each(|visit| visit.is_there = true);
+    }
+
     /// Notes that the control responds to a contact, with a press or a refusal.
     pub(super) fn note_answer(&mut self, contact: ContactId, widget: usize, force: Newtons) {
         let visit = self.visit(contact, widget);
@@ -245,4 +299,18 @@ fn keep<T>(all: &mut VecDeque<T>, one: T) {
         all.pop_front();
     }
     all.push_back(one);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_of_a_reason_leads_back_to_it() {
+        for reason in Ignored::all() {
+            assert_eq!(Ignored::from_name(reason.name()), Some(reason));
+        }
+        assert_eq!(Ignored::all().count(), 22, "a reason without a place in the list has no counter");
+        assert_eq!(Ignored::from_name("off"), None);
+    }
 }

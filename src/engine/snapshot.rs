@@ -1,6 +1,7 @@
 //! The complete visible state of a floor at one instant.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use glam::Vec2;
 
@@ -84,6 +85,9 @@ pub struct TileState {
     pub force: Newtons,
     /// Place at which the tile's load acts; `None` if the load is too light.
     pub centroid: Option<Vec2>,
+    /// Age of the forces: zero where the board samples once a frame, up to a period and the delay of its packets where
+    /// it samples less often.
+    pub age: Duration,
 }
 
 /// The visible state of one control.

@@ -69,6 +69,7 @@ fn page() -> Layout {
             id: "page".into(),
             area: Rect::from_min_size(Vec2::new(0.0, 0.6), Vec2::new(1.824, 1.224)),
             cursor: CursorRule::Largest,
+            send: Vec::new(),
         }],
         stances: Vec::new(),
         pages: Vec::new(),

@@ -32,11 +32,11 @@ impl Area {
     /// Returns the tiles that its computer senses: its own and those within [`SENSED_BEYOND_M`] of them.
     #[must_use]
     pub fn sensed(&self, geometry: &Geometry) -> TileBlock {
-        let margin = (SENSED_BEYOND_M / geometry.pitch_m()).ceil() as u16;
+        let margin = (SENSED_BEYOND_M / geometry.pitch_m().min_element()).ceil() as u16;
         self.tiles.grown(margin).common(&geometry.block())
     }
 
-    /// Whether `point` of the floor is in this area; a point beyond the floor counts as part of the nearest tile, and
+    /// Whether `point` of the floor is in this area; a point beyond the floor counts as part of the nearest cell, and
     /// NaN as part of the first.
     ///
     /// Exactly one of a floor's areas holds a point.
@@ -58,7 +58,8 @@ impl Floor {
     #[must_use]
     pub fn with_areas(mut self, areas: Vec<Area>) -> Self {
         let mut next = vec![0; areas.len()];
-        for (tile, actuator) in self.geometry.tiles().zip(&mut self.actuators) {
+        let cells = self.geometry.tiles().zip(&mut self.actuators);
+        for (tile, actuator) in cells.filter(|(tile, _)| !self.geometry.is_missing(*tile)) {
             if let Some(number) = areas.iter().position(|area| area.tiles.contains(tile)) {
                 *actuator = Some(Actuator::nominal(next[number]));
                 next[number] += 1;
@@ -85,6 +86,7 @@ impl Floor {
                     |sensor: &Option<SensorId>| sensor.filter(|sensor| geometry.index(sensor.tile).is_some());
                 board.channels.iter().map(here).collect()
             },
+            ..*board
         });
         let own = |index: &usize| area.tiles.contains(self.geometry.tile_at_index(*index));
         let near = |at: Vec2| area.holds(&self.geometry, at);
@@ -124,7 +126,7 @@ fn nearest_tile(geometry: &Geometry, point: Vec2) -> TileId {
     let Rect { min, max } = geometry.bounds();
     // The far edges belong to no tile's cell, and NaN lies in no cell.
     let inside = point.clamp(min, max - 0.5 * geometry.pitch_m());
-    let nearest = [point, inside].into_iter().find_map(|point| geometry.tile_under(point));
+    let nearest = [point, inside].into_iter().find_map(|point| geometry.cell_under(point));
     nearest.unwrap_or(geometry.first())
 }
 

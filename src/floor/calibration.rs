@@ -102,6 +102,12 @@ impl Calibration {
         f32::from(counts) * (Self::FULL_SCALE_VOLTS / f32::from(u16::MAX))
     }
 
+    /// Returns the voltage of a reading with fractions on the scale of 16 bits; negative below zero volts.
+    #[must_use]
+    pub(crate) fn volts_of(counts: f32) -> f32 {
+        counts * (Self::FULL_SCALE_VOLTS / f32::from(u16::MAX))
+    }
+
     /// Returns the force of a raw 16-bit reading, without subtracting the tare.
     #[must_use]
     #[inline]

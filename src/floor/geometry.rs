@@ -1,145 +1,29 @@
-//! Tiles, corners and sensors, and their places.
-
-use std::fmt;
+//! The places of tiles and sensors.
 
 use glam::Vec2;
-use serde::Serialize;
-use thiserror::Error;
 
-use super::{Rect, TileBlock};
-use underfoot_format::Named;
-
-/// One tile, by column (east) and row (north), both from 0 at the south-west.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-pub struct TileId {
-    /// Column, counted eastwards from 0.
-    pub column: u16,
-    /// Row, counted northwards from 0.
-    pub row: u16,
-}
-
-impl TileId {
-    /// The tile in `column` and `row`.
-    #[must_use]
-    pub const fn new(column: u16, row: u16) -> Self {
-        Self { column, row }
-    }
-}
-
-impl fmt::Display for TileId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "({}, {})", self.column, self.row)
-    }
-}
-
-/// A corner of a tile, and the sensor near it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Corner {
-    /// South-west.
-    SouthWest,
-    /// South-east.
-    SouthEast,
-    /// North-west.
-    NorthWest,
-    /// North-east.
-    NorthEast,
-}
-
-impl Corner {
-    /// All four corners, in the order of every sensor array of this crate: sw, se, nw, ne.
-    pub const ALL: [Self; 4] = [Self::SouthWest, Self::SouthEast, Self::NorthWest, Self::NorthEast];
-
-    /// Returns the index in [`Corner::ALL`], 0 to 3.
-    #[must_use]
-    pub const fn index(self) -> usize {
-        self as usize
-    }
-
-    /// Returns the direction of the corner from the tile's centre: -1 or 1 along each axis.
-    #[must_use]
-    pub const fn direction(self) -> Vec2 {
-        match self {
-            Self::SouthWest => Vec2::new(-1.0, -1.0),
-            Self::SouthEast => Vec2::new(1.0, -1.0),
-            Self::NorthWest => Vec2::new(-1.0, 1.0),
-            Self::NorthEast => Vec2::new(1.0, 1.0),
-        }
-    }
-
-    /// Returns the short name in files: `sw`, `se`, `nw` or `ne`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SouthWest => "sw",
-            Self::SouthEast => "se",
-            Self::NorthWest => "nw",
-            Self::NorthEast => "ne",
-        }
-    }
-}
-
-impl Named for Corner {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("Sw", Self::SouthWest), ("Se", Self::SouthEast), ("Nw", Self::NorthWest), ("Ne", Self::NorthEast)];
-}
-
-impl fmt::Display for Corner {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// One force sensor: its tile and corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct SensorId {
-    /// The tile on the sensor.
-    pub tile: TileId,
-    /// The corner above the sensor.
-    pub corner: Corner,
-}
-
-impl fmt::Display for SensorId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "tile {} {}", self.tile, self.corner)
-    }
-}
+use super::uneven::UnevenTiles;
+use super::{Corner, OwnPlate, Rect, SensorPlaces, TileBlock, TileId};
 
 /// The places of the tiles of a floor, or of a part of a larger floor, and of the sensors under them.
 ///
-/// Tiles are numbered row by row from the south-west. That number, the *tile index*, orders every per-tile array of
-/// this crate. A part has its own indices; its tiles keep their columns and rows, and points keep their coordinates.
+/// Tiles lie in the cells of a grid and are numbered row by row from the south-west. That number, the *tile index*,
+/// orders every per-tile array of this crate; a cell without a tile keeps its number. A part has its own indices; its
+/// tiles keep their columns and rows, and points keep their coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
-    first: TileId,
-    columns: u16,
-    rows: u16,
+    pub(super) first: TileId,
+    pub(super) columns: u16,
+    pub(super) rows: u16,
     /// Columns and rows of the whole floor that contains this part.
-    whole: (u16, u16),
-    tile_m: f32,
-    pitch_m: f32,
-    sensor_inset_m: f32,
-}
-
-/// Reason for which measures of a floor are invalid.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum GeometryError {
-    /// The grid has no tile, or more than [`Geometry::MAX_SIDE`] along a side.
-    #[error("a floor has 1 to {max} columns and rows, not {columns} x {rows}", max = Geometry::MAX_SIDE)]
-    Grid {
-        /// Requested columns.
-        columns: u16,
-        /// Requested rows.
-        rows: u16,
-    },
-    /// A tile's side is not a length between 5 cm and 5 m.
-    #[error("tile_m must be between 0.05 and 5 m, not {0}")]
-    Tile(f32),
-    /// Tiles overlap, or their distance exceeds their width.
-    #[error("pitch_m must be at least tile_m and at most twice as much, not {0}")]
-    Pitch(f32),
-    /// The sensors would lie outside the tile or beyond its centre.
-    #[error("sensor_inset_m must be at least 0 and less than half of tile_m, not {0}")]
-    Inset(f32),
+    pub(super) whole: (u16, u16),
+    pub(super) tile: Vec2,
+    pub(super) pitch: Vec2,
+    /// Distance of the sensors from the plates' edges; `None` for sensors at given places.
+    pub(super) sensor_inset_m: Option<f32>,
+    pub(super) sensors: SensorPlaces,
+    /// The tiles that differ from the others.
+    pub(super) uneven: Option<&'static UnevenTiles>,
 }
 
 impl Geometry {
@@ -149,59 +33,6 @@ impl Geometry {
     /// Last column, and last row, at which a part of a larger floor may begin: more than a kilometre of the paper's
     /// tiles, where an `f32` still resolves a tenth of a millimetre.
     pub const FARTHEST: u16 = 4095;
-
-    /// A floor of `columns` x `rows` tiles.
-    ///
-    /// `tile_m` is the side of one plate, `pitch_m` the distance between the centres of neighbours, `sensor_inset_m`
-    /// the distance of the sensors from the plate's edges.
-    ///
-    /// # Errors
-    /// [`GeometryError`] gives the invalid measure and its valid range.
-    pub fn new(
-        columns: u16,
-        rows: u16,
-        tile_m: f32,
-        pitch_m: f32,
-        sensor_inset_m: f32,
-    ) -> Result<Self, GeometryError> {
-        let side = 1..=Self::MAX_SIDE;
-        if !side.contains(&columns) || !side.contains(&rows) {
-            return Err(GeometryError::Grid { columns, rows });
-        }
-        if !(0.05..=5.0).contains(&tile_m) {
-            return Err(GeometryError::Tile(tile_m));
-        }
-        if !(tile_m..=2.0 * tile_m).contains(&pitch_m) {
-            return Err(GeometryError::Pitch(pitch_m));
-        }
-        if !(0.0..0.5 * tile_m).contains(&sensor_inset_m) {
-            return Err(GeometryError::Inset(sensor_inset_m));
-        }
-        let whole = (columns, rows);
-        Ok(Self { first: TileId::new(0, 0), columns, rows, whole, tile_m, pitch_m, sensor_inset_m })
-    }
-
-    /// Returns the same grid as a part of a larger floor with its south-west corner at `first`; columns and rows past
-    /// [`Geometry::FARTHEST`] count as that. The larger floor ends with this part: see [`Geometry::within`].
-    #[must_use]
-    pub const fn beginning_at(self, first: TileId) -> Self {
-        const fn near(at: u16) -> u16 {
-            if at > Geometry::FARTHEST { Geometry::FARTHEST } else { at }
-        }
-        let first = TileId::new(near(first.column), near(first.row));
-        Self { first, ..self }.within((0, 0))
-    }
-
-    /// Returns the same part of a floor with this number of columns and rows, or of the smallest floor that contains
-    /// it.
-    #[must_use]
-    pub const fn within(self, (columns, rows): (u16, u16)) -> Self {
-        const fn most(one: u16, other: u16) -> u16 {
-            if one > other { one } else { other }
-        }
-        let least = self.least_whole();
-        Self { whole: (most(columns, least.0), most(rows, least.1)), ..self }
-    }
 
     /// Returns columns and rows of the smallest floor that contains this part.
     pub(crate) const fn least_whole(&self) -> (u16, u16) {
@@ -220,28 +51,13 @@ impl Geometry {
         self.columns < self.whole.0 || self.rows < self.whole.1
     }
 
-    /// Returns the part within `block`; `None` if there is no tile.
-    #[must_use]
-    pub fn part(&self, block: &TileBlock) -> Option<Self> {
-        let TileBlock { first, columns, rows } = self.block().common(block);
-        (columns > 0 && rows > 0).then_some(Self { first, columns, rows, ..*self })
-    }
-
-    /// The paper's tiles (30.4 cm, sensors 2 cm inside the edges) in a grid of another size.
-    ///
-    /// # Errors
-    /// [`GeometryError::Grid`] if a side is 0 or above [`Geometry::MAX_SIDE`].
-    pub fn of_paper_tiles(columns: u16, rows: u16) -> Result<Self, GeometryError> {
-        Self::new(columns, rows, 0.304, 0.304, 0.02)
-    }
-
     /// Returns the tile in the south-west corner: (0, 0) unless this is a part of a larger floor.
     #[must_use]
     pub const fn first(&self) -> TileId {
         self.first
     }
 
-    /// Returns its tiles.
+    /// Returns its cells.
     #[must_use]
     pub const fn block(&self) -> TileBlock {
         TileBlock { first: self.first, columns: self.columns, rows: self.rows }
@@ -259,25 +75,25 @@ impl Geometry {
         self.rows
     }
 
-    /// Returns the side of one plate, in metres.
+    /// Returns width and depth of a plate, in metres, of all that have no size of their own.
     #[must_use]
-    pub const fn tile_m(&self) -> f32 {
-        self.tile_m
+    pub const fn tile_m(&self) -> Vec2 {
+        self.tile
     }
 
-    /// Returns the distance between the centres of neighbouring tiles, in metres.
+    /// Returns the distances between the centres of neighbouring tiles east and north, in metres: the size of a cell.
     #[must_use]
-    pub const fn pitch_m(&self) -> f32 {
-        self.pitch_m
+    pub const fn pitch_m(&self) -> Vec2 {
+        self.pitch
     }
 
-    /// Returns the distance of the sensors from the plate's edges, in metres.
+    /// Returns the distance of the sensors from the plates' edges, in metres; `None` if their places are given.
     #[must_use]
-    pub const fn sensor_inset_m(&self) -> f32 {
+    pub const fn sensor_inset_m(&self) -> Option<f32> {
         self.sensor_inset_m
     }
 
-    /// Returns the number of tiles, at least 1.
+    /// Returns the number of cells, at least 1: the length of per-tile arrays.
     #[must_use]
     pub const fn tile_count(&self) -> usize {
         self.columns as usize * self.rows as usize
@@ -286,17 +102,42 @@ impl Geometry {
     /// Returns the rectangle of the floor or part.
     #[must_use]
     pub fn bounds(&self) -> Rect {
-        let corner = |column: u16, row: u16| Vec2::new(f32::from(column), f32::from(row)) * self.pitch_m;
+        let corner = |column: u16, row: u16| Vec2::new(f32::from(column), f32::from(row)) * self.pitch;
         let TileId { column, row } = self.first;
         Rect::new(corner(column, row), corner(column + self.columns, row + self.rows))
     }
 
-    /// Returns all tiles in index order: row by row from the south-west.
+    /// Returns all cells in index order, row by row from the south-west, also those without a tile.
     pub fn tiles(&self) -> impl Iterator<Item = TileId> + use<> {
         self.block().tiles()
     }
 
-    /// Returns the index of `tile`; `None` if it is not on this floor.
+    /// Whether the floor has `tile`: a cell of the grid that is not missing.
+    #[must_use]
+    pub fn has(&self, tile: TileId) -> bool {
+        self.index(tile).is_some() && !self.is_missing(tile)
+    }
+
+    /// Whether the floor has a hole in the cell of `tile`.
+    #[inline]
+    #[must_use]
+    pub fn is_missing(&self, tile: TileId) -> bool {
+        self.uneven.is_some_and(|uneven| uneven.is_missing(tile))
+    }
+
+    /// Returns the missing tiles of the whole floor, column by column.
+    #[must_use]
+    pub fn missing(&self) -> &'static [TileId] {
+        self.uneven.map_or(&[], UnevenTiles::missing)
+    }
+
+    /// Returns the plates of the whole floor that differ from the others.
+    #[must_use]
+    pub fn own_plates(&self) -> &'static [OwnPlate] {
+        self.uneven.map_or(&[], UnevenTiles::plates)
+    }
+
+    /// Returns the index of `tile`; `None` if its cell is not on this floor.
     #[must_use]
     pub fn index(&self, tile: TileId) -> Option<usize> {
         let column = tile.column.checked_sub(self.first.column)?;
@@ -312,11 +153,17 @@ impl Geometry {
         TileId::new(self.first.column + (index % columns) as u16, self.first.row + (index / columns) as u16)
     }
 
-    /// Returns the tile with `point` in its pitch cell; `None` outside the floor or for NaN.
+    /// Returns the tile with `point` in its cell; `None` outside the floor, over a missing tile or for NaN.
     #[must_use]
     pub fn tile_under(&self, point: Vec2) -> Option<TileId> {
+        self.cell_under(point).filter(|tile| !self.is_missing(*tile))
+    }
+
+    /// Returns the cell that contains `point`, also that of a missing tile; `None` outside the floor or for NaN.
+    #[must_use]
+    pub fn cell_under(&self, point: Vec2) -> Option<TileId> {
         self.bounds().contains(point).then(|| {
-            let cell = (point / self.pitch_m).floor();
+            let cell = (point / self.pitch).floor();
             let TileId { column, row } = self.first;
             TileId::new(
                 (cell.x as u16).clamp(column, column + self.columns - 1),
@@ -328,52 +175,93 @@ impl Geometry {
     /// Returns the centre of `tile`, also for tiles beyond the floor.
     #[must_use]
     pub fn centre(&self, tile: TileId) -> Vec2 {
-        (Vec2::new(f32::from(tile.column), f32::from(tile.row)) + 0.5) * self.pitch_m
+        (Vec2::new(f32::from(tile.column), f32::from(tile.row)) + 0.5) * self.pitch
     }
 
-    /// Returns the plate of `tile`.
+    /// Returns the cell of `tile`: its plate and the gap around it.
+    #[must_use]
+    pub fn cell(&self, tile: TileId) -> Rect {
+        Rect::from_centre_size(self.centre(tile), self.pitch)
+    }
+
+    /// Returns the plate of `tile`, also for missing tiles.
     #[must_use]
     pub fn plate(&self, tile: TileId) -> Rect {
-        Rect::from_centre_size(self.centre(tile), Vec2::splat(self.tile_m))
+        Rect::from_centre_size(self.centre(tile), self.plate_size(tile))
     }
 
-    /// Returns half the distance between neighbouring sensors of one tile, in metres.
+    /// Returns width and depth of the plate of `tile`, in metres.
     #[must_use]
-    pub fn sensor_reach_m(&self) -> f32 {
-        0.5 * self.tile_m - self.sensor_inset_m
+    pub fn plate_size(&self, tile: TileId) -> Vec2 {
+        let own = self.uneven.and_then(|uneven| uneven.plate(tile));
+        own.map_or(self.tile, |own| own.size)
     }
 
-    /// Returns the place of the sensor under `corner` of `tile`.
+    /// Returns the places of the sensors under `tile`.
+    #[inline]
     #[must_use]
-    pub fn sensor(&self, tile: TileId, corner: Corner) -> Vec2 {
-        self.centre(tile) + corner.direction() * self.sensor_reach_m()
+    pub fn sensor_places(&self, tile: TileId) -> &SensorPlaces {
+        match self.uneven {
+            None => &self.sensors,
+            Some(uneven) => uneven.plate(tile).map_or(&self.sensors, |own| &own.sensors),
+        }
+    }
+
+    /// Returns the sensors of `tile`, by the names of their positions in every sensor array; none for a missing tile.
+    #[must_use]
+    pub fn sensors(&self, tile: TileId) -> &'static [Corner] {
+        if self.is_missing(tile) { &[] } else { self.sensor_places(tile).sensors() }
+    }
+
+    /// Returns the place of `sensor` of `tile`, in floor metres.
+    #[must_use]
+    pub fn sensor(&self, tile: TileId, sensor: Corner) -> Vec2 {
+        self.centre(tile) + self.sensor_places(tile).place(sensor)
+    }
+
+    /// Returns where a drawing of the plate of `tile` shows `sensor`, as shares of its width and depth from the
+    /// south-west: near the edge of the drawing at the most.
+    #[must_use]
+    pub fn share_of_plate(&self, tile: TileId, sensor: Corner) -> Vec2 {
+        let half = 0.5 * self.plate_size(tile);
+        let share = self.sensor_places(tile).place(sensor) / half;
+        0.5 + 0.5 * share.clamp(Vec2::splat(-0.72), Vec2::splat(0.72))
+    }
+
+    /// Whether all tiles are equal squares in a square grid, with sensors near their corners.
+    #[must_use]
+    pub fn is_square_grid(&self) -> bool {
+        let is_square = |size: Vec2| size.x == size.y;
+        is_square(self.tile)
+            && is_square(self.pitch)
+            && self.sensor_inset_m.is_some()
+            && self.uneven.is_none()
+    }
+
+    /// Whether sensors have the names of corners; otherwise they have numbers, in the order of the floor file.
+    #[must_use]
+    pub fn has_corners(&self) -> bool {
+        self.sensor_inset_m.is_some()
+            && self.own_plates().iter().all(|plate| plate.sensors.rectangle().is_some())
+    }
+
+    /// Returns the name of a sensor in tables and messages: `sw`, `se`, `nw` or `ne`, or a number from 0.
+    #[must_use]
+    pub fn sensor_name(&self, sensor: Corner) -> &'static str {
+        if self.has_corners() { sensor.name() } else { ["0", "1", "2", "3"][sensor.index()] }
     }
 
     /// Converts a length or point from tile units (1.0 = one pitch) to metres.
     #[must_use]
     pub fn metres_from_tiles(&self, tiles: Vec2) -> Vec2 {
-        tiles * self.pitch_m
-    }
-}
-
-impl Default for Geometry {
-    /// The paper's floor: 6 x 6 tiles of 30.4 cm, sensors 2 cm inside the edges.
-    fn default() -> Self {
-        Self {
-            first: TileId::new(0, 0),
-            columns: 6,
-            rows: 6,
-            whole: (6, 6),
-            tile_m: 0.304,
-            pitch_m: 0.304,
-            sensor_inset_m: 0.02,
-        }
+        tiles * self.pitch
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::floor::GeometryError;
 
     #[test]
     fn the_papers_floor_has_144_sensors_2_cm_inside_the_edges() {
@@ -423,10 +311,21 @@ mod tests {
     }
 
     #[test]
-    fn impossible_measures_are_refused_by_name() {
-        assert!(matches!(Geometry::new(0, 6, 0.3, 0.3, 0.02), Err(GeometryError::Grid { .. })));
-        assert!(matches!(Geometry::new(6, 6, f32::NAN, 0.3, 0.02), Err(GeometryError::Tile(_))));
-        assert!(matches!(Geometry::new(6, 6, 0.3, 0.2, 0.02), Err(GeometryError::Pitch(_))));
-        assert!(matches!(Geometry::new(6, 6, 0.3, 0.3, 0.15), Err(GeometryError::Inset(_))));
+    fn a_foot_over_a_hole_is_on_no_tile_and_its_neighbours_keep_their_numbers() {
+        let hole = TileBlock { first: TileId::new(1, 1), columns: 1, rows: 1 };
+        let ring = Geometry::of_paper_tiles(3, 3).unwrap().with_uneven(&[hole], &[]).unwrap();
+        let middle = ring.centre(TileId::new(1, 1));
+        assert_eq!((ring.tile_under(middle), ring.cell_under(middle)), (None, Some(TileId::new(1, 1))));
+        assert_eq!((ring.tile_count(), ring.index(TileId::new(2, 2))), (9, Some(8)));
+        assert!(!ring.has(TileId::new(1, 1)) && ring.has(TileId::new(0, 1)) && !ring.has(TileId::new(3, 0)));
+        assert!(ring.sensors(TileId::new(1, 1)).is_empty() && ring.has_corners());
+        // A part of the floor has the same hole.
+        let part = ring.part(&TileBlock { first: TileId::new(1, 0), columns: 2, rows: 2 }).unwrap();
+        assert_eq!(
+            (part.tile_under(middle), part.tile_under(ring.centre(TileId::new(2, 1)))),
+            (None, Some(TileId::new(2, 1)))
+        );
+        let all = TileBlock { first: TileId::new(0, 0), columns: 3, rows: 3 };
+        assert_eq!(ring.with_uneven(&[all], &[]), Err(GeometryError::NoTile));
     }
 }

@@ -3,8 +3,8 @@
 use std::net::SocketAddr;
 
 use super::{
-    Area, Calibration, CalibrationRecord, Corner, Day, Drive, FloorFile, Geometry, Loudspeaker, MapRecord,
-    Network, PositionMap, Response, SensorId, SerialWire, TileId,
+    Area, Calibration, CalibrationRecord, Corner, CountRange, Day, Drive, FloorFile, Geometry, Loudspeaker,
+    MapRecord, Network, PositionMap, Response, SensorId, SerialWire, TileId,
 };
 use crate::units::Newtons;
 
@@ -18,7 +18,7 @@ pub struct Floor {
     pub geometry: Geometry,
     /// The acquisition boards; a board's position in this list is its number.
     pub boards: Vec<Board>,
-    /// Calibration of each tile's sensors, in [`Corner::ALL`] order.
+    /// Calibration of each tile's sensors, in [`Corner::ALL`] order; positions without a sensor are nominal.
     pub calibration: Vec<[Calibration; 4]>,
     /// Force that each sensor reads on the empty floor; it is subtracted from every reading.
     pub tare: Vec<[Newtons; 4]>,
@@ -58,7 +58,8 @@ pub struct Floor {
 
 impl Floor {
     /// A floor of this geometry wired like the paper's: each row of tiles has its own boards (up to eight tiles a
-    /// board, four channels a tile, sw se nw ne), nominal calibration, no tare, actuator channel = tile index.
+    /// board, one channel a sensor, in the order of [`Corner::ALL`]), nominal calibration, no tare, and an actuator
+    /// under each tile, channel by channel.
     #[must_use]
     pub fn of(geometry: Geometry) -> Self {
         let tiles = geometry.tile_count();
@@ -66,7 +67,7 @@ impl Floor {
             boards: boards_by_row(&geometry),
             calibration: vec![[Calibration::NOMINAL; 4]; tiles],
             tare: vec![[Newtons::ZERO; 4]; tiles],
-            actuators: (0..tiles).map(|channel| Some(Actuator::nominal(channel as u16))).collect(),
+            actuators: usual_actuators(&geometry),
             drive: Drive::default(),
             responses: vec![None; tiles],
             loudspeakers: Vec::new(),
@@ -133,7 +134,8 @@ impl Floor {
     pub fn uncalibrated(&self) -> impl Iterator<Item = SensorId> + '_ {
         self.geometry.tiles().zip(&self.calibration).flat_map(|(tile, laws)| {
             let nominal = |corner: &Corner| laws[corner.index()] == Calibration::NOMINAL;
-            Corner::ALL.into_iter().filter(nominal).map(move |corner| SensorId { tile, corner })
+            let sensors = self.geometry.sensors(tile).iter().copied();
+            sensors.filter(nominal).map(move |corner| SensorId { tile, corner })
         })
     }
 
@@ -161,6 +163,18 @@ pub struct Board {
     pub address: String,
     /// The sensor on each channel, in argument order; `None` for an unused channel.
     pub channels: Vec<Option<SensorId>>,
+    /// Packets a second, 10 to 4000; `None` if they are measured.
+    pub rate_hz: Option<f32>,
+    /// The range of its counts.
+    pub range: CountRange,
+}
+
+impl Board {
+    /// A board with these sensors that sends counts of 16 bits, at a rate to be measured.
+    #[must_use]
+    pub fn new(address: impl Into<String>, channels: Vec<Option<SensorId>>) -> Self {
+        Self { address: address.into(), channels, rate_hz: None, range: CountRange::WHOLE }
+    }
 }
 
 /// The vibrotactile actuator under one tile.
@@ -183,6 +197,13 @@ impl Actuator {
 /// Maximum number of tiles of one 32-channel board.
 const TILES_PER_BOARD: u16 = 8;
 
+/// An actuator under each tile, channel by channel in tile order.
+fn usual_actuators(geometry: &Geometry) -> Vec<Option<Actuator>> {
+    let mut channels = 0..=u16::MAX;
+    let under = |tile| geometry.has(tile).then(|| channels.next()).flatten().map(Actuator::nominal);
+    geometry.tiles().map(under).collect()
+}
+
 fn boards_by_row(geometry: &Geometry) -> Vec<Board> {
     let mut boards = Vec::new();
     let block = geometry.block();
@@ -192,10 +213,11 @@ fn boards_by_row(geometry: &Geometry) -> Vec<Board> {
             let channels = (west..east)
                 .flat_map(|column| {
                     let tile = TileId::new(column, row);
-                    Corner::ALL.map(|corner| Some(SensorId { tile, corner }))
+                    geometry.sensors(tile).iter().map(move |&corner| Some(SensorId { tile, corner }))
                 })
                 .collect();
-            boards.push(Board { address: format!("/underfoot/board/{}", boards.len()), channels });
+            let board = Board::new(format!("/underfoot/board/{}", boards.len()), channels);
+            boards.extend(Some(board).filter(|board| !board.channels.is_empty()));
         }
     }
     boards

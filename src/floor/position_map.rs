@@ -14,7 +14,7 @@ pub struct PositionMap {
     /// Per sensor ([`super::Corner::ALL`] order), the number added to a factor of one at each of
     /// [`PositionMap::TRIM_LOADS_N`]; a smooth curve between them, constant outside.
     pub trims: [[f32; PositionMap::TRIMS]; 4],
-    /// For the shift east and north, the coefficient of each of [`PositionMap::terms`], in half pitches.
+    /// For the shift east and north, the coefficient of each of [`PositionMap::terms`], in half pitches along its axis.
     pub bends: [[f32; PositionMap::BENDS]; 2],
     /// Residual: the position error with the map that 95 % of known points do not exceed, in metres.
     pub residual_m: f32,
@@ -100,7 +100,7 @@ impl PositionMap {
     /// The place is `arm` plus half a pitch times the sum of bends and terms, the latter limited to
     /// [`PositionMap::MOST_SHIFT`].
     ///
-    /// Stays on the square of one pitch around the tile. NaN stays NaN.
+    /// Stays on the cell of the tile. NaN stays NaN.
     #[must_use]
     pub(crate) fn unbent(&self, arm: Vec2, geometry: &Geometry) -> Vec2 {
         let half = 0.5 * geometry.pitch_m();
@@ -108,7 +108,7 @@ impl PositionMap {
         let shift = self.bends.map(|bend| bend.iter().zip(terms).map(|(bend, term)| bend * term).sum());
         let most = Vec2::splat(Self::MOST_SHIFT);
         let shift = Vec2::from_array(shift).clamp(-most, most);
-        (arm + shift * half).clamp(Vec2::splat(-half), Vec2::splat(half))
+        (arm + shift * half).clamp(-half, half)
     }
 }
 

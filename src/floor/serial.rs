@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use super::CountSign;
+
 use underfoot_format::Named;
 use underfoot_format::codec::Spelled;
 
@@ -104,8 +106,13 @@ pub struct TextLines {
 /// The unit of the numbers in lines of text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TextNumbers {
-    /// Counts of a converter from 0 to this number, which corresponds to its full voltage; positive.
-    Counts(f32),
+    /// Counts of a converter.
+    Counts {
+        /// The count at its full voltage; positive.
+        full_scale: f32,
+        /// The sign of the counts.
+        sign: CountSign,
+    },
     /// Newtons.
     Newtons,
 }

@@ -91,14 +91,26 @@ impl Layout {
         self
     }
 
-    /// The targets and the messages of all controls.
+    /// The targets, and the messages of all controls and of the feet in regions.
     #[must_use]
     pub fn plan(&self) -> MessagePlan {
         let mut plan = MessagePlan::new(self.targets.clone());
         for widget in &self.widgets {
             plan.add(&widget.id, &widget.behaviour, &widget.send);
         }
+        for region in self.regions.iter().filter(|region| !region.send.is_empty()) {
+            let within = self.widgets.iter().map(|widget| widget.area);
+            let controls: Vec<Rect> = within.filter(|area| area.overlaps(region.area)).collect();
+            plan.add_region(&WidgetId::new(&region.id), region.area, &controls, &region.send);
+        }
         plan
+    }
+
+    /// Whether a control or a foot in a region sends messages.
+    #[must_use]
+    pub fn sends(&self) -> bool {
+        self.widgets.iter().any(|widget| !widget.send.is_empty())
+            || self.regions.iter().any(|region| !region.send.is_empty())
     }
 
     /// The index in [`Layout::pages`] of the page named `id`.

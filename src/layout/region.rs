@@ -1,6 +1,7 @@
 //! Regions, in which feet operate controls, and zones where people stand.
 
 use crate::floor::Rect;
+use crate::messages::ContactSending;
 use underfoot_format::Named;
 
 /// Rule that selects the contacts in a region that operate its controls.
@@ -33,6 +34,8 @@ pub struct Region {
     pub area: Rect,
     /// The rule that selects the contacts that operate its controls.
     pub cursor: CursorRule,
+    /// The messages of the feet on its free floor.
+    pub send: Vec<ContactSending>,
 }
 
 /// A place to stand while using the controls.

@@ -1,25 +1,29 @@
 //! Decides when each message goes out.
 //!
 //! ```text
-//! On      event                                                      -> stroke
+//! On      event                                                      -> stroke; a note sounds for its time
 //! While   pressed                                                    -> down
 //!         released, cancelled, not among the held, link lost, silence -> up
 //! Value   changed                                                    -> the latest value, at a bounded rate
+//! Contacts                                                           -> the feet on free floor (`feet`)
 //! ```
 //!
 //! After any history, [`Messenger::lost`] and [`Messenger::release_all`] leave nothing down.
 
-use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Duration;
 
-use super::order::{Act, Holdable, MessageOrder, OscValue, Unsent};
-use super::pace::{self, STROKE, ValuePace};
+use super::content::{self, ControlMoment};
+use super::feet::AreaFeet;
+use super::order::{Act, Holdable, MessageOrder, Unsent};
+use super::outbox::Outbox;
+use super::pace::{STROKE, ValuePace};
 use super::plan::{MessageLine, MessagePlan};
-use super::pointer::{PointerMotion, deflection, numbers, share, wheel};
-use super::sending::{OscArgument, OscSettings, Payload, When};
-use crate::rate_limit::RateLimit;
+use super::pointer::{PointerMotion, deflection, wheel};
+use super::sending::{Payload, When};
+use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
-use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
+use crate::widget::{EventKind, WidgetEvent, WidgetId};
 
 /// Longest time without a report that a control is held: reports come every 20 ms, so three in a row are missing.
 const SILENCE: Duration = Duration::from_millis(70);
@@ -27,13 +31,10 @@ const SILENCE: Duration = Duration::from_millis(70);
 /// Runs the messages of one layout.
 #[derive(Debug)]
 pub struct Messenger {
-    plan: MessagePlan,
+    plan: Arc<MessagePlan>,
     states: Vec<LineState>,
-    /// The number of lines that hold each thing down.
-    down: BTreeMap<(usize, Holdable), u32>,
-    /// The rate of each target.
-    budgets: Vec<RateLimit>,
-    unsent: Unsent,
+    feet: Vec<AreaFeet>,
+    outbox: Outbox,
 }
 
 /// The state of one message.
@@ -41,15 +42,26 @@ pub struct Messenger {
 struct LineState {
     /// Whether this message holds something down.
     is_down: bool,
+    /// The time at which the note of an event ends; `None` for a hold.
+    sounds_until: Option<Instant>,
     /// The last time at which the control was known to be held; `None` while it is not.
     held: Option<Instant>,
-    value: Option<Value>,
+    moment: ControlMoment,
     pace: ValuePace,
     motion: PointerMotion,
     /// Steps of the wheel that have gone out.
     steps: i32,
-    /// Force and place of the foot at the last event.
-    foot: [f32; 3],
+    /// The act that followed the value last.
+    told: Option<Act>,
+    strike: Strike,
+}
+
+/// The press that gives a note its velocity.
+#[derive(Clone, Copy, Debug, Default)]
+struct Strike {
+    contact: Option<ContactId>,
+    /// Greatest force of the foot since it pressed, in newtons.
+    peak: f32,
 }
 
 impl Messenger {
@@ -57,7 +69,7 @@ impl Messenger {
     #[must_use]
     pub fn new(plan: MessagePlan) -> Self {
         let state = |line: &MessageLine| LineState {
-            value: line.initial,
+            moment: ControlMoment { value: line.initial, ..ControlMoment::default() },
             steps: match (&line.payload, line.initial) {
                 (Payload::Wheel(steps), Some(value)) => wheel(value, line.ends[0], *steps),
                 _ => 0,
@@ -65,25 +77,26 @@ impl Messenger {
             ..LineState::default()
         };
         let states = plan.lines.iter().map(state).collect();
-        let budgets = plan.targets.iter().map(|_| pace::of_target()).collect();
-        Self { plan, states, down: BTreeMap::new(), budgets, unsent: Unsent::default() }
+        let feet = plan.areas.iter().map(|_| AreaFeet::default()).collect();
+        let outbox = Outbox::new(plan.targets.len());
+        Self { plan: Arc::new(plan), states, feet, outbox }
     }
 
     /// The messages that it runs.
     #[must_use]
-    pub const fn plan(&self) -> &MessagePlan {
+    pub const fn plan(&self) -> &Arc<MessagePlan> {
         &self.plan
     }
 
     /// Everything that is down now, with the index of its target.
     pub fn is_down(&self) -> impl Iterator<Item = &(usize, Holdable)> {
-        self.down.keys()
+        self.outbox.is_down()
     }
 
     /// The numbers of messages that did not go out since the start.
     #[must_use]
     pub const fn unsent(&self) -> Unsent {
-        self.unsent
+        self.outbox.unsent
     }
 
     /// Processes an event of a control; appends orders.
@@ -100,14 +113,18 @@ impl Messenger {
             return;
         };
         if event.contact.is_some() {
-            state.foot = [event.force.0, event.position.x, event.position.y];
+            state.moment.foot = [event.force.0, event.position.x, event.position.y];
+            state.strike.peak = state.strike.peak.max(event.force.0);
         }
         if let EventKind::Changed(value) = event.kind {
-            state.value = Some(value);
+            state.moment.value = Some(value);
             state.pace.waits |= line.when == When::Value;
         }
         match event.kind {
-            EventKind::Pressed => state.held = Some(event.at),
+            EventKind::Pressed => {
+                state.held = Some(event.at);
+                state.strike = Strike { contact: event.contact, peak: event.force.0 };
+            }
             EventKind::Released | EventKind::Cancelled => state.held = None,
             _ => {}
         }
@@ -120,14 +137,27 @@ impl Messenger {
         }
     }
 
+    /// Processes the contacts of a frame.
+    pub fn contacts(&mut self, at: Instant, contacts: &[Contact], orders: &mut Vec<MessageOrder>) {
+        for (line, feet) in self.plan.areas.iter().zip(&mut self.feet) {
+            feet.frame(line, at, contacts, &mut self.outbox, orders);
+        }
+        for strike in self.states.iter_mut().map(|state| &mut state.strike) {
+            let Some(id) = strike.contact else { continue };
+            match contacts.iter().find(|contact| contact.id == id) {
+                Some(contact) => strike.peak = strike.peak.max(contact.force.0),
+                None => strike.contact = None,
+            }
+        }
+    }
+
     /// Processes the report that the controls in `held`, and no others, are held at `at`.
     pub fn held(&mut self, at: Instant, held: &[WidgetId], orders: &mut Vec<MessageOrder>) {
         for index in 0..self.states.len() {
             let is_held = self.plan.lines.get(index).is_some_and(|line| held.contains(&line.control));
-            if let Some(state) = self.states.get_mut(index) {
-                state.held = state.held.filter(|_| is_held).map(|before| before.max(at));
-            }
-            if !is_held {
+            let Some(state) = self.states.get_mut(index) else { continue };
+            state.held = state.held.filter(|_| is_held).map(|before| before.max(at));
+            if !is_held && state.sounds_until.is_none() {
                 self.come_up(index, orders);
             }
         }
@@ -138,15 +168,24 @@ impl Messenger {
         self.release_all(orders);
     }
 
-    /// Passes the time: holds without a report end, waiting values go out, the pointer moves.
+    /// Passes the time: holds without a report and notes of events end, waiting values go out, the pointer moves.
     pub fn advance(&mut self, now: Instant, orders: &mut Vec<MessageOrder>) {
         for index in 0..self.states.len() {
             let Some(state) = self.states.get_mut(index) else { continue };
+            let is_over = state.sounds_until.is_some_and(|end| now >= end);
             if state.held.is_some_and(|held| now.since(held) > SILENCE) {
                 state.held = None;
+                if state.sounds_until.is_none() {
+                    self.come_up(index, orders);
+                }
+            }
+            if is_over {
                 self.come_up(index, orders);
             }
             self.follow(index, now, orders);
+        }
+        for (line, feet) in self.plan.areas.iter().zip(&mut self.feet) {
+            feet.advance(line, (now, SILENCE), &mut self.outbox, orders);
         }
     }
 
@@ -158,66 +197,68 @@ impl Messenger {
             }
             self.come_up(index, orders);
         }
+        for (line, feet) in self.plan.areas.iter().zip(&mut self.feet) {
+            feet.leave(line, &mut self.outbox, orders);
+        }
     }
 
     /// Sends the message of an event.
     fn fire(&mut self, index: usize, now: Instant, orders: &mut Vec<MessageOrder>) {
         let (Some(line), Some(state)) = (self.plan.lines.get(index), self.states.get(index)) else { return };
-        let act = match &line.payload {
-            Payload::Key(key) => Act::Stroke(Holdable::Key(key.clone())),
-            Payload::Button(button) => Act::Stroke(Holdable::Button(*button)),
-            Payload::Wheel(steps) => Act::Wheel(*steps),
-            Payload::Osc(address, settings) => Act::Osc(address.clone(), arguments(line, state, settings)),
-            Payload::Pointer(_) => return,
-        };
-        if let Act::Stroke(what) = &act
-            && self.down.contains_key(&(line.target, what.clone()))
-        {
-            self.unsent.held += 1;
+        if let Payload::Note(_, settings) = &line.payload {
+            let ends = now + settings.length;
+            let sounds = state.is_down;
+            if !sounds && line.holdable().is_some_and(|note| self.outbox.holds(line.target, &note)) {
+                self.outbox.unsent.held += 1;
+                return;
+            }
+            // A note that still sounds is struck again.
+            self.come_up(index, orders);
+            self.go_down(index, now, orders);
+            if let Some(state) = self.states.get_mut(index) {
+                state.sounds_until = state.is_down.then_some(ends);
+            }
             return;
         }
-        let order = MessageOrder { target: line.target, control: line.control.clone(), act };
-        if self.may_send(order.target, now, STROKE) {
-            orders.push(order);
-        } else {
-            self.unsent.limited += 1;
+        let Some(act) = content::of_event(line, &state.moment) else { return };
+        if let Act::Stroke(what) = &act
+            && self.outbox.holds(line.target, what)
+        {
+            self.outbox.unsent.held += 1;
+            return;
         }
+        self.outbox.send(line.order(act), now, orders);
     }
 
     fn go_down(&mut self, index: usize, now: Instant, orders: &mut Vec<MessageOrder>) {
-        let Some(line) = self.plan.lines.get(index) else { return };
-        let (target, control) = (line.target, line.control.clone());
+        let (Some(line), Some(state)) = (self.plan.lines.get(index), self.states.get_mut(index)) else {
+            return;
+        };
         let Some(what) = line.holdable() else { return };
-        if !self.may_send(target, now, STROKE) {
-            self.unsent.limited += 1;
+        if !self.outbox.allows(line.target, now, STROKE) {
+            self.outbox.unsent.limited += 1;
             return;
         }
-        let Some(state) = self.states.get_mut(index) else { return };
         if std::mem::replace(&mut state.is_down, true) {
             return;
         }
-        let count = self.down.entry((target, what.clone())).or_default();
-        *count += 1;
-        if *count == 1 {
-            orders.push(MessageOrder { target, control, act: Act::Down(what) });
-        }
+        let velocity = match &line.payload {
+            Payload::Note(_, settings) => settings.velocity_at(state.strike.peak),
+            _ => 127,
+        };
+        self.outbox.press((line.target, what), &line.control, velocity, orders);
     }
 
     fn come_up(&mut self, index: usize, orders: &mut Vec<MessageOrder>) {
         let (Some(line), Some(state)) = (self.plan.lines.get(index), self.states.get_mut(index)) else {
             return;
         };
+        state.sounds_until = None;
         if !std::mem::take(&mut state.is_down) {
             return;
         }
         let Some(what) = line.holdable() else { return };
-        let key = (line.target, what);
-        if let Some(count) = self.down.get_mut(&key).filter(|count| **count > 1) {
-            *count -= 1;
-            return;
-        }
-        self.down.remove(&key);
-        orders.push(MessageOrder { target: key.0, control: line.control.clone(), act: Act::Up(key.1) });
+        self.outbox.lift((line.target, what), &line.control, orders);
     }
 
     /// Sends the message that follows the value, if a new one is due.
@@ -228,7 +269,7 @@ impl Messenger {
         if line.when != When::Value {
             return;
         }
-        let Some(value) = state.value else { return };
+        let Some(value) = state.moment.value else { return };
         let act = match &line.payload {
             Payload::Pointer(speed) if state.held.is_some() => {
                 let pixels = state.motion.step(now, deflection(value, line.ends), *speed);
@@ -238,67 +279,31 @@ impl Messenger {
                 state.motion.rest();
                 None
             }
-            Payload::Wheel(steps) if state.pace.is_due(now) => {
-                let step = wheel(value, line.ends[0], *steps) - state.steps;
-                if step == 0 {
-                    state.pace.sent(now);
-                }
-                (step != 0).then_some(Act::Wheel(step))
-            }
-            Payload::Osc(address, settings) if state.pace.is_due(now) => {
-                Some(Act::Osc(address.clone(), arguments(line, state, settings)))
-            }
+            _ if state.pace.is_due(now) => content::of_value(line, &state.moment, value, state.steps),
             _ => None,
         };
         let Some(act) = act else { return };
-        let order = MessageOrder { target: line.target, control: line.control.clone(), act };
+        // Values between which the message makes no difference go out once.
+        let is_old = match &act {
+            Act::Wheel(step) => *step == 0,
+            Act::Midi(_) => state.told.as_ref() == Some(&act),
+            _ => false,
+        };
+        if is_old {
+            state.pace.sent(now);
+            return;
+        }
         // A value that the rate holds back waits and goes out as the latest one; a motion is left out.
-        let passes =
-            self.budgets.get_mut(order.target).is_some_and(|budget| budget.take_many(now, 1).is_some());
-        if passes {
-            if let Act::Wheel(step) = order.act {
-                state.steps += step;
+        if self.outbox.allows(line.target, now, 1) {
+            match &act {
+                Act::Wheel(step) => state.steps += step,
+                Act::Midi(_) => state.told = Some(act.clone()),
+                _ => {}
             }
             state.pace.sent(now);
-            orders.push(order);
-        } else if matches!(order.act, Act::Move(_)) {
-            self.unsent.limited += 1;
+            orders.push(line.order(act));
+        } else if matches!(act, Act::Move(_)) {
+            self.outbox.unsent.limited += 1;
         }
     }
-
-    fn may_send(&mut self, target: usize, now: Instant, cost: u32) -> bool {
-        self.budgets.get_mut(target).is_some_and(|budget| budget.take_many(now, cost).is_some())
-    }
-}
-
-/// The arguments of an OSC message now.
-fn arguments(line: &MessageLine, state: &LineState, settings: &OscSettings) -> Vec<OscValue> {
-    let [force, x, y] = state.foot;
-    let usual: &[OscArgument] = if line.when == When::Value { &[OscArgument::Value] } else { &[] };
-    let mut values = Vec::new();
-    for argument in settings.arguments.as_deref().unwrap_or(usual) {
-        match argument {
-            OscArgument::Int(number) => values.push(OscValue::Int(*number)),
-            OscArgument::Float(number) => values.push(OscValue::Float(*number)),
-            OscArgument::Text(text) => values.push(OscValue::Text(text.clone())),
-            OscArgument::Force => values.push(OscValue::Float(force)),
-            OscArgument::X => values.push(OscValue::Float(x)),
-            OscArgument::Y => values.push(OscValue::Float(y)),
-            OscArgument::Value => values.extend(state.value.iter().flat_map(|value| {
-                let scaled = |number: f32, ends: [f32; 2]| match settings.range {
-                    Some([from, to]) => OscValue::Float(from + (to - from) * share(number, ends)),
-                    None => OscValue::Float(number),
-                };
-                let both = numbers(*value);
-                match value {
-                    Value::Pair(_) => vec![scaled(both.x, line.ends[0]), scaled(both.y, line.ends[1])],
-                    Value::Switch(_) | Value::Choice(_) if settings.range.is_none() => {
-                        vec![OscValue::Int(both.x as i32)]
-                    }
-                    _ => vec![scaled(both.x, line.ends[0])],
-                }
-            })),
-        }
-    }
-    values
 }

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::key::KeyStroke;
+use super::midi::{ControllerSettings, MidiMessage, MidiNote};
 use super::sending::MouseButton;
 use crate::widget::WidgetId;
 
@@ -13,7 +14,7 @@ use crate::widget::WidgetId;
 pub struct MessageOrder {
     /// The index of the target in [`super::MessagePlan::targets`].
     pub target: usize,
-    /// The control that gave it.
+    /// The control, or the region of the foot, that gave it.
     pub control: WidgetId,
     /// The action.
     pub act: Act,
@@ -22,8 +23,8 @@ pub struct MessageOrder {
 /// The action of an order.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub enum Act {
-    /// Goes down, and stays down until the matching [`Act::Up`].
-    Down(Holdable),
+    /// Goes down, and stays down until the matching [`Act::Up`]; with a velocity from 1 to 127, which only notes use.
+    Down(Holdable, u8),
     /// Comes up.
     Up(Holdable),
     /// Goes down and comes up at once.
@@ -32,8 +33,12 @@ pub enum Act {
     Wheel(i32),
     /// Moves the pointer by these pixels, rightwards and downwards.
     Move([i32; 2]),
+    /// Moves the pointer to this place of the screen, in shares of its width and height from the upper left corner.
+    Place([f32; 2]),
     /// An OSC message.
     Osc(String, Vec<OscValue>),
+    /// A MIDI message.
+    Midi(MidiMessage),
 }
 
 /// A thing that can be held down.
@@ -45,6 +50,12 @@ pub enum Holdable {
     Button(MouseButton),
     /// An OSC address: down sends the integer 1, up sends 0.
     Osc(String),
+    /// A note.
+    Note(MidiNote),
+    /// A MIDI controller, such as a sustain pedal: down sends its upper value, up its lower one.
+    Controller(ControllerSettings),
+    /// All notes of a MIDI channel, 1 to 16; they are only released.
+    Notes(u8),
 }
 
 /// One argument of an OSC message.
@@ -65,6 +76,20 @@ pub struct Unsent {
     pub limited: u64,
     /// A stroke of something that is held down.
     pub held: u64,
+    /// Feet that arrived where the most feet were already.
+    pub crowded: u64,
+}
+
+impl std::ops::Add for Unsent {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            limited: self.limited + other.limited,
+            held: self.held + other.held,
+            crowded: self.crowded + other.crowded,
+        }
+    }
 }
 
 impl fmt::Display for Holdable {
@@ -73,6 +98,11 @@ impl fmt::Display for Holdable {
             Self::Key(key) => write!(f, "key {key}"),
             Self::Button(button) => write!(f, "{} button", button.name()),
             Self::Osc(address) => f.write_str(address),
+            Self::Note(note) => note.fmt(f),
+            Self::Controller(ControllerSettings { channel, number, .. }) => {
+                write!(f, "controller {number} on channel {channel}")
+            }
+            Self::Notes(channel) => write!(f, "all notes on channel {channel}"),
         }
     }
 }
@@ -90,11 +120,14 @@ impl fmt::Display for OscValue {
 impl fmt::Display for Act {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Down(what) => write!(f, "{what} down"),
+            Self::Down(what @ Holdable::Note(_), velocity) => write!(f, "{what} down, velocity {velocity}"),
+            Self::Down(what, _) => write!(f, "{what} down"),
             Self::Up(what) => write!(f, "{what} up"),
             Self::Stroke(what) => write!(f, "{what}"),
             Self::Wheel(steps) => write!(f, "wheel {steps:+}"),
             Self::Move([right, down]) => write!(f, "pointer {right:+} {down:+}"),
+            Self::Place([x, y]) => write!(f, "pointer at {x:.3} {y:.3}"),
+            Self::Midi(message) => message.fmt(f),
             Self::Osc(address, values) => {
                 f.write_str(address)?;
                 values.iter().try_for_each(|value| write!(f, " {value}"))

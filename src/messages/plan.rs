@@ -1,10 +1,15 @@
-//! The messages of all controls of a layout, ready to run.
+//! The messages of all controls and regions of a layout, ready to run.
 
 use std::collections::BTreeSet;
 
-use super::order::Holdable;
+use glam::Vec2;
+
+use super::feet_settings::{ContactPayload, ContactSending};
+use super::midi::MidiNote;
+use super::order::{Act, Holdable, MessageOrder};
 use super::sending::{Payload, Sending, When};
 use super::target::SendTarget;
+use crate::floor::Rect;
 use crate::widget::{Behaviour, Value, WidgetId};
 
 /// Targets and messages of one layout.
@@ -14,6 +19,8 @@ pub struct MessagePlan {
     pub targets: Vec<SendTarget>,
     /// The messages of all controls.
     pub(super) lines: Vec<MessageLine>,
+    /// The messages of the feet in regions.
+    pub(super) areas: Vec<AreaLine>,
 }
 
 /// One message of one control.
@@ -28,18 +35,31 @@ pub(super) struct MessageLine {
     pub(super) initial: Option<Value>,
 }
 
+/// One message of the feet in one region.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct AreaLine {
+    pub(super) region: WidgetId,
+    pub(super) target: usize,
+    pub(super) area: Rect,
+    /// The controls in it, where a foot operates these.
+    pub(super) controls: Vec<Rect>,
+    /// The force in newtons at which a foot arrives.
+    pub(super) press_n: f32,
+    pub(super) payload: ContactPayload,
+}
+
 impl MessagePlan {
     /// A plan for these targets, without messages.
     #[must_use]
     pub fn new(targets: Vec<SendTarget>) -> Self {
-        Self { targets, lines: Vec::new() }
+        Self { targets, ..Self::default() }
     }
 
     /// Adds the messages of the control `id`; those for a target that is not in the plan are left out, since the
     /// reader of layouts reports them.
     pub fn add(&mut self, id: &WidgetId, behaviour: &Behaviour, sendings: &[Sending]) {
         for Sending { when, target, payload } in sendings {
-            let Some(target) = self.targets.iter().position(|it| it.name == *target) else { continue };
+            let Some(target) = self.index_of(target) else { continue };
             self.lines.push(MessageLine {
                 control: id.clone(),
                 target,
@@ -51,29 +71,79 @@ impl MessagePlan {
         }
     }
 
-    /// Whether no control sends anything.
+    /// Adds the messages of the feet on the free floor of the region `id`, which has the places `controls` in it; those
+    /// for a target that is not in the plan are left out.
+    pub fn add_region(&mut self, id: &WidgetId, area: Rect, controls: &[Rect], sendings: &[ContactSending]) {
+        for ContactSending { target, payload, press_n } in sendings {
+            let Some(target) = self.index_of(target) else { continue };
+            let (region, controls, press_n, payload) =
+                (id.clone(), controls.to_vec(), *press_n, payload.clone());
+            self.areas.push(AreaLine { region, target, area, controls, press_n, payload });
+        }
+    }
+
+    fn index_of(&self, target: &str) -> Option<usize> {
+        self.targets.iter().position(|it| it.name == *target)
+    }
+
+    /// Whether neither controls nor feet send anything.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.lines.is_empty()
+        self.lines.is_empty() && self.areas.is_empty()
     }
 
     /// Everything that these messages can hold down or stroke at each target: released before the first message.
     #[must_use]
     pub fn holdables(&self) -> BTreeSet<(usize, Holdable)> {
-        self.lines.iter().filter_map(|line| Some((line.target, line.holdable()?))).collect()
+        let of_controls = self.lines.iter().filter_map(|line| Some((line.target, line.holdable()?)));
+        let of_feet = self.areas.iter().flat_map(|line| {
+            let members = match &line.payload {
+                ContactPayload::Mpe(mpe) => mpe.feet,
+                ContactPayload::Osc(..) | ContactPayload::Pointer => 0,
+            };
+            (0..members).map(|member| (line.target, Holdable::Notes(member.saturating_add(2))))
+        });
+        of_controls.chain(of_feet).collect()
     }
 }
 
 impl MessageLine {
-    /// The key, button or address that it holds down; `None` if it holds nothing.
+    /// Everything that it holds down, or that an event lets sound; `None` if there is no such thing.
     pub(super) fn holdable(&self) -> Option<Holdable> {
         match (&self.payload, self.when) {
             (_, When::Value) => None,
             (Payload::Key(key), _) => Some(Holdable::Key(key.clone())),
             (Payload::Button(button), _) => Some(Holdable::Button(*button)),
             (Payload::Osc(address, _), When::While) => Some(Holdable::Osc(address.clone())),
+            (Payload::Note(key, settings), _) => {
+                Some(Holdable::Note(MidiNote { channel: settings.channel, key: *key }))
+            }
+            (Payload::Controller(settings), When::While) => Some(Holdable::Controller(*settings)),
             _ => None,
         }
+    }
+
+    /// The order for `act`.
+    pub(super) fn order(&self, act: Act) -> MessageOrder {
+        MessageOrder { target: self.target, control: self.control.clone(), act }
+    }
+}
+
+impl AreaLine {
+    /// Whether a foot at `point` of the floor is in the region and on no control.
+    pub(super) fn is_free(&self, point: Vec2) -> bool {
+        self.area.contains(point) && !self.controls.iter().any(|control| control.contains(point))
+    }
+
+    /// The place of `point` in the region, 0 to 1 eastwards and northwards.
+    pub(super) fn share(&self, point: Vec2) -> Vec2 {
+        let size = self.area.size().max(Vec2::splat(f32::MIN_POSITIVE));
+        ((point - self.area.min) / size).clamp(Vec2::ZERO, Vec2::ONE)
+    }
+
+    /// The order for `act`.
+    pub(super) fn order(&self, act: Act) -> MessageOrder {
+        MessageOrder { target: self.target, control: self.region.clone(), act }
     }
 }
 

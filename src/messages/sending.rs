@@ -6,6 +6,10 @@ use serde::{Deserialize, Serialize};
 use underfoot_format::Named;
 
 use super::key::KeyStroke;
+use super::midi::{
+    BendSettings, ControllerSettings, MidiNote, NoteSettings, PressureSettings, ProgramSettings,
+};
+use super::target::TargetSort;
 use super::trigger::Trigger;
 
 /// Maximum number of messages of one control (our choice).
@@ -46,6 +50,16 @@ pub enum Payload {
     Pointer(f32),
     /// An OSC message.
     Osc(String, OscSettings),
+    /// A note with this key.
+    Note(u8, NoteSettings),
+    /// A MIDI controller.
+    Controller(ControllerSettings),
+    /// A MIDI program with this number, from 0.
+    Program(u8, ProgramSettings),
+    /// Pitch bend.
+    Bend(BendSettings),
+    /// Pressure of a MIDI channel or key.
+    Pressure(PressureSettings),
 }
 
 /// The arguments of an OSC message.
@@ -74,6 +88,8 @@ pub enum OscArgument {
     X,
     /// The place of the foot northwards, in floor metres.
     Y,
+    /// The number of the foot within its region, from 0; a number that is free goes to the next foot.
+    Foot,
 }
 
 /// A button of the mouse.
@@ -121,6 +137,20 @@ impl fmt::Display for Payload {
                 write!(f, "{address} {from} to {to}")
             }
             Self::Osc(address, _) => f.write_str(address),
+            Self::Note(key, NoteSettings { channel, .. }) => MidiNote { channel: *channel, key: *key }.fmt(f),
+            Self::Controller(ControllerSettings { channel, number, .. }) => {
+                write!(f, "controller {number} on channel {channel}")
+            }
+            Self::Program(number, ProgramSettings { channel }) => {
+                write!(f, "program {number} on channel {channel}")
+            }
+            Self::Bend(BendSettings { channel, .. }) => write!(f, "bend on channel {channel}"),
+            Self::Pressure(PressureSettings { channel, key: None, .. }) => {
+                write!(f, "pressure on channel {channel}")
+            }
+            Self::Pressure(PressureSettings { channel, key: Some(key), .. }) => {
+                write!(f, "pressure of {}", MidiNote { channel: *channel, key: *key })
+            }
         }
     }
 }
@@ -140,13 +170,24 @@ impl Payload {
             Self::Wheel(_) => "Wheel",
             Self::Pointer(_) => "Pointer",
             Self::Osc(..) => "Osc",
+            Self::Note(..) => "Note",
+            Self::Controller(_) => "Cc",
+            Self::Program(..) => "Program",
+            Self::Bend(_) => "Bend",
+            Self::Pressure(_) => "Pressure",
         }
     }
 
-    /// Whether a target of keyboards, and not of OSC, receives it.
+    /// The sort of target that receives it.
     #[must_use]
-    pub const fn is_for_a_keyboard(&self) -> bool {
-        !matches!(self, Self::Osc(..))
+    pub const fn sort(&self) -> TargetSort {
+        match self {
+            Self::Key(_) | Self::Button(_) | Self::Wheel(_) | Self::Pointer(_) => TargetSort::Keyboard,
+            Self::Osc(..) => TargetSort::Osc,
+            Self::Note(..) | Self::Controller(_) | Self::Program(..) | Self::Bend(_) | Self::Pressure(_) => {
+                TargetSort::Midi
+            }
+        }
     }
 
     /// Whether it can go out at that time.
@@ -154,10 +195,11 @@ impl Payload {
     pub const fn suits(&self, when: When) -> bool {
         matches!(
             (self, when),
-            (Self::Osc(..), _)
-                | (Self::Key(_) | Self::Button(_), When::On(_) | When::While)
+            (Self::Osc(..) | Self::Controller(_), _)
+                | (Self::Key(_) | Self::Button(_) | Self::Note(..), When::On(_) | When::While)
                 | (Self::Wheel(_), When::On(_) | When::Value)
-                | (Self::Pointer(_), When::Value)
+                | (Self::Program(..), When::On(_))
+                | (Self::Pointer(_) | Self::Bend(_) | Self::Pressure(_), When::Value)
         )
     }
 }

@@ -22,6 +22,19 @@ pub enum Destination {
     Keyboard(KeyboardTarget),
     /// A program that receives OSC.
     Osc(OscTarget),
+    /// A port of MIDI.
+    Midi(MidiTarget),
+}
+
+/// The sort of a receiver: each takes messages of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TargetSort {
+    /// Keyboard and pointer.
+    Keyboard,
+    /// A program that receives OSC.
+    Osc,
+    /// A port of MIDI.
+    Midi,
 }
 
 record! {
@@ -40,6 +53,25 @@ pub struct OscTarget {
     pub address: String,
     /// The protocol below OSC.
     pub over: OscTransport,
+}
+
+/// An output port of MIDI, which synthesizers and programs connect to.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct MidiTarget {
+    /// The name of the port that this program opens; on Windows, part of the name of a port that is there.
+    pub port: String,
+    /// Part of the name of a port that it connects to by itself.
+    pub into: Option<String>,
+}
+
+impl MidiTarget {
+    /// Whether `text` can be the name of a port: 1 to 48 bytes that can be seen, without a colon.
+    #[must_use]
+    pub fn is_port(text: &str) -> bool {
+        (1..=48).contains(&text.len())
+            && !text.trim().is_empty()
+            && !text.contains(|c: char| c == ':' || c.is_control())
+    }
 }
 
 impl OscTarget {
@@ -66,12 +98,35 @@ impl Named for OscTransport {
 }
 
 impl Destination {
-    /// The sort of the receiver in messages for people.
+    /// Its sort.
     #[must_use]
-    pub const fn noun(&self) -> &'static str {
+    pub const fn sort(&self) -> TargetSort {
         match self {
-            Self::Keyboard(_) => "a keyboard",
-            Self::Osc(_) => "a receiver of OSC",
+            Self::Keyboard(_) => TargetSort::Keyboard,
+            Self::Osc(_) => TargetSort::Osc,
+            Self::Midi(_) => TargetSort::Midi,
+        }
+    }
+}
+
+impl TargetSort {
+    /// Its name in messages for people.
+    #[must_use]
+    pub const fn noun(self) -> &'static str {
+        match self {
+            Self::Keyboard => "a keyboard",
+            Self::Osc => "a receiver of OSC",
+            Self::Midi => "a MIDI port",
+        }
+    }
+
+    /// A receiver of this sort as layouts write it.
+    #[must_use]
+    pub const fn example(self) -> &'static str {
+        match self {
+            Self::Keyboard => "Keyboard",
+            Self::Osc => "Osc(\"127.0.0.1:53000\")",
+            Self::Midi => "Midi(\"underfoot\")",
         }
     }
 }

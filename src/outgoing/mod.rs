@@ -16,7 +16,7 @@ pub use area::write_area;
 pub use held::{write_alive, write_held};
 pub use osc::{
     write_contacts, write_control, write_crack, write_device, write_error, write_event, write_health,
-    write_mute, write_page,
+    write_ignored, write_mute, write_page,
 };
 pub use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM, tuio_first_frame};
 pub use tuio1::Tuio1;

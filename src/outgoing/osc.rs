@@ -2,7 +2,7 @@
 
 use rosc::{OscBundle, OscPacket, OscTime};
 
-use crate::engine::{ControlState, ValueRange};
+use crate::engine::{ControlState, IgnoredPress, ValueRange};
 use crate::feel::{DeviceStatus, Muted};
 use crate::sense::{Contact, SensorHealth};
 use crate::widget::{WidgetEvent, WidgetId};
@@ -23,6 +23,20 @@ const CONTACTS_PER_DATAGRAM: usize = 20;
 pub fn write_event(prefix: &Prefix, event: &WidgetEvent, bytes: &mut Vec<u8>) {
     let place = sent::Place { force: event.force.0, x: event.position.x, y: event.position.y };
     write(&sent::event_packet(prefix, &event.id, event.kind, place), bytes);
+}
+
+/// Writes a press that a control ignored as the OSC message `/underfoot/widget/<id>/ignored`.
+///
+/// The reason as a word ([`crate::engine::Ignored::name`]) and as a sentence (strings), then the greatest force
+/// (newtons, float) and the number of the contact (int; the greatest one for a larger number).
+pub fn write_ignored(prefix: &Prefix, press: &IgnoredPress, bytes: &mut Vec<u8>) {
+    let message = sent::Ignored {
+        reason: press.why.name().into(),
+        text: press.why.to_string(),
+        force: press.force.0,
+        contact: i32::try_from(press.contact.0).unwrap_or(i32::MAX),
+    };
+    write(&message.packet_of(prefix, &press.id), bytes);
 }
 
 /// Writes the contacts of one instant as OSC bundles and passes each datagram to `send`.
@@ -62,7 +76,7 @@ const NAMED_TILES: usize = 100;
 ///
 /// First the state of its link, a string: `waiting`, `live`, `partial` or `lost`. Then four numbers of sensors
 /// (ints): degraded, silent, faulty, and uncalibrated. Then, if boards send and no frame is usable, the cause, a
-/// string (`link: rate_low: board 0 sends 100 packets a second ...`). Then the sensors in trouble, a string each
+/// string (`link: rate_low: board 0 sends 12 packets a second ...`). Then the sensors in trouble, a string each
 /// (`tile (2, 1) sw: stuck`), eight at most.
 pub fn write_health(
     prefix: &Prefix,
@@ -216,6 +230,7 @@ mod tests {
     use rosc::{OscMessage, OscType};
 
     use super::*;
+    use crate::engine::Ignored;
     use crate::floor::{Corner, SensorId, TileId};
     use crate::sense::Trouble;
     use crate::sense::{ContactId, Covariance, Quality, TileLoad};
@@ -268,6 +283,22 @@ mod tests {
         let (address, args) = event_message(&event(EventKind::Swiped(Direction::West)));
         assert_eq!(address, "/underfoot/widget/zoom/swiped");
         assert_eq!(args, [&[OscType::String("west".into())], &place[..]].concat());
+    }
+
+    #[test]
+    fn an_ignored_press_is_a_word_a_sentence_a_force_and_a_foot() {
+        let mut bytes = Vec::new();
+        let press = IgnoredPress {
+            at: Instant::from_millis(12),
+            id: WidgetId::new("zoom"),
+            contact: ContactId(7),
+            force: Newtons(24.0),
+            why: Ignored::TooLight,
+        };
+        write_ignored(&Prefix::default(), &press, &mut bytes);
+        let words = ["too_light", "too light"].map(|text| OscType::String(text.into()));
+        let args = [&words[..], &[OscType::Float(24.0), OscType::Int(7)]].concat();
+        assert_eq!(decoded(&bytes), message("/underfoot/widget/zoom/ignored".into(), args));
     }
 
     #[test]

@@ -40,6 +40,10 @@ const NEWTONS: u8 = 1;
 const SPLIT_COUNTS: u8 = 2;
 const SPLIT_NEWTONS: u8 = 3;
 
+/// Counts with fractions, in both forms.
+const SCALED: u8 = 4;
+const SPLIT_SCALED: u8 = 5;
+
 impl Entry {
     pub(crate) const fn topic(&self) -> &'static str {
         match self {
@@ -106,9 +110,9 @@ fn plain(readings: &Readings, bytes: &mut Vec<u8>) {
             bytes.extend(present(counts).to_le_bytes());
             counts.iter().for_each(|count| bytes.extend(count.unwrap_or_default().to_le_bytes()));
         }
-        Readings::Newtons(forces) => {
-            bytes.push(NEWTONS);
-            forces.iter().for_each(|force| bytes.extend(force.to_le_bytes()));
+        Readings::Scaled(values) | Readings::Newtons(values) => {
+            bytes.push(if matches!(readings, Readings::Newtons(_)) { NEWTONS } else { SCALED });
+            values.iter().for_each(|value| bytes.extend(value.to_le_bytes()));
         }
     }
 }
@@ -123,10 +127,10 @@ fn split(readings: &Readings, bytes: &mut Vec<u8>) {
                 bytes.extend(counts.iter().map(|count| (count.unwrap_or_default() >> shift) as u8));
             }
         }
-        Readings::Newtons(forces) => {
-            bytes.push(SPLIT_NEWTONS);
+        Readings::Scaled(values) | Readings::Newtons(values) => {
+            bytes.push(if matches!(readings, Readings::Newtons(_)) { SPLIT_NEWTONS } else { SPLIT_SCALED });
             for shift in [0, 8, 16, 24] {
-                bytes.extend(forces.iter().map(|force| (force.to_bits() >> shift) as u8));
+                bytes.extend(values.iter().map(|value| (value.to_bits() >> shift) as u8));
             }
         }
     }
@@ -170,6 +174,10 @@ fn read_packet(bytes: &[u8], received: Instant) -> Option<SensorPacket> {
         NEWTONS | SPLIT_NEWTONS => {
             let forces = values(bytes, kind == SPLIT_NEWTONS)?;
             Readings::Newtons(forces.into_iter().map(f32::from_le_bytes).collect())
+        }
+        SCALED | SPLIT_SCALED => {
+            let scaled = values(bytes, kind == SPLIT_SCALED)?;
+            Readings::Scaled(scaled.into_iter().map(f32::from_le_bytes).collect())
         }
         _ => return None,
     };

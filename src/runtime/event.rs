@@ -4,6 +4,7 @@ use std::fmt;
 
 use glam::Vec2;
 
+use crate::engine::Ignored;
 use crate::sense::ContactId;
 use crate::sink::Report;
 use crate::units::{Instant, Newtons};
@@ -35,6 +36,9 @@ pub struct Event {
 pub enum Kind {
     /// A foot acted on the control [`Event::id`].
     Control(EventKind),
+    /// The control [`Event::id`] ignored a foot, which has left it now: [`Event::force`] is the greatest force, and
+    /// [`Event::message`] has the reason in a sentence.
+    Ignored(Ignored),
     /// The state of the control [`Event::id`] changed or was requested: by an app (also this app), or because a
     /// control with the guard `HoldToRun` switched off or on ([`crate::engine::ControlState::off`]).
     State,
@@ -59,6 +63,9 @@ pub enum Kind {
         /// Energy of the crack, in joules.
         energy_j: f32,
     },
+    /// The control or region [`Event::id`] gives a message to another program, which the session itself does not send:
+    /// [`Event::message`] has the name of its target and its content.
+    Message,
     /// The session has ended: nothing is held, and no more events follow.
     Ended(EndReason),
 }
@@ -69,6 +76,7 @@ impl Kind {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Control(kind) => kind.name(),
+            Self::Ignored(_) => "ignored",
             Self::State => "state",
             Self::Page => "page",
             Self::Link(_) => "link",
@@ -77,6 +85,7 @@ impl Kind {
             Self::Device => "device",
             Self::Muted => "mute",
             Self::Crack { .. } => "crack",
+            Self::Message => "sent",
             Self::Ended(_) => "ended",
         }
     }
@@ -127,7 +136,8 @@ impl Event {
         self.id.as_ref().map_or("", WidgetId::as_str)
     }
 
-    /// The error if the session ended with a failure, or the cause of [`Kind::LinkCause`]; empty otherwise.
+    /// The error if the session ended with a failure, the reason of [`Kind::Ignored`], the cause of
+    /// [`Kind::LinkCause`], or the target and content of [`Kind::Message`]; empty otherwise.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
@@ -141,6 +151,11 @@ impl Event {
                 let (contact, force, position) = (event.contact, event.force, event.position);
                 let event = Self::new(at, Some(event.id.clone()), Kind::Control(event.kind));
                 return Some(Self { contact, force, position, ..event });
+            }
+            Report::Ignored(press) => {
+                let (contact, force, message) = (Some(press.contact), press.force, press.why.to_string());
+                let event = Self::new(at, Some(press.id.clone()), Kind::Ignored(press.why));
+                return Some(Self { contact, force, message, ..event });
             }
             Report::Control(_, state) => (Some(state.id.clone()), Kind::State),
             Report::Page(shown) => (Some(shown.page.clone()), Kind::Page),
@@ -156,6 +171,10 @@ impl Event {
             Report::Crack(news) => {
                 let kind = Kind::Crack { seed: news.seed, energy_j: news.energy_j };
                 return Some(Self { position: Vec2::new(news.x_m, news.y_m), ..Self::new(at, None, kind) });
+            }
+            Report::Message(news) => {
+                let id = Some(news.order.control.clone());
+                return Some(Self { message: news.to_string(), ..Self::new(at, id, Kind::Message) });
             }
             Report::Contacts(..) | Report::Held(_) | Report::Alive(..) => return None,
             // The sink makes cracks of these.
@@ -186,7 +205,7 @@ impl Event {
             Kind::Control(kind) => {
                 matches!(kind, EventKind::Released | EventKind::Cancelled | EventKind::Disarmed)
             }
-            Kind::Crack { .. } => false,
+            Kind::Crack { .. } | Kind::Ignored(_) => false,
             _ => true,
         }
     }

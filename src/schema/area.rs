@@ -9,7 +9,7 @@ use super::fields::Fields;
 use super::node::Node;
 use super::number::plain;
 use super::units::Units;
-use crate::floor::{Geometry, Rect};
+use crate::floor::{Geometry, Rect, TileBlock};
 use underfoot_format::Codec;
 use underfoot_format::describe::{FieldDescription, FieldType};
 use underfoot_format::text::Text;
@@ -39,15 +39,20 @@ impl Area {
 
     /// The whole floor.
     pub(super) fn of_floor(geometry: &Geometry, units: Units) -> Self {
-        // Side of a tile; exactly 1 in tiles, without rounding.
-        let tile = match units {
-            Units::Tiles => 1.0,
+        Self::of_tiles(&geometry.block(), geometry, units)
+    }
+
+    /// The cells of `block`.
+    pub(super) fn of_tiles(block: &TileBlock, geometry: &Geometry, units: Units) -> Self {
+        // Sides of a cell; exactly 1 in tiles, without rounding.
+        let [width, depth] = match units {
+            Units::Tiles => [1.0; 2],
             Units::Metres => Units::Tiles.metres(geometry),
         };
-        let first = geometry.first();
+        let first = block.first;
         Self::new(
-            [first.column, first.row].map(|tiles| f64::from(tiles) * tile),
-            [geometry.columns(), geometry.rows()].map(|tiles| f64::from(tiles) * tile),
+            [f64::from(first.column) * width, f64::from(first.row) * depth],
+            [f64::from(block.columns) * width, f64::from(block.rows) * depth],
         )
     }
 
@@ -125,8 +130,8 @@ impl Area {
 
     /// Returns the same rectangle in floor metres.
     pub(super) fn in_metres(&self, geometry: &Geometry, units: Units) -> Rect {
-        let metres =
-            |point: [f64; 2]| Vec2::from(point.map(|length| (length * units.metres(geometry)) as f32));
+        let [east, north] = units.metres(geometry);
+        let metres = |[x, y]: [f64; 2]| Vec2::new((x * east) as f32, (y * north) as f32);
         Rect::new(metres(self.min), metres(self.max))
     }
 }

@@ -1,4 +1,4 @@
-//! The files of `widgets/`, `effects/` and `layouts/`, compiled in.
+//! The files of `widgets/`, `effects/`, `layouts/` and `floors/`, compiled in.
 
 /// The shipped kinds: file name and text.
 pub(super) const KINDS: [(&str, &str); 21] = [
@@ -62,6 +62,28 @@ const LAYOUTS: [(&str, &str); 8] = [
     ("surgical", include_str!("../../layouts/surgical.ron")),
     ("winter_walk", include_str!("../../layouts/winter_walk.ron")),
 ];
+
+/// The shipped floors: name and text.
+const FLOORS: [(&str, &str); 4] = [
+    ("balance_board", include_str!("../../floors/balance_board.ron")),
+    ("dance_pad", include_str!("../../floors/dance_pad.ron")),
+    ("load_cells", include_str!("../../floors/load_cells.ron")),
+    ("paper", include_str!("../../floors/paper.ron")),
+];
+
+/// Returns the names of the floors that come with underfoot, for [`builtin_floor`].
+pub fn builtin_floors() -> impl Iterator<Item = &'static str> {
+    FLOORS.iter().map(|(name, _)| *name)
+}
+
+/// Returns the text of the floor of this name that comes with underfoot; `None` if there is none.
+///
+/// It is the text of the file of that name in `floors/`, with comments. It can be read by [`super::parse_floor`] or
+/// written to a file as the start of another floor.
+#[must_use]
+pub fn builtin_floor(name: &str) -> Option<&'static str> {
+    FLOORS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
 
 /// Returns the names of the layouts that come with underfoot, for [`builtin_layout`].
 pub fn builtin_layouts() -> impl Iterator<Item = &'static str> {

@@ -10,12 +10,12 @@ use super::page::{Page, Zone};
 use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
-use crate::floor::Geometry;
+use crate::floor::{Geometry, TileBlock};
 
 /// Reports all conflicts between the parts of `page`, and between `page` and the floor.
 pub(super) fn check(reader: &Reader<'_>, page: &Page, geometry: &Geometry) {
     let floor = Area::of_floor(geometry, page.units);
-    check_zones(reader, page, &floor);
+    check_zones(reader, page, &floor, geometry);
     check_ids(reader, page);
     pages::check(reader, &page.pages, &page.controls);
     ground::check(&page.grounds, page.units, &floor, |problem| reader.report(problem));
@@ -28,7 +28,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page, geometry: &Geometry) {
     for (index, control) in page.controls.iter().enumerate() {
         let Some(place) = &control.place else { continue };
         let name = control.name();
-        let off = off_floor(page, &name, place, &floor);
+        let off = off_floor(page, &name, place, &floor).or_else(|| over_hole(page, &name, place, geometry));
         let outside = if off.is_none() { outside_region(page, &name, place) } else { None };
         let overlap = overlapping(reader, page, index, &name, place, &floor);
         for (what, problem) in [off, outside, overlap].into_iter().enumerate() {
@@ -56,7 +56,7 @@ impl Zone {
     }
 }
 
-fn check_zones(reader: &Reader<'_>, page: &Page, floor: &Area) {
+fn check_zones(reader: &Reader<'_>, page: &Page, floor: &Area, geometry: &Geometry) {
     for (index, region) in page.regions.iter().enumerate() {
         let Some(place) = &region.place else { continue };
         let name = region.named("region");
@@ -74,7 +74,8 @@ fn check_zones(reader: &Reader<'_>, page: &Page, floor: &Area) {
     }
     for stance in &page.stances {
         let Some(place) = &stance.place else { continue };
-        let off = off_floor(page, &stance.named("stance zone"), place, floor);
+        let name = stance.named("stance zone");
+        let off = off_floor(page, &name, place, floor).or_else(|| over_hole(page, &name, place, geometry));
         off.into_iter().for_each(|problem| reader.report(problem));
         let inside = |zone: &&Zone| {
             zone.place.as_ref().is_some_and(|region| region.area.shared(&place.area).is_some())
@@ -126,6 +127,16 @@ fn off_floor(page: &Page, name: &str, place: &Placed, floor: &Area) -> Option<Pr
     let expected = format!("it spans {}, the floor {floor}", place.area);
     let help = format!("places count in {} from the floor's south-west corner", page.units.name());
     Some(problem.expected(expected).help(help))
+}
+
+/// Returns the problem of a control or a stance zone over a missing tile.
+fn over_hole(page: &Page, name: &str, place: &Placed, geometry: &Geometry) -> Option<Problem> {
+    let cell = |tile| Area::of_tiles(&TileBlock { first: tile, columns: 1, rows: 1 }, geometry, page.units);
+    let missing = geometry.missing().iter().filter(|tile| geometry.index(**tile).is_some());
+    let tile = missing.copied().find(|tile| place.area.shared(&cell(*tile)).is_some())?;
+    let problem = Problem::error(place.at.clone(), format!("{name} lies over the missing tile {tile}"));
+    let expected = format!("it spans {}, the hole {}", place.area, cell(tile));
+    Some(problem.expected(expected).help("move it to where the floor has tiles"))
 }
 
 /// Returns the problem of a control that is not completely within one region.

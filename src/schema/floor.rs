@@ -6,7 +6,8 @@ use std::path::Path;
 use super::diagnostic::Diagnostics;
 use super::fields::Fields;
 use super::floor_areas::{self, AREAS, AreaRecord};
-use super::floor_codecs::{Measures, ValidTiles};
+use super::floor_codecs::ValidTiles;
+use super::floor_measures::Measures;
 use super::floor_parts::{
     ActuatorRecord, BoardRecord, LoudspeakerRecord, MapEntry, ResponseRecord, SensorRecord, all_actuators,
 };
@@ -16,9 +17,12 @@ use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
-use super::version::{self, FIRST_VERSION, FORMAT_VERSION, VERSION, WITH_SERIAL_PORTS};
+use super::version::{
+    self, FIRST_VERSION, FORMAT_VERSION, VERSION, WITH_BOARD_RATES, WITH_PLATES, WITH_SERIAL_PORTS,
+};
 use crate::floor::{
-    ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network, PortName,
+    ADDRESS, Corner, CountRange, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
+    PortName,
 };
 use underfoot_format::codec::{Distinct, Text};
 use underfoot_format::describe::Description;
@@ -78,21 +82,34 @@ fn floor(node: Node<'_>, absent: &dyn Fn(&PortName) -> Option<String>) -> Option
     let mut fields = node.fields(FloorRecord::NAME)?;
     let record = FloorRecord::read(&mut fields);
     let good = fields.are_read();
-    let serial_at = fields.value_span("serial");
+    let sides = [("tile_m", record.head.geometry.tile_m()), ("pitch_m", record.head.geometry.pitch_m())];
+    let sides = sides.into_iter().filter(|(_, sides)| sides.x != sides.y);
+    let newer = [
+        ("serial", "serial ports", WITH_SERIAL_PORTS),
+        ("sensors_m", "sensors at given places", WITH_PLATES),
+        ("missing", "missing tiles", WITH_PLATES),
+        ("plates", "plates that differ", WITH_PLATES),
+    ];
+    let sides = sides.map(|(name, _)| (name, "rectangular tiles", WITH_PLATES));
+    let newer: Vec<_> = newer
+        .into_iter()
+        .chain(sides)
+        .filter_map(|(name, things, first)| Some((fields.value_span(name)?, (things, first))))
+        .collect();
     fields.finish();
-    if let Some(at) = serial_at {
-        version::require(
-            node.reader,
-            at,
-            ("serial ports", WITH_SERIAL_PORTS),
-            ("floor", record.head.version),
-        );
+    for (at, things) in newer {
+        version::require(node.reader, at, things, ("floor", record.head.version));
     }
+    record.check_rates(node.reader);
     let floor = record.floor();
     record.check_channels(node.reader, &floor);
     floor_serial::check(node.reader, &record.parts.serial, &floor);
     floor_serial::check_ports(node.reader, &record.parts.serial, absent);
     if good {
+        let geometry = &floor.geometry;
+        let boards = record.parts.boards.iter().flatten();
+        boards.for_each(|board| board.check_sensors(node.reader, geometry));
+        record.parts.sensors.iter().for_each(|sensor| sensor.check_sensor(node.reader, geometry));
         floor_areas::check(node.reader, &floor.geometry, &record.parts.areas);
     }
     good.then_some(floor)
@@ -236,7 +253,11 @@ impl FloorRecord {
         let mut floor =
             Floor::of(self.head.geometry).with_areas(parts.areas.iter().map(AreaRecord::area).collect());
         if let Some(boards) = &parts.boards {
-            floor.boards = boards.iter().enumerate().map(|(number, board)| board.board(number)).collect();
+            floor.boards = boards
+                .iter()
+                .enumerate()
+                .map(|(number, board)| board.board(number, &floor.geometry))
+                .collect();
         }
         parts.sensors.iter().for_each(|sensor| sensor.apply(&mut floor));
         parts.maps.iter().for_each(|map| map.apply(&mut floor));
@@ -264,12 +285,23 @@ impl FloorRecord {
     pub(super) fn of(floor: &Floor) -> Self {
         let usual = Floor::of(floor.geometry).with_areas(floor.areas.clone());
         let boards = (floor.boards != usual.boards).then(|| {
-            (0..).zip(&floor.boards).map(|(number, board)| BoardRecord::of(board, number)).collect()
+            (0..)
+                .zip(&floor.boards)
+                .map(|(number, board)| BoardRecord::of(board, number, &floor.geometry))
+                .collect()
         });
         let (response, actuators) = all_actuators(floor);
         let is_usual =
             floor.actuators == usual.actuators && actuators.iter().all(|one| one.response.is_empty());
-        let version = if floor.serial.is_empty() { FIRST_VERSION } else { WITH_SERIAL_PORTS };
+        let has_rates =
+            floor.boards.iter().any(|board| board.rate_hz.is_some() || board.range != CountRange::WHOLE);
+        let needed = [
+            (has_rates, WITH_BOARD_RATES),
+            (!floor.geometry.is_square_grid(), WITH_PLATES),
+            (!floor.serial.is_empty(), WITH_SERIAL_PORTS),
+        ];
+        let needed = needed.into_iter().filter_map(|(is_used, version)| is_used.then_some(version));
+        let version = needed.max().unwrap_or(FIRST_VERSION);
         let head = FloorHeadRecord { version, geometry: floor.geometry };
         let parts = FloorPartsRecord {
             areas: floor.areas.iter().map(AreaRecord::of).collect(),
@@ -277,7 +309,7 @@ impl FloorRecord {
             key: floor.key.clone(),
             boards,
             allow: floor.allow.clone(),
-            serial: floor.serial.iter().map(SerialRecord::of).collect(),
+            serial: floor.serial.iter().map(|wire| SerialRecord::of(wire, &floor.boards)).collect(),
             noiseless: floor.noiseless,
             tared: floor.tared,
             sensors: SensorRecord::all(floor),
@@ -288,6 +320,15 @@ impl FloorRecord {
             loudspeakers: floor.loudspeakers.iter().map(LoudspeakerRecord::of).collect(),
         };
         Self { head, parts }
+    }
+
+    /// Reports rates and ranges of boards in a file of an older version.
+    fn check_rates(&self, reader: &Reader<'_>) {
+        let boards = self.parts.boards.iter().flatten();
+        for at in boards.filter_map(BoardRecord::newer_at) {
+            let things = ("rates and ranges of boards", WITH_BOARD_RATES);
+            version::require(reader, at, things, ("floor", self.head.version));
+        }
     }
 
     /// Reports loudspeakers on the channels of actuators.

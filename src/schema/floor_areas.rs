@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 
 use super::fields::Fields;
-use super::floor_codecs::{TILE, TILES, ValidTiles};
+use super::floor_codecs::{CELL, TILES, ValidTiles};
 use super::problem::Problem;
 use super::reader::Reader;
 use crate::floor::{ADDRESS, Area, Geometry, TileBlock, TileId};
@@ -16,7 +16,7 @@ record! {
     /// Unique among the floor's areas.
     id: Written<String> = "id", At(Id);
     /// Its tile in the south-west corner.
-    first: TileId = "at", TILE;
+    first: TileId = "at", CELL;
     /// Its width and depth in tiles.
     size: [u16; 2] = "size", TILES;
     /// Address on which its computer receives the packets of its boards, and those that its neighbours forward.

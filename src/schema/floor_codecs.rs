@@ -2,150 +2,13 @@
 
 use std::ops::Range;
 
-use super::fields::Fields;
 use super::node::Node;
 use super::problem::Problem;
-use crate::floor::{Corner, Geometry, GeometryError, Response, SensorId, TileId};
+use crate::floor::{Corner, Geometry, Response, SensorId, TileId};
 use underfoot_format::codec::By;
-use underfoot_format::describe::{FieldDescription, FieldType};
-use underfoot_format::text::{Entry, Text};
-use underfoot_format::{Codec, Follow, Includes, Name, Num, Opt, Record, num, record};
-
-record! {
-    /// Places of tiles and sensors.
-    struct MeasuresRecord = "Measures";
-    /// The tile in the south-west corner, if this is a part of a larger floor.
-    first: TileId = "first", FIRST => TileId::default();
-    /// Columns and rows of that larger floor.
-    whole: Option<[u16; 2]> = "whole", Opt(WHOLE) => None;
-    /// Tiles from west to east.
-    columns: u16 = "columns", SIDE => Geometry::default().columns();
-    /// Tiles from south to north.
-    rows: u16 = "rows", SIDE => Geometry::default().rows();
-    /// Side of a tile.
-    tile_m: f32 = "tile_m", num(0.05..=5.0).explicit() => Geometry::default().tile_m();
-    /// Distance between the centres of neighbouring tiles.
-    pitch_m: Option<f32> = "pitch_m", Follow { explicit: Opt(num(0.05..=10.0)), otherwise: "as `tile_m`" };
-    /// Distance from a tile's edges to its sensors.
-    inset_m: f32 = "sensor_inset_m", num(0.0..=2.5).explicit() => Geometry::default().sensor_inset_m();
-}
-
-/// The south-west corner of a part of a larger floor.
-const FIRST: By<TileId> = By {
-    shape: || FieldType::Words("(column, row), each a whole number from 0 to 4095"),
-    read: |node, ()| {
-        node.tuple("(column, row)").and_then(|[column, row]| tile(column, row, [0..FIRST_END, 0..FIRST_END]))
-    },
-    write: TILE.write,
-    stand_in: TILE.stand_in,
-};
-
-/// Columns and rows of the larger floor.
-const WHOLE: By<[u16; 2]> = By {
-    shape: || FieldType::Words("(columns, rows), each a whole number from 1 to 4351"),
-    read: |node, ()| {
-        let sides = node.tuple::<2>("(columns, rows)")?;
-        let [columns, rows] = sides.map(|side| side.whole(1..=WHOLE_MOST.into()));
-        Some([columns? as u16, rows? as u16])
-    },
-    ..TILES
-};
-
-const WHOLE_MOST: u16 = Geometry::FARTHEST + Geometry::MAX_SIDE;
-
-const FIRST_END: u16 = Geometry::FARTHEST + 1;
-
-const SIDE: Num = num(1.0..=Geometry::MAX_SIDE as f64).explicit();
-
-/// The measures of a floor among its fields.
-pub(super) struct Measures;
-
-impl Codec<Geometry> for Measures {
-    type Context = ();
-
-    fn read(&self, node: Node<'_>, _: Option<&Geometry>, context: &()) -> Option<Geometry> {
-        node.record(None, context).map(|record: MeasuresRecord| record.built().unwrap_or_default())
-    }
-
-    fn write(&self, geometry: &Geometry) -> Text {
-        let mut entries = Vec::new();
-        self.write_field(geometry, "", None, &mut entries);
-        Text::Record(MeasuresRecord::NAME, entries)
-    }
-
-    fn shape(&self) -> FieldType {
-        FieldType::Record(MeasuresRecord::describe)
-    }
-
-    fn stand_in(&self) -> Geometry {
-        Geometry::default()
-    }
-
-    fn read_field(
-        &self,
-        fields: &mut Fields<'_>,
-        name: &'static str,
-        _: Option<&Geometry>,
-        _: Option<Geometry>,
-        context: &(),
-    ) -> Geometry {
-        let record = MeasuresRecord::read_fields(fields, None, context);
-        let built = fields.are_read().then(|| record.built()).and_then(|built| {
-            built
-                .map_err(|error| {
-                    let field = match error {
-                        GeometryError::Grid { .. } => "columns",
-                        GeometryError::Tile(_) => "tile_m",
-                        GeometryError::Pitch(_) => "pitch_m",
-                        GeometryError::Inset(_) => "sensor_inset_m",
-                    };
-                    let problem = Problem::error(fields.span(field), error.to_string());
-                    fields.report(problem.expected("no such floor can be built"));
-                    fields.fail(name);
-                })
-                .ok()
-        });
-        // After invalid measures, reading continues with those of the paper.
-        built.unwrap_or_default()
-    }
-
-    fn write_field(
-        &self,
-        geometry: &Geometry,
-        _: &'static str,
-        _: Option<Geometry>,
-        entries: &mut Vec<Entry>,
-    ) {
-        let record = MeasuresRecord {
-            first: geometry.first(),
-            whole: Some(geometry.whole()).filter(|whole| *whole != geometry.least_whole()).map(Into::into),
-            columns: geometry.columns(),
-            rows: geometry.rows(),
-            tile_m: geometry.tile_m(),
-            pitch_m: Some(geometry.pitch_m()),
-            inset_m: geometry.sensor_inset_m(),
-        };
-        record.write_fields(entries);
-    }
-
-    fn describe_field(
-        &self,
-        _: &'static str,
-        _: &[&str],
-        _: Option<Geometry>,
-        fields: &mut Vec<FieldDescription>,
-    ) {
-        fields.extend(MeasuresRecord::describe().fields);
-    }
-}
-
-impl MeasuresRecord {
-    fn built(&self) -> Result<Geometry, GeometryError> {
-        let Self { first, whole, columns, rows, tile_m, pitch_m, inset_m } = *self;
-        let built = Geometry::new(columns, rows, tile_m, pitch_m.unwrap_or(tile_m), inset_m);
-        built.map(|geometry| geometry.beginning_at(first).within(whole.unwrap_or_default().into()))
-    }
-}
+use underfoot_format::describe::FieldType;
+use underfoot_format::text::Text;
+use underfoot_format::{Codec, Includes, Name};
 
 /// The tiles that are valid in a file: those on the floor, or all if its geometry could not be read.
 #[derive(Clone, Copy)]
@@ -158,15 +21,65 @@ impl Includes<Self> for ValidTiles {
 }
 
 impl ValidTiles {
-    fn tile(self, column: Node<'_>, row: Node<'_>) -> Option<TileId> {
+    /// Reads a cell of the grid, with or without a tile.
+    fn cell(self, column: Node<'_>, row: Node<'_>) -> Option<TileId> {
         let block = self.0.map(|geometry| geometry.block());
-        let any = 0..FIRST_END + Geometry::MAX_SIDE;
+        let any = 0..Geometry::FARTHEST + 1 + Geometry::MAX_SIDE;
         tile(column, row, block.map_or([any.clone(), any], |block| [block.column_range(), block.row_range()]))
+    }
+
+    fn tile(self, column: Node<'_>, row: Node<'_>) -> Option<TileId> {
+        let tile = self.cell(column, row)?;
+        if self.0.is_some_and(|geometry| geometry.is_missing(tile)) {
+            let problem = Problem::error(column.span(), format!("tile {tile} is missing on this floor"));
+            let problem = problem.expected("expected a tile of the floor");
+            column.report(problem.help("`missing` lists the cells without a tile"));
+            return None;
+        }
+        Some(tile)
+    }
+
+    /// Reads the name or the number of a sensor, whichever the floor's sensors have.
+    fn sensor(self, node: Node<'_>) -> Option<SensorName> {
+        let numbered = self.0.map_or(node.peek_number().is_some(), |geometry| !geometry.has_corners());
+        if numbered {
+            return node
+                .whole(0..=3)
+                .map(|number| SensorName { sensor: Corner::ALL[number as usize], numbered });
+        }
+        Name.read(node, None, &()).map(|sensor| SensorName { sensor, numbered })
     }
 }
 
+/// A sensor of a tile as files write it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SensorName {
+    pub(super) sensor: Corner,
+    /// Whether it has a number, since the file gives its place, instead of the name of a corner.
+    numbered: bool,
+}
+
+impl SensorName {
+    /// The name of `sensor` on a floor of this `geometry`.
+    pub(super) fn of(sensor: Corner, geometry: &Geometry) -> Self {
+        Self { sensor, numbered: !geometry.has_corners() }
+    }
+
+    fn text(&self) -> Text {
+        if self.numbered { Text::Whole(self.sensor.index() as i64) } else { Name.write(&self.sensor) }
+    }
+}
+
+/// A sensor of a tile, by name or number.
+pub(super) const SENSOR: By<SensorName, ValidTiles> = By {
+    shape: || FieldType::Words("Sw, Se, Nw or Ne; 0 to 3 where `sensors_m` gives the places of sensors"),
+    read: |node, valid| valid.sensor(node),
+    write: SensorName::text,
+    stand_in: || SensorName { sensor: Corner::SouthWest, numbered: false },
+};
+
 /// Reads a tile within these columns and rows.
-fn tile(column: Node<'_>, row: Node<'_>, [columns, rows]: [Range<u16>; 2]) -> Option<TileId> {
+pub(super) fn tile(column: Node<'_>, row: Node<'_>, [columns, rows]: [Range<u16>; 2]) -> Option<TileId> {
     let number = |name, node: Node<'_>, range: Range<u16>| {
         Node { name, ..node }.whole(range.start.into()..=u32::from(range.end) - 1)
     };
@@ -185,7 +98,16 @@ pub(super) const TILE: By<TileId, ValidTiles> = By {
     stand_in: TileId::default,
 };
 
-fn whole(numbers: [u16; 2]) -> Vec<Text> {
+/// A cell of the grid, with or without a tile, as `(column, row)`.
+pub(super) const CELL: By<TileId, ValidTiles> = By {
+    read: |node, valid| {
+        let [column, row] = node.tuple("(column, row)")?;
+        valid.cell(column, row)
+    },
+    ..TILE
+};
+
+pub(super) fn whole(numbers: [u16; 2]) -> Vec<Text> {
     numbers.into_iter().map(|number| Text::Whole(number.into())).collect()
 }
 
@@ -201,8 +123,26 @@ pub(super) const TILES: By<[u16; 2]> = By {
     stand_in: || [1, 1],
 };
 
+/// The sensor on a channel of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ChannelSensor {
+    tile: TileId,
+    name: SensorName,
+}
+
+impl ChannelSensor {
+    /// The name of `sensor` on a floor of this `geometry`.
+    pub(super) fn of(sensor: SensorId, geometry: &Geometry) -> Self {
+        Self { tile: sensor.tile, name: SensorName::of(sensor.corner, geometry) }
+    }
+
+    pub(super) const fn id(self) -> SensorId {
+        SensorId { tile: self.tile, corner: self.name.sensor }
+    }
+}
+
 /// The sensor on a channel, as `(column, row, corner)`, or `None`.
-pub(super) const CHANNEL: By<Option<SensorId>, ValidTiles> = By {
+pub(super) const CHANNEL: By<Option<ChannelSensor>, ValidTiles> = By {
     shape: || FieldType::Words("(column, row, Sw), or None for a channel without a sensor"),
     read: |node, valid| {
         if node.is_none() {
@@ -210,13 +150,13 @@ pub(super) const CHANNEL: By<Option<SensorId>, ValidTiles> = By {
         }
         let [column, row, name] = node.tuple("(column, row, corner)")?;
         let tile = valid.tile(column, row);
-        let corner: Option<Corner> = Name.read(Node { name: "corner", ..name }, None, &());
-        Some(Some(SensorId { tile: tile?, corner: corner? }))
+        let name = valid.sensor(Node { name: "corner", ..name });
+        Some(Some(ChannelSensor { tile: tile?, name: name? }))
     },
     write: |sensor| {
-        sensor.map_or(Text::Nothing, |SensorId { tile, corner }| {
+        sensor.map_or(Text::Nothing, |ChannelSensor { tile, name }| {
             let mut values = whole([tile.column, tile.row]);
-            values.push(Name.write(&corner));
+            values.push(name.text());
             Text::Tuple(values)
         })
     },

@@ -3,10 +3,14 @@
 use glam::Vec2;
 
 use super::fields::Fields;
-use super::floor_codecs::{CHANNEL as SENSOR_OF_CHANNEL, Points, TILE, Table, ValidTiles};
+use super::floor_codecs::{
+    CHANNEL as SENSOR_OF_CHANNEL, ChannelSensor, Points, SENSOR, SensorName, TILE, Table, ValidTiles,
+};
+use super::problem::Problem;
+use super::reader::Reader;
 use crate::floor::{
-    Actuator, Board, Calibration, CalibrationRecord, Corner, DAY, Day, Floor, Loudspeaker, MapRecord,
-    PositionMap, Response, SensorId, TileId,
+    Actuator, Board, Calibration, CalibrationRecord, Corner, CountRange, CountSign, DAY, Day, Floor,
+    Geometry, Loudspeaker, MapRecord, PositionMap, Response, SensorId, TileId,
 };
 use crate::units::Newtons;
 use crate::wire::MAX_CHANNELS;
@@ -18,12 +22,18 @@ record! {
     pub(super) struct BoardRecord = "Board" with ValidTiles => BoardRecord::rules;
     /// OSC address of its packets; by default `/underfoot/board/` and its number, from 0.
     address: Option<String> = "address", Opt(ADDRESS) => None;
-    /// Tiles, each with four channels in the order sw, se, nw, ne.
+    /// Tiles, each with a channel for each of its sensors, in the order sw, se, nw, ne or of `sensors_m`.
     tiles: Option<Vec<Written<TileId>>> = "tiles",
         Opt(list("tile", MAX_CHANNELS / Corner::ALL.len(), At(TILE))) => None;
     /// The sensor on each channel, in the order of the packet's arguments.
-    channels: Option<Vec<Written<Option<SensorId>>>> = "channels",
+    channels: Option<Vec<Written<Option<ChannelSensor>>>> = "channels",
         Opt(list("channel", MAX_CHANNELS, At(SENSOR_OF_CHANNEL))) => None;
+    /// Packets a second; they are measured if it is not written.
+    rate_hz: Option<Written<f32>> = "rate_hz", Opt(At(num(10.0..=4000.0))) => None;
+    /// The greatest count, at the converter's full voltage: 1023 with 10 bits, 16777215 with 24 bits.
+    full_scale: Option<Written<u32>> = "full_scale", Opt(At(num(1.0..=CountRange::MOST as f64))) => None;
+    /// The sign of the counts.
+    counts: Option<Written<CountSign>> = "counts", Opt(At(Name)) => None;
 }
 
 /// A literal OSC address, without pattern characters.
@@ -68,47 +78,109 @@ impl BoardRecord {
             let address = board.address.clone().unwrap_or_else(|| usual_address(number));
             seen.check(fields, format!("the address {address}"), fields.span("address"));
         }
-        for (sensor, span) in board.sensors() {
+        for (sensor, span) in board.sensors(|_| &Corner::ALL) {
             if let Some(sensor) = sensor {
                 seen.check(fields, format!("the sensor of {sensor}"), span);
             }
         }
     }
 
-    /// Returns the sensor of each channel, and its place in the text.
-    fn sensors(&self) -> Vec<(Option<SensorId>, std::ops::Range<usize>)> {
+    /// Returns the sensor of each channel, and its place in the text; `under` returns the sensors of a tile.
+    fn sensors(
+        &self,
+        under: impl Fn(TileId) -> &'static [Corner],
+    ) -> Vec<(Option<SensorId>, std::ops::Range<usize>)> {
         let of_tile = |tile: &Written<TileId>| {
-            Corner::ALL.map(|corner| (Some(SensorId { tile: tile.value, corner }), tile.at.clone()))
+            let (id, at) = (tile.value, tile.at.clone());
+            under(id).iter().map(move |&corner| (Some(SensorId { tile: id, corner }), at.clone()))
         };
         match (&self.tiles, &self.channels) {
             (Some(tiles), None) => tiles.iter().flat_map(of_tile).collect(),
             (None, Some(channels)) => {
-                channels.iter().map(|channel| (channel.value, channel.at.clone())).collect()
+                let id = |channel: &Written<Option<ChannelSensor>>| channel.value.map(ChannelSensor::id);
+                channels.iter().map(|channel| (id(channel), channel.at.clone())).collect()
             }
             _ => Vec::new(),
         }
     }
 
-    /// Makes the board with this number.
-    pub(super) fn board(&self, number: usize) -> Board {
+    /// Makes the board with this number on a floor of this `geometry`.
+    pub(super) fn board(&self, number: usize, geometry: &Geometry) -> Board {
         let address = self.address.clone().unwrap_or_else(|| usual_address(number));
-        Board { address, channels: self.sensors().into_iter().map(|(sensor, _)| sensor).collect() }
+        let sensors = self.sensors(|tile| geometry.sensors(tile));
+        let channels = sensors.into_iter().map(|(sensor, _)| sensor).collect();
+        let sign = self.counts.as_ref().map_or(CountSign::Unsigned, |sign| sign.value);
+        let usual = CountRange { full_scale: CountRange::usual(sign), sign };
+        let range =
+            self.full_scale.as_ref().map_or(usual, |full| CountRange { full_scale: full.value, sign });
+        Board { rate_hz: self.rate_hz.as_ref().map(|hz| hz.value), range, ..Board::new(address, channels) }
     }
 
-    pub(super) fn of(board: &Board, number: usize) -> Self {
-        let address = (board.address != usual_address(number)).then(|| board.address.clone());
-        // Tiles with all four sensors in the usual order are written as whole tiles.
-        let whole = |four: &[Option<SensorId>]| {
-            let tile = four.first().copied().flatten()?.tile;
-            let usual = Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
-            (four == usual).then_some(tile.into())
-        };
-        let tiles: Option<Vec<Written<TileId>>> =
-            board.channels.chunks(Corner::ALL.len()).map(whole).collect();
-        let channels = board.channels.iter().map(|sensor| (*sensor).into());
-        let channels = tiles.is_none().then(|| channels.collect());
-        Self { address, tiles, channels }
+    /// The place of its first field that needs a newer version of the format.
+    pub(super) fn newer_at(&self) -> Option<std::ops::Range<usize>> {
+        let rate = self.rate_hz.as_ref().map(|rate| rate.at.clone());
+        let full_scale = self.full_scale.as_ref().map(|full_scale| full_scale.at.clone());
+        let counts = self.counts.as_ref().map(|counts| counts.at.clone());
+        rate.or(full_scale).or(counts)
     }
+
+    /// Reports channels of sensors that a plate on three legs does not have.
+    pub(super) fn check_sensors(&self, reader: &Reader<'_>, geometry: &Geometry) {
+        for (sensor, at) in self.sensors(|tile| geometry.sensors(tile)) {
+            check_sensor(reader, geometry, sensor, at);
+        }
+    }
+
+    pub(super) fn of(board: &Board, number: usize, geometry: &Geometry) -> Self {
+        let address = (board.address != usual_address(number)).then(|| board.address.clone());
+        let tiles = whole_tiles(&board.channels, geometry);
+        let written =
+            |sensor: &Option<SensorId>| sensor.map(|sensor| ChannelSensor::of(sensor, geometry)).into();
+        let channels = tiles.is_none().then(|| board.channels.iter().map(written).collect());
+        let CountRange { full_scale, sign } = board.range;
+        Self {
+            address,
+            tiles,
+            channels,
+            rate_hz: board.rate_hz.map(Written::from),
+            full_scale: (full_scale != CountRange::usual(sign)).then(|| full_scale.into()),
+            counts: (sign != CountSign::Unsigned).then(|| sign.into()),
+        }
+    }
+}
+
+/// Returns the tiles on some channels; `None` unless each has all of its sensors, in the usual order.
+fn whole_tiles(mut channels: &[Option<SensorId>], geometry: &Geometry) -> Option<Vec<Written<TileId>>> {
+    let mut tiles = Vec::new();
+    while let Some(first) = channels.first() {
+        let tile = (*first)?.tile;
+        let usual = geometry.sensors(tile);
+        let (own, rest) = channels.split_at_checked(usual.len().max(1))?;
+        let is_usual =
+            |(&corner, sensor): (&Corner, &Option<SensorId>)| *sensor == Some(SensorId { tile, corner });
+        if usual.is_empty() || !usual.iter().zip(own).all(is_usual) {
+            return None;
+        }
+        tiles.push(tile.into());
+        channels = rest;
+    }
+    Some(tiles)
+}
+
+/// Reports a sensor at `at` that its tile does not have.
+fn check_sensor(
+    reader: &Reader<'_>,
+    geometry: &Geometry,
+    sensor: Option<SensorId>,
+    at: std::ops::Range<usize>,
+) {
+    let Some(SensorId { tile, corner }) = sensor else { return };
+    let sensors = geometry.sensors(tile);
+    if sensors.is_empty() || sensors.contains(&corner) {
+        return;
+    }
+    let message = format!("the plate of tile {tile} has no sensor {}", corner.index());
+    reader.report(Problem::error(at, message).expected("expected a sensor from 0 to 2"));
 }
 
 record! {
@@ -118,8 +190,8 @@ record! {
     };
     /// The tile above it.
     tile: TileId = "tile", TILE;
-    /// The corner of the tile.
-    corner: Corner = "corner", Name;
+    /// The corner of the tile, or the sensor's number in `sensors_m`.
+    corner: Written<SensorName> = "corner", At(SENSOR);
     /// The law that converts its voltage to newtons.
     law: Calibration = "law", Beside => Calibration::NOMINAL;
     /// Its reading on the empty floor.
@@ -132,11 +204,18 @@ record! {
 
 impl SensorRecord {
     pub(super) fn id(&self) -> SensorId {
-        SensorId { tile: self.tile, corner: self.corner }
+        SensorId { tile: self.tile, corner: self.corner.value.sensor }
+    }
+
+    /// Reports a sensor that its tile does not have.
+    pub(super) fn check_sensor(&self, reader: &Reader<'_>, geometry: &Geometry) {
+        check_sensor(reader, geometry, Some(self.id()), self.corner.at.clone());
     }
 
     pub(super) fn apply(&self, floor: &mut Floor) {
-        let (Some(tile), corner) = (floor.geometry.index(self.tile), self.corner.index()) else { return };
+        let (Some(tile), corner) = (floor.geometry.index(self.tile), self.id().corner.index()) else {
+            return;
+        };
         let record = self.calibrated.zip(self.residual);
         let record = record.map(|(day, residual)| CalibrationRecord { day, residual });
         if let (Some(laws), Some(tares), Some(records)) = (
@@ -152,12 +231,12 @@ impl SensorRecord {
     pub(super) fn all(floor: &Floor) -> Vec<Self> {
         let tiles = floor.calibration.iter().zip(&floor.tare).zip(&floor.calibration_records);
         let sensors = floor.geometry.tiles().zip(tiles).flat_map(|(tile, ((laws, tares), records))| {
-            Corner::ALL.map(|corner| {
+            floor.geometry.sensors(tile).iter().map(move |&corner| {
                 let index = corner.index();
                 let record = records[index];
                 Self {
                     tile,
-                    corner,
+                    corner: SensorName::of(corner, &floor.geometry).into(),
                     law: laws[index],
                     tare: tares[index],
                     calibrated: record.map(|record| record.day),

@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use super::problem::Problem;
 use super::reader::Reader;
-use crate::floor::{Board, Floor, PORT, PortName, RequestEnd, SerialWire, TextLines, TextNumbers};
+use crate::floor::{
+    Board, CountRange, Floor, PORT, PortName, RequestEnd, SerialWire, TextLines, TextNumbers,
+};
 use crate::wire::MAX_CHANNELS;
 use underfoot_format::codec::{At, Distinct, Spelled, Written};
 use underfoot_format::{Flag, Name, Opt, Rec, list, num, record};
@@ -45,7 +47,7 @@ record! {
         Opt(list("column", MAX_CHANNELS, At(num(1.0..=MOST_COLUMNS as f64)))) => None;
     /// Number of columns of a line, if more follow the last one of `columns`.
     width: Option<Written<u8>> = "width", Opt(At(num(1.0..=MOST_COLUMNS as f64))) => None;
-    /// The count at the converter's full voltage: 1023 with 10 bits, 65535 by default.
+    /// The count at the converter's full voltage: 1023 with 10 bits; by default that of the board.
     full_scale: Option<f32> = "full_scale", Opt(num(1.0..=16_777_215.0)) => None;
     /// Whether the numbers are newtons instead of counts.
     newtons: bool = "newtons", Flag => false;
@@ -101,18 +103,20 @@ impl SerialRecord {
         }
     }
 
-    pub(super) fn of(wire: &SerialWire) -> Self {
+    pub(super) fn of(wire: &SerialWire, boards: &[Board]) -> Self {
         Self {
             port: wire.port.clone().map(Written::from),
             baud: wire.baud,
-            lines: wire.lines.as_ref().map(|lines| LinesRecord::of(lines).into()),
+            lines: wire.lines.as_ref().map(|lines| LinesRecord::of(lines, boards).into()),
         }
     }
 }
 
 impl LinesRecord {
     fn format(&self, boards: &[Board]) -> TextLines {
-        let channels = boards.get(usize::from(self.board.value)).map_or(0, |board| board.channels.len());
+        let board = boards.get(usize::from(self.board.value));
+        let channels = board.map_or(0, |board| board.channels.len());
+        let range = board.map_or(CountRange::WHOLE, |board| board.range);
         let written =
             self.columns.as_ref().map(|columns| columns.iter().map(|column| column.value).collect());
         let columns: Vec<u8> = written.unwrap_or_else(|| (1..).take(channels).collect());
@@ -126,16 +130,22 @@ impl LinesRecord {
             columns,
             numbers: match self.newtons {
                 true => TextNumbers::Newtons,
-                false => TextNumbers::Counts(self.full_scale.unwrap_or(FULL_SCALE)),
+                false => TextNumbers::Counts {
+                    full_scale: self.full_scale.unwrap_or(range.full_scale as f32),
+                    sign: range.sign,
+                },
             },
         }
     }
 
-    fn of(lines: &TextLines) -> Self {
+    fn of(lines: &TextLines, boards: &[Board]) -> Self {
         let (request, request_end) = RequestEnd::split(&lines.request);
+        let range = boards.get(usize::from(lines.board)).map_or(CountRange::WHOLE, |board| board.range);
         let full_scale = match lines.numbers {
-            TextNumbers::Counts(full_scale) if full_scale != FULL_SCALE => Some(full_scale),
-            TextNumbers::Counts(_) | TextNumbers::Newtons => None,
+            TextNumbers::Counts { full_scale, .. } => {
+                Some(full_scale).filter(|full_scale| *full_scale != range.full_scale as f32)
+            }
+            TextNumbers::Newtons => None,
         };
         let last = lines.columns.iter().max();
         Self {
@@ -180,9 +190,6 @@ impl LinesRecord {
         }
     }
 }
-
-/// The greatest count of a converter whose range is not written, as in OSC.
-const FULL_SCALE: f32 = u16::MAX as f32;
 
 /// The place of the number of the board, or the start of its lines if the number is not written.
 fn board_place(lines: &Written<LinesRecord>) -> Range<usize> {
@@ -238,6 +245,7 @@ pub(super) fn check_ports(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::floor::CountSign;
     use crate::schema::{parse_floor, write_floor};
 
     fn read(ports: &str) -> Floor {
@@ -277,7 +285,7 @@ mod tests {
             separators: " ,".into(),
             columns: (1..=8).collect(),
             width: 8,
-            numbers: TextNumbers::Counts(1023.0),
+            numbers: TextNumbers::Counts { full_scale: 1023.0, sign: CountSign::Unsigned },
         };
         let own = TextLines {
             board: 0,

@@ -5,7 +5,10 @@ use crate::floor::{Floor, LawKind};
 use underfoot_format::text::Text;
 
 /// Comments above each field, and the comment in place of a field that is not written.
-const COMMENTS: [(&str, &[&str], Option<&str>); 13] = [
+const COMMENTS: [(&str, &[&str], Option<&str>); 16] = [
+    ("sensors_m", &["Where the sensors are under each plate, from its centre: (east, north)."], None),
+    ("missing", &["Cells of the grid without a tile."], None),
+    ("plates", &["Plates that differ from the others."], None),
     ("areas", &["The parts of the floor that a computer of its own serves."], None),
     ("gateway", &["Where the computer that joins them listens."], None),
     (
@@ -47,7 +50,7 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 13] = [
 ];
 
 /// Lists that stand on one line.
-const ON_ONE_LINE: [&str; 2] = ["allow", "response_db"];
+const ON_ONE_LINE: [&str; 3] = ["sensors_m", "allow", "response_db"];
 
 /// Writes the file that describes `floor`, with comments; [`super::parse_floor`] reads the same floor from it.
 ///

@@ -17,11 +17,13 @@ use super::inherit::{Choice, OWN_KINDS, OwnKinds};
 use super::kind::Kinds;
 use super::lists::MAX_WIDGETS;
 use super::pages::{PAGES, PageRecord};
+use super::send_contacts::CONTACTS;
 use super::targets::{TARGETS, TargetRecord};
 use super::units::Units;
 use super::version::VERSION;
 use crate::feel::{Effects, NamedEffect};
 use crate::layout::CursorRule;
+use crate::messages::ContactSending;
 use underfoot_format::codec::{At, Distinct, Written};
 use underfoot_format::describe::Description;
 use underfoot_format::{Codec, Id, Name, Record, Text, record};
@@ -90,6 +92,8 @@ record! {
     pub(super) place: Option<Placed> = "at", Place;
     /// The contacts in it that operate its controls.
     pub(super) cursor: CursorRule = "cursor", Name => CursorRule::default();
+    /// The messages of the feet on its free floor.
+    pub(super) send: Vec<Written<ContactSending>> = "send", CONTACTS => Vec::new();
 }
 
 record! {

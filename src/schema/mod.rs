@@ -35,7 +35,9 @@ mod effect;
 mod floor;
 mod floor_areas;
 mod floor_codecs;
+mod floor_measures;
 mod floor_parts;
+mod floor_plates;
 mod floor_serial;
 mod floor_text;
 mod ground;
@@ -55,6 +57,8 @@ mod save;
 mod send;
 mod send_checks;
 mod send_codecs;
+mod send_contacts;
+mod send_midi;
 #[cfg(feature = "save")]
 mod state;
 mod targets;
@@ -70,7 +74,7 @@ use underfoot_format::{diagnostic, fields, file, node, number, pairs, problem, r
 
 pub use crate::feel::{Effects, NamedEffect};
 pub use ahap::{AhapError, read_ahap, write_ahap};
-pub use builtin::{builtin_layout, builtin_layouts};
+pub use builtin::{builtin_floor, builtin_floors, builtin_layout, builtin_layouts};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use effect::parse_effect;
 pub use floor::{load_floor, load_floor_with_ports, parse_floor, parse_floor_with_ports};
@@ -83,6 +87,7 @@ pub use places::Places;
 pub use reference::{Chapter, reference, write_reference};
 #[cfg(feature = "save")]
 pub use save::{SaveError, Saved, save_floor, save_text, write_over};
+pub use send::written_messages;
 #[cfg(feature = "save")]
 pub use state::usual_state;
 pub use underfoot_format::describe::{Description, FieldDescription, FieldType};

@@ -23,6 +23,7 @@ use super::version;
 use crate::feel::Effects;
 use crate::floor::Geometry;
 use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
+use crate::messages::ContactSending;
 use crate::widget::WidgetId;
 use underfoot_format::codec::Written;
 
@@ -149,6 +150,8 @@ pub(super) struct Zone {
     pub(super) name: Written<String>,
     pub(super) place: Option<Placed>,
     cursor: CursorRule,
+    /// Its messages of feet, with their places.
+    pub(super) send: Vec<Written<ContactSending>>,
 }
 
 impl Page {
@@ -173,9 +176,10 @@ impl Page {
             let own = page.grounds.drain(..);
             grounds.extend(own.map(|ground| ground.on_page(number)));
         }
-        let zone = |name, place, cursor| Zone { name, place, cursor };
-        let regions = regions.into_iter().map(|it| zone(it.id, it.place, it.cursor)).collect();
-        let stances = stances.into_iter().map(|it| zone(it.label, it.place, CursorRule::default())).collect();
+        let zone = |name, place, cursor, send| Zone { name, place, cursor, send };
+        let regions = regions.into_iter().map(|it| zone(it.id, it.place, it.cursor, it.send)).collect();
+        let stances = stances.into_iter();
+        let stances = stances.map(|it| zone(it.label, it.place, CursorRule::default(), Vec::new())).collect();
         let page = Self {
             version,
             title,
@@ -205,7 +209,8 @@ impl Page {
         let units = self.units;
         let regions = self.regions.iter().map(|zone| {
             let area = zone.place.as_ref()?.area.in_metres(geometry, units);
-            Some(Region { id: zone.name.value.clone(), area, cursor: zone.cursor })
+            let send = zone.send.iter().map(|sending| sending.value.clone()).collect();
+            Some(Region { id: zone.name.value.clone(), area, cursor: zone.cursor, send })
         });
         let stances = self.stances.iter().map(|zone| {
             Some(Stance {

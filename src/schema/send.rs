@@ -6,6 +6,7 @@
 use super::node::Node;
 use super::problem::Problem;
 use super::send_codecs::{OscSettingsRecord, PointerRecord, WheelRecord, write_osc};
+use super::send_midi;
 use super::suggest::nearest;
 use crate::messages::{KeyStroke, MAX_MESSAGES, MouseButton, OscArgument, Payload, Sending, Trigger, When};
 use underfoot_format::codec::{By, List, Written};
@@ -84,7 +85,11 @@ fn read(node: Node<'_>, fill: &Fill<'_>) -> Option<Sending> {
         let help = match payload {
             Payload::Pointer(_) => "the pointer follows a value: Value(Pointer(...))",
             Payload::Wheel(_) => "the wheel has no state: On(..., Wheel(...)) or Value(Wheel(...))",
-            _ => "a key or a button is pressed by On(...) or While(...)",
+            Payload::Bend(_) | Payload::Pressure(_) => {
+                "it follows a value: Value(Bend(...)), Value(Pressure(...))"
+            }
+            Payload::Program(..) => "a program is chosen at an event: On(clicked, Program(...))",
+            _ => "a key, a button or a note is pressed by On(...) or While(...)",
         };
         message.report(problem.expected("expected another kind of message").help(help));
         return None;
@@ -94,7 +99,8 @@ fn read(node: Node<'_>, fill: &Fill<'_>) -> Option<Sending> {
 
 /// Reads the target and the content of a message.
 fn payload(node: Node<'_>, when: When, fill: &Fill<'_>) -> Option<(String, Payload)> {
-    let call = node.call(&["Key", "Button", "Wheel", "Pointer", "Osc"])?;
+    let others = ["Key", "Button", "Wheel", "Pointer", "Osc"];
+    let call = node.call(&[&others[..], &send_midi::NAMES].concat())?;
     let target = |node: Node<'_>| Node { name: "target", ..node }.id().map(str::to_owned);
     match call.name {
         "Key" => {
@@ -120,18 +126,27 @@ fn payload(node: Node<'_>, when: When, fill: &Fill<'_>) -> Option<(String, Paylo
                 settings.map_or(Some(PointerRecord::USUAL), |node| node.record::<PointerRecord>(None, &()));
             Some((target(to)?, Payload::Pointer(settings?.speed_px_s)))
         }
-        _ => {
+        "Osc" => {
             let ([to, address], settings) = call.values(OSC)?;
             let settings = settings
                 .map_or(Some(OscSettingsRecord::PLAIN), |node| node.record::<OscSettingsRecord>(None, &()));
             let (to, address) = (target(to), self::address(Node { name: "address", ..address }, fill));
             let mut settings = settings?.settings();
+            if settings.arguments.iter().flatten().any(|argument| *argument == OscArgument::Foot) {
+                let problem = Problem::error(node.span(), "only the feet of a region have numbers");
+                node.report(problem.expected("expected value, force, x, y, numbers and texts"));
+                return None;
+            }
             for argument in settings.arguments.iter_mut().flatten() {
                 if let OscArgument::Text(text) = argument {
                     *text = fill(node, text)?;
                 }
             }
             Some((to?, Payload::Osc(address?, settings)))
+        }
+        _ => {
+            let (to, payload) = send_midi::read(&call, fill)?;
+            Some((target(to)?, payload))
         }
     }
 }
@@ -152,7 +167,8 @@ fn key(node: Node<'_>, fill: &Fill<'_>) -> Option<KeyStroke> {
     }
 }
 
-fn address(node: Node<'_>, fill: &Fill<'_>) -> Option<String> {
+/// Reads an OSC address; it goes through `fill`.
+pub(super) fn address(node: Node<'_>, fill: &Fill<'_>) -> Option<String> {
     let text = fill(node, node.text(200)?)?;
     // A kind keeps the patterns that its controls fill in.
     let bare = text.replace(['{', '}'], "");
@@ -184,6 +200,7 @@ fn write(sending: &Sending) -> Text {
             let values = [target, Text::quoted(&**address)];
             Text::Call("Osc", values.into_iter().chain(write_osc(settings)).collect())
         }
+        midi => send_midi::write(midi, target).unwrap_or(Text::Name("")),
     };
     match sending.when {
         When::On(trigger) => Text::Call("On", vec![Text::Name(trigger.name()), payload]),
@@ -207,6 +224,12 @@ pub(super) fn inherited(kind: &[Sending], at: Node<'_>, fill: &Fill<'_>) -> Opti
         Some(Written { value, at: at.span() })
     });
     filled.collect()
+}
+
+/// Returns the text of a control's field `send`, on one line.
+#[must_use]
+pub fn written_messages(sendings: &[Sending]) -> String {
+    write_all(&sendings.to_vec()).inline()
 }
 
 /// Writes the messages of a control.

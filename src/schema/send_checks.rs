@@ -9,7 +9,7 @@ use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
 use super::version::{self, WITH_MESSAGES};
-use crate::messages::{Destination, Payload, Sending, When};
+use crate::messages::{ContactPayload, Payload, Sending, TargetSort, When};
 use crate::widget::{Behaviour, Guard};
 use underfoot_format::codec::Written;
 
@@ -24,7 +24,9 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
             reader.report(problem);
         }
     };
-    let written = page.controls.iter().flat_map(|control| &control.send).next().map(|first| &first.at);
+    let of_controls = page.controls.iter().flat_map(|control| &control.send).next().map(|first| &first.at);
+    let of_feet = page.regions.iter().flat_map(|region| &region.send).next().map(|first| &first.at);
+    let written = of_controls.or(of_feet);
     if let Some(at) = page.targets.first().map(|target| &target.name.at).or(written) {
         version::require(reader, at.clone(), ("messages", WITH_MESSAGES), ("layout", page.version));
     }
@@ -32,7 +34,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
         let Some(kind) = &control.kind else { continue };
         for Written { value: sending, at } in &control.send {
             let faults = [
-                ("target", of_target(page, sending)),
+                ("target", of_target(page, &sending.target, sending.payload.name(), sending.payload.sort())),
                 ("event", of_event(sending, &kind.behaviour)),
                 ("guard", of_guard(sending, &kind.behaviour)),
             ];
@@ -43,28 +45,34 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
             }
         }
     }
+    for Written { value: sending, at } in page.regions.iter().flat_map(|region| &region.send) {
+        let fault = of_target(page, &sending.target, sending.payload.name(), sending.payload.sort());
+        let Some((message, expected, help)) = fault else { continue };
+        report(at, "target", Problem::error(at.clone(), message).expected(expected).help_if(help));
+    }
     twice(reader, page);
+    twice_by_feet(reader, page);
 }
 
 /// A problem: the message, the expected form, and advice.
 type SendFault = Option<(String, String, Option<String>)>;
 
-fn of_target(page: &Page, sending: &Sending) -> SendFault {
+/// A problem of the target called `name`, which must be of the `sort` that receives the message `payload`.
+fn of_target(page: &Page, name: &str, payload: &str, sort: TargetSort) -> SendFault {
     if !page.targets_known {
         return None;
     }
-    let name = &sending.target;
     let Some(target) = page.targets.iter().find(|target| target.name.value == *name) else {
         let names: Vec<&str> = page.targets.iter().map(|target| target.name.value.as_str()).collect();
-        let to = if sending.payload.is_for_a_keyboard() { "Keyboard" } else { "Osc(\"127.0.0.1:53000\")" };
+        let to = sort.example();
         let add = || format!("add targets: [(name: \"{name}\", to: {to})]");
         let help = if names.is_empty() { add() } else { did_you_mean(name, &names, '"').unwrap_or_else(add) };
         return Some((format!("there is no target \"{name}\""), "no target is called so".into(), Some(help)));
     };
-    let is_keyboard = matches!(target.to(), Destination::Keyboard(_));
-    (is_keyboard != sending.payload.is_for_a_keyboard()).then(|| {
-        let message = format!("\"{name}\" can't receive {}", sending.payload.name());
-        (message, format!("that target is {}", target.to().noun()), None)
+    let there = target.to().sort();
+    (there != sort).then(|| {
+        let message = format!("\"{name}\" can't receive {payload}");
+        (message, format!("that target is {}", there.noun()), None)
     })
 }
 
@@ -102,7 +110,7 @@ fn twice(reader: &Reader<'_>, page: &Page) {
             if matches!(sending.payload, Payload::Wheel(_) | Payload::Pointer(_)) {
                 continue;
             }
-            let message = format!("{:?} {:?}", sending.target, sending.payload);
+            let message = format!("{:?} {}", sending.target, subject(&sending.payload));
             let others = first.entry(message).or_default();
             let other = others
                 .iter()
@@ -115,5 +123,37 @@ fn twice(reader: &Reader<'_>, page: &Page) {
             }
             others.push((control, reader.line(at)));
         }
+    }
+}
+
+/// The thing that a message acts on: two controls that act on one are in each other's way.
+fn subject(payload: &Payload) -> String {
+    match payload {
+        Payload::Key(_) | Payload::Button(_) | Payload::Wheel(_) | Payload::Pointer(_) | Payload::Osc(..) => {
+            format!("{payload:?}")
+        }
+        // Settings of a note, or the ends of a range, make no other message of it.
+        Payload::Note(..)
+        | Payload::Controller(_)
+        | Payload::Program(..)
+        | Payload::Bend(_)
+        | Payload::Pressure(_) => payload.to_string(),
+    }
+}
+
+/// Warns of feet of two regions in one zone of MPE.
+fn twice_by_feet(reader: &Reader<'_>, page: &Page) {
+    let mut zones: HashMap<&str, std::ops::Range<usize>> = HashMap::new();
+    for Written { value: sending, at } in page.regions.iter().flat_map(|region| &region.send) {
+        if !matches!(sending.payload, ContactPayload::Mpe(_)) {
+            continue;
+        }
+        if let Some(first) = zones.get(sending.target.as_str()) {
+            let problem =
+                Problem::warning(at.clone(), "two groups of feet share the channels of one MPE zone");
+            let expected = format!("the first is on line {}", reader.line(first));
+            reader.report(problem.expected(expected).help("give each a port of its own"));
+        }
+        zones.entry(&sending.target).or_insert_with(|| at.clone());
     }
 }

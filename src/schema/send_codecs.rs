@@ -2,6 +2,7 @@
 
 use super::node::Node;
 use super::problem::Problem;
+use super::{send_contacts, send_midi};
 use crate::messages::{OscArgument, OscSettings};
 use underfoot_format::codec::{By, List};
 use underfoot_format::describe::{Description, FieldType};
@@ -41,7 +42,8 @@ record! {
     from: Option<f32> = "from", Opt(ENDS) => None;
     /// The number for the greatest value of the control.
     to: Option<f32> = "to", Opt(ENDS) => None;
-    /// The arguments: numbers, texts, and `value`, `force`, `x` and `y`; the value alone where nothing is written.
+    /// The arguments: numbers, texts, and `value`, `force`, `x` and `y`, or `foot` for feet of a region; the value
+    /// alone where nothing is written.
     args: Option<Vec<OscArgument>> = "args", Opt(ARGUMENTS) => None;
 }
 
@@ -97,7 +99,7 @@ const STEPS: By<i32> = By {
 const ARGUMENTS: List<By<OscArgument>> = list("argument", MAX_ARGUMENTS, ARGUMENT);
 
 const ARGUMENT: By<OscArgument> = By {
-    shape: || FieldType::Words("a number, a text, value, force, x or y"),
+    shape: || FieldType::Words("a number, a text, value, force, x, y or foot"),
     read: |node, ()| argument(node),
     write: |argument| match argument {
         OscArgument::Int(number) => Text::Whole((*number).into()),
@@ -107,6 +109,7 @@ const ARGUMENT: By<OscArgument> = By {
         OscArgument::Force => Text::Name("force"),
         OscArgument::X => Text::Name("x"),
         OscArgument::Y => Text::Name("y"),
+        OscArgument::Foot => Text::Name("foot"),
     },
     stand_in: || OscArgument::Value,
 };
@@ -118,6 +121,7 @@ enum ArgumentSource {
     Force,
     X,
     Y,
+    Foot,
 }
 
 impl ArgumentSource {
@@ -127,6 +131,7 @@ impl ArgumentSource {
             Self::Force => OscArgument::Force,
             Self::X => OscArgument::X,
             Self::Y => OscArgument::Y,
+            Self::Foot => OscArgument::Foot,
         }
     }
 }
@@ -136,6 +141,7 @@ const FROM_THE_FOOT: &[(&str, ArgumentSource)] = &[
     ("force", ArgumentSource::Force),
     ("x", ArgumentSource::X),
     ("y", ArgumentSource::Y),
+    ("foot", ArgumentSource::Foot),
 ];
 
 /// A number without a point is an integer, one with a point is not: receivers distinguish them.
@@ -155,7 +161,7 @@ fn argument(node: Node<'_>) -> Option<OscArgument> {
         Expr::Struct(_) => node.choice(FROM_THE_FOOT).map(|which| which.argument()),
         _ => {
             let problem = Problem::error(node.span(), "this can't be an argument of OSC");
-            node.report(problem.expected("expected a number, a text, value, force, x or y"));
+            node.report(problem.expected("expected a number, a text, value, force, x, y or foot"));
             None
         }
     }
@@ -165,7 +171,7 @@ fn argument(node: Node<'_>) -> Option<OscArgument> {
 pub(super) fn describe() -> Vec<Description> {
     let form = |name, about: &str| Description::new(name, &[about], Vec::new());
     let with = |name, about: &str, of: Description| Description::new(name, &[about], of.fields);
-    vec![
+    let mut all = vec![
         form("On", "`On(event, message)`: the message goes out at once at each such event of the control."),
         form(
             "While",
@@ -192,5 +198,8 @@ pub(super) fn describe() -> Vec<Description> {
             "`Osc(target, address, (from: 0, to: 1))`: an OSC message.",
             OscSettingsRecord::describe(),
         ),
-    ]
+    ];
+    all.extend(send_midi::describe());
+    all.extend(send_contacts::describe());
+    all
 }

@@ -2,18 +2,20 @@
 
 use super::node::Node;
 use super::problem::Problem;
-use crate::messages::{Destination, KeyboardTarget, MAX_TARGETS, OscTarget, OscTransport, SendTarget};
+use crate::messages::{
+    Destination, KeyboardTarget, MAX_TARGETS, MidiTarget, OscTarget, OscTransport, SendTarget,
+};
 use underfoot_format::codec::{At, By, Distinct, Written};
 use underfoot_format::describe::FieldType;
 use underfoot_format::text::Text;
-use underfoot_format::{Codec, Id, Name, Rec, Record, record};
+use underfoot_format::{Codec, Id, Name, Opt, Rec, Record, record};
 
 record! {
     /// A program or device that messages go to.
     pub(super) struct TargetRecord = "Target";
     /// Its name in messages, unique in the layout.
     pub(super) name: Written<String> = "name", At(Id);
-    /// The receiver: keyboard and pointer of the desktop, or a program that receives OSC.
+    /// The receiver: keyboard and pointer of the desktop, a program that receives OSC, or a port of MIDI.
     to: Destination = "to", DESTINATION;
 }
 
@@ -22,6 +24,13 @@ record! {
     struct OverRecord = "Osc", Copy, Eq;
     /// The protocol below OSC; SLIP frames the messages on TCP.
     over: OscTransport = "over", Name => OscTransport::Udp;
+}
+
+record! {
+    /// The ports that a port of MIDI connects to.
+    struct IntoRecord = "Midi";
+    /// Part of the name of a port that it connects to by itself.
+    into: Option<String> = "into", Opt(underfoot_format::Text(64)) => None;
 }
 
 /// The targets of a layout.
@@ -38,7 +47,7 @@ pub(super) const TARGETS: Distinct<TargetRecord> = Distinct {
 const DESTINATION: By<Destination> = By {
     shape: || {
         FieldType::Words(
-            "Keyboard | Keyboard((window: \"part of a title\")) | Osc(\"host:port\") | Osc(\"host:port\", (over: Tcp))",
+            "Keyboard | Keyboard((window: \"part of a title\")) | Osc(\"host:port\") | Osc(\"host:port\", (over: Tcp)) | Midi(\"port\") | Midi(\"port\", (into: \"part of a name\"))",
         )
     },
     read: |node, ()| destination(node),
@@ -55,6 +64,10 @@ const DESTINATION: By<Destination> = By {
                 },
             )
         }
+        Destination::Midi(MidiTarget { port, into }) => {
+            let settings = into.is_some().then(|| Rec.write(&IntoRecord { into: into.clone() }));
+            Text::Call("Midi", [Text::quoted(&**port)].into_iter().chain(settings).collect())
+        }
     },
     stand_in: || Destination::Keyboard(ANY_WINDOW),
 };
@@ -63,9 +76,17 @@ const DESTINATION: By<Destination> = By {
 const ANY_WINDOW: KeyboardTarget = KeyboardTarget { window: None, display: None };
 
 const OSC: &str = "Osc(\"127.0.0.1:53000\")";
+const MIDI: &str = "Midi(\"underfoot\")";
 
 fn destination(node: Node<'_>) -> Option<Destination> {
-    let call = node.call(&["Keyboard", "Osc"])?;
+    let call = node.call(&["Keyboard", "Osc", "Midi"])?;
+    if call.name == "Midi" {
+        let ([port], settings) = call.values(MIDI)?;
+        let into = settings
+            .map_or(Some(None), |node| node.record::<IntoRecord>(None, &()).map(|record| record.into));
+        let port = port_name(Node { name: "port", ..port })?;
+        return Some(Destination::Midi(MidiTarget { port, into: into? }));
+    }
     if call.name == "Keyboard" {
         let ([], settings) = call.values("Keyboard")?;
         return settings.map_or(Some(ANY_WINDOW), |node| node.record(None, &())).map(Destination::Keyboard);
@@ -83,6 +104,17 @@ fn destination(node: Node<'_>) -> Option<Destination> {
         return None;
     }
     Some(Destination::Osc(OscTarget { address: text.to_owned(), over: over? }))
+}
+
+/// A name that every system allows for a port: JACK separates a port from its program by a colon.
+fn port_name(node: Node<'_>) -> Option<String> {
+    let text = node.text(48)?;
+    if MidiTarget::is_port(text) {
+        return Some(text.to_owned());
+    }
+    let problem = Problem::error(node.span(), "this can't be the name of a port");
+    node.report(problem.expected("expected 1 to 48 characters, without a colon"));
+    None
 }
 
 impl TargetRecord {

@@ -268,3 +268,119 @@ mod maps {
         }
     }
 }
+
+mod plates {
+    use glam::Vec2;
+
+    use crate::floor::{Calibration, Corner, Floor, SensorId, TileId};
+    use crate::schema::{Kinds, parse_floor, parse_layout, write_floor};
+
+    fn read(text: &str) -> Floor {
+        parse_floor(text, "floor.ron").unwrap_or_else(|problems| panic!("{problems}"))
+    }
+
+    fn complaints(fields: &str) -> String {
+        parse_floor(&format!("Floor(version: 3, columns: 3, rows: 3,\n{fields}\n)"), "floor.ron")
+            .map(|_| String::new())
+            .unwrap_or_else(|problems| problems.to_string())
+    }
+
+    const EDGES: &str = "sensors_m: [(0, -0.13), (0.13, 0), (-0.13, 0), (0, 0.13)],";
+
+    #[test]
+    fn rectangles_holes_places_and_plates_are_read_and_written_again() {
+        let floor = read(
+            "Floor(version: 3, columns: 3, rows: 2, tile_m: (0.4, 0.3), pitch_m: (0.42, 0.3),
+                sensors_m: [(0, -0.13), (0.18, 0), (-0.18, 0), (0, 0.13)],
+                missing: [(at: (1, 0), size: (2, 1))],
+                plates: [(tile: (0, 1), size_m: (0.3, 0.3), sensors_m: [(-0.1, -0.1), (0.1, -0.1), (0, 0.1)])],
+                boards: [(tiles: [(0, 0), (0, 1)]), (channels: [(1, 1, 3), None, (1, 1, 0)])],
+                sensors: [(tile: (0, 1), corner: 2, a_n: 0.7)],
+            )",
+        );
+        let geometry = &floor.geometry;
+        let tiles: Vec<_> = geometry.tiles().filter(|tile| geometry.has(*tile)).collect();
+        assert_eq!(tiles, [(0, 0), (0, 1), (1, 1), (2, 1)].map(|(column, row)| TileId::new(column, row)));
+        assert_eq!((geometry.tile_m(), geometry.pitch_m()), (Vec2::new(0.4, 0.3), Vec2::new(0.42, 0.3)));
+        assert_eq!([0, 1].map(|row| geometry.sensors(TileId::new(0, row)).len()), [4, 3]);
+        assert_eq!([0, 1].map(|board: usize| floor.boards[board].channels.len()), [7, 3]);
+        let last = SensorId { tile: TileId::new(1, 1), corner: Corner::NorthEast };
+        assert_eq!(floor.boards[1].channels[0], Some(last));
+        assert_eq!(floor.calibration[3][2], Calibration::exponential(0.7, 1.34));
+        assert_eq!(floor.actuators.iter().filter(|actuator| actuator.is_some()).count(), 4);
+        assert_eq!(read(&write_floor(&floor)), floor);
+    }
+
+    #[test]
+    fn squares_with_sensors_in_the_corners_are_written_as_before() {
+        let text = write_floor(&Floor::default());
+        assert!(text.contains("version: 1,") && text.contains("tile_m: 0.304,"), "{text}");
+        assert!(!text.contains("sensors_m") && !text.contains("missing"), "{text}");
+        let written = write_floor(&read("Floor(version: 3, columns: 1, rows: 1, tile_m: (0.5, 0.3))"));
+        assert!(written.contains("version: 3,") && written.contains("tile_m: (0.5, 0.3),"), "{written}");
+    }
+
+    #[test]
+    fn a_floor_that_cannot_be_is_refused_with_its_place_and_what_to_do() {
+        for (fields, said) in [
+            ("sensors_m: [(-0.1, 0), (0, 0.001), (0.1, 0)],", "lie on one line"),
+            ("sensors_m: [(-0.1, 0), (0.1, 0)],", "a plate has three or four sensors"),
+            ("sensors_m: [(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)],", "neighbours, not opposite"),
+            ("sensors_m: [(-0.1, -0.1), (0.2, -0.1), (0, 0.1)],", "sensor 1 lies beyond the edge of a plate"),
+            ("sensor_inset_m: 0.02, sensors_m: [(-0.1, -0.1), (0.1, -0.1), (0, 0.1)],", "not both"),
+            ("tile_m: 0.3, pitch_m: (0.3, 0.25),", "pitch_m must be at least tile_m"),
+            ("missing: [(at: (2, 2), size: (2, 1))],", "reaches beyond the floor"),
+            ("missing: [(at: (0, 0), size: (3, 3))],", "every tile of this floor is missing"),
+            ("plates: [(tile: (1, 1), size_m: (0.4, 0.2))],", "the plate of tile (1, 1) must be"),
+            ("plates: [(tile: (1, 1)), (tile: (1, 1))],", "the plate of tile (1, 1) comes twice"),
+            ("missing: [(at: (1, 1))], boards: [(tiles: [(1, 1)])],", "tile (1, 1) is missing on this floor"),
+            ("missing: [(at: (1, 1))], actuators: [(tile: (1, 1), channel: 0)],", "tile (1, 1) is missing"),
+            ("boards: [(tiles: [(0, 0)]), (channels: [(0, 0, Ne)])],", "tile (0, 0) ne comes twice"),
+        ] {
+            let told = complaints(fields);
+            assert!(told.contains(said) && told.contains("floor.ron:2:"), "{fields}: {told}");
+        }
+        let legs = "sensors_m: [(-0.1, -0.1), (0.1, -0.1), (0, 0.1)],";
+        let told = complaints(&format!("{legs} boards: [(channels: [(0, 0, 3)])],"));
+        assert!(told.contains("tile (0, 0) has no sensor 3"), "{told}");
+        // Numbers where sensors have numbers, names where they have names.
+        assert!(complaints(&format!("{EDGES} boards: [(channels: [(0, 0, Ne)])],")).contains("`corner`"));
+        assert!(complaints("boards: [(channels: [(0, 0, 3)])],").contains("`corner`"));
+        assert_eq!(complaints(&format!("{EDGES} boards: [(channels: [(0, 0, 3)])],")), "");
+    }
+
+    #[test]
+    fn an_older_version_says_what_it_cannot_hold() {
+        for (fields, said) in [
+            (EDGES, "sensors at given places need version 3"),
+            ("missing: [(at: (0, 0))],", "missing tiles need version 3"),
+            ("tile_m: (0.3, 0.4),", "rectangular tiles need version 3"),
+        ] {
+            let told = parse_floor(&format!("Floor(version: 1, {fields})"), "floor.ron").unwrap_err();
+            assert!(told.to_string().contains(said), "{told}");
+        }
+    }
+
+    #[test]
+    fn no_control_lies_over_a_hole_and_tiles_are_as_wide_as_they_are() {
+        let floor =
+            read("Floor(version: 3, columns: 3, rows: 3, tile_m: (0.4, 0.3), missing: [(at: (1, 1))])");
+        let page = |at: &str, units: &str| {
+            let text = format!(
+                "Layout(version: 1, title: \"ring\", units: {units}, regions: [(id: \"all\", at: (0, 0), size: (1.2, 0.9))],
+                    widgets: [(id: \"it\", kind: \"button\", at: {at}, size: (0.3, 0.2), label: \"It\")])"
+            );
+            parse_layout(&text, "page.ron", &Kinds::builtin(), &floor.geometry)
+        };
+        let told = page("(0.5, 0.35)", "Metres").err().unwrap().to_string();
+        assert!(
+            told.contains("\"it\" lies over the missing tile (1, 1)") && told.contains("page.ron:2:"),
+            "{told}"
+        );
+        let beside = page("(0.05, 0.35)", "Metres").unwrap().layout;
+        assert_eq!(beside.widgets[0].area.min, Vec2::new(0.05, 0.35));
+        let tiles = page("(0.5, 0.5)", "Tiles").unwrap().layout;
+        assert!(tiles.widgets[0].area.min.distance(Vec2::new(0.2, 0.15)) < 1e-6);
+        assert!(tiles.widgets[0].area.size().distance(Vec2::new(0.12, 0.06)) < 1e-6);
+    }
+}

@@ -30,11 +30,11 @@ impl Units {
         }
     }
 
-    /// Returns the length of one unit on a floor of this `geometry`, in metres.
-    pub(super) fn metres(self, geometry: &Geometry) -> f64 {
+    /// Returns the lengths of one unit east and north on a floor of this `geometry`, in metres.
+    pub(super) fn metres(self, geometry: &Geometry) -> [f64; 2] {
         match self {
-            Self::Tiles => geometry.pitch_m().into(),
-            Self::Metres => 1.0,
+            Self::Tiles => geometry.pitch_m().to_array().map(f64::from),
+            Self::Metres => [1.0; 2],
         }
     }
 

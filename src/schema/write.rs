@@ -2,6 +2,7 @@
 
 use super::layout_record::LayoutRecord;
 use super::send;
+use super::send_contacts;
 use super::targets;
 use super::units::Units;
 use super::version::{FIRST_VERSION, WITH_MESSAGES};
@@ -36,6 +37,9 @@ pub(super) fn written(layout: &Layout) -> Vec<Entry> {
         let mut entries = vec![("id", quoted(&region.id))];
         place(region.area, &mut entries);
         entries.push(("cursor", Name.write(&region.cursor)));
+        if !region.send.is_empty() {
+            entries.push(("send", send_contacts::write_all(&region.send)));
+        }
         Text::Record("Region", entries)
     });
     let stances = layout.stances.iter().map(|stance| {
@@ -43,7 +47,7 @@ pub(super) fn written(layout: &Layout) -> Vec<Entry> {
         place(stance.area, &mut entries);
         Text::Record("Stance", entries)
     });
-    let sends = !layout.targets.is_empty() || layout.widgets.iter().any(|widget| !widget.send.is_empty());
+    let sends = !layout.targets.is_empty() || layout.sends();
     let version = if sends { WITH_MESSAGES } else { FIRST_VERSION };
     let mut entries = vec![
         ("version", Text::Whole(version.into())),

@@ -37,14 +37,16 @@ mod sensing;
 mod table;
 mod track;
 
-pub use assembler::{Assembler, BoardStatus, Tare, TareOutcome, TareRules};
+pub use assembler::{
+    Assembler, BoardCounts, BoardStatus, BoardTiming, Tare, TareOutcome, TareRules, TimeBase,
+};
 pub use calibration::{
     Candidate, Comparison, Errors, Fit, FitError, Judgement, LoadPoint, LoadTable, MapError, MapFit,
     PressTable, PressedPoint, SensorLoads, Sighting, TilePoints, Verdict,
 };
 pub use centroid::{LoadedTile, SensorUncertainty, TileReading, Wrench, known_corners};
 pub use contact::{Contact, ContactId, Covariance, Cursor, CursorPicker, Stickiness, TileLoad};
-pub use frame::{CalibrationFault, ForceFrame, HoldDoubt, Quality};
+pub use frame::{CalibrationFault, ForceFrame, HoldDoubt, Quality, TileSample};
 pub use health::{SensorHealth, Trouble};
 pub use loaded::LoadThreshold;
 pub use sensing::{Method, Sensing, SensingConfig};

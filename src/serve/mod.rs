@@ -20,7 +20,7 @@ mod wiring;
 
 pub use measure::{ForceRange, ForceWatch, TileRange};
 pub use neighbours::Neighbours;
-pub use reference::{AddressEntry, Argument, MessageDirection, Reference};
+pub use reference::{AddressEntry, Argument, ArgumentLimits, MessageDirection, Reference};
 pub use refusal::Refusal;
 pub use server::{Command, Ended, Server};
 pub use tare::{TareFailure, take_tare};

@@ -32,6 +32,10 @@ impl Rest {
 pub(super) fn reading(readings: &Readings, channel: usize, law: &Calibration) -> Option<f32> {
     match readings {
         Readings::Counts(counts) => counts.get(channel).copied().flatten().map(|count| law.force(count).0),
+        Readings::Scaled(values) => {
+            let value = values.get(channel).copied().filter(|value| value.is_finite());
+            value.map(|value| law.force_at(Calibration::volts_of(value)).0)
+        }
         Readings::Newtons(forces) => forces.get(channel).copied().filter(|force| force.is_finite()),
     }
 }

@@ -1,7 +1,7 @@
 //! A walk over all tiles, in any order, that finds sensors without a response.
 
 use super::rest::{REST, Rest, reading};
-use crate::floor::{Corner, Floor, SensorId, TileId};
+use crate::floor::{Corner, Floor, SensorId, SensorPlaces, TileId};
 use crate::wire::SensorPacket;
 
 /// Minimum reading of a working sensor, and minimum expected force for a failure to count, in newtons: a footstep
@@ -26,8 +26,8 @@ const NOTHING_N: f32 = 10.0;
 
 /// A walk over all tiles: each sensor must respond to a load on its plate.
 ///
-/// The plate is rigid: the force on one corner follows from the other three as the sum of its neighbours less the
-/// opposite corner. A sensor that reads a fair share of this expected force for a while works; one with a large
+/// The plate is rigid: the force on one of four corners follows from the other three as the sum of its neighbours less
+/// the opposite corner. A sensor that reads a fair share of this expected force for a while works; one with a large
 /// expected force and no such reading is faulty. The walk needs no tare: it assumes that the floor is empty at the
 /// beginning.
 #[derive(Clone, Debug)]
@@ -74,6 +74,9 @@ impl SensorVerdict {
 #[derive(Clone, Debug)]
 struct TileTest {
     id: TileId,
+    /// Its sensors; none under a missing tile.
+    known: &'static [Corner],
+    places: SensorPlaces,
     /// Force above the reading at rest per corner; `None` while no board reads the corner.
     forces: [Option<f32>; 4],
     sensors: [SensorTest; 4],
@@ -109,8 +112,10 @@ impl WalkTest {
     /// A walk over all tiles of `floor`.
     #[must_use]
     pub fn new(floor: &Floor) -> Self {
-        let tile = |index| TileTest {
-            id: floor.geometry.tile_at_index(index),
+        let tile = |id| TileTest {
+            id,
+            known: floor.geometry.sensors(id),
+            places: *floor.geometry.sensor_places(id),
             forces: [None; 4],
             sensors: Default::default(),
         };
@@ -129,7 +134,7 @@ impl WalkTest {
             BoardRest { channels, tiles, rested: 0 }
         };
         Self {
-            tiles: (0..floor.geometry.tile_count()).map(tile).collect(),
+            tiles: floor.geometry.tiles().map(tile).collect(),
             boards: floor.boards.iter().map(board).collect(),
         }
     }
@@ -168,33 +173,45 @@ impl WalkTest {
         self.boards.iter().all(|board| board.rested >= REST || board.channels.iter().flatten().count() == 0)
     }
 
-    /// Returns the results of the sensors of the tile with this index, in [`Corner::ALL`] order; `None` if there is
-    /// no such tile.
+    /// Returns the results of the sensors of the tile with this index, in [`Corner::ALL`] order; one that a plate with
+    /// three does not have counts as working. `None` if there is no such tile.
     #[must_use]
     pub fn tile(&self, index: usize) -> Option<[SensorVerdict; 4]> {
-        self.tiles.get(index).map(|tile| tile.sensors.map(|sensor| sensor.verdict()))
+        let tile = self.tiles.get(index).filter(|tile| !tile.known.is_empty())?;
+        let mut verdicts = [SensorVerdict::Answers; 4];
+        for (sensor, test) in tile.sensors() {
+            verdicts[sensor.index()] = test.verdict();
+        }
+        Some(verdicts)
     }
 
-    /// Returns the number of tiles with four working sensors.
+    /// Returns the number of tiles.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        self.tiles.iter().filter(|tile| !tile.known.is_empty()).count()
+    }
+
+    /// Returns the number of tiles of which all sensors work.
     #[must_use]
     pub fn passed(&self) -> usize {
-        let passes =
-            |tile: &&TileTest| tile.sensors.iter().all(|sensor| sensor.verdict() == SensorVerdict::Answers);
+        let passes = |tile: &&TileTest| {
+            !tile.known.is_empty()
+                && tile.sensors().all(|(_, sensor)| sensor.verdict() == SensorVerdict::Answers)
+        };
         self.tiles.iter().filter(passes).count()
     }
 
     /// Whether every sensor has a result.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        let sensors = || self.tiles.iter().flat_map(|tile| &tile.sensors);
-        self.is_rested() && sensors().all(|sensor| sensor.verdict() != SensorVerdict::Untried)
+        let mut sensors = self.tiles.iter().flat_map(TileTest::sensors);
+        self.is_rested() && sensors.all(|(_, sensor)| sensor.verdict() != SensorVerdict::Untried)
     }
 
     /// Returns the faulty sensors.
     pub fn faults(&self) -> impl Iterator<Item = (SensorId, SensorVerdict)> + '_ {
         self.tiles.iter().flat_map(|tile| {
-            let sensors = Corner::ALL.into_iter().zip(tile.sensors);
-            sensors.filter_map(|(corner, sensor)| {
+            tile.sensors().filter_map(|(corner, sensor)| {
                 let verdict = sensor.verdict();
                 verdict.is_fault().then_some((SensorId { tile: tile.id, corner }, verdict))
             })
@@ -203,16 +220,20 @@ impl WalkTest {
 }
 
 impl TileTest {
+    /// Its sensors and their tests.
+    fn sensors(&self) -> impl Iterator<Item = (Corner, SensorTest)> {
+        self.known.iter().map(|&corner| (corner, self.sensors[corner.index()]))
+    }
+
     /// Counts plausible readings and failures of each sensor.
     fn judge(&mut self) {
         let known = self.forces.map(|force| force.unwrap_or(0.0));
         let total: f32 = known.iter().sum();
-        let [south_west, south_east, north_west, north_east] = known;
-        let (one, other) = (south_east + north_west, south_west + north_east);
-        // Expected force on each corner: the sum of its neighbours less the opposite corner.
-        let demanded = [one - north_east, other - north_west, other - south_east, one - south_west];
-        for ((sensor, reading), demanded) in self.sensors.iter_mut().zip(self.forces).zip(demanded) {
-            let Some(reading) = reading else {
+        for corner in self.known.iter().map(|corner| corner.index()) {
+            // Of three sensors, the others do not tell.
+            let demanded = self.places.balanced(known, corner).unwrap_or(0.0);
+            let sensor = &mut self.sensors[corner];
+            let Some(reading) = self.forces[corner] else {
                 sensor.missing = sensor.missing.saturating_add(u32::from(total >= DEMANDS_N));
                 continue;
             };

@@ -12,7 +12,7 @@ use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
 use crate::outgoing::{
     write_alive, write_area, write_contacts, write_control, write_crack, write_device, write_event,
-    write_health, write_held, write_mute, write_page,
+    write_health, write_held, write_ignored, write_mute, write_page,
 };
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
@@ -22,7 +22,7 @@ use crate::wire::{LinkCause, LinkState, Prefix};
 ///
 /// Events go out at once, in order. The latest contacts go out 100 times a second while there are any, and once a
 /// second while there are none, also while no frames come. The held controls go out 50 times a second, and an alive
-/// message ten times. The messages are those of `write_event`, `write_contacts`, `write_held`, `write_alive`,
+/// message ten times. The messages are those of `write_event`, `write_ignored`, `write_contacts`, `write_held`, `write_alive`,
 /// `write_crack`, `write_page`, `write_health`, `write_device`, `write_mute` and `write_control`.
 #[derive(Debug)]
 pub struct OscSink {
@@ -59,21 +59,28 @@ impl OscSink {
     pub fn under(target: SocketAddr, prefix: Prefix) -> Result<Self, SinkError> {
         let out = UdpOut::new(target, "OSC")?;
         let undelivered = out.undelivered();
+        let mut sink = Self::through(prefix, move |datagram| out.send(datagram))?;
+        sink.undelivered = undelivered;
+        Ok(sink)
+    }
+
+    /// A sink that passes each datagram to `send`, on a thread of its own, and puts `prefix` before its addresses.
+    ///
+    /// # Errors
+    /// [`SinkError::Output`] if the system gives no thread.
+    pub fn through(prefix: Prefix, send: impl FnMut(&[u8]) + Send + 'static) -> Result<Self, SinkError> {
         let latest = Arc::new(Latest::default());
         let (link, health) = (LinkState::default(), SensorHealth::default());
-        let sender = Sender { out, prefix, link, cause: None, health };
+        let sender = Sender { send, prefix, link, cause: None, health };
         let worker = Worker::spawn("osc out", {
             let latest = latest.clone();
             move |jobs| sender.run(jobs, &latest)
         })
-        .map_err(|source| SinkError::Output {
-            message: format!("cannot send OSC to {target}: {source}"),
-            source,
-        })?;
+        .map_err(|source| SinkError::Output { message: format!("cannot send OSC: {source}"), source })?;
         Ok(Self {
             worker,
             latest,
-            undelivered,
+            undelivered: Arc::default(),
             periodic: PeriodicSender::default(),
             cracks: CrackRateLimiter::default(),
             link: LinkState::default(),
@@ -93,6 +100,9 @@ impl OscSink {
 
 impl EventSink for OscSink {
     fn report(&mut self, report: &Report<'_>) {
+        if let Report::Message(_) = report {
+            return;
+        }
         if let Report::Contacts(at, contacts) = report {
             let queue = || self.worker.try_offer(Job::Contacts);
             if self.periodic.is_due(*at, contacts) && self.latest.store(*at, contacts, queue) {
@@ -140,8 +150,8 @@ impl Drop for OscSink {
 }
 
 /// State of the worker thread.
-struct Sender {
-    out: UdpOut,
+struct Sender<S> {
+    send: S,
     prefix: Prefix,
     /// The last reports of link and sensors: each message contains all of them.
     link: LinkState,
@@ -149,7 +159,7 @@ struct Sender {
     health: SensorHealth,
 }
 
-impl Sender {
+impl<S: FnMut(&[u8])> Sender<S> {
     fn run(mut self, jobs: &Receiver<Job>, latest: &Latest) {
         let mut bytes = Vec::new();
         for job in jobs {
@@ -161,14 +171,15 @@ impl Sender {
         }
     }
 
-    fn contacts(&self, contacts: &[Contact], bytes: &mut Vec<u8>) {
-        write_contacts(&self.prefix, contacts, bytes, |datagram| self.out.send(datagram));
+    fn contacts(&mut self, contacts: &[Contact], bytes: &mut Vec<u8>) {
+        write_contacts(&self.prefix, contacts, bytes, &mut self.send);
     }
 
     fn write(&mut self, report: &Report<'_>, bytes: &mut Vec<u8>) {
         let prefix = &self.prefix;
         match report {
             Report::Event(event) => write_event(prefix, event, bytes),
+            Report::Ignored(press) => write_ignored(prefix, press, bytes),
             Report::Contacts(_, contacts) => return self.contacts(contacts, bytes),
             Report::Page(shown) => write_page(prefix, shown.page.as_str(), bytes),
             // The queue has the cracks in their place.
@@ -190,13 +201,15 @@ impl Sender {
             }
             Report::Device(_, status) => write_device(prefix, status, bytes),
             Report::Held(report) => {
-                return write_held(prefix, report, bytes, |datagram| self.out.send(datagram));
+                return write_held(prefix, report, bytes, &mut self.send);
             }
             Report::Alive(_, sequence) => write_alive(prefix, *sequence, bytes),
             Report::Muted(_, muted) => write_mute(prefix, muted, bytes),
             Report::Control(_, state) => write_control(prefix, state, bytes),
             Report::Area(news) => write_area(prefix, news, bytes),
+            // They have targets of their own.
+            Report::Message(_) => return,
         }
-        self.out.send(bytes);
+        (self.send)(bytes);
     }
 }

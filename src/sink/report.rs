@@ -4,9 +4,10 @@ use std::borrow::Cow;
 
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::{AreaNews, HeldReport};
-use crate::engine::{ControlState, PageShown};
+use crate::engine::{ControlState, IgnoredPress, PageShown};
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
+use crate::messages::MessageNews;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -20,6 +21,8 @@ use crate::wire::{LinkCause, LinkState};
 pub enum Report<'a> {
     /// An event of a control.
     Event(Cow<'a, WidgetEvent>),
+    /// A control ignored a foot, which has left it now.
+    Ignored(Cow<'a, IgnoredPress>),
     /// The contacts of one frame; reported for every frame, so a sink limits the rate itself.
     Contacts(Instant, Cow<'a, [Contact]>),
     /// Another page is shown, or an app has asked for the current one.
@@ -45,6 +48,8 @@ pub enum Report<'a> {
     /// The state of a control: an app has changed it or asked for it, or it has the guard `HoldToRun` and has gone
     /// off or on.
     Control(Instant, Cow<'a, ControlState>),
+    /// A message of the layout to another program; what a control or a foot gives, whether or not somebody sends it.
+    Message(Cow<'a, MessageNews>),
     /// The state of one area of a floor that several computers serve has changed.
     Area(Cow<'a, AreaNews>),
 }
@@ -55,6 +60,7 @@ impl Report<'_> {
     pub fn owned(&self) -> Report<'static> {
         match self {
             Self::Event(event) => Report::Event(owned(event.as_ref())),
+            Self::Ignored(press) => Report::Ignored(owned(press.as_ref())),
             Self::Contacts(at, contacts) => Report::Contacts(*at, Cow::Owned(contacts.to_vec())),
             Self::Page(page) => Report::Page(owned(page.as_ref())),
             Self::Ground(event) => Report::Ground(owned(event.as_ref())),
@@ -67,6 +73,7 @@ impl Report<'_> {
             Self::Alive(at, sequence) => Report::Alive(*at, *sequence),
             Self::Muted(at, muted) => Report::Muted(*at, owned(muted.as_ref())),
             Self::Control(at, state) => Report::Control(*at, owned(state.as_ref())),
+            Self::Message(news) => Report::Message(owned(news.as_ref())),
             Self::Area(news) => Report::Area(owned(news.as_ref())),
         }
     }
@@ -85,10 +92,12 @@ impl Report<'_> {
     pub fn at(&self) -> Instant {
         match self {
             Self::Event(event) => event.at,
+            Self::Ignored(press) => press.at,
             Self::Page(page) => page.at,
             Self::Ground(event) => event.at,
             Self::Crack(news) => news.at,
             Self::Held(report) => report.at,
+            Self::Message(news) => news.at,
             Self::Area(news) => news.at,
             Self::Contacts(at, _)
             | Self::Link(at, _)

@@ -12,7 +12,7 @@ pub struct Since<S> {
 }
 
 impl<S: EventSink> Since<S> {
-    /// Reports to `inner` the events, contacts, cracks and held controls from `from` on, and all states.
+    /// Reports to `inner` the events, messages, contacts, cracks and held controls from `from` on, and all states.
     pub const fn new(inner: S, from: Instant) -> Self {
         Self { inner, from }
     }
@@ -22,7 +22,12 @@ impl<S: EventSink> EventSink for Since<S> {
     fn report(&mut self, report: &Report<'_>) {
         let happens = matches!(
             report,
-            Report::Event(_) | Report::Contacts(..) | Report::Ground(_) | Report::Crack(_) | Report::Held(_)
+            Report::Event(_)
+                | Report::Contacts(..)
+                | Report::Ground(_)
+                | Report::Crack(_)
+                | Report::Held(_)
+                | Report::Message(_)
         );
         if !happens || report.at() >= self.from {
             self.inner.report(report);

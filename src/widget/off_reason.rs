@@ -34,11 +34,13 @@ pub enum OffReason {
     CoarseReadings,
     /// Another control with the guard `HoldToRun` is held: only one acts at a time.
     OtherHeld,
+    /// Boards under the control send fewer than 50 packets a second; only for controls with the guard `HoldToRun`.
+    SlowReadings,
 }
 
 impl OffReason {
     /// All reasons, in order of precedence.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Disabled,
         Self::Waiting,
         Self::BoardsSwapped,
@@ -49,6 +51,7 @@ impl OffReason {
         Self::RepeatedReadings,
         Self::CoarseReadings,
         Self::OtherHeld,
+        Self::SlowReadings,
     ];
 
     /// Its name in OSC, JSON, C and Python; it stays the same in later versions.
@@ -62,6 +65,7 @@ impl OffReason {
             Self::NotCalibrated => "not_calibrated",
             Self::LinkLost => "link_lost",
             Self::SensorTrouble => "sensor_trouble",
+            Self::SlowReadings => "slow_readings",
             Self::RepeatedReadings => "repeated_readings",
             Self::CoarseReadings => "coarse_readings",
             Self::OtherHeld => "other_held",
@@ -83,6 +87,7 @@ impl OffReason {
             | Self::BoardsSwapped
             | Self::OtherFloor
             | Self::NotCalibrated
+            | Self::SlowReadings
             | Self::CoarseReadings => true,
             Self::Waiting
             | Self::LinkLost
@@ -110,6 +115,11 @@ impl OffReason {
                      calibrate` makes the file, and `underfoot simulate` writes the one of its simulated floor"
                     .into(),
             },
+            Self::SlowReadings => {
+                "boards under the control send fewer than 50 packets a second, too few for what acts while it is held: \
+                 let them send more often"
+                    .into()
+            }
             Self::CoarseReadings => format!(
                 "the readings under the control are so coarse that a frozen sensor cannot be noticed; {file} may name a \
                  source without noise"
@@ -129,6 +139,7 @@ impl fmt::Display for OffReason {
             Self::NotCalibrated => "the floor is not calibrated",
             Self::LinkLost => "nothing usable comes from the boards under it",
             Self::SensorTrouble => "sensors under it are wrong or at the end of their range",
+            Self::SlowReadings => "boards under it send fewer than 50 packets a second",
             Self::RepeatedReadings => "sensors under it repeat their readings bit for bit",
             Self::CoarseReadings => "readings under it are too coarse to notice a frozen sensor",
             Self::OtherHeld => "another control that acts while it is held is held",

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-/// Minimum and maximum rate of boards, in packets a second (our choice: a press needs at least a few samples within
-/// its 20 ms of dwell, and the engine uses at most one sample a millisecond).
-pub const BOARD_RATES_HZ: [f32; 2] = [150.0, 1500.0];
+/// Minimum and maximum rate of boards, in packets a second (our choice: below, a press would take longer than a tenth
+/// of a second; four samples a millisecond are more than a foot needs).
+pub const BOARD_RATES_HZ: [f32; 2] = [20.0, 4000.0];
 
 /// Reason for which a link gives no usable frame although boards send, or for which their readings contradict the
 /// floor file.
@@ -21,14 +21,23 @@ pub enum LinkCause {
         /// Packets a second, measured.
         hz: f32,
     },
-    /// A board sends more packets a second than [`BOARD_RATES_HZ`]; the surplus is dropped.
+    /// A board sends more packets a second than [`BOARD_RATES_HZ`].
     RateHigh {
         /// The board's number.
         board: u16,
         /// Packets a second, measured.
         hz: f32,
     },
-    /// A board's sequence number stays the same.
+    /// A board sends at another rate than the floor file says.
+    RateOther {
+        /// The board's number.
+        board: u16,
+        /// Packets a second, measured.
+        hz: f32,
+        /// Packets a second by the floor file.
+        written: f32,
+    },
+    /// A board's sequence number stays the same, and so do its readings: it repeats one packet.
     SequenceStands {
         /// The board's number.
         board: u16,
@@ -97,10 +106,14 @@ pub enum LinkCause {
         /// The sender, and the rule that blocks it.
         why: String,
     },
-    /// Counts are outside of 0 to 65535.
+    /// Counts are outside of the range of their board.
     CountsBeyond {
         /// The board's number.
         board: u16,
+        /// The greatest count beyond the range; `None` if unknown.
+        greatest: Option<i64>,
+        /// The greatest count by the floor file.
+        full_scale: u32,
     },
     /// Newtons are NaN, infinite, or more than 50 kN.
     NotNumbers {
@@ -112,14 +125,16 @@ pub enum LinkCause {
         /// The board's number.
         board: u16,
     },
-    /// Readings move and no load was ever seen; the counts use only a small part of 0 to 65535.
+    /// Readings move and no load was ever seen; the counts use only a small part of their range.
     CountsNarrow {
         /// The board's number.
         board: u16,
         /// The minimum count so far.
-        least: u16,
+        least: i64,
         /// The maximum count so far.
-        greatest: u16,
+        greatest: i64,
+        /// The greatest count by the floor file.
+        full_scale: u32,
     },
     /// Readings move and no load was ever seen; the newtons stay small.
     NewtonsSmall {
@@ -177,6 +192,7 @@ impl LinkCause {
         match self {
             Self::RateLow { .. } => "rate_low",
             Self::RateHigh { .. } => "rate_high",
+            Self::RateOther { .. } => "rate_other",
             Self::SequenceStands { .. } => "sequence_stands",
             Self::SequenceStep { .. } => "sequence_step",
             Self::SequenceFalls { .. } => "sequence_falls",
@@ -208,6 +224,7 @@ impl LinkCause {
         match self {
             Self::RateLow { board, .. }
             | Self::RateHigh { board, .. }
+            | Self::RateOther { board, .. }
             | Self::SequenceStands { board, .. }
             | Self::SequenceStep { board, .. }
             | Self::SequenceFalls { board }
@@ -215,7 +232,7 @@ impl LinkCause {
             | Self::SequenceMixed { board }
             | Self::SequenceJumps { board }
             | Self::WrongReadings { board, .. }
-            | Self::CountsBeyond { board }
+            | Self::CountsBeyond { board, .. }
             | Self::NotNumbers { board }
             | Self::ReadingsStand { board }
             | Self::CountsNarrow { board, .. }
@@ -247,17 +264,22 @@ impl fmt::Display for LinkCause {
         match self {
             Self::RateLow { board, hz } => write!(
                 f,
-                "board {board} sends {} packets a second: {lowest} at least are needed, and 1000 are best",
+                "board {board} sends {} packets a second: {lowest} at least are needed for presses in time",
                 rounded(*hz)
             ),
             Self::RateHigh { board, hz } => write!(
                 f,
-                "board {board} sends {} packets a second: {highest} are understood at most; of more, one a millisecond is used",
+                "board {board} sends {} packets a second: {highest} are understood at most",
+                rounded(*hz)
+            ),
+            Self::RateOther { board, hz, written } => write!(
+                f,
+                "board {board} sends {} packets a second, and the floor file says rate_hz: {written}",
                 rounded(*hz)
             ),
             Self::SequenceStands { board, number } => write!(
                 f,
-                "the sequence number of board {board} is always {number}: it must grow by one with each packet"
+                "board {board} repeats one packet, with the number {number}: its program hangs, or nobody reads its converter"
             ),
             Self::SequenceStep { board, step } => write!(
                 f,
@@ -292,11 +314,9 @@ impl fmt::Display for LinkCause {
                 write!(f, "the serial port {port} does not give what the floor file says: {why}")
             }
             Self::SenderRefused { why } => write!(f, "datagrams arrive that are refused: {why}"),
-            Self::CountsBeyond { board } => write!(
-                f,
-                "the counts of board {board} are outside of 0 to 65535: a converter of more than 16 bits, or one with a \
-                 sign, has to be scaled by the board"
-            ),
+            Self::CountsBeyond { board, greatest, full_scale } => {
+                counts_beyond(f, *board, *greatest, *full_scale)
+            }
             Self::NotNumbers { board } => {
                 write!(f, "the newtons of board {board} are not numbers, or more than 50 kN")
             }
@@ -304,7 +324,9 @@ impl fmt::Display for LinkCause {
                 f,
                 "all readings of board {board} stand still under a load, which no converter does that works"
             ),
-            Self::CountsNarrow { board, least, greatest } => counts_narrow(f, *board, *least, *greatest),
+            Self::CountsNarrow { board, least, greatest, full_scale } => {
+                counts_narrow(f, *board, [*least, *greatest], *full_scale)
+            }
             Self::NewtonsSmall { board, greatest } => write!(
                 f,
                 "no load was seen although the readings of board {board} move: its newtons never exceed {greatest:.2}; are \
@@ -377,36 +399,62 @@ fn wrong_readings(f: &mut fmt::Formatter<'_>, board: u16, channels: usize, found
         "; 64-bit integers (h) must be sent as int32 (i)"
     } else if readings.contains('s') {
         "; numbers must not be sent as text (s)"
-    } else if readings.len() + 1 == channels && readings.bytes().all(|tag| tag == b'i') {
-        "; is the sequence number missing?"
     } else {
         ""
     };
     f.write_str(hint)
 }
 
-fn counts_narrow(f: &mut fmt::Formatter<'_>, board: u16, least: u16, greatest: u16) -> fmt::Result {
-    write!(f, "no load was seen although the readings of board {board} move: ")?;
-    let bits = match greatest {
-        0..=0xFF => Some(8),
-        0x100..=0x3FF => Some(10),
-        0x400..=0xFFF => Some(12),
-        0x1000..=0x3FFF => Some(14),
-        _ => None,
-    };
-    match bits {
-        Some(bits) => write!(
+fn counts_beyond(
+    f: &mut fmt::Formatter<'_>,
+    board: u16,
+    greatest: Option<i64>,
+    full_scale: u32,
+) -> fmt::Result {
+    write!(
+        f,
+        "the counts of board {board} are outside of the range that the floor file says, up to {full_scale}: "
+    )?;
+    match greatest.and_then(|greatest| Some((greatest, width(greatest)?))) {
+        Some((greatest, bits)) => write!(
             f,
-            "its counts never exceed {} of 65535, as those of a {bits}-bit converter; the board has to shift them left by \
-             {} bits",
-            (1_u32 << bits) - 1,
-            16 - bits
+            "they reach {greatest}, as those of a {bits}-bit converter; write full_scale: {} to the board, and counts: \
+             Signed or OffsetBinary if they have a sign",
+            (1_u32 << bits) - 1
         ),
         None => write!(
             f,
-            "its counts stay between {least} and {greatest} of 0 to 65535; they must use the whole range"
+            "write full_scale to the board, such as 16777215 for 24 bits, and counts: Signed or OffsetBinary if they \
+             have a sign"
         ),
     }
+}
+
+fn counts_narrow(
+    f: &mut fmt::Formatter<'_>,
+    board: u16,
+    [least, greatest]: [i64; 2],
+    full_scale: u32,
+) -> fmt::Result {
+    write!(f, "no load was seen although the readings of board {board} move: ")?;
+    match width(greatest).filter(|bits| 1_u64 << (bits + 2) <= u64::from(full_scale) + 1) {
+        Some(bits) => write!(
+            f,
+            "its counts never exceed {0} of {full_scale}, as those of a {bits}-bit converter; write full_scale: {0} to \
+             the board in the floor file",
+            (1_u32 << bits) - 1
+        ),
+        None => write!(
+            f,
+            "its counts stay between {least} and {greatest} of {full_scale}: is full_scale in the floor file that of its \
+             converter?"
+        ),
+    }
+}
+
+/// The bits of the narrowest usual converter that reaches this count; `None` beyond 24 bits, and for a negative count.
+fn width(greatest: i64) -> Option<u32> {
+    [8, 10, 12, 14, 16, 18, 20, 24].into_iter().find(|bits| (0..1_i64 << bits).contains(&greatest))
 }
 
 /// Returns the likely format of a datagram that is not OSC, as a message for people; `None` if there is no guess.
@@ -436,7 +484,8 @@ mod tests {
         let board = 3;
         vec![
             LinkCause::RateLow { board, hz: 99.7 },
-            LinkCause::RateHigh { board, hz: 2000.2 },
+            LinkCause::RateHigh { board, hz: 5000.2 },
+            LinkCause::RateOther { board, hz: 49.8, written: 100.0 },
             LinkCause::SequenceStands { board, number: 0 },
             LinkCause::SequenceStep { board, step: 10 },
             LinkCause::SequenceFalls { board },
@@ -448,10 +497,10 @@ mod tests {
             LinkCause::NotOsc { why: "they look like text".into() },
             LinkCause::PortGarbled { port: "/dev/ttyACM0".into(), why: "it is not text".into() },
             LinkCause::SenderRefused { why: "10.0.0.1".into() },
-            LinkCause::CountsBeyond { board },
+            LinkCause::CountsBeyond { board, greatest: Some(8_388_607), full_scale: 65_535 },
             LinkCause::NotNumbers { board },
             LinkCause::ReadingsStand { board },
-            LinkCause::CountsNarrow { board, least: 90, greatest: 700 },
+            LinkCause::CountsNarrow { board, least: 90, greatest: 700, full_scale: 65_535 },
             LinkCause::NewtonsSmall { board, greatest: 0.9 },
             LinkCause::NewtonsLarge { board, greatest: 40_000.0 },
             LinkCause::ReadingsFall { board },
@@ -492,7 +541,6 @@ mod tests {
             ("ihhhh", "64-bit integers (h) must be sent as int32"),
             ("issss", "numbers must not be sent as text"),
             ("fffff", "the first argument must be the sequence number"),
-            ("iiii", "is the sequence number missing?"),
             ("ib (a blob of 32 bytes)", "one blob (b) of 8 bytes"),
             ("no type tags", "the first argument must be the sequence number"),
         ] {

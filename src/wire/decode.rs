@@ -11,7 +11,7 @@ use super::message::ControlMessage;
 use super::sensor_message::RawMessage;
 use super::sent::is_sent_by_floors;
 use super::{LinkCause, LinkCounters, Prefix, SensorPacket};
-use crate::floor::Floor;
+use crate::floor::{CountRange, Floor};
 use crate::units::Instant;
 use underfoot_format::suggest::nearest;
 
@@ -37,7 +37,7 @@ pub enum WireError {
     },
     /// The arguments differ from those of this board in the floor file.
     #[error(
-        "{address:?} takes an int32 sequence and {channels} counts (i), newtons (f), or one blob of u16 counts, not {found}"
+        "{address:?} takes an int32 number and {channels} counts (i), newtons (f), or one blob of counts, not {found}"
     )]
     WrongReadings {
         /// The board's number.
@@ -117,6 +117,7 @@ pub struct Decoder {
 struct BoardShape {
     number: u16,
     channels: usize,
+    range: CountRange,
 }
 
 impl Decoder {
@@ -125,7 +126,7 @@ impl Decoder {
     pub fn new(floor: &Floor) -> Self {
         let mut boards = HashMap::new();
         for (number, board) in (0..=u16::MAX).zip(&floor.boards) {
-            let shape = BoardShape { number, channels: board.channels.len() };
+            let shape = BoardShape { number, channels: board.channels.len(), range: board.range };
             boards.entry(board.address.as_bytes().into()).or_insert(shape);
         }
         Self { boards, prefix: Prefix::default() }
@@ -146,7 +147,8 @@ impl Decoder {
 
     /// Reads `datagram`, which arrived at `received`, into `batch` and replaces its contents.
     ///
-    /// A count outside 0 to 65535 becomes `None` in its place; NaN and infinite newtons stay for
+    /// Counts are scaled by the range of their board ([`crate::floor::Board::range`]). A count outside of it becomes
+    /// `None` in its place, or stays beyond the scale of 16 bits where the readings have fractions; NaN and infinite newtons stay for
     /// [`crate::sense::Assembler`] to check. Messages of a bundle that are for another receiver or have the wrong
     /// shape are dropped and listed in [`Batch::refused`].
     ///
@@ -239,7 +241,7 @@ impl Decoder {
     /// Returns the packet, if the message belongs to a board of this floor.
     fn sensors(&self, raw: &RawMessage<'_>, received: Instant) -> Option<SensorPacket> {
         let shape = self.boards.get(raw.address)?;
-        let (sequence, readings) = raw.read(&DatagramLimits::SENSORS)?;
+        let (sequence, readings) = raw.read(&DatagramLimits::SENSORS, shape.channels, shape.range)?;
         let packet = SensorPacket { board: shape.number, sequence, received, readings };
         (packet.readings.len() == shape.channels).then_some(packet)
     }
@@ -352,6 +354,57 @@ mod tests {
     }
 
     #[test]
+    fn a_message_without_a_number_has_number_0() {
+        let expected = Readings::Counts([Some(1), Some(2), Some(3), Some(4)].into_iter().collect());
+        let blob = OscType::Blob(vec![0, 1, 0, 2, 0, 3, 0, 4]);
+        for args in [ints(&[1, 2, 3, 4]), vec![blob]] {
+            let batch = decode(&bytes("/underfoot/board/0", args)).unwrap();
+            assert_eq!((batch.packets[0].sequence, &batch.packets[0].readings), (0, &expected));
+        }
+        let newtons = decode(&bytes("/underfoot/board/0", vec![OscType::Float(7.5); 4])).unwrap();
+        assert_eq!(newtons.packets[0].readings, Readings::Newtons([7.5; 4].into_iter().collect()));
+    }
+
+    #[test]
+    fn counts_of_other_converters_are_scaled() {
+        use crate::floor::CountSign::{OffsetBinary, Signed, Unsigned};
+        let read = |full_scale, sign, args| {
+            let mut floor = Floor::of(Geometry::of_paper_tiles(1, 1).unwrap());
+            floor.boards[0].range = CountRange { full_scale, sign };
+            let mut batch = Batch::default();
+            Decoder::new(&floor).decode(&bytes("/underfoot/board/0", args), NOW, &mut batch).unwrap();
+            batch.packets.remove(0).readings
+        };
+        let ten_bits = Readings::Counts([Some(0), Some(65_535), None, Some(32_800)].into_iter().collect());
+        assert_eq!(read(1023, Unsigned, ints(&[9, 0, 1023, 1024, 512])), ten_bits);
+        let near = |readings: Readings, expected: [f32; 4]| {
+            let Readings::Scaled(values) = readings else { panic!("{readings:?}") };
+            let is_near = |(value, expected): (&f32, f32)| (value - expected).abs() < 0.02;
+            assert!(values.iter().zip(expected).all(is_near), "{values:?}");
+        };
+        let expected = [0.0, -32_767.5, 32_767.5, -0.0078];
+        near(read(8_388_607, Signed, ints(&[9, 0, -4_194_304, 4_194_304, -1])), expected);
+        // The same words without their signs, and with the zero in the middle.
+        near(read(8_388_607, Signed, ints(&[9, 0, 12_582_912, 4_194_304, 16_777_215])), expected);
+        near(
+            read(16_777_215, OffsetBinary, ints(&[9, 8_388_608, 4_194_304, 12_582_912, 8_388_607])),
+            expected,
+        );
+        let words =
+            [0_i32, 0x40_0000, 0x80_0000, 0xFF_FFFF].iter().flat_map(|word| word.to_be_bytes()[1..].to_vec());
+        let blob = vec![OscType::Int(9), OscType::Blob(words.collect())];
+        near(read(16_777_215, Unsigned, blob), [0.0, 16_383.75, 32_767.5, 65_535.0]);
+    }
+
+    #[test]
+    fn a_finer_converter_than_the_floor_file_s_shows_its_counts() {
+        let Ok(Readings::Scaled(values)) = readings(ints(&[9, 8_388_700, 8_388_600, 8_388_650, 3])) else {
+            panic!("not scaled")
+        };
+        assert_eq!(values[0], 8_388_700.0);
+    }
+
+    #[test]
     fn the_sequence_has_no_sign() {
         let batch = decode(&bytes("/underfoot/board/0", ints(&[-1, 1, 2, 3, 4]))).unwrap();
         assert_eq!(batch.packets[0].sequence, u32::MAX);
@@ -374,7 +427,7 @@ mod tests {
 
     #[test]
     fn other_shapes_are_refused() {
-        let too_few = ints(&[9, 1, 2, 3]);
+        let too_few = ints(&[9, 1, 2]);
         let too_many = ints(&[9, 1, 2, 3, 4, 5]);
         let far_too_many = ints(&[9; 200]);
         let mixed =
@@ -494,7 +547,7 @@ mod tests {
 
     #[test]
     fn a_message_of_the_wrong_shape_costs_only_itself() {
-        let short = bytes("/underfoot/board/0", ints(&[9, 1, 2, 3]));
+        let short = bytes("/underfoot/board/0", ints(&[9, 1, 2]));
         let unclear = bytes("/underfoot/widget/zoom/set", vec![OscType::Nil]);
         let get = bytes("/underfoot/widget/zoom/get", vec![]);
         let batch = decode(&bundle(&[short, good_readings(), unclear, get])).unwrap();

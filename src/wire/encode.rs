@@ -34,7 +34,7 @@ pub enum EncodeError {
         /// Readings in the packet.
         readings: usize,
     },
-    /// The packet holds newtons and the format takes counts, or a count is missing and the format has no code for
+    /// The packet holds newtons or fractions and the format takes counts, or a count is missing and the format has no code for
     /// that.
     #[error("the packet has no raw counts to write")]
     NoCounts,
@@ -113,7 +113,13 @@ impl SensorEncoder {
             (SensorFormat::Newtons, Readings::Newtons(forces)) => {
                 args.extend(forces.iter().map(|&force| OscType::Float(force)));
             }
-            (SensorFormat::Counts | SensorFormat::Blob, Readings::Newtons(_)) => {
+            (SensorFormat::Newtons, Readings::Scaled(values)) => {
+                let parts = values.iter().zip(&board.calibration);
+                args.extend(
+                    parts.map(|(value, part)| OscType::Float(part.force_at(Calibration::volts_of(*value)).0)),
+                );
+            }
+            (SensorFormat::Counts | SensorFormat::Blob, Readings::Newtons(_) | Readings::Scaled(_)) => {
                 return Err(EncodeError::NoCounts);
             }
         }

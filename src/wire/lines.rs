@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 use thiserror::Error;
 
 use super::{MAX_CHANNELS, Readings};
-use crate::floor::{TextLines, TextNumbers};
+use crate::floor::{CountSign, TextLines, TextNumbers};
 
 /// Maximum length of a line in bytes: twice that of 128 columns of seven digits.
 const LONGEST: usize = 2048;
@@ -51,7 +51,7 @@ pub enum LineFault {
 /// a rejected line only from the second good one on.
 ///
 /// ```
-/// use underfoot::floor::{TextLines, TextNumbers};
+/// use underfoot::floor::{CountSign, TextLines, TextNumbers};
 /// use underfoot::wire::{LineDecoder, Readings};
 ///
 /// let lines = TextLines {
@@ -60,7 +60,7 @@ pub enum LineFault {
 ///     separators: " ,".into(),
 ///     columns: vec![1, 2],
 ///     width: 2,
-///     numbers: TextNumbers::Counts(1023.0),
+///     numbers: TextNumbers::Counts { full_scale: 1023.0, sign: CountSign::Unsigned },
 /// };
 /// let mut decoder = LineDecoder::new(lines);
 /// let mut read = |text: &[u8]| text.iter().filter_map(|byte| decoder.push(*byte)).last();
@@ -149,7 +149,11 @@ fn read(line: &[u8], format: &TextLines) -> Result<Readings, LineFault> {
     });
     match format.numbers {
         TextNumbers::Newtons => Ok(Readings::Newtons(numbers.collect::<Result<_, _>>()?)),
-        TextNumbers::Counts(full_scale) => {
+        TextNumbers::Counts { full_scale, sign } if sign != CountSign::Unsigned || full_scale > GREATEST => {
+            let scaled = |number: f32| sign.scaled(number.into(), full_scale.into());
+            Ok(Readings::Scaled(numbers.map(|number| number.map(scaled)).collect::<Result<_, _>>()?))
+        }
+        TextNumbers::Counts { full_scale, .. } => {
             let counts: Result<ArrayVec<_, MAX_CHANNELS>, _> =
                 numbers.map(|number| number.map(|number| count(number, full_scale))).collect();
             Ok(Readings::Counts(counts?))
@@ -157,9 +161,12 @@ fn read(line: &[u8], format: &TextLines) -> Result<Readings, LineFault> {
     }
 }
 
+/// The greatest count of 16 bits.
+const GREATEST: f32 = u16::MAX as f32;
+
 /// A count of 0 to 65535 for a number of 0 to `full_scale`; `None` beyond.
 fn count(number: f32, full_scale: f32) -> Option<u16> {
-    (0.0..=full_scale).contains(&number).then(|| (number / full_scale * f32::from(u16::MAX)).round() as u16)
+    (0.0..=full_scale).contains(&number).then(|| (number / full_scale * GREATEST).round() as u16)
 }
 
 const fn is_blank(byte: u8) -> bool {
@@ -208,7 +215,7 @@ mod tests {
             separators: separators.into(),
             columns: columns.into(),
             width,
-            numbers: TextNumbers::Counts(1000.0),
+            numbers: TextNumbers::Counts { full_scale: 1000.0, sign: CountSign::Unsigned },
         }
     }
 
@@ -276,6 +283,22 @@ mod tests {
         let mut decoder = trusting(&format(" ", &[1, 2, 3], 3), b"1 2 3\n");
         let beyond = Readings::Counts([None, Some(0), None].into_iter().collect());
         assert_eq!(read_all(&mut decoder, b"-1 0 1000.5\n"), [Ok(beyond)]);
+    }
+
+    #[test]
+    fn an_amplifier_of_24_bits_keeps_its_last_bit_and_its_sign() {
+        for (sign, full_scale, line, expected) in [
+            (CountSign::Unsigned, 16_777_215.0, "8388608 8388609\n", 32_767.5),
+            (CountSign::Signed, 8_388_607.0, "-1 0\n", -0.0078),
+            (CountSign::OffsetBinary, 16_777_215.0, "8388608 8388609\n", 0.0),
+        ] {
+            let numbers = TextNumbers::Counts { full_scale, sign };
+            let format = TextLines { numbers, ..format(" ", &[1, 2], 2) };
+            let mut decoder = trusting(&format, b"7 7\n");
+            let read = read_all(&mut decoder, line.as_bytes());
+            let [Ok(Readings::Scaled(values))] = &read[..] else { panic!("{sign:?}: {read:?}") };
+            assert!((values[0] - expected).abs() < 0.01 && values[1] > values[0], "{sign:?}: {values:?}");
+        }
     }
 
     proptest! {

@@ -4,6 +4,7 @@ use arrayvec::ArrayVec;
 
 use super::guard::DatagramLimits;
 use super::packet::{MAX_CHANNELS, Readings};
+use crate::floor::CountRange;
 
 /// A message in a datagram: its address and the bytes after it.
 #[derive(Clone, Copy, Debug)]
@@ -54,26 +55,45 @@ impl<'a> RawMessage<'a> {
         numbers > 3 || tags.contains(&b'b')
     }
 
-    /// Returns the sequence number and the readings; `None` unless the whole message is that of a board within
-    /// `limits`.
-    pub(super) fn read(&self, limits: &DatagramLimits) -> Option<(u32, Readings)> {
+    /// Returns the number and the readings of a board with so many `channels`, whose counts have this `range`; `None`
+    /// unless the whole message is that of a board within `limits`. A message with as many arguments as the board has
+    /// channels has no number: then it is 0.
+    pub(super) fn read(
+        &self,
+        limits: &DatagramLimits,
+        channels: usize,
+        range: CountRange,
+    ) -> Option<(u32, Readings)> {
         let (tags, arguments) = text(self.rest)?;
         let tags = tags.strip_prefix(b",")?;
         if self.address.len() > limits.address || tags.len() > limits.tags {
             return None;
         }
-        let tags = tags.strip_prefix(b"i")?;
-        let (sequence, arguments) = arguments.split_first_chunk()?;
-        let readings = match tags {
-            b"b" => Readings::Counts(blob(arguments)?),
-            [b'f', ..] => Readings::Newtons(values(tags, b'f', arguments, f32::from_be_bytes)?),
-            _ => {
-                let count = |bytes| u16::try_from(i32::from_be_bytes(bytes)).ok();
-                Readings::Counts(values(tags, b'i', arguments, count)?)
-            }
+        let are_counts = || tags.len() == channels && tags.iter().all(|tag| *tag == b'i');
+        let is_unnumbered = matches!(tags, b"b" | [b'f', ..]) || are_counts();
+        let (number, tags, arguments) = if is_unnumbered {
+            (0, tags, arguments)
+        } else {
+            let (number, arguments) = arguments.split_first_chunk()?;
+            // The number has 32 bits without a sign; OSC has only signed integers.
+            (u32::from_be_bytes(*number), tags.strip_prefix(b"i")?, arguments)
         };
-        // The sequence number has 32 bits without a sign; OSC has only signed integers.
-        Some((u32::from_be_bytes(*sequence), readings))
+        let readings = match tags {
+            b"b" => blob(arguments, range)?,
+            [b'f', ..] => Readings::Newtons(values(tags, b'f', arguments, f32::from_be_bytes)?),
+            _ if range == CountRange::WHOLE => {
+                let count = |bytes| u16::try_from(i32::from_be_bytes(bytes)).ok();
+                let counts = values(tags, b'i', arguments, count)?;
+                if 2 * counts.iter().filter(|count| count.is_none()).count() > counts.len() {
+                    // A finer converter than the floor file says: the counts tell which.
+                    ranged(values(tags, b'i', arguments, i32::from_be_bytes)?, range, true)
+                } else {
+                    Readings::Counts(counts)
+                }
+            }
+            _ => ranged(values(tags, b'i', arguments, i32::from_be_bytes)?, range, range.needs_fractions()),
+        };
+        Some((number, readings))
     }
 }
 
@@ -99,15 +119,44 @@ fn values<T>(
     Some(words.iter().map(|word| value(*word)).collect())
 }
 
-/// Reads counts of two bytes each, with their length before them and padding behind.
-fn blob(arguments: &[u8]) -> Option<ArrayVec<Option<u16>, MAX_CHANNELS>> {
+/// The readings of counts in this `range`, with fractions or as 16 bits.
+fn ranged(
+    counts: ArrayVec<impl Into<f64>, MAX_CHANNELS>,
+    range: CountRange,
+    has_fractions: bool,
+) -> Readings {
+    let counts = counts.into_iter().map(Into::into);
+    if has_fractions {
+        Readings::Scaled(counts.map(|count| range.scaled(count)).collect())
+    } else {
+        Readings::Counts(counts.map(|count| range.rounded(count)).collect())
+    }
+}
+
+/// Reads counts of two bytes each, or three for a range of more than 16 bits, with their length before them and padding
+/// behind.
+fn blob(arguments: &[u8], range: CountRange) -> Option<Readings> {
     let (length, bytes) = arguments.split_first_chunk()?;
     let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;
-    let (pairs, odd) = bytes.get(..length)?.as_chunks();
-    if !odd.is_empty() || pairs.len() > MAX_CHANNELS || bytes.len() != length.next_multiple_of(4) {
+    let words = bytes.get(..length)?;
+    if bytes.len() != length.next_multiple_of(4) {
         return None;
     }
-    Some(pairs.iter().map(|pair| Some(u16::from_be_bytes(*pair))).collect())
+    if range.has_three_bytes() {
+        let (triples, odd) = words.as_chunks();
+        let is_fit = odd.is_empty() && triples.len() <= MAX_CHANNELS;
+        let word = |[high, middle, low]: &[u8; 3]| u32::from_be_bytes([0, *high, *middle, *low]);
+        return is_fit.then(|| ranged(triples.iter().map(word).collect(), range, true));
+    }
+    let (pairs, odd) = words.as_chunks();
+    if !odd.is_empty() || pairs.len() > MAX_CHANNELS {
+        return None;
+    }
+    let words = pairs.iter().map(|pair| u16::from_be_bytes(*pair));
+    if range == CountRange::WHOLE {
+        return Some(Readings::Counts(words.map(Some).collect()));
+    }
+    Some(ranged(words.collect(), range, range.needs_fractions()))
 }
 
 #[cfg(test)]
@@ -171,7 +220,9 @@ mod tests {
                 datagram.truncate(cut.index(datagram.len()));
             }
             let raw = RawMessage::split(&datagram);
-            let read = raw.and_then(|raw| Some((raw.address, raw.read(&DatagramLimits::SENSORS)?)));
+            let read = raw.and_then(|raw| {
+                Some((raw.address, raw.read(&DatagramLimits::SENSORS, usize::MAX, CountRange::WHOLE)?))
+            });
             let is_sound = check(&datagram, &DatagramLimits::SENSORS).is_ok();
             let others = is_sound.then(|| by_rosc(&datagram)).flatten();
             match (read, others) {

@@ -23,6 +23,7 @@ mod fault_table;
 mod faults;
 mod feel;
 mod floor_walks;
+mod floors;
 mod ground;
 mod ignored;
 mod intent;

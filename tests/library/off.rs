@@ -239,3 +239,15 @@ fn every_reason_stands_in_the_page_and_in_the_bindings() {
     let words = rows.take_while(|line| line.starts_with('|')).count();
     assert_eq!(words, OffReason::ALL.len(), "the page has a row for something else");
 }
+
+/// The same for presses that a control ignored.
+#[test]
+fn every_reason_of_an_ignored_press_stands_in_the_page_and_in_python() {
+    let read =
+        |path: &str| std::fs::read_to_string(format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let (page, types) = (read("docs/osc-and-tuio.md"), read("bindings/python/underfoot/_types.py"));
+    for name in Ignored::all().map(Ignored::name) {
+        assert!(page.contains(&format!("| `{name}` |")), "{name} has no row");
+        assert!(types.contains(&format!("    \"{name}\",")), "{name} is not in Python");
+    }
+}

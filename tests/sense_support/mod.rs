@@ -112,7 +112,8 @@ fn sole(length: f32, phase: Option<f32>, points: &mut Vec<(Vec2, f32)>) {
 fn press(frame: &mut ForceFrame, geometry: &Geometry, at: Vec2, force: f32) {
     let Some(tile) = geometry.tile_under(at) else { return };
     let Some(index) = geometry.index(tile) else { return };
-    let arm = (at - geometry.centre(tile)) / geometry.sensor_reach_m();
+    let Some(half) = geometry.sensor_places(tile).rectangle() else { return };
+    let arm = (at - geometry.centre(tile)) / half;
     for corner in Corner::ALL {
         let way = corner.direction();
         frame.forces[index][corner.index()] += 0.25 * force * (1.0 + way.x * arm.x) * (1.0 + way.y * arm.y);

@@ -126,6 +126,7 @@ pub(crate) fn map() -> Layout {
             id: "map".into(),
             area: tiles(0.0, 2.0, 6.0, 4.0),
             cursor: CursorRule::Largest,
+            send: Vec::new(),
         }],
         stances: vec![Stance { area: tiles(1.75, 0.35, 2.5, 1.4), label: "stand here".into() }],
         pages: vec![],
@@ -183,7 +184,7 @@ pub(crate) fn step_on(snapshot: &mut Snapshot, id: u32, at: Vec2, force: f32, ve
     let geometry = Geometry::default();
     let tile = geometry.tile_under(at).unwrap();
     let index = geometry.index(tile).unwrap();
-    let reach = geometry.sensor_reach_m();
+    let reach = geometry.sensor_places(tile).rectangle().unwrap();
     let from_middle = ((at - geometry.centre(tile)) / reach).clamp(Vec2::NEG_ONE, Vec2::ONE);
     let (x, y) = (from_middle.x, from_middle.y);
     let shares = [(1.0 - x) * (1.0 - y), (1.0 + x) * (1.0 - y), (1.0 - x) * (1.0 + y), (1.0 + x) * (1.0 + y)];

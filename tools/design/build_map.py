@@ -1,20 +1,21 @@
 """Builds `layouts/map.ron` from an empty file in Design mode, tries it with a foot, saves it, and compares.
 
-    python3 tools/design/build_map.py target/release/underfoot [--keys] [--shots FOLDER]
+    python3 tools/design/build_map.py target/release/underfoot [--keys] [--busy N] [--shots FOLDER]
 
-By mouse, which puts down and takes hold, and keys, which type; with `--keys` by keys alone. Everything is real input
-on a display of its own. The saved file must resolve to the same layout as the shipped one: the two outputs of
-`underfoot check --resolved` are compared, whatever order the controls came in.
+By mouse, which puts down, takes hold and chooses fields, and keys, which type; with `--keys` by keys alone. Everything is
+real input on a display of its own, and waits for what the window shows; `--busy` lets so many other processes take all
+they can of this machine meanwhile. The saved file must resolve to the same layout as the shipped one: the two outputs
+of `underfoot check --resolved` are compared, whatever order the controls came in.
 """
 import argparse
+import contextlib
 import difflib
 import os
 import subprocess
 import sys
 import tempfile
-import time
 
-from window import SIZE, Window
+from window import Floor, Window
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SHIPPED = os.path.join(ROOT, "layouts", "map.ron")
@@ -29,185 +30,199 @@ CONTROLS = [
     ("switch", "satellite", "Satellite", (3.6, 2.2), (0.7, 0.6)),
     ("slider", "zoom", "Zoom", (4.5, 2.2), (1.35, 0.6)),
 ]
-# From the id of a slider to its initial value.
-TABS_TO_INITIAL = 26
-
-# Colours of the light theme: between plates, and behind what is typed.
-SEAM, FIELD = 0xDCD6CB, 0xFAF8F4
-
-# The floor's side, and the width of the frame around it, in metres.
-FLOOR_M, FRAME_M, TILE_M = 1.824, 0.014, 0.304
 
 
-class Floor:
-    """Where the floor is on the screen: it is the square whose sides have the seams' colour."""
+class Fields:
+    """The fields at the right, found by their names: by mouse, or with `is_keys` by Tab from where the keyboard is."""
 
-    def __init__(self, screen):
-        rows = [y for y in range(screen.height) if screen.count_across(y, SEAM) > 400]
-        columns = [x for x in range(screen.width) if screen.count_down(x, SEAM) > 400]
-        if not rows or not columns:
-            sys.exit("there is no floor on the screen")
-        metre = (rows[-1] + 1 - rows[0]) / (FLOOR_M + FRAME_M)
-        self.tile = TILE_M * metre
-        self.west = columns[0] + 0.5 * FRAME_M * metre
-        self.south = rows[-1] + 1 - 0.5 * FRAME_M * metre
+    ROLES = ("TextInput", "SpinButton")
 
-    def at(self, east, north):
-        """A place in tiles, on the screen."""
-        return round(self.west + self.tile * east), round(self.south - self.tile * north)
+    def __init__(self, window, is_keys):
+        self.window, self.is_keys = window, is_keys
 
+    def seen(self, name):
+        found = [field for role in self.ROLES for field in self.window.all(name, role)]
+        return found[0] if found else None
 
-class Things:
-    """The list of what can be put down: the words of a search leave the wanted one in the first row."""
+    def fill(self, name, text):
+        """Puts `text` in place of what the field called `name` says."""
+        self.reach(name) if self.is_keys else self.click(name)
+        self.window.until(lambda: (self.seen(name) or {}).get("has_focus"), f"the keyboard in {name}")
+        self.window.type(text)
+        self.window.key("Tab")
 
-    # The search field, and the first row below it.
-    SEARCH, FIRST = (90, 72), (120, 110)
+    def click(self, name):
+        window = self.window
+        # The panel of fields is a column below its heading at the right edge.
+        x, y = window.report()["size"][0] - 60, window.report()["size"][1] / 2
+        while self.seen(name) is None:
+            window.wheel(x, y, 3, "wheel over the fields")
+        window.click(*centre(self.seen(name)), what=name)
 
-    def __init__(self, window):
-        self.window = window
-
-    def click(self, kind):
-        """Takes one of this kind in hand."""
-        self.window.click(*self.SEARCH, settle=0.2)
-        self.window.type(kind)
-        self.window.click(*self.FIRST, settle=0.3)
-
-
-def first_field(window):
-    """The first field at the right that is typed into, once what is there stands still."""
-    x, before = SIZE[0] - 78, None
-    while True:
-        screen = window.look()
-        shown = screen.part(SIZE[0] - 300, 100, SIZE[0], SIZE[1] - 50)
-        if shown == before:
-            break
-        before = shown
-        time.sleep(0.2)
-    found = screen.down(x, FIELD, range(14, 32), start=100)
-    if not found:
-        sys.exit("there is no field at the right")
-    return x, sum(found[0]) // 2
+    def reach(self, name):
+        """Tab after Tab, or back where the field is above."""
+        window = self.window
+        for _ in range(80):
+            focused = next((widget for widget in window.report()["widgets"] if widget["has_focus"]), None)
+            wanted = next((widget for widget in window.report()["widgets"]
+                           if widget["name"] == name and widget["role"] in self.ROLES), None)
+            if wanted and wanted["has_focus"]:
+                return
+            is_above = wanted and focused and order(wanted) < order(focused)
+            window.key("shift+Tab" if is_above else "Tab")
+        sys.exit(f"no Tab leads to {name}")
 
 
-def fields(window, control):
-    """Fills in the fields of what is selected, from the id on, with the first one focused."""
-    _, identity, label, at, size = control
-    window.type(identity)
-    window.key("Tab", "Tab")  # over the kind
-    window.type(label)
-    window.key("Tab", "Tab")  # over the x behind it
-    # The size first: on the way, nothing overlaps or leaves the floor.
-    window.key("Tab", "Tab")
-    for length in size:
-        window.type(str(length))
-        window.key("Tab")
-    window.key(*["shift+Tab"] * 4)
-    for length in at:
-        window.type(str(length))
-        window.key("Tab")
+def order(widget):
+    left, top, *_ = widget["place"]
+    return round(top / 8), left
+
+
+def centre(widget):
+    left, top, right, bottom = widget["seen"]
+    return (left + right) / 2, (top + bottom) / 2
+
+
+@contextlib.contextmanager
+def busy(count):
+    """So many processes that take all they can of the machine."""
+    spins = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for process in spins:
+            process.kill()
+            process.wait()
+
+
+def is_on(window, name):
+    return any(widget["is_on"] for widget in window.all(name))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program")
     parser.add_argument("--keys", action="store_true", help="by keys alone")
+    parser.add_argument("--busy", type=int, default=0, help="number of other busy processes")
     parser.add_argument("--shots", help="folder for six pictures")
-    parser.add_argument("--pace", type=float, default=0.15, help="seconds from key to key; more on a busy machine")
     args = parser.parse_args()
     program = os.path.abspath(args.program)
     folder = tempfile.mkdtemp(prefix="underfoot-map-")
     path = os.path.join(folder, "mine.ron")
     open(path, "w").close()
-    window = Window(program, [path, "--wav", os.path.join(folder, "sound.wav")], folder, args.shots,
-                    args.pace)
-    try:
-        (by_keys if args.keys else by_mouse)(window)
-        window.key("F2", settle=0.5)
-        window.shot("6-saved")
-        events = window.events()
-    finally:
-        window.close()
+    with busy(args.busy):
+        window = Window(program, [path, "--wav", os.path.join(folder, "sound.wav")], folder, args.shots)
+        try:
+            (by_keys if args.keys else by_mouse)(window, path)
+            window.key("F2")
+            window.shot("6-saved")
+            events = window.events()
+        finally:
+            window.close()
     for told in ('"pressed"', '"changed"', '"released"'):
         if told not in events or '"zoom"' not in events:
             sys.exit(f"the foot that tried it brought no {told}")
     same(program, path)
-    print(f"{path}: {window.steps} steps, the same layout as {os.path.relpath(SHIPPED)}")
+    print(f"{path}: {window.count} actions, the same layout as {os.path.relpath(SHIPPED)}")
 
 
-def by_keys(window):
+def by_keys(window, path):
+    fields = Fields(window, True)
     window.key("F2", "F6", "F6", "F6")
     window.shot("1-empty")
-    window.type("Map navigation")
-    window.key("Tab")
+    fields.fill("Title", "Map navigation")
     # The first row of the list is the region.
-    window.key("shift+F6", "Return", "F6")
-    region(window)
+    window.key("shift+F6")
+    window.until(lambda: window.has_focus("Region main"), "the keyboard in the list")
+    window.key("Return", "F6")
+    region(window, fields)
     window.shot("2-region")
     for number, control in enumerate(CONTROLS):
         window.key("F6")
+        window.until(lambda: window.has_focus("Search things"), "the keyboard in the search")
         window.type(control[0])
-        window.key("Return", "shift+F6", settle=0.2)
-        fields(window, control)
+        window.key("Return", "shift+F6")
+        fill(fields, control)
         if number in (0, 4):
             window.shot(f"{3 if number == 0 else 4}-{control[1]}")
-    window.key("F6", "F6", "F6")
-    window.key(*["Tab"] * TABS_TO_INITIAL)
-    window.type("0.3")
-    window.key("Tab")
-    window.key("ctrl+s", settle=0.6)
+    fields.fill("Starts at", "0.3")
+    save(window, path)
     # A foot on what has the keyboard: shift+Tab leads to the last control, the slider.
-    window.key("F2", "shift+Tab", settle=0.5)
-    window.x("keydown", "Return")
-    window.key("Right", "Right", settle=0.3)
+    window.key("F2")
+    window.until(lambda: is_on(window, "Try"), "Try")
+    while not window.has_focus("Zoom", "Slider"):
+        window.key("shift+Tab")
+    window.hold("Return")
+    window.until(lambda: '"pressed"' in window.events(), "a press by keys")
+    window.key("Right", "Right")
+    window.until(lambda: '"changed"' in window.events(), "a slide by keys")
     window.shot("5-tried")
-    window.x("keyup", "Return")
+    window.release("Return")
+    window.note("hold Return")
+    window.until(lambda: '"released"' in window.events(), "the end of the press")
 
 
-def by_mouse(window):
-    window.key("F2", settle=0.5)
+def by_mouse(window, path):
+    fields = Fields(window, False)
+    window.key("F2")
+    window.until(lambda: is_on(window, "Design"), "Design")
     window.shot("1-empty")
-    window.click(*first_field(window))
-    window.type("Map navigation")
-    window.key("Tab")
-    # The region: free floor, then the first of its fields.
-    floor, things = Floor(window.look()), Things(window)
-    window.click(*floor.at(3, 4.5), settle=0.3)
-    window.click(*first_field(window))
-    region(window)
+    fields.fill("Title", "Map navigation")
+    floor = Floor(window)
+    window.click(*floor.at(3, 4.5), what="the region")
+    window.until(lambda: is_on(window, "Region main"), "the region selected")
+    region(window, fields)
     window.shot("2-region")
     for number, control in enumerate(CONTROLS):
-        _, _, _, (east, north), (width, depth) = control
-        things.click(control[0])
-        middle = (east + width / 2, north + depth / 2)
+        kind, _, _, (east, north), (width, depth) = control
+        window.click_on("Search things")
+        window.type(kind)
+        window.click_on(f"Put down: {kind}")
+        floor = Floor(window)
+        goal = floor.at(east + width / 2, north + depth / 2)
         if number == 0:
             # Taken hold of once more: put down a tile further north, and dragged south.
-            window.click(*floor.at(middle[0], middle[1] + 1), settle=0.3)
-            window.drag(floor.at(middle[0], middle[1] + 1), floor.at(*middle))
+            above = floor.at(east + width / 2, north + depth / 2 + 1)
+            window.click(*above, what="the floor")
+            window.drag(above, goal, what="it")
         else:
-            window.click(*floor.at(*middle), settle=0.3)
-        window.click(*first_field(window))
-        fields(window, control)
+            window.click(*goal, what="the floor")
+        fill(fields, control)
         if number in (0, 4):
             window.shot(f"{3 if number == 0 else 4}-{control[1]}")
-    window.click(*first_field(window))
-    window.key(*["Tab"] * TABS_TO_INITIAL)
-    window.type("0.3")
-    window.key("Tab")
-    window.key("ctrl+s", settle=0.6)
-    window.key("F2", settle=0.6)
-    floor = Floor(window.look())
-    window.click(*floor.at(0.5, 2.5), settle=0.6)
-    window.drag(floor.at(5.0, 2.4), floor.at(5.6, 2.4), hold=0.5, shot="5-tried")
+    fields.fill("Starts at", "0.3")
+    save(window, path)
+    window.key("F2")
+    window.until(lambda: is_on(window, "Try"), "Try")
+    window.press(*window.at("Home", "Button"), lambda: '"pressed"' in window.events(), "Home")
+    left, top, right, bottom = window.find("Zoom", "Slider")["seen"]
+    along = lambda share: (left + (right - left) * share, (top + bottom) / 2)
+    window.drag(along(0.37), along(0.81), until=lambda: '"changed"' in window.events(), shot="5-tried", what="Zoom")
+    window.until(lambda: window.events().count('"released"') > 1, "the end of the slide")
 
 
-def region(window):
+def region(window, fields):
     """Its id, its depth, and how far north it begins: five tiles from there on would leave the floor."""
-    window.type("map")
-    window.key("Tab", "Tab", "Tab", "Tab")
-    window.type("4")
-    window.key("shift+Tab", "shift+Tab")
-    window.type("2")
-    window.key("Tab")
+    fields.fill("Name for apps", "map")
+    fields.fill("Size: depth", "4")
+    fields.fill("Place: north", "2")
+
+
+def fill(fields, control):
+    """The fields of the control that was put down; its size first: on the way, nothing overlaps or leaves the floor."""
+    _, identity, label, at, size = control
+    values = [("Name for apps", identity), ("Text on it", label), ("Size: width", size[0]), ("Size: depth", size[1]),
+              ("Place: east", at[0]), ("Place: north", at[1])]
+    for name, value in values:
+        fields.fill(name, str(value))
+
+
+def save(window, path):
+    window.key("ctrl+s")
+    def is_saved():
+        with open(path) as file:
+            return "initial: 0.3" in file.read()
+    window.until(is_saved, "the saved file")
 
 
 def same(program, path):

@@ -8,13 +8,12 @@ mouse ended, with one foot all the way and no link lost. With `--busy` two other
 import argparse
 import json
 import os
-import subprocess
 import sys
 import tempfile
 import time
 
-from build_map import Floor, ROOT
-from window import Window
+from build_map import ROOT, busy
+from window import Floor, Window
 
 ROUNDS = 20
 # Layout, id, west and north end and size in tiles, the range of values.
@@ -34,6 +33,7 @@ EVERY_S = 0.01
 
 def drag(window, start, end, seconds):
     """Rests, drags, lifts."""
+    start, end = (tuple(map(round, place)) for place in (start, end))
     window.x("mousemove", *start)
     time.sleep(0.1)
     window.x("mousedown", 1)
@@ -60,7 +60,7 @@ def try_slider(program, layout, name, at, size, values):
     path = os.path.join(ROOT, "layouts", layout + ".ron")
     window = Window(program, [path, "--json-contacts"], folder)
     try:
-        floor = Floor(window.look())
+        floor = Floor(window)
         places = [floor.at(at[0] + size[0] * share, at[1] + size[1] / 2) for share in ENDS]
         length_m = (ENDS[1] - ENDS[0]) * size[0] * TILE_M
         followed, alone, linked, told = 0, 0, 0, len(window.events())
@@ -85,12 +85,8 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--busy", action="store_true", help="keep two cores busy meanwhile")
     args = parser.parse_args()
-    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2 * args.busy)]
-    try:
+    with busy(2 * args.busy):
         good = [try_slider(os.path.abspath(args.program), *slider) for slider in SLIDERS]
-    finally:
-        for process in busy:
-            process.kill()
     sys.exit(0 if all(good) else 1)
 
 

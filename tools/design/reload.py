@@ -82,7 +82,10 @@ def main():
     window = Window(program, [path], folder)
     late = 0
     try:
-        eye = Eye(window.env["DISPLAY"], EYE)
+        # Both on the control; what is drawn of a foot does not reach the eye.
+        left, top, right, bottom = window.find("home")["seen"]
+        at = lambda east, north: (round(left + east * (right - left)), round(bottom - north * (bottom - top)))
+        eye, foot = Eye(window.env["DISPLAY"], at(0.85, 0.85)), at(0.2, 0.2)
         turn = 0
         for editor in (in_place, rename_over, backup_and_create):
             times = []
@@ -96,7 +99,7 @@ def main():
             late += ROUNDS - len(seen) + sum(time > 0.3 for time in seen)
             print(f"{editor.__name__}: {len(seen)} of {ROUNDS} seen, median {seen[len(seen) // 2] * 1e3:.0f} ms, "
                   f"longest {seen[-1] * 1e3:.0f} ms")
-        window.move(*FOOT)
+        window.move(*foot)
         window.x("mousedown", 1)
         time.sleep(1.0)
         events = window.events().count('"pressed"')
@@ -113,9 +116,6 @@ def main():
         window.close()
     sys.exit(1 if late else 0)
 
-
-# Both on the control, whatever is beside the floor; what is drawn of a foot does not reach the eye.
-EYE, FOOT = (700, 300), (420, 600)
 
 if __name__ == "__main__":
     main()

@@ -1,5 +1,12 @@
-"""A window of underfoot on a display of its own, worked by real mouse and key input (Xvfb, xdotool, ImageMagick)."""
+"""A window of underfoot on a display of its own, worked by real mouse and key input (Xvfb, xdotool, ImageMagick).
+
+The program reports its screen frame by frame (`UNDERFOOT_SCREEN_REPORT`, see CONTRIBUTING): where each widget is, by its
+name, and which input has come. Nothing here is paced by time: each action waits until the program has taken it in.
+"""
+import json
+import mmap
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -7,148 +14,298 @@ import tempfile
 import time
 
 SIZE = (1400, 900)
+VARIABLE = "UNDERFOOT_SCREEN_REPORT"
+# Seconds after which something that never comes counts as a failure; no action waits for them.
+NEVER = 300
+# A window that wants its next frame later than this is calm; one that never is calm has shown the change by then.
+CALM_S, FRAMES = 0.04, 12
 
 
 class Window:
-    """`underfoot preview` with `arguments`, its state and its files in a folder of their own; ends with `close`."""
+    """`underfoot preview` with `arguments`, its state and its files in a folder of their own; ends with `close`.
 
-    def __init__(self, program, arguments, folder=None, shots=None, pace=0.15, size=SIZE, env=None):
+    `actions` lists what a user did, and `count` counts it: each click, drag, key chord and typed word is one. With
+    `pictures`, each entry has a picture in the folder `shots`. The screen has `beside` pixels more at the right, as for
+    a projector.
+    """
+
+    def __init__(self, program, arguments, folder=None, shots=None, size=SIZE, env=None, beside=0):
         for needed in ("Xvfb", "xdotool", "import"):
             if shutil.which(needed) is None:
                 sys.exit(f"{needed} is missing: apt-get install xvfb xdotool imagemagick")
         self.folder = folder or tempfile.mkdtemp(prefix="underfoot-design-")
-        self.shots = shots
-        self.steps = 0
-        # What comes sooner than the next frame may count as one: on a busy machine, slower.
-        self.pace = pace
+        self.reports = os.path.join(self.folder, "screen")
+        os.makedirs(self.reports, exist_ok=True)
+        self.shots, self.pictures = shots, False
+        self.actions, self.count = [], 0
+        self.has_reports = reports_screen(program)
         read, write = os.pipe()
-        screen = ["-screen", "0", f"{size[0]}x{size[1]}x24"]
-        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), *screen], pass_fds=[write],
+        screen = ["-screen", "0", f"{size[0] + beside}x{size[1]}x24"]
+        # Without -r, a key that a busy machine releases late repeats itself.
+        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-r", *screen], pass_fds=[write],
                                        stderr=subprocess.DEVNULL)
         os.close(write)
         number = os.read(read, 16).decode().strip()
         self.env = dict(os.environ, DISPLAY=f":{number}", LIBGL_ALWAYS_SOFTWARE="1",
                         XDG_STATE_HOME=os.path.join(self.folder, "state"),
-                        XDG_DATA_HOME=os.path.join(self.folder, "data"), **(env or {}))
+                        XDG_DATA_HOME=os.path.join(self.folder, "data"), **{VARIABLE: self.reports}, **(env or {}))
         self.env.pop("WAYLAND_DISPLAY", None)
         self.program = subprocess.Popen([program, "preview", *arguments, "--no-osc", "--json"], env=self.env,
                                         cwd=self.folder, stdout=open(os.path.join(self.folder, "events"), "w"),
                                         stderr=open(os.path.join(self.folder, "messages"), "w"))
-        self.id = self.x("search", "--sync", "--onlyvisible", "--name", "underfoot").split()[-1]
+        self.id = self.appeared("underfoot")
         self.x("windowsize", "--sync", self.id, *size)
         self.x("windowmove", self.id, 0, 0)
         self.x("windowfocus", self.id)
-        time.sleep(2)
+        if self.has_reports:
+            self.until(lambda: near(self.report().get("size", (0, 0)), size), "the window in its size")
+        else:
+            time.sleep(2)
+
+    def appeared(self, name):
+        """The number of the program's window of this name, once it is there."""
+        search = ["xdotool", "search", "--onlyvisible", "--name", name]
+        while self.program.poll() is None:
+            found = subprocess.run(search, env=self.env, capture_output=True).stdout.split()
+            if found:
+                return found[-1].decode()
+            time.sleep(0.1)
+        self.server.terminate()
+        with open(os.path.join(self.folder, "messages")) as messages:
+            sys.exit(f"{self.program.args[0]} has ended: {messages.read()}")
+
+    # What the program shows.
+
+    def report(self, window=None):
+        """The last report of the main window, or of the one with this title; empty before the first."""
+        if window is None:
+            return read_report(os.path.join(self.reports, f"{self.program.pid}.json"))
+        return next((report for report in self.others() if report["title"] == window), {})
+
+    def others(self):
+        """The last reports of all windows but the main one, the latest first: windows that have closed come last."""
+        paths = [os.path.join(self.reports, name) for name in os.listdir(self.reports)
+                 if name.endswith(".json") and name != f"{self.program.pid}.json"]
+        paths.sort(key=os.path.getmtime, reverse=True)
+        return [report for report in map(read_report, paths) if report]
+
+    def opened(self, name):
+        """The title of the other window with a widget of this name, once there is one; it gets the keyboard."""
+        def title():
+            for report in self.others():
+                if any(widget["name"] == name for widget in report["widgets"]):
+                    return report["title"]
+            return None
+        found = self.until(title, f"a window with {name}")
+        self.x("windowfocus", self.appeared(f"^{re.escape(found)}$"))
+        return found
+
+    def until(self, condition, what):
+        """Waits for a condition, and returns its value."""
+        begun = time.monotonic()
+        while not (value := condition()):
+            if self.program.poll() is not None or time.monotonic() - begun > NEVER:
+                self.shot("failed")
+                with open(os.path.join(self.folder, "messages")) as messages:
+                    sys.exit(f"it never came: {what}\nafter {', '.join(self.actions[-5:])}\n{messages.read()}")
+            time.sleep(0.01)
+        return value
+
+    def all(self, name, role=None, window=None):
+        """The widgets with this name that can be seen; the name may be a compiled pattern."""
+        fits = name.search if isinstance(name, re.Pattern) else name.__eq__
+        return [widget for widget in self.report(window).get("widgets", ())
+                if widget["seen"] and fits(widget["name"]) and role in (None, widget["role"])]
+
+    def find(self, name, role=None, window=None):
+        """The first widget with this name, once it can be seen."""
+        found = self.until(lambda: self.all(name, role, window), f"a widget called {name}")
+        return found[0]
+
+    def at(self, name, role=None, window=None):
+        """The middle of what can be seen of the widget with this name."""
+        return middle(self.find(name, role, window)["seen"])
+
+    def shows(self, text):
+        """Whether a widget that can be seen has this text in its name."""
+        return bool(self.all(re.compile(re.escape(text))))
+
+    def has_focus(self, name, role=None):
+        return any(widget["has_focus"] for widget in self.all(name, role))
+
+    def events(self):
+        with open(os.path.join(self.folder, "events")) as events:
+            return events.read()
+
+    # What the user does.
 
     def x(self, *arguments):
         """One command of xdotool."""
         done = subprocess.run(["xdotool", *map(str, arguments)], env=self.env, check=True, capture_output=True)
         return done.stdout.decode()
 
-    def move(self, x, y):
-        self.x("mousemove", x, y)
-        time.sleep(self.pace)
+    def send(self, *arguments, window=None, **counts):
+        """Input by xdotool; waits until the program has counted it and is calm."""
+        before = self.report(window)
+        self.x(*arguments)
+        if not self.has_reports:
+            return time.sleep(0.2)
+        taken = lambda: all(self.report(window).get(name, 0) >= before.get(name, 0) + count
+                            for name, count in counts.items())
+        self.until(taken, f"the input {' '.join(map(str, arguments))}")
+        self.calm(window)
 
-    def click(self, x, y, settle=0.0):
-        self.steps += 1
+    def calm(self, window=None):
+        """Waits until the window stands still, or for some frames if it never does."""
+        begun = self.report(window).get("frame", 0)
+        def is_calm():
+            report = self.report(window)
+            next_s = report.get("next_s")
+            return next_s is None or next_s > CALM_S or report["frame"] >= begun + FRAMES
+        self.until(is_calm, "a calm window")
+
+    def move(self, x, y, window=None):
+        """Moves the mouse to a place of the window."""
+        x, y = round(x), round(y)
+        is_there = lambda: near(self.report(window).get("pointer") or (-9, -9), (x, y))
+        if self.has_reports and is_there():
+            return
+        left, top = self.origin(window)
+        self.x("mousemove", left + x, top + y)
+        if not self.has_reports:
+            return time.sleep(0.2)
+        self.until(is_there, f"the mouse at {x}, {y}")
+        self.calm(window)
+
+    def origin(self, window):
+        """The place of a window on the screen; the main one is in the corner."""
+        if window is None:
+            return 0, 0
+        shell = self.x("getwindowgeometry", "--shell", self.appeared(f"^{re.escape(window)}$"))
+        numbers = dict(line.split("=") for line in shell.split())
+        return int(numbers["X"]), int(numbers["Y"])
+
+    def click(self, x, y, button=1, keys=(), window=None, what=None):
+        self.move(x, y, window)
+        self.hold(*keys)
+        # Down and up together: a click that a slow machine parts is a long press.
+        self.send("mousedown", button, "mouseup", button, window=window, buttons=2)
+        self.release(*keys)
+        self.note(f"{'+'.join([*keys, 'click'])} {what or f'{round(x)}, {round(y)}'}")
+
+    def click_on(self, name, role=None, keys=(), button=1, window=None):
+        """A click on the widget with this name."""
+        shown = name.pattern if isinstance(name, re.Pattern) else name
+        self.click(*self.at(name, role, window), button=button, keys=keys, window=window, what=shown)
+
+    def press(self, x, y, until, what):
+        """A foot, for as long as it takes until a condition holds."""
         self.move(x, y)
-        self.x("mousedown", 1)
-        time.sleep(self.pace)
-        self.x("mouseup", 1)
-        time.sleep(max(self.pace, settle))
+        self.send("mousedown", 1, buttons=1)
+        self.until(until, f"what the press on {what} does")
+        self.send("mouseup", 1, buttons=1)
+        self.note(f"press {what}")
 
-    def drag(self, start, end, seconds=0.5, hold=0.0, shot=None):
-        self.steps += 1
-        self.move(*start)
-        self.x("mousedown", 1)
-        time.sleep(0.1)
-        for step in range(1, 21):
-            share = step / 20
-            self.x("mousemove", *(round(a + (b - a) * share) for a, b in zip(start, end)))
-            time.sleep(seconds / 20)
-        time.sleep(hold)
+    def drag(self, start, end, keys=(), window=None, steps=8, until=None, shot=None, what=None):
+        self.move(*start, window)
+        self.hold(*keys)
+        self.send("mousedown", 1, window=window, buttons=1)
+        for step in range(1, steps + 1):
+            self.move(*(a + (b - a) * step / steps for a, b in zip(start, end)), window)
+        if until:
+            self.until(until, "what the drag does")
         if shot:
             self.shot(shot)
-        self.x("mouseup", 1)
-        time.sleep(0.25)
+        self.send("mouseup", 1, window=window, buttons=1)
+        self.release(*keys)
+        self.note(f"{'+'.join([*keys, 'drag'])} {what or ''}".strip())
 
-    def key(self, *keys, settle=0.0):
-        for key in keys:
-            self.steps += 1
-            self.x("key", "--clearmodifiers", key)
-            time.sleep(max(self.pace, settle))
+    def wheel(self, x, y, notches, what="the wheel"):
+        """One turn of the wheel, down for positive `notches`."""
+        self.move(x, y)
+        for _ in range(abs(notches)):
+            self.send("click", 5 if notches > 0 else 4, wheel=1)
+        self.note(what)
+
+    def key(self, *chords, window=None):
+        for chord in chords:
+            self.send("key", "--clearmodifiers", chord, window=window, keys=1)
+            self.note(chord)
+
+    def hold(self, *keys):
+        if keys:
+            self.x("keydown", *keys)
+
+    def release(self, *keys):
+        if keys:
+            self.x("keyup", *keys)
 
     def type(self, text):
-        """Types into the field that has the keyboard, in place of what it says."""
-        self.steps += 1
-        self.x("key", "--clearmodifiers", "ctrl+a")
-        time.sleep(self.pace)
-        self.x("type", "--clearmodifiers", "--delay", 15, text)
-        time.sleep(self.pace)
+        """Types into the field that has the keyboard, in place of what it says; each word is an action."""
+        self.send("key", "--clearmodifiers", "ctrl+a", keys=1)
+        self.send("type", "--clearmodifiers", "--delay", 2, text, letters=len(text))
+        self.note(f"type {text}", max(1, len(text.split())))
+
+    def note(self, action, count=1):
+        self.actions.append(action)
+        self.count += count
+        if self.pictures:
+            self.shot(f"{len(self.actions):02}-{re.sub('[^a-z0-9]+', '-', action.lower())[:40].strip('-')}")
+
+    # Pictures.
 
     def shot(self, name):
-        if self.shots:
-            os.makedirs(self.shots, exist_ok=True)
-            subprocess.run(["import", "-window", "root", os.path.join(self.shots, name + ".png")], env=self.env,
-                           check=True)
-
-    def look(self):
-        """What is on the screen."""
-        ppm = subprocess.run(["import", "-window", "root", "-depth", "8", "ppm:-"], env=self.env, check=True,
-                             capture_output=True).stdout
-        return Screen(ppm)
-
-    def events(self):
-        with open(os.path.join(self.folder, "events")) as events:
-            return events.read()
+        if not self.shots:
+            return
+        os.makedirs(self.shots, exist_ok=True)
+        if self.has_reports and self.program.poll() is None:
+            # A frame is reported before it is on the screen: once the next ones come, it is there.
+            begun, (x, y) = self.report().get("frame", 0), self.report().get("pointer") or (1, 1)
+            for nudge in (1, 0, 1, 0):
+                self.x("mousemove", round(x) + nudge, round(y))
+            deadline = time.monotonic() + 5
+            while self.report().get("frame", 0) < begun + 2 and time.monotonic() < deadline:
+                time.sleep(0.01)
+        path = os.path.join(self.shots, name + ".png")
+        subprocess.run(["import", "-window", "root", path], env=self.env, check=True)
 
     def close(self):
         self.program.terminate()
-        self.program.wait(10)
+        self.program.wait(NEVER)
         self.server.terminate()
-        self.server.wait(10)
+        self.server.wait(NEVER)
 
 
-class Screen:
-    """The pixels of a screen, as numbers 0xRRGGBB."""
+class Floor:
+    """Where the floor of so many tiles in a row is in the window."""
 
-    def __init__(self, ppm):
-        magic, width, height, most = ppm.split(maxsplit=4)[:4]
-        if (magic, most) != (b"P6", b"255"):
-            sys.exit("the picture of the screen is in a form that this script does not read")
-        self.width, self.height = int(width), int(height)
-        self.pixels = ppm[len(ppm) - 3 * self.width * self.height:]
+    def __init__(self, window, tiles=6):
+        west, north, east, south = window.find("Whole floor")["place"]
+        self.west, self.south, self.tile = west, south, (east - west) / tiles
 
-    def column(self, x):
-        channels = [self.pixels[3 * x + channel::3 * self.width] for channel in range(3)]
-        return [red << 16 | green << 8 | blue for red, green, blue in zip(*channels)]
-
-    def down(self, x, colour, lengths, start=0):
-        """The first and the last row of each run of this colour in column `x` that is so many pixels long."""
-        return [(top, end) for of, top, end in runs(self.column(x)) if of == colour and top >= start
-                and end + 1 - top in lengths]
-
-    def plain(self, x, lengths):
-        """The same of any one colour."""
-        return [(top, end) for _, top, end in runs(self.column(x)) if end + 1 - top in lengths]
-
-    def part(self, left, top, right, bottom):
-        """The pixels of a part of it."""
-        rows = (3 * self.width * y for y in range(top, bottom))
-        return b"".join(self.pixels[row + 3 * left:row + 3 * right] for row in rows)
-
-    def count_down(self, x, colour):
-        return self.column(x).count(colour)
-
-    def count_across(self, y, colour):
-        row = self.pixels[3 * y * self.width:3 * (y + 1) * self.width]
-        return row.count(colour.to_bytes(3, "big"))
+    def at(self, east, north):
+        """A place in tiles, in the window."""
+        return self.west + self.tile * east, self.south - self.tile * north
 
 
-def runs(row):
-    """Each run of one colour: the colour, its first and its last place."""
-    begun = 0
-    for place in range(1, len(row) + 1):
-        if place == len(row) or row[place] != row[begun]:
-            yield row[begun], begun, place - 1
-            begun = place
+def read_report(path):
+    try:
+        with open(path) as report:
+            return json.load(report)
+    except FileNotFoundError:
+        return {}
+
+
+def reports_screen(program):
+    """Whether the program knows how to report its screen; older ones do not."""
+    with open(program, "rb") as binary, mmap.mmap(binary.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        return content.find(VARIABLE.encode()) >= 0
+
+
+def middle(place):
+    left, top, right, bottom = place
+    return (left + right) / 2, (top + bottom) / 2
+
+
+def near(one, other):
+    return all(abs(a - b) <= 1 for a, b in zip(one, other))

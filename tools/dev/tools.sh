@@ -33,6 +33,8 @@ tool_packages() {
     has chromium || has chromium-browser || has google-chrome || echo chromium
     has node || echo nodejs
     has npm || echo npm
+    # It scrapes the floor's metrics.
+    has prometheus || echo prometheus
     has python3 || echo python3
     python3 -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
 }
@@ -155,6 +157,7 @@ tools_note() {
     [ ${#missing[@]} = 0 ] || lacks "tests skip what needs these Debian packages: ${missing[*]}"
     python3 -c 'import pythonosc, pythontuio' 2>/dev/null \
         || lacks "python-osc and python-tuio are missing, so they read nothing that we send"
+    python3 -c 'import zeroconf' 2>/dev/null || lacks "zeroconf is missing, so no other program looks for a floor by mDNS"
     unshare --net true 2>/dev/null || unshare --user --map-root-user --net true 2>/dev/null \
         || lacks "no network namespace can be made here, so no network card comes late"
     as_root_quietly unshare --mount --pid --fork --cgroup true 2>/dev/null \

@@ -64,6 +64,7 @@ pub(crate) fn reason_name(number: c_int) -> &'static CStr {
         8 => c"repeated_readings",
         9 => c"coarse_readings",
         10 => c"other_held",
+        11 => c"slow_readings",
         _ => c"",
     }
 }

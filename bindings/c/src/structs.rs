@@ -89,6 +89,8 @@ impl UfEvent {
             Kind::Muted => (7, String::new(), NOTHING),
             Kind::Crack { .. } => (8, String::new(), NOTHING),
             Kind::LinkCause => (10, event.message().to_owned(), NOTHING),
+            Kind::Ignored(why) => (11, format!("{}: {}", why.name(), event.message()), NOTHING),
+            Kind::Message => (12, event.message().to_owned(), NOTHING),
             Kind::Ended(reason) if event.message().is_empty() => (9, reason.name().to_owned(), NOTHING),
             Kind::Ended(reason) => (9, format!("{}: {}", reason.name(), event.message()), NOTHING),
             _ => (100, String::new(), NOTHING),

@@ -18,6 +18,7 @@ pub(crate) fn fields<'py>(py: Python<'py>, event: &runtime::Event) -> PyResult<B
     };
     let text = match event.kind {
         Kind::Link(state) => state.name(),
+        Kind::Ignored(why) => why.name(),
         Kind::Ended(reason) => reason.name(),
         _ => "",
     };

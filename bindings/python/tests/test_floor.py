@@ -13,7 +13,7 @@ import tempfile
 import unittest
 
 import underfoot
-from underfoot import ChangedEvent, ControlEvent, EndedEvent, Event
+from underfoot import ChangedEvent, ControlEvent, EndedEvent, Event, IgnoredEvent
 
 RECORDING, LAYOUT, SCENARIO = (os.environ[name] for name in ("RECORDING", "LAYOUT", "SCENARIO"))
 
@@ -100,6 +100,21 @@ class Simulated(unittest.TestCase):
             self.assertIn(("home", "pressed"), told)
             self.assertIn(("home", "clicked"), told)
             self.assertEqual((event.kind, event.reason), ("ended", "stopped"))
+
+    def test_a_press_on_a_control_that_is_off_is_ignored_for_that_reason(self):
+        with underfoot.simulated(LAYOUT, SCENARIO) as floor:
+            floor.set_enabled("home", False)
+            for event in floor:
+                self.assertNotEqual((event.kind, event.id), ("control", "home"))
+                match event:
+                    case IgnoredEvent("home", "disabled"):
+                        break
+            else:
+                self.fail("no press was ignored")
+        self.assertEqual((event.name, event.message), ("ignored", "an app has switched it off"))
+        self.assertEqual(event.text, "disabled: an app has switched it off")
+        self.assertGreater(event.force_n, 100)
+        self.assertIsNotNone(event.contact)
 
     def test_a_simulated_floor_ends_with_its_scenario(self):
         with tempfile.TemporaryDirectory() as folder:

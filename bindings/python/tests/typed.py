@@ -22,6 +22,10 @@ def by_class(event: AnyEvent) -> str:
         case underfoot.ControlEvent(value=nothing):
             assert_type(nothing, None)
             return event.name
+        case underfoot.IgnoredEvent(id, "too_light" | "disabled" as why):
+            return f"{id} {why}"
+        case underfoot.IgnoredEvent(message=message):
+            return message
         case underfoot.StateEvent(id) | underfoot.PageEvent(id):
             return id
         case underfoot.LinkEvent(state):
@@ -34,6 +38,8 @@ def by_class(event: AnyEvent) -> str:
             return name
         case underfoot.CrackEvent(x_m, y_m, energy_j):
             return f"{x_m + y_m} {energy_j}"
+        case underfoot.SentEvent(id, target, message):
+            return f"{id} {target} {message}"
         case underfoot.EndedEvent(reason, message):
             assert_type(reason, Literal["stopped", "source_ended", "failed", "panicked"])
             return reason + message
@@ -43,7 +49,7 @@ def by_class(event: AnyEvent) -> str:
 
 
 def by_tag(event: AnyEvent) -> str:
-    if event.kind == "ended":
+    if event.kind == "ended" or event.kind == "ignored":
         return event.reason
     if event.kind == "crack":
         return f"{event.energy_j}"
@@ -52,7 +58,7 @@ def by_tag(event: AnyEvent) -> str:
         return event.id
     if event.name == "swiped":
         return event.value.upper()
-    # A pressed control has no value, and no event but the last has a reason.
+    # A pressed control has no value, and the events that are left have no reason.
     if event.name == "pressed":
         event.value.upper()  # type: ignore[attr-defined]
     event.reason  # type: ignore[union-attr]

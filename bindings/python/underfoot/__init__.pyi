@@ -19,11 +19,13 @@ from ._types import CrackEvent as CrackEvent
 from ._types import EndedEvent as EndedEvent
 from ._types import Event as Event
 from ._types import FloorEvent as FloorEvent
+from ._types import IgnoredEvent as IgnoredEvent
 from ._types import Lamp, LinkName
 from ._types import LinkCauseEvent as LinkCauseEvent
 from ._types import LinkEvent as LinkEvent
 from ._types import Off as Off
 from ._types import PageEvent as PageEvent
+from ._types import SentEvent as SentEvent
 from ._types import State as State
 from ._types import StateEvent as StateEvent
 from ._types import SwipedEvent as SwipedEvent

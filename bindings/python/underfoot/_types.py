@@ -28,8 +28,25 @@ OffName = Literal[
     "repeated_readings",
     "coarse_readings",
     "other_held",
+    "slow_readings",
 ]
 """The reason why no foot can press a control."""
+
+IgnoredName = Literal[
+    "step",
+    "object",
+    "stance",
+    "outside_region",
+    "other_foot",
+    "slid_on",
+    "not_seen_unloaded",
+    "unbelieved",
+    "guard",
+    "too_light",
+    "too_short",
+    OffName,
+]
+"""The reason why a control ignored a press; for a control that is off, the reason for that."""
 
 ControlName = Literal[
     "pressed",
@@ -101,7 +118,18 @@ class Event:
     t_s: float
     """Time of the event, on the floor's sample clock."""
     kind: Literal[
-        "control", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "ended"
+        "control",
+        "ignored",
+        "state",
+        "page",
+        "link",
+        "link_cause",
+        "health",
+        "device",
+        "mute",
+        "crack",
+        "sent",
+        "ended",
     ]
     name: str
     """The word for the event, as in JSON lines: of a control "pressed", "released", "changed" and so on."""
@@ -116,7 +144,7 @@ class Event:
     """The number of the foot that caused it; None if no foot did."""
     text: str
     """Of a link "waiting", "live", "partial" or "lost"; of its cause a name, a colon and a sentence, empty when it is
-    over; of the end the reason; empty otherwise."""
+    over; of an ignored press likewise; of the end the reason; empty otherwise."""
 
 
 @dataclass(frozen=True)
@@ -147,6 +175,19 @@ class ControlEvent(Event):
     kind: Literal["control"]
     name: ControlName
     value: None
+
+
+@dataclass(frozen=True)
+class IgnoredEvent(Event):
+    """The control `id` ignored the foot `contact`, which has left it; `force_n` is the greatest force."""
+
+    __match_args__ = ("id", "reason")
+    kind: Literal["ignored"]
+    name: Literal["ignored"]
+    value: None
+    reason: IgnoredName
+    message: str
+    """The reason in a sentence."""
 
 
 @dataclass(frozen=True)
@@ -217,6 +258,20 @@ class CrackEvent(Event):
 
 
 @dataclass(frozen=True)
+class SentEvent(Event):
+    """The control or region `id` gives a message to another program, which the session does not send."""
+
+    __match_args__ = ("id", "target", "message")
+    kind: Literal["sent"]
+    name: Literal["sent"]
+    value: None
+    target: str
+    """The name of the target in the layout."""
+    message: str
+    """The content, such as "key Right"."""
+
+
+@dataclass(frozen=True)
 class EndedEvent(Event):
     """The last event: nothing is held any more, and no event follows."""
 
@@ -233,12 +288,14 @@ AnyEvent = Union[
     ChangedEvent,
     SwipedEvent,
     ControlEvent,
+    IgnoredEvent,
     StateEvent,
     PageEvent,
     LinkEvent,
     LinkCauseEvent,
     FloorEvent,
     CrackEvent,
+    SentEvent,
     EndedEvent,
 ]
 
@@ -258,6 +315,12 @@ def event_of(kind, name, id, value, text, message, when_and_where):  # type: ign
         return LinkCauseEvent(
             kind=kind, value=None, text=message, cause=cause or None, message=sentence, **seen
         )
+    if kind == "ignored":
+        said = "%s: %s" % (text, message)
+        return IgnoredEvent(kind=kind, value=None, text=said, reason=text, message=message, **seen)
+    if kind == "sent":
+        target, _, content = message.partition(": ")
+        return SentEvent(kind=kind, value=None, text=message, target=target, message=content, **seen)
     if kind == "ended":
         said = "%s: %s" % (text, message) if message else text
         return EndedEvent(kind=kind, value=None, text=said, reason=text, message=message, **seen)

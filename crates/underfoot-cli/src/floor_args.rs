@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use underfoot::floor::{Floor, Geometry};
+use underfoot::floor::{Floor, Geometry, PortName};
 use underfoot::schema::{self, Saved};
 
 use super::failure::Failure;
@@ -11,7 +11,8 @@ use super::failure::Failure;
 /// Options that choose the floor.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct FloorArgs {
-    /// Floor file: geometry, boards, calibration, actuators. Without it, the paper's 6 x 6 floor.
+    /// Floor file: geometry, boards, calibration, actuators; or a shipped one: `balance_board`, `dance_pad`,
+    /// `load_cells`, `paper`. Without it, the paper's 6 x 6 floor.
     #[arg(long, value_name = "FILE", conflicts_with = "grid")]
     pub(crate) floor: Option<PathBuf>,
     /// A floor of this many of the paper's tiles, for example 8x4 (columns x rows).
@@ -23,9 +24,24 @@ impl FloorArgs {
     /// Loads the chosen floor.
     pub(crate) fn load(&self) -> Result<Floor, Failure> {
         match &self.floor {
-            Some(path) => Ok(schema::load_floor(path)?),
+            Some(path) => load_floor(path, &|_| None),
             None => Ok(Floor::of(self.grid.unwrap_or_default())),
         }
+    }
+}
+
+/// Loads the floor file at `path`, or the shipped floor of that name where there is no such file; `absent` as in
+/// [`schema::load_floor_with_ports`].
+pub(crate) fn load_floor(
+    path: &Path,
+    absent: &dyn Fn(&PortName) -> Option<String>,
+) -> Result<Floor, Failure> {
+    let shipped = path.to_str().filter(|_| !path.exists());
+    match shipped.and_then(|name| Some((name, schema::builtin_floor(name)?))) {
+        Some((name, text)) => {
+            Ok(schema::parse_floor_with_ports(text, &format!("{name} (built in)"), absent)?)
+        }
+        None => Ok(schema::load_floor_with_ports(path, absent)?),
     }
 }
 

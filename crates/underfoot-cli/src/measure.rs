@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use serde_json::json;
-use underfoot::floor::{Corner, read_address};
+use underfoot::floor::{Corner, Geometry, read_address};
 use underfoot::layout::{Layout, Widget};
 use underfoot::sense::{Assembler, Quality, Tare, TareOutcome};
 use underfoot::serve::{ForceRange, ForceWatch, TileRange};
@@ -71,15 +71,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             args.seconds.as_secs_f64()
         )));
     }
-    let ranges: Vec<TileRange> = watch.ranges().collect();
+    let ranges: Vec<TileRange> = watch.ranges().filter(|range| floor.geometry.has(range.tile)).collect();
     let controls: Vec<_> =
         layout.iter().flat_map(|layout| controls(layout, &floor.geometry, &ranges)).collect();
     if args.json {
-        let tiles: Vec<_> = ranges.iter().map(tile_json).collect();
+        let tiles: Vec<_> = ranges.iter().map(|range| tile_json(range, &floor.geometry)).collect();
         let controls: Vec<_> = controls.iter().map(|(widget, range)| control_json(widget, range)).collect();
         outln!("{}", json!({ "frames": watch.frames(), "tiles": tiles, "controls": controls }));
     } else {
-        print(&ranges);
+        print(&ranges, &floor.geometry);
         print_controls(&controls);
     }
     Ok(())
@@ -120,7 +120,7 @@ fn watch_floor(
 /// Each control, with the forces on the tile under it that carried most.
 fn controls<'a>(
     layout: &'a Layout,
-    geometry: &underfoot::floor::Geometry,
+    geometry: &Geometry,
     ranges: &[TileRange],
 ) -> Vec<(&'a Widget, ForceRange)> {
     let felt = |widget: &Widget| {
@@ -133,8 +133,9 @@ fn controls<'a>(
     layout.widgets.iter().map(|widget| (widget, felt(widget))).collect()
 }
 
-fn print(ranges: &[TileRange]) {
-    let columns = ["whole tile", "sw", "se", "nw", "ne"];
+fn print(ranges: &[TileRange], geometry: &Geometry) {
+    let columns = ["whole tile"].into_iter().chain(Corner::ALL.map(|corner| geometry.sensor_name(corner)));
+    let columns: Vec<&str> = columns.collect();
     let heads: String = columns.iter().map(|name| format!("  {name:^20}")).collect();
     let units: String =
         columns.iter().map(|_| format!("  {:>6} {:>6} {:>6}", "least", "median", "most")).collect();
@@ -142,7 +143,8 @@ fn print(ranges: &[TileRange]) {
     outln!("tile      {units}");
     for range in ranges {
         let tile = range.tile.to_string();
-        let forces: String = std::iter::once(&range.force).chain(&range.sensors).map(shown).collect();
+        let sensors = range.sensors.iter().take(geometry.sensors(range.tile).len());
+        let forces: String = std::iter::once(&range.force).chain(sensors).map(shown).collect();
         let note = match range.quality {
             Quality::Live => String::new(),
             quality => format!("  {}", quality_name(quality)),
@@ -186,10 +188,11 @@ fn print_controls(controls: &[(&Widget, ForceRange)]) {
     }
 }
 
-fn tile_json(range: &TileRange) -> serde_json::Value {
-    let sensors: serde_json::Map<String, serde_json::Value> = Corner::ALL
-        .into_iter()
-        .map(|corner| (corner.name().to_owned(), json!(range.sensors[corner.index()])))
+fn tile_json(range: &TileRange, geometry: &Geometry) -> serde_json::Value {
+    let sensors: serde_json::Map<String, serde_json::Value> = geometry
+        .sensors(range.tile)
+        .iter()
+        .map(|&corner| (geometry.sensor_name(corner).to_owned(), json!(range.sensors[corner.index()])))
         .collect();
     json!({
         "col": range.tile.column,

@@ -36,7 +36,7 @@ use super::send_args::SendArgs;
 use super::senders::{BoardArgs, CommandArgs};
 use super::stop::{panic_flag, stop_flag};
 use super::watch::FileWatch;
-use super::web::WebArgs;
+use super::web::{QueryArgs, WebArgs};
 
 /// Default address for packets.
 pub(crate) const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
@@ -67,6 +67,8 @@ pub(crate) struct Args {
     send: SendArgs,
     #[command(flatten)]
     web: WebArgs,
+    #[command(flatten)]
+    query: QueryArgs,
     #[command(flatten)]
     actuate: ActuateArgs,
     #[command(flatten)]
@@ -117,6 +119,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Some(web) => web.wrap(input, floor.geometry),
         None => input,
     };
+    let query = args.query.open()?;
     let latency = LatencyStages::default();
     let lost = Arc::<AtomicU64>::default();
     let (notice, noticed) = mpsc::channel();
@@ -125,7 +128,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
     let mut outputs = args.outputs.open(&served.geometry)?;
     if let Some(web) = &web {
-        outputs.push(web.sink()?);
+        web.listen(&mut outputs)?;
+    }
+    if let Some(query) = &query {
+        query.listen(&prefix, &mut outputs)?;
     }
     let (sender, messages) = args.send.open(&layout)?;
     outputs.push(sender);
@@ -141,7 +147,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .floor(floor.clone())
         .layout(layout)
         .method(method)
-        .prefix(prefix)
+        .prefix(prefix.clone())
         .sink(served.outputs(outputs))
         .actuators(actuators)
         .latency(latency.clone())
@@ -171,14 +177,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         );
     }
     let apps = args.commands.apps().to_vec();
+    let sensors = address.as_ref().copied().unwrap_or(listen);
+    let requests = args.commands.port(sensors);
+    let query =
+        query.map(|query| query.serve(session.clone(), floor.clone(), prefix, requests)).transpose()?;
     let web = web.map(|web| web.serve(session.clone(), floor, method, apps, messages)).transpose()?;
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }
-    let console = Console::start(address.as_ref().copied().unwrap_or(listen), session.clone())
+    let console = Console::start(sensors, session.clone())
         .map_err(|error| Failure::Other(format!("the console can't be started: {error}")))?;
     let end = end(&session);
-    drop((watch, console, web));
+    drop((watch, console, web, query));
     let Snapshot { layout, floor, .. } = session.snapshot();
     report(&floor.counters, floor.unsent_events);
     report_felt(&floor.feel);

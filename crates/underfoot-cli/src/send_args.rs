@@ -12,7 +12,8 @@ use super::failure::Failure;
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct SendArgs {
     /// Move a target of the layout: another host and port for OSC (`desk=10.0.0.5:53000`, `desk=tcp:10.0.0.5:53000`),
-    /// another X display for a keyboard (`viewer=:1`). May be given several times.
+    /// another X display for a keyboard (`viewer=:1`), another name for a MIDI port (`synth=stage`). May be given several
+    /// times.
     #[arg(long = "target", value_name = "NAME=PLACE", value_parser = moved)]
     targets: Vec<(String, String)>,
     /// Send no messages of controls to the layout's targets.
@@ -27,7 +28,7 @@ fn moved(text: &str) -> Result<(String, String), String> {
 
 /// Says that the messages of `layout` are off, if it has any.
 pub(crate) fn tell_off(layout: &Layout, reason: &str) {
-    if !layout.plan().is_empty() {
+    if layout.sends() {
         errln!("The messages of this layout to other programs are off: {reason}.");
     }
 }
@@ -49,14 +50,14 @@ impl SendArgs {
             command.arg("guardian");
             command
         };
-        TargetSink::start(plan, Box::new(command))
+        TargetSink::start(layout, plan, Box::new(command))
             .map_err(|error| Failure::Other(format!("messages can't be sent: {error}")))
     }
 
     /// Uses the messages of the layout's file after it was saved.
     pub(crate) fn reload(&self, messages: &LoadedPlan, layout: &Layout) {
         match self.plan(layout) {
-            Ok(plan) => messages.load(plan),
+            Ok(plan) => messages.load(layout, plan),
             Err(problem) => messages.stop(layout, &problem),
         }
     }

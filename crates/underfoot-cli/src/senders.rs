@@ -9,13 +9,12 @@ use std::time::Duration;
 
 use tracing::warn;
 use underfoot::floor::{Floor, Network, PortName, read_address};
-use underfoot::schema;
 use underfoot::source::{FloorInput, SourceError, UdpSource};
 use underfoot::units::HostClock;
 use underfoot_io::serial::{IfAbsent, SerialPorts, absent, wires};
 
 use super::failure::Failure;
-use super::floor_args::FloorArgs;
+use super::floor_args::{FloorArgs, load_floor};
 
 /// Options for permitted boards.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -66,7 +65,7 @@ impl BoardArgs {
     /// Loads the floor file at `path`, whose serial ports must be there.
     pub(crate) fn load_file(&self, path: &Path) -> Result<Floor, Failure> {
         let absent = |port: &PortName| if self.await_ports { None } else { absent(port) };
-        Ok(schema::load_floor_with_ports(path, &absent)?)
+        load_floor(path, &absent)
     }
 
     /// Opens the serial ports of `floor` and of the options beside `input`, whose packets `clock` stamps.
@@ -141,6 +140,11 @@ impl CommandArgs {
         let Some(address) = self.commands else { return Ok(source) };
         let opened = source.with_commands(address, self.apps().iter().copied());
         Ok(opened.map_err(|error| chosen_by("--commands", error))?)
+    }
+
+    /// The port for apps: one of their own, or that of the sensors.
+    pub(crate) fn port(&self, sensors: SocketAddr) -> SocketAddr {
+        self.commands.unwrap_or(sensors)
     }
 
     /// Networks from which requests are accepted.

@@ -18,7 +18,7 @@ impl Projector {
     /// A projector that is on from the start, or not.
     #[must_use]
     pub fn new(is_on: bool) -> Self {
-        Self { view: FloorView::new(Theme::DARK, Show::PROJECTOR), is_on }
+        Self { view: FloorView::new(Theme::DARK.projected(), Show::PROJECTOR), is_on }
     }
 
     /// Opens the window, or closes it.

@@ -286,6 +286,12 @@ impl<'r> Node<'r> {
         Some(list.items.iter().map(|item| Node { expr: &item.expr, name: entry, ..*self }.inside()).collect())
     }
 
+    /// Whether it is a tuple.
+    #[must_use]
+    pub const fn is_tuple(&self) -> bool {
+        matches!(self.expr, Expr::Tuple(_))
+    }
+
     /// Returns the `N` values of a tuple; the error message shows `pattern`.
     pub fn tuple<const N: usize>(&self, pattern: &str) -> Option<[Node<'r>; N]> {
         let elements = match self.expr {

@@ -73,7 +73,7 @@ impl Load {
     /// Returns the load on each tile, in tile-index order; empty for a load in the air, off the floor or not finite.
     ///
     /// Tiles share a cell over a seam by area. A gap between plates belongs to the tile on its side. Cells beyond the
-    /// floor's edge load no tile. If half of the load or more is over the floor, the cells on the floor carry the
+    /// floor's edge, and those over missing tiles, load no tile. If half of the load or more is over the floor, the cells on the floor carry the
     /// whole force (the rest overhangs). If less is over the floor, the force decreases to zero in proportion,
     /// because the foot then stands mainly beside the floor.
     #[must_use]
@@ -113,6 +113,7 @@ impl Load {
         let Some(mut window) = Window::around(geometry, low, high) else { return SmallVec::new() };
         self.print
             .for_each_cell(|cell| window.add(self.position + turn.rotate(cell.at), cell.size, cell.share));
+        window.clear_holes(geometry);
         let carried = window.total();
         let scale = 1.0 / carried.max(0.5);
         window
@@ -150,7 +151,7 @@ struct Window {
     first: TileId,
     /// South-west corner of the first tile.
     origin: Vec2,
-    per_pitch: f32,
+    per_pitch: Vec2,
     columns: usize,
     rows: usize,
     /// For each tile: share of the load, share times position from `origin`, and share times x times y.
@@ -184,8 +185,8 @@ impl Window {
     fn add(&mut self, at: Vec2, size: Vec2, share: f32) {
         let at = at - self.origin;
         let (low, high) = (at - size * 0.5, at + size * 0.5);
-        let (west, east) = (self.line(low.x), self.line(high.x));
-        let (south, north) = (self.line(low.y), self.line(high.y));
+        let (west, east) = (line(low.x, self.per_pitch.x), line(high.x, self.per_pitch.x));
+        let (south, north) = (line(low.y, self.per_pitch.y), line(high.y, self.per_pitch.y));
         if west == east && south == north {
             self.add_to(west, south, share, at);
             return;
@@ -196,32 +197,24 @@ impl Window {
     /// Adds a cell across a seam.
     #[inline(never)]
     fn add_cut(&mut self, low: Vec2, high: Vec2, share: f32) {
-        for (column, part_x, x) in self.split(low.x, high.x) {
-            for (row, part_y, y) in self.split(low.y, high.y) {
+        for (column, part_x, x) in split(low.x, high.x, self.per_pitch.x) {
+            for (row, part_y, y) in split(low.y, high.y, self.per_pitch.y) {
                 self.add_to(column, row, share * part_x * part_y, Vec2::new(x, y));
             }
         }
     }
 
-    /// Column or row of the window at a distance from its origin; -1 for all positions before the origin.
-    #[inline]
-    fn line(&self, distance: f32) -> i32 {
-        // A cast truncates towards zero, so this is a floor function, far cheaper on processors without an
-        // instruction for it.
-        ((distance * self.per_pitch).max(-0.5) + 1.0) as i32 - 1
-    }
-
-    /// Splits an interval at the seam that it crosses: column or row, share and midpoint of each piece.
-    ///
-    /// Cells are smaller than tiles, so an interval crosses at most one seam.
-    fn split(&self, low: f32, high: f32) -> [(i32, f32, f32); 2] {
-        let (first, last) = (self.line(low), self.line(high));
-        if first == last {
-            return [(first, 1.0, 0.5 * (low + high)), (first, 0.0, low)];
+    /// Removes the loads over missing tiles.
+    fn clear_holes(&mut self, geometry: &Geometry) {
+        if geometry.missing().is_empty() {
+            return;
         }
-        let seam = last as f32 / self.per_pitch;
-        let before = ((seam - low) / (high - low)).clamp(0.0, 1.0);
-        [(first, before, 0.5 * (low + seam)), (last, 1.0 - before, 0.5 * (seam + high))]
+        for (index, sum) in self.sums.iter_mut().enumerate() {
+            let (column, row) = ((index % self.columns) as u16, (index / self.columns) as u16);
+            if geometry.is_missing(TileId::new(self.first.column + column, self.first.row + row)) {
+                *sum = (0.0, Vec2::ZERO, 0.0);
+            }
+        }
     }
 
     #[inline]
@@ -249,6 +242,27 @@ impl Window {
             (tile, *share, self.origin + at, *product / *share - at.x * at.y)
         })
     }
+}
+
+/// Column or row of a window at a distance from its origin; -1 for all positions before the origin.
+#[inline]
+fn line(distance: f32, per_pitch: f32) -> i32 {
+    // A cast truncates towards zero, so this is a floor function, far cheaper on processors without an instruction for
+    // it.
+    ((distance * per_pitch).max(-0.5) + 1.0) as i32 - 1
+}
+
+/// Splits an interval at the seam that it crosses: column or row, share and midpoint of each piece.
+///
+/// Cells are smaller than tiles, so an interval crosses at most one seam.
+fn split(low: f32, high: f32, per_pitch: f32) -> [(i32, f32, f32); 2] {
+    let (first, last) = (line(low, per_pitch), line(high, per_pitch));
+    if first == last {
+        return [(first, 1.0, 0.5 * (low + high)), (first, 0.0, low)];
+    }
+    let seam = last as f32 / per_pitch;
+    let before = ((seam - low) / (high - low)).clamp(0.0, 1.0);
+    [(first, before, 0.5 * (low + seam)), (last, 1.0 - before, 0.5 * (seam + high))]
 }
 
 #[cfg(test)]
@@ -362,6 +376,31 @@ mod tests {
         ] {
             assert!(broken.on_tiles(&geometry).is_empty(), "{broken:?}");
         }
+    }
+
+    #[test]
+    fn a_foot_beside_a_hole_hangs_over_it_as_over_the_floor_s_edge() {
+        let hole = underfoot::floor::TileBlock { first: TileId::new(1, 1), columns: 1, rows: 1 };
+        let ring = Geometry::of_paper_tiles(3, 3).unwrap().with_uneven(&[hole], &[]).unwrap();
+        let seen = |x: f32| {
+            let loads = foot(Vec2::new(x, 0.456), 0.0, 0.4).on_tiles(&ring);
+            let tiles: Vec<_> = loads.iter().map(|load| (load.tile.column, load.tile.row)).collect();
+            (sum(&loads).0, tiles)
+        };
+        let (force, tiles) = seen(0.304 - 0.005);
+        assert!((force - 700.0).abs() < 0.1 && tiles == [(0, 1)], "{force} N on {tiles:?}");
+        assert!(seen(0.456).1.is_empty(), "nobody stands on a hole");
+    }
+
+    #[test]
+    fn rectangular_tiles_carry_the_whole_foot() {
+        let size = Vec2::new(0.511, 0.316);
+        let geometry = Geometry::of_plates(4, 6, size, size, 0.039).unwrap();
+        let foot = foot(Vec2::new(1.05, 0.95), 0.7, 0.4);
+        let loads = foot.on_tiles(&geometry);
+        let (force, at) = sum(&loads);
+        assert!((force - 700.0).abs() < 0.1 && at.distance(foot.centre_of_pressure()) < 1e-4, "{at}");
+        assert!(loads.iter().all(|load| geometry.cell(load.tile).grown(1e-5).contains(load.centroid)));
     }
 
     #[test]

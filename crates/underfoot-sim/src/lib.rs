@@ -43,6 +43,7 @@ mod footprint;
 mod footwear;
 mod gait;
 mod hand;
+mod legs;
 mod loadcell;
 mod looping_script;
 mod mapping;

@@ -57,7 +57,7 @@ pub fn calibrated(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Cal
     }
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     for (index, tile) in sim.geometry().tiles().enumerate() {
-        for corner in Corner::ALL {
+        for &corner in sim.geometry().sensors(tile) {
             let calibration = on_the_bench(sim, index, corner, &mut rng)
                 .map_err(|source| CalibrationError { sensor: SensorId { tile, corner }, source })?;
             let rest = sim.empty_volts(index, corner);
@@ -106,11 +106,12 @@ pub fn load_table(sim: &SimFloor, seed: u64) -> String {
     }
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     for (index, tile) in sim.geometry().tiles().enumerate() {
-        for corner in Corner::ALL {
+        for &corner in sim.geometry().sensors(tile) {
             for LoadPoint { volts, force } in loaded(sim, index, corner, &mut rng) {
                 let (column, row) = (tile.column, tile.row);
+                let name = sim.geometry().sensor_name(corner);
                 // Writing to a string does not fail.
-                let _ = writeln!(table, "{column},{row},{corner},{volts:.5},{:.3}", force.0);
+                let _ = writeln!(table, "{column},{row},{name},{volts:.5},{:.3}", force.0);
             }
         }
     }

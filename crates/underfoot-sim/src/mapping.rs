@@ -58,8 +58,11 @@ pub fn mapped(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Mapping
     }
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     for (index, tile) in sim.geometry().tiles().enumerate() {
+        if sim.geometry().is_missing(tile) {
+            continue;
+        }
         let presses = press(&floor, sim, index, &mut rng);
-        match MapFit::of_presses(&presses, sim.geometry()) {
+        match MapFit::of_presses(&presses, sim.geometry(), tile) {
             Ok(fit) => {
                 if let Some(map) = floor.position_maps.get_mut(index) {
                     *map = Some(fit.map);
@@ -77,7 +80,8 @@ pub fn mapped(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Mapping
 /// For a floor with boards that send newtons, the table has only its header.
 #[must_use]
 pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
-    let mut table = String::from("x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne,force_n\n");
+    let names = Corner::ALL.map(|sensor| sim.geometry().sensor_name(sensor));
+    let mut table = format!("x_m,y_m,col,row,f_{},force_n\n", names.join(",f_"));
     if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
         return table;
     }
@@ -102,18 +106,26 @@ fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<
     let (Some(laws), Some(tares)) = (floor.calibration.get(tile), floor.tare.get(tile)) else {
         return Vec::new();
     };
-    let side = 0.5 * sim.geometry().tile_m() - MARGIN_M;
+    let id = sim.geometry().tile_at_index(tile);
+    let known = sim.geometry().sensors(id);
+    if known.is_empty() {
+        return Vec::new();
+    }
+    let side = 0.5 * sim.geometry().plate_size(id) - MARGIN_M;
     // Denser towards the edges, because a fit near an edge has points on one side only.
-    let step = |number: usize| side * (PI * (number as f32 / (POINTS - 1) as f32 - 0.5)).sin();
+    let step = |number: usize, side: f32| side * (PI * (number as f32 / (POINTS - 1) as f32 - 0.5)).sin();
     let points = (0..POINTS).flat_map(|row| (0..POINTS).map(move |column| (column, row)));
     let mut presses = Vec::with_capacity(POINTS * POINTS * FORCES.len());
     for (column, row) in points {
-        let at = Vec2::new(step(column), step(row));
+        let at = Vec2::new(step(column, side.x), step(row, side.y));
         for force in FORCES {
             let hit = at + Vec2::new(normal(rng), normal(rng)) * AIM_M;
             let supports = sim.pressed(tile, hit, force);
             let mut saturated = false;
             let forces = Corner::ALL.map(|corner| {
+                if !known.contains(&corner) {
+                    return 0.0;
+                }
                 let volts = sim.bench(tile, corner).0.volts(supports[corner.index()]);
                 let law: Calibration = laws[corner.index()];
                 // The creep of a sensor under the resting plate is in its tare and in every reading. For a sensor

@@ -1,10 +1,11 @@
-//! One plate, rigid or twisting, on four elastic supports that push but do not pull.
+//! One plate, rigid or twisting, on elastic supports that push but do not pull.
 
-use glam::Vec2;
+use glam::{Mat2, Vec2};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use underfoot::floor::{Corner, Geometry};
+use super::legs::Legs;
+use underfoot::floor::{Corner, Geometry, SensorPlaces, TileId};
 
 /// Construction and mounting of the plates of a simulated floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,15 +70,51 @@ pub(super) const GRAVITY: f32 = 9.81;
 /// One plate with its supports; positions are relative to its centre, in metres.
 #[derive(Clone, Debug)]
 pub(super) struct Plate {
-    /// Distance of the supports from the centre line.
-    reach: f32,
-    /// Half the plate's side, in units of `reach`.
-    edge: f32,
+    supports: Supports,
     /// Downward force of weight and mounting together, acting at the centre.
     preload: f32,
     /// Support forces per unit of force, of moment / reach about either axis and of twist / reach squared.
     sharing: [[f32; 4]; 4],
     pulls: bool,
+}
+
+/// The places of a plate's supports.
+#[derive(Clone, Copy, Debug)]
+enum Supports {
+    /// At the corners of an upright rectangle around the centre.
+    Rectangle {
+        /// Distance from the middle lines.
+        reach: Vec2,
+        /// Half the plate's size, in units of `reach`.
+        edge: Vec2,
+    },
+    /// At the corners of another parallelogram: a rectangle in coordinates of its own.
+    Parallelogram {
+        centre: Vec2,
+        /// From metres to coordinates in which the supports lie at -1 and 1.
+        to_own: Mat2,
+        /// Largest coordinates of the plate.
+        edge: Vec2,
+    },
+    Other(Legs),
+}
+
+impl Supports {
+    fn new(places: SensorPlaces, plate: Vec2, stiffness: [f32; 4]) -> Self {
+        if let Some(reach) = places.rectangle() {
+            return Self::Rectangle { reach, edge: 0.5 * plate / reach };
+        }
+        let half = 0.5 * plate;
+        if !places.is_parallelogram() {
+            return Self::Other(Legs::new(places, stiffness, half));
+        }
+        let [sw, se, nw, ne] = Corner::ALL.map(|corner| places.place(corner));
+        let to_own = Mat2::from_cols(0.5 * (se - sw), 0.5 * (nw - sw)).inverse();
+        let centre = 0.5 * (sw + ne);
+        let corner = |corner: Corner| (to_own * (half * corner.direction() - centre)).abs();
+        let edge = Corner::ALL.map(corner).into_iter().fold(Vec2::ONE, Vec2::max);
+        Self::Parallelogram { centre, to_own, edge }
+    }
 }
 
 /// Sum of the loads on one plate; positions are relative to its centre.
@@ -100,7 +137,7 @@ impl PlatePress {
 
 impl Plate {
     /// Creates a plate of this floor; `rng` draws the stiffness of its supports.
-    pub(super) fn new(geometry: &Geometry, config: &PlateConfig, rng: &mut Pcg64Mcg) -> Self {
+    pub(super) fn new(geometry: &Geometry, tile: TileId, config: &PlateConfig, rng: &mut Pcg64Mcg) -> Self {
         let spread = config.stiffness_spread.clamp(0.0, 0.5);
         let stiffness = Corner::ALL.map(|_| 1.0 + rng.random_range(-1.0f32..=1.0) * spread);
         let twist = if config.twist > 0.0 {
@@ -109,11 +146,10 @@ impl Plate {
         } else {
             0.0
         };
-        let reach = geometry.sensor_reach_m();
+        let places = *geometry.sensor_places(tile);
         Self {
-            reach,
-            edge: 0.5 * geometry.tile_m() / reach,
-            preload: config.mass_kg * GRAVITY + 4.0 * config.mount_preload_n,
+            supports: Supports::new(places, geometry.plate_size(tile), stiffness),
+            preload: config.mass_kg * GRAVITY + places.count() as f32 * config.mount_preload_n,
             sharing: elastic_sharing(stiffness, twist),
             pulls: config.pulls,
         }
@@ -129,11 +165,23 @@ impl Plate {
     /// # Source
     /// Plate on springs: corner forces `k_i (z + p x_i + q y_i + t x_i y_i)` with z, p, q from balance, and t from
     /// the work of the load in twist against the stiffness of supports and plate. A plate with one corner in the air
-    /// rests on three, and balance alone determines their forces.
+    /// rests on three, and balance alone determines their forces. A parallelogram is the same in coordinates along its
+    /// sides; without the load's own twist, which is known about upright axes only.
     pub(super) fn supports(&self, load: PlatePress) -> [f32; 4] {
         let total = load.force + self.preload;
-        let moment = load.at * (load.force / self.reach);
-        let twist = load.twist / (self.reach * self.reach);
+        let (moment, twist, edge) = match &self.supports {
+            Supports::Rectangle { reach, edge } => {
+                (load.at * (load.force / *reach), load.twist / (reach.x * reach.y), *edge)
+            }
+            Supports::Parallelogram { centre, to_own, edge } => {
+                let (at, rest) = (*to_own * (load.at - *centre), *to_own * -*centre);
+                (at * load.force + rest * self.preload, load.force * at.x * at.y, *edge)
+            }
+            Supports::Other(legs) => {
+                let line = if total == 0.0 { Vec2::ZERO } else { load.at * (load.force / total) };
+                return legs.supports(total, line, self.pulls);
+            }
+        };
         let elastic = self.sharing.map(|[z, x, y, xy]| z * total + x * moment.x + y * moment.y + xy * twist);
         if self.pulls || elastic.iter().all(|&support| support >= 0.0) {
             return elastic;
@@ -142,27 +190,28 @@ impl Plate {
             return [0.0; 4];
         }
         let line = moment / total;
-        if line.abs().max_element() > 1.0 { self.tipped(total, line) } else { on_three(elastic, total, line) }
+        if line.abs().max_element() > 1.0 {
+            tipped(total, line, edge)
+        } else {
+            on_three(elastic, total, line)
+        }
     }
+}
 
-    /// Support forces if the line of action is outside the supports, on one side or beyond a corner.
-    fn tipped(&self, total: f32, line: Vec2) -> [f32; 4] {
-        // Along an axis on which the plate tips, support and frame share the force like a lever.
-        let carried = |line: f32| {
-            let lever = self.edge - 1.0;
-            if line.abs() <= 1.0 || lever < 1e-6 {
-                1.0
-            } else {
-                ((self.edge - line.abs()) / lever).clamp(0.0, 1.0)
-            }
-        };
-        let seen = total * carried(line.x) * carried(line.y);
-        let line = line.clamp(Vec2::NEG_ONE, Vec2::ONE);
-        Corner::ALL.map(|corner| {
-            let share = (corner.direction() * line + 1.0) * 0.5;
-            seen * share.x * share.y
-        })
-    }
+/// Support forces if the line of action is outside the supports, on one side or beyond a corner; `edge` is half the
+/// plate's size.
+fn tipped(total: f32, line: Vec2, edge: Vec2) -> [f32; 4] {
+    // Along an axis on which the plate tips, support and frame share the force like a lever.
+    let carried = |line: f32, edge: f32| {
+        let lever = edge - 1.0;
+        if line.abs() <= 1.0 || lever < 1e-6 { 1.0 } else { ((edge - line.abs()) / lever).clamp(0.0, 1.0) }
+    };
+    let seen = total * carried(line.x, edge.x) * carried(line.y, edge.y);
+    let line = line.clamp(Vec2::NEG_ONE, Vec2::ONE);
+    Corner::ALL.map(|corner| {
+        let share = (corner.direction() * line + 1.0) * 0.5;
+        seen * share.x * share.y
+    })
 }
 
 /// Support forces after the corner with the most negative force has lifted off: balance determines the other three.
@@ -228,7 +277,7 @@ mod tests {
     const REACH: f32 = 0.132;
 
     fn plate(config: PlateConfig) -> Plate {
-        Plate::new(&Geometry::default(), &config, &mut Pcg64Mcg::seed_from_u64(3))
+        Plate::new(&Geometry::default(), TileId::new(0, 0), &config, &mut Pcg64Mcg::seed_from_u64(3))
     }
 
     /// Force and position of the load as the sensors report it, without tare.
@@ -266,6 +315,27 @@ mod tests {
             let sum: f32 = supports.iter().sum();
             prop_assert!(sum <= (force + plate.preload) * 1.001);
         }
+    }
+
+    #[test]
+    fn a_panel_on_the_middles_of_its_edges_carries_a_foot_where_it_stands() {
+        let places = [(0.0, -0.13), (0.13, 0.0), (-0.13, 0.0), (0.0, 0.13)].map(Vec2::from);
+        let places = SensorPlaces::at(&places).unwrap();
+        let geometry = Geometry::of_paper_tiles(1, 1).unwrap().with_sensors(places).unwrap();
+        let mut rng = Pcg64Mcg::seed_from_u64(3);
+        let plate = Plate::new(&geometry, geometry.first(), &PlateConfig::default(), &mut rng);
+        let rest = plate.supports(PlatePress::default());
+        for at in [Vec2::ZERO, Vec2::new(0.06, -0.02), Vec2::new(0.0, 0.12), Vec2::new(-0.05, 0.07)] {
+            let loaded = plate.supports(PlatePress::at(400.0, at));
+            let net = [0, 1, 2, 3].map(|leg| loaded[leg] - rest[leg]);
+            let felt: f32 = net.iter().sum();
+            assert!((felt - 400.0).abs() < 0.5, "{felt} at {at}");
+            assert!((places.moment(net) / felt).distance(at) < 1e-4, "{net:?} at {at}");
+            assert!(loaded.iter().all(|support| *support >= 0.0));
+        }
+        // A corner of the panel has nothing below it: the foot tips the panel onto its frame.
+        let corner: f32 = plate.supports(PlatePress::at(400.0, Vec2::splat(0.14))).iter().sum();
+        assert!(corner < 420.0, "{corner}");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::floor::{SimConfig, SimulatedSensors};
 use super::plate::PlateConfig;
 use super::seam::SeamConfig;
 use super::sensor::{PartConfig, SensorFault};
-use underfoot::floor::{Corner, Geometry, SensorId};
+use underfoot::floor::{Geometry, SensorId};
 
 /// Quality of a simulated floor.
 ///
@@ -132,12 +132,13 @@ impl FloorQuality {
             return Vec::new();
         }
         let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x0b80_1ce5);
-        let tiles: Vec<_> = geometry.tiles().collect();
+        let tiles: Vec<_> = geometry.tiles().filter(|tile| geometry.has(*tile)).collect();
         let count = (4 * tiles.len()).div_ceil(SENSORS_PER_BROKEN);
         (0..count)
             .filter_map(|number| {
                 let tile = *tiles.get(rng.random_range(0..tiles.len()))?;
-                let corner = Corner::ALL[rng.random_range(0..4_usize)];
+                let sensors = geometry.sensors(tile);
+                let corner = *sensors.get(rng.random_range(0..sensors.len()))?;
                 let fault = if number % 2 == 0 { SensorFault::Open } else { SensorFault::Stuck };
                 Some((SensorId { tile, corner }, fault))
             })

@@ -115,7 +115,7 @@ mod tests {
             let last = packets.iter().rfind(|packet| packet.board == 0).unwrap();
             match &last.readings {
                 Readings::Counts(counts) => counts.iter().filter(|count| **count == Some(0)).count(),
-                Readings::Newtons(_) => unreachable!(),
+                Readings::Scaled(_) | Readings::Newtons(_) => unreachable!(),
             }
         };
         let sensor = SensorId { tile: TileId::new(0, 0), corner: Corner::SouthWest };

@@ -107,8 +107,12 @@ impl Seams {
     }
 }
 
-/// Corners of other tiles directly across the seams from one corner, by tile index and corner index.
+/// Corners of other tiles directly across the seams from one corner, by tile index and corner index; none where sensors
+/// are not near corners.
 fn across(geometry: &Geometry, tile: TileId, corner: Corner) -> Across {
+    if !geometry.has_corners() || geometry.is_missing(tile) {
+        return Across::new();
+    }
     let direction = corner.direction();
     let mirrored = |x: f32, y: f32| {
         Corner::ALL.into_iter().find(|other| other.direction() == glam::Vec2::new(x, y)).map(Corner::index)
@@ -120,6 +124,7 @@ fn across(geometry: &Geometry, tile: TileId, corner: Corner) -> Across {
     let lengthways = beside(tile.row, direction.y).map(|row| TileId::new(tile.column, row));
     [(sideways, mirrored(-direction.x, direction.y)), (lengthways, mirrored(direction.x, -direction.y))]
         .into_iter()
+        .filter(|(tile, _)| tile.is_some_and(|tile| geometry.has(tile)))
         .filter_map(|(tile, corner)| Some((geometry.index(tile?)?, corner?)))
         .collect()
 }

@@ -54,6 +54,9 @@ impl Interaction {
     ) {
         for this in 0..fingers.len() {
             let Some(&finger) = fingers.get(this).filter(|finger| finger.held.is_none()) else { continue };
+            if at.contact(finger.cursor.contact).is_some_and(|contact| !at.is_new(contact)) {
+                continue;
+            }
             let on = |finger: &Finger| {
                 let widget = self.hits.widget_at(at.layout, self.page, finger.cursor.position)?;
                 (at.layout.widgets.get(widget)?.region == index).then_some(widget)

@@ -9,7 +9,7 @@ use crate::engine::event::ControlEvent;
 use crate::engine::feet::{FootHistory, PressMode};
 use crate::engine::region::Finger;
 use crate::floor::Geometry;
-use crate::sense::ForceFrame;
+use crate::sense::{ContactId, ForceFrame};
 use crate::units::Newtons;
 use crate::widget::{EventKind, Guard, Input};
 
@@ -27,6 +27,10 @@ impl Interaction {
             finger.held = None;
             return;
         };
+        if !is_news(held.contact, held.position, &self.geometry, at) {
+            self.ignored.note_stay(held.contact);
+            return;
+        }
         let force = at.contact(held.contact).map_or(held.force, |contact| contact.force);
         self.ignored.note_answer(held.contact, held.widget, force);
         let foot = self.feet.of(held.contact);
@@ -73,6 +77,15 @@ impl Interaction {
         }
         report(at.layout, at.now(), held.widget, Some(held), &emitted, events);
         self.wake(held.widget);
+    }
+}
+
+/// Whether this frame has new forces of the foot `contact`, last seen at `position`.
+fn is_news(contact: ContactId, position: Vec2, geometry: &Geometry, at: &Moment<'_>) -> bool {
+    let tile = || geometry.tile_under(position).and_then(|tile| geometry.index(tile));
+    match at.contact(contact) {
+        Some(contact) => at.is_new(contact),
+        None => tile().map_or(at.frame.is_new, |tile| at.frame.is_new_at(tile)),
     }
 }
 

@@ -61,6 +61,16 @@ impl Moment<'_> {
     fn contact(&self, id: ContactId) -> Option<&Contact> {
         self.contacts.iter().find(|contact| contact.id == id)
     }
+
+    /// Whether any force of `contact` is new in this frame. A decision on a press takes new forces: between the
+    /// samples of a slow board nothing is known of the foot.
+    fn is_new(&self, contact: &Contact) -> bool {
+        let mut tiles = contact.tiles.iter().peekable();
+        match tiles.peek() {
+            Some(_) => tiles.any(|load| self.frame.is_new_at(load.index)),
+            None => self.frame.is_new,
+        }
+    }
 }
 
 /// A foot on a control that it keeps pressed.
@@ -228,8 +238,10 @@ impl Interaction {
         events: &mut Vec<ControlEvent>,
     ) {
         let at = Moment { frame, contacts, layout };
-        self.feet.update(contacts, &layout.stances, at.now());
-        self.rises.update(contacts, at.now());
+        if frame.is_new {
+            self.feet.update(contacts, &layout.stances, at.now());
+            self.rises.update(contacts, at.now());
+        }
         self.ignored.begin();
         self.inhibit(&at, events);
         self.lose_unsensed(&at, events);

@@ -29,11 +29,13 @@ impl Interaction {
         if runs && self.is_suspected(widget, frame) {
             return Some(OffReason::SensorTrouble);
         }
-        if let Some(doubt) = self.of_readings(widget, frame).filter(|_| runs) {
-            return Some(doubt);
+        let doubt = self.of_readings(widget, frame).filter(|_| runs);
+        if doubt.is_some_and(|doubt| doubt != OffReason::SlowReadings) {
+            return doubt;
         }
         let is_held = self.held().any(|held| held.widget == widget);
-        (!is_held && self.runs_elsewhere(widget, layout)).then_some(OffReason::OtherHeld)
+        let rivals = !is_held && self.runs_elsewhere(widget, layout);
+        if rivals { Some(OffReason::OtherHeld) } else { doubt }
     }
 
     /// The reason for a control on a tile without sensing.
@@ -58,9 +60,10 @@ impl Interaction {
             HoldDoubt::Unlearned => None,
             HoldDoubt::Repeats => Some(OffReason::RepeatedReadings),
             HoldDoubt::Coarse => Some(OffReason::CoarseReadings),
+            HoldDoubt::Slow => Some(OffReason::SlowReadings),
         });
-        // Repeated readings come before coarse ones.
-        reasons.min_by_key(|reason| *reason == OffReason::CoarseReadings)
+        let order = |reason: &OffReason| OffReason::ALL.iter().position(|one| one == reason);
+        reasons.min_by_key(order)
     }
 
     /// Whether every tile under a control that acts while it is held has a suspected sensor: no force there starts

@@ -3,11 +3,16 @@
 use super::super::feet::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
 use super::super::ignored::Ignored;
 use super::{Interaction, Moment};
+use crate::sense::Contact;
 use crate::widget::{Control, OffReason};
 
 /// Notes the contacts that lie on controls without operating one, and closes the visits that are over.
 pub(super) fn note_ignored(interaction: &mut Interaction, at: &Moment<'_>) {
-    for contact in at.contacts.iter().filter(|contact| contact.force.0 >= AS_GOOD_AS_LIFTED_N) {
+    for contact in at.contacts.iter().filter(|contact| !at.is_new(contact)) {
+        interaction.ignored.note_stay(contact.id);
+    }
+    let heavy = |contact: &&Contact| contact.force.0 >= AS_GOOD_AS_LIFTED_N && at.is_new(contact);
+    for contact in at.contacts.iter().filter(heavy) {
         let Some(widget) = interaction.hits.widget_at(at.layout, interaction.page, contact.centroid) else {
             continue;
         };

@@ -146,34 +146,30 @@ impl HeldRecord {
     }
 }
 
-/// A press that a control ignored, as the window copies it: a line `ignored`, with its fields in the order of their
-/// names.
+/// A press that a control ignored.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct IgnoredRecord {
-    /// The contact.
-    pub contact: ContactId,
-    /// Always `ignored`.
-    pub event: Word,
-    /// Its force, in newtons.
-    pub force_n: f64,
     /// The control.
     pub id: Word,
-    /// Time of the press, in seconds.
-    pub t_s: f64,
-    /// The reason.
+    /// The name of the reason: [`crate::engine::Ignored::name`].
+    pub reason: Word,
+    /// The reason in a sentence.
     pub why: Sentence,
+    /// The greatest force, in newtons.
+    pub force_n: f32,
+    /// The contact.
+    pub contact: ContactId,
 }
 
 impl From<&IgnoredPress> for IgnoredRecord {
     fn from(press: &IgnoredPress) -> Self {
         Self {
-            contact: press.contact,
-            event: "ignored".into(),
-            force_n: press.force.0.into(),
             id: press.id.as_str().into(),
-            t_s: press.at.secs(),
+            reason: press.why.name().into(),
             why: Sentence(press.why.to_string()),
+            force_n: press.force.0,
+            contact: press.contact,
         }
     }
 }

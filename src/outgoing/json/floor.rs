@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::text::{Sentence, Word};
+use crate::messages::MessageNews;
 use crate::outgoing::AreaNews;
 
 /// A page is shown: a line `page`.
@@ -50,6 +51,28 @@ impl From<&AreaNews> for AreaRecord {
             state: state.name().into(),
             why: why.as_str().into(),
             uncertainty_s: uncertainty.as_secs_f64(),
+        }
+    }
+}
+
+/// A control or a foot gives a message to another program: a line `sent`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SentRecord {
+    /// The control, or the region of the foot.
+    pub id: Word,
+    /// The name of the target in the layout.
+    pub target: Word,
+    /// The content, for people.
+    pub message: Sentence,
+}
+
+impl From<&MessageNews> for SentRecord {
+    fn from(news: &MessageNews) -> Self {
+        Self {
+            id: news.order.control.as_str().into(),
+            target: news.target().into(),
+            message: news.order.act.to_string().as_str().into(),
         }
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::text::{Few, Sentence, Word};
 use crate::feel::{DeviceStatus, Muted};
 use crate::floor::SensorId;
-use crate::sense::{SensorHealth, Trouble};
+use crate::sense::{BoardTiming, SensorHealth, Trouble};
 use crate::wire::{LinkCause, LinkState};
 
 /// Maximum number of faulty sensors or muted tiles that a reader keeps.
@@ -81,6 +81,23 @@ pub struct HealthRecord {
     pub foreign: bool,
     /// The sensors with faults.
     pub troubles: Few<TroubleRecord, MOST_PARTS>,
+    /// The boards that do not send once a millisecond.
+    #[serde(skip_serializing_if = "Few::is_empty")]
+    pub rates: Few<RateRecord, MOST_PARTS>,
+}
+
+/// The rate of a board, and the time of its samples.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RateRecord {
+    /// The board's number.
+    pub board: u16,
+    /// Packets a second.
+    pub hz: f32,
+    /// The source of its samples' times: [`crate::sense::TimeBase::name`].
+    pub time: Word,
+    /// Mean error of these times in milliseconds.
+    pub jitter_ms: f32,
 }
 
 /// A sensor with a fault.
@@ -99,8 +116,8 @@ pub struct TroubleRecord {
 
 impl From<&SensorHealth> for HealthRecord {
     fn from(health: &SensorHealth) -> Self {
-        let SensorHealth { counts: [live, degraded, stale, faulty], uncalibrated, foreign, ref troubles } =
-            *health;
+        let SensorHealth { counts, uncalibrated, foreign, ref timings, ref troubles } = *health;
+        let [live, degraded, stale, faulty] = counts;
         let record = |&(SensorId { tile, corner }, trouble): &(SensorId, Trouble)| TroubleRecord {
             col: tile.column,
             row: tile.row,
@@ -108,7 +125,14 @@ impl From<&SensorHealth> for HealthRecord {
             trouble: trouble.name().into(),
         };
         let troubles = troubles.iter().map(record).collect();
-        Self { live, degraded, stale, faulty, uncalibrated, foreign, troubles }
+        let rate = |(board, timing): &(u16, BoardTiming)| RateRecord {
+            board: *board,
+            hz: timing.hz,
+            time: timing.base.name().into(),
+            jitter_ms: 1e3 * timing.jitter.as_secs_f32(),
+        };
+        let rates = timings.iter().map(rate).collect();
+        Self { live, degraded, stale, faulty, uncalibrated, foreign, troubles, rates }
     }
 }
 

@@ -7,9 +7,11 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::{
     AreaRecord, ClientsRecord, ContactsRecord, CrackRecord, DeviceRecord, EventRecord, GapRecord,
-    HealthRecord, HeldRecord, LinkCauseRecord, LinkRecord, MuteRecord, PageRecord, RefusalRecord,
-    StateRecord, Word,
+    HealthRecord, HeldRecord, IgnoredRecord, LinkCauseRecord, LinkRecord, MuteRecord, PageRecord,
+    RefusalRecord, SentRecord, StateRecord, Word,
 };
+use crate::engine::IgnoredPress;
+use crate::messages::MessageNews;
 use crate::units::Instant;
 use crate::widget::{Direction, EventKind, Value, WidgetEvent};
 
@@ -45,10 +47,14 @@ pub enum Message {
     Device(DeviceRecord),
     /// The state of an area.
     Area(AreaRecord),
+    /// A message of a control or a foot to another program.
+    Sent(SentRecord),
     /// Lines were left out.
     Gap(GapRecord),
     /// The contacts on the floor.
     Contacts(ContactsRecord),
+    /// A press that a control ignored.
+    Ignored(IgnoredRecord),
     /// The state of a control.
     State(StateRecord),
     /// A refused request.
@@ -137,8 +143,10 @@ fn message(event: Word, text: &[u8]) -> Result<Message, serde_json::Error> {
         "health" => Message::Health(serde_json::from_slice(text)?),
         "device" => Message::Device(serde_json::from_slice(text)?),
         "area" => Message::Area(serde_json::from_slice(text)?),
+        "sent" => Message::Sent(serde_json::from_slice(text)?),
         "gap" => Message::Gap(serde_json::from_slice(text)?),
         "contacts" => Message::Contacts(serde_json::from_slice(text)?),
+        "ignored" => Message::Ignored(serde_json::from_slice(text)?),
         "state" => Message::State(serde_json::from_slice(text)?),
         "error" => Message::Error(serde_json::from_slice(text)?),
         "clients" => Message::Clients(serde_json::from_slice(text)?),
@@ -182,8 +190,20 @@ impl Line {
     }
 }
 
+/// Returns one message to another program as the sink of JSON lines writes it, without the end of the line.
+#[must_use]
+pub fn sent_line(news: &MessageNews) -> String {
+    Line::new(news.at, Message::Sent(news.into())).text()
+}
+
 /// Returns one event as the sink of JSON lines writes it, without the end of the line.
 #[must_use]
 pub fn event_line(event: &WidgetEvent) -> String {
     Line::new(event.at, Message::Control(event.into())).text()
+}
+
+/// Returns one ignored press as the sink of JSON lines writes it, without the end of the line.
+#[must_use]
+pub fn ignored_line(press: &IgnoredPress) -> String {
+    Line::new(press.at, Message::Ignored(press.into())).text()
 }

@@ -28,9 +28,11 @@ mod web;
 
 pub use contact::{ContactRecord, ContactsRecord, CursorRecord, SensedRecord};
 pub use control::{EventRecord, HeldRecord, IgnoredRecord, StateRecord};
-pub use floor::{AreaRecord, CrackRecord, GapRecord, PageRecord};
-pub use hardware::{DeviceRecord, HealthRecord, LinkCauseRecord, LinkRecord, MuteRecord, TroubleRecord};
-pub use line::{Head, Line, Message, event_line};
+pub use floor::{AreaRecord, CrackRecord, GapRecord, PageRecord, SentRecord};
+pub use hardware::{
+    DeviceRecord, HealthRecord, LinkCauseRecord, LinkRecord, MuteRecord, RateRecord, TroubleRecord,
+};
+pub use line::{Head, Line, Message, event_line, ignored_line, sent_line};
 pub use text::{Few, Sentence, Word};
 pub use value::JsonValue;
 pub use web::{ClientsRecord, FloorRecord, GreetingRecord, PlacedControl, RefusalRecord, RequestRecord};

@@ -113,6 +113,7 @@ impl Content {
         let contacts = [self.contact(), self.full_contact(None), self.full_contact(Some([x_m, y_m]))];
         vec![
             Message::Page(PageRecord { page: self.flags[0].then(|| one.clone()) }),
+            Message::Sent(SentRecord { id: one.clone(), target: two.clone(), message: self.sentence() }),
             Message::Crack(CrackRecord { seed: sample_rate, energy_j, x_m, y_m, skipped: block }),
             Message::Link(LinkRecord { state: "lost".into() }),
             Message::LinkCause(LinkCauseRecord {
@@ -146,6 +147,13 @@ impl Content {
                 why: self.sentence(),
                 uncertainty_s: 0.25,
             }),
+            Message::Ignored(IgnoredRecord {
+                id: one.clone(),
+                reason: "too_light".into(),
+                why: self.sentence(),
+                force_n: energy_j,
+                contact: ContactId(block),
+            }),
             Message::Gap(GapRecord { dropped: block.into() }),
             Message::Contacts(ContactsRecord { contacts: contacts.into_iter().collect() }),
             Message::Error(RefusalRecord { request: one, why: self.sentence() }),
@@ -178,15 +186,6 @@ proptest! {
         let sensed = SensedRecord { t_s: 1.25, contacts, cursor: content.flags[0].then_some(cursor) };
         prop_assert_eq!(read_back(&sensed), sensed);
         let [first, second, ..] = content.words.clone();
-        let ignored = IgnoredRecord {
-            contact: ContactId(content.large[0]),
-            event: "ignored".into(),
-            force_n: 24.5,
-            id: first.clone(),
-            t_s: 0.15,
-            why: content.sentence(),
-        };
-        prop_assert_eq!(read_back(&ignored), ignored);
         let request = RequestRecord { args: vec![json!(0.5), json!("on"), json!(3)], request: first.0.clone() };
         prop_assert_eq!(read_back(&request), request);
         let state = json!({"id": "zoom", "value": 0.5}).as_object().cloned().unwrap();

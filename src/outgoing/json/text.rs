@@ -112,6 +112,14 @@ impl<T, const MOST: usize> Default for Few<T, MOST> {
     }
 }
 
+impl<T, const MOST: usize> Few<T, MOST> {
+    /// Whether there is no entry.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.kept.is_empty() && self.left_out == 0
+    }
+}
+
 impl<T, const MOST: usize> FromIterator<T> for Few<T, MOST> {
     fn from_iter<I: IntoIterator<Item = T>>(entries: I) -> Self {
         Self { kept: entries.into_iter().collect(), left_out: 0 }

@@ -51,7 +51,10 @@ pub struct FloorRecord {
     pub link_cause: Option<Word>,
     /// The page that is shown; null without pages.
     pub page: Option<Word>,
-    /// Side of a tile, in metres.
+    /// Depth of a tile in metres, if it differs from its width.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tile_depth_m: Option<f64>,
+    /// Width of a tile, in metres.
     pub tile_m: f64,
     /// The title of the layout.
     pub title: String,

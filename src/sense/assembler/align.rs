@@ -2,6 +2,8 @@
 
 use super::board::BoardTrack;
 use super::clock::{SLOT_NS, SlotClock};
+use super::numbering::TimeBase;
+use crate::wire::LinkCounters;
 
 /// Interval at which the boards' slots and the clock are compared with the receive clock.
 const ALIGN_NS: i64 = 64 * SLOT_NS;
@@ -17,16 +19,28 @@ pub(super) struct Alignment {
     aligned_ns: i64,
     /// Space for sorting the boards' delays.
     delays: Vec<(i64, usize)>,
+    /// Whether the rate of a board has changed since the last look.
+    has_new_rates: bool,
 }
 
 impl Alignment {
     pub(super) fn new(boards: usize) -> Self {
-        Self { aligned_ns: 0, delays: Vec::with_capacity(boards) }
+        Self { aligned_ns: 0, delays: Vec::with_capacity(boards), has_new_rates: false }
     }
 
     /// Begins the first interval.
     pub(super) const fn start(&mut self, now_ns: i64) {
         self.aligned_ns = now_ns;
+    }
+
+    /// Whether the rate of a board has changed since the last call.
+    pub(super) const fn take_new_rates(&mut self) -> bool {
+        std::mem::replace(&mut self.has_new_rates, false)
+    }
+
+    /// Notes that the rate of a board has changed.
+    pub(super) const fn note_new_rate(&mut self) {
+        self.has_new_rates = true;
     }
 
     /// Compares each board's slots with the arrival of its packets, and the clock with all of them; does nothing
@@ -38,6 +52,7 @@ impl Alignment {
         done: i64,
         clock: &mut SlotClock,
         boards: &mut [BoardTrack],
+        counters: &mut LinkCounters,
     ) -> u64 {
         if now_ns - self.aligned_ns < ALIGN_NS {
             return 0;
@@ -46,13 +61,14 @@ impl Alignment {
         self.delays.clear();
         let mut slipped = 0;
         for (number, board) in boards.iter_mut().enumerate() {
-            let stream = &mut board.stream;
-            slipped += u64::from(stream.adopt_pace(now_ns, clock));
-            match stream.least_delay(now_ns) {
-                Some(delay) if stream.keeps_time() => self.delays.push((delay, number)),
-                // A board at another rate is no reference for the others and follows the receive clock by itself.
-                Some(delay) => slipped += stream.slip(delay).unsigned_abs(),
-                None => {}
+            if board.own_rate.is_some() {
+                // It is no reference for the others.
+                self.has_new_rates |= board.adopt_own_rate();
+            } else if let Some(pace) = board.stream.other_pace() {
+                board.set_own_rate(TimeBase::Packets, pace, counters);
+                self.has_new_rates = true;
+            } else if let Some(delay) = board.stream.least_delay(now_ns) {
+                self.delays.push((delay, number));
             }
         }
         if !self.delays.is_empty() {

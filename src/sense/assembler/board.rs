@@ -3,6 +3,9 @@
 use smallvec::SmallVec;
 
 use super::buffers::{BUFFERS, Buffers};
+use super::numbering::TimeBase;
+use super::own_rate::OwnRate;
+use super::pace::PacketPace;
 use super::sample::BoardSample;
 use super::stream::BoardStream;
 use super::tare::{Tare, TareMeter, TareOutcome, TareResult};
@@ -17,10 +20,15 @@ use crate::wire::{LinkCounters, Readings};
 /// Force above the zero-count reading from which a sensor of the empty floor counts as loaded (N).
 const RESTS_N: f32 = 1.0;
 
+/// Difference of a written rate from 1000 packets a second below which it is that rate: twice that of crystals.
+const NEARLY_HZ: f32 = 1.0;
+
 /// One board: its stream, its wiring, and its samples in the waiting slots.
 #[derive(Clone, Debug)]
 pub(super) struct BoardTrack {
     pub(super) stream: BoardStream,
+    /// Its own rate, if it does not send once a millisecond.
+    pub(super) own_rate: Option<Box<OwnRate>>,
     /// Its number on the floor.
     number: usize,
     geometry: Geometry,
@@ -57,13 +65,16 @@ pub(super) struct Channel {
     pub(super) tare: f32,
     /// Whether the plate's weight on it is so large that it never reads zero.
     pub(super) bears: bool,
+    /// Whether its converter has a sign.
+    pub(super) is_bipolar: bool,
 }
 
 impl Channel {
-    fn new(tile: u32, corner: Corner, calibration: Calibration, tare: f32) -> Self {
+    fn new(tile: u32, corner: Corner, calibration: Calibration, tare: f32, is_bipolar: bool) -> Self {
         let is_nominal = calibration == Calibration::NOMINAL;
         let saturated = calibration.saturated();
-        let mut channel = Self { tile, corner, is_nominal, saturated, calibration, tare, bears: false };
+        let mut channel =
+            Self { tile, corner, is_nominal, saturated, calibration, tare, bears: false, is_bipolar };
         channel.set_tare(tare);
         channel
     }
@@ -84,21 +95,25 @@ enum TareState {
 
 impl BoardTrack {
     pub(super) fn new(floor: &Floor, number: usize, tare: Tare) -> Self {
-        let wiring = floor.boards.get(number).map(|board| board.channels.as_slice()).unwrap_or_default();
+        let board = floor.boards.get(number);
+        let wiring = board.map(|board| board.channels.as_slice()).unwrap_or_default();
+        let is_bipolar = board.is_some_and(|board| board.range.is_bipolar());
         let channel = |sensor: SensorId| {
             let (tile, corner) = (floor.geometry.index(sensor.tile)?, sensor.corner);
             let tare = floor.tare.get(tile).map_or(0.0, |all| all[corner.index()].0);
-            Some(Channel::new(u32::try_from(tile).ok()?, corner, floor.law(sensor), tare))
+            Some(Channel::new(u32::try_from(tile).ok()?, corner, floor.law(sensor), tare, is_bipolar))
         };
         let channels: Vec<_> = wiring.iter().map(|sensor| sensor.and_then(channel)).collect();
+        let written_hz = board.and_then(|board| board.rate_hz).filter(|hz| (hz - 1000.0).abs() > NEARLY_HZ);
         let has_nominal = channels.iter().flatten().any(|channel| channel.is_nominal);
         let tare = match tare {
             Tare::FromFloor => TareState::FromFloor,
             Tare::AtStart(rules) => TareState::Measuring(TareMeter::new(channels.len(), rules)),
         };
         let (wide, narrow) = windows(&channels, 4 * floor.geometry.tile_count());
-        Self {
+        let mut board = Self {
             stream: BoardStream::default(),
+            own_rate: None,
             number,
             geometry: floor.geometry,
             channels,
@@ -111,7 +126,26 @@ impl BoardTrack {
             has_nominal,
             is_swapped: false,
             tare,
+        };
+        if let Some(hz) = written_hz {
+            // Until its numbers are known, their arrival is the packets' time.
+            board.set_own_rate(TimeBase::Arrival, PacketPace::of_rate(hz), &mut LinkCounters::default());
         }
+        board
+    }
+
+    /// Indices of its tiles, in the order of its channels.
+    pub(super) fn tiles(&self) -> Vec<u32> {
+        self.channels.iter().flatten().map(|channel| channel.tile).collect()
+    }
+
+    /// Whether the start of frames waits for its tare: frames wait for it, or it sends at its own rate.
+    pub(super) fn awaits_tare(&self) -> bool {
+        let is_awaited = match self.own_rate {
+            Some(_) => self.stream.presence.has_reported(),
+            None => self.stream.awaited,
+        };
+        is_awaited && self.is_taring()
     }
 
     pub(super) fn channel_count(&self) -> usize {
@@ -141,7 +175,7 @@ impl BoardTrack {
         buffers: &mut Buffers,
         health: &Health,
     ) -> bool {
-        self.has_sent_counts |= matches!(readings, Readings::Counts(_));
+        self.has_sent_counts |= !matches!(readings, Readings::Newtons(_));
         self.waits[buffer] = true;
         let was_here = buffers.sample_mut(buffer, self.number).replace(readings);
         let sample = |buffer: usize| buffers.sample(buffer, self.number);
@@ -154,13 +188,33 @@ impl BoardTrack {
         !self.repeats
     }
 
+    /// Whether `readings` equal those of its last packet, bit for bit.
+    pub(super) fn holds(&self, readings: &Readings, buffers: &Buffers) -> bool {
+        self.last.is_some_and(|last| buffers.sample(last, self.number).holds(readings))
+    }
+
+    /// Discards all packets that wait.
+    pub(super) fn forget_waiting(&mut self) {
+        (self.waits, self.last) = ([false; BUFFERS], None);
+    }
+
+    /// Notes the kind of readings that it sends.
+    pub(super) const fn note_kind(&mut self, sample: &BoardSample) {
+        self.has_sent_counts |= !matches!(sample, BoardSample::Newtons(_));
+    }
+
+    /// Notes whether its last packet repeated the one before under a load.
+    pub(super) const fn set_repeats(&mut self, repeats: bool) {
+        self.repeats = repeats;
+    }
+
     /// Whether its last packet repeated the one before under a load.
     pub(super) const fn repeats(&self) -> bool {
         self.repeats
     }
 
     /// Whether a sensor with known noise carries a load.
-    fn bears_load(&self, sample: &BoardSample, health: &Health) -> bool {
+    pub(super) fn bears_load(&self, sample: &BoardSample, health: &Health) -> bool {
         let zero = |tile, corner| health.tells(tile, corner).then(|| health.zero(tile, corner));
         let wide = self.wide.iter().flat_map(|window| window.net(sample, zero));
         let mut all = wide.chain(self.narrow.iter().flat_map(|window| window.net(sample, zero)));
@@ -236,7 +290,7 @@ impl BoardTrack {
     pub(super) fn quality(&self) -> Quality {
         if !self.stream.presence.is_live() || self.is_taring() {
             Quality::Stale
-        } else if self.stream.loss.is_degraded() || self.stream.is_odd() {
+        } else if self.stream.loss.is_degraded() || self.own_rate.as_ref().is_some_and(|own| own.is_odd()) {
             Quality::Degraded
         } else {
             Quality::Live
@@ -283,6 +337,19 @@ impl BoardTrack {
     ) {
         let waits = buffer.filter(|&buffer| self.clear(buffer));
         let sample = waits.map(|buffer| buffers.sample(buffer, self.number));
+        self.put(sample, sampled_ns, frame, health, counters);
+    }
+
+    /// Writes `sample` into `frame`; without one, the last values stay.
+    #[inline]
+    pub(super) fn put(
+        &mut self,
+        sample: Option<&BoardSample>,
+        sampled_ns: i64,
+        frame: &mut ForceFrame,
+        health: &mut Health,
+        counters: &mut LinkCounters,
+    ) {
         if let Some(sample) = sample {
             self.measure_tare(sample, sampled_ns);
         }

@@ -4,7 +4,12 @@ mod align;
 mod board;
 mod buffers;
 mod clock;
+mod clocked;
+mod numbering;
+mod own_board;
+mod own_rate;
 mod pace;
+mod pending;
 mod presence;
 mod sample;
 mod sequence;
@@ -13,13 +18,15 @@ mod status;
 mod stream;
 mod swap;
 mod tare;
+mod timed;
 mod times;
 mod window;
 mod write;
 
 use std::time::Duration;
 
-pub use status::BoardStatus;
+pub use numbering::TimeBase;
+pub use status::{BoardCounts, BoardStatus, BoardTiming};
 pub use tare::{Tare, TareOutcome, TareRules};
 
 use self::align::Alignment;
@@ -31,7 +38,7 @@ use self::slots::Slots;
 use self::swap::Swaps;
 use self::times::Times;
 use super::health::Health;
-use super::{CalibrationFault, ForceFrame, HoldDoubt, Quality};
+use super::{CalibrationFault, ForceFrame, HoldDoubt, Quality, TileSample};
 use crate::floor::Floor;
 use crate::units::Instant;
 use crate::wire::{LinkCounters, SensorPacket};
@@ -53,9 +60,12 @@ use crate::wire::{LinkCounters, SensorPacket};
 /// a board more than 0.75 ms off the others is moved by a slot, which leaves out or repeats one sample. The fastest
 /// packet of about 64 ms determines the delay, so jitter moves nothing.
 ///
-/// **Rates.** The assembler measures within a second the pace of a board that sends more or fewer than 1000 packets a
-/// second; the board's samples then go to the slots in which they arrive, the first where several do. Beyond
-/// [`crate::wire::BOARD_RATES_HZ`] its sensors are [`Quality::Degraded`].
+/// **Rates.** A board may send 20 to 4000 packets a second ([`crate::wire::BOARD_RATES_HZ`]; beyond, its sensors are
+/// [`Quality::Degraded`]). The floor file names the rate, or it is measured within a second. The time of its samples
+/// comes from a number that counts packets, from a number in milliseconds, or from their arrival ([`TimeBase`]). Frames
+/// do not wait for such a board: where no other board makes frames, the clock does, one a millisecond. A sample enters
+/// the first frame after its arrival, with its age ([`ForceFrame::samples`]); frames between two samples repeat the
+/// last one and say so. Several samples in a millisecond are averaged.
 ///
 /// **Time.** A frame's `at` is its slot's time on a sample clock that follows the receive clock by at most 500 ppm,
 /// or is set forward when it is more than 100 ms behind. It is never more than 100 ms ahead, at any packet rate. It
@@ -67,7 +77,8 @@ use crate::wire::{LinkCounters, SensorPacket};
 /// slot keep their last values. The assembler drops and counts packets that come later than that, come twice, or come
 /// after silence and were more than 20 ms on their way.
 ///
-/// **Trust.** A board without a usable sample for 100 ms becomes [`Quality::Stale`], and so does one that rebooted,
+/// **Trust.** A board without a usable sample for 100 ms becomes [`Quality::Stale`] (below 30 Hz: for three periods,
+/// 150 ms at most), and so does one that rebooted,
 /// for at least one frame. Readings of a loaded board that all repeat those of the packet before are not usable if
 /// the sensors' noise makes that improbable: the converters are frozen ([`BoardStatus::frozen`]). The sensors of a
 /// tile become [`Quality::Stale`] as well if two of them repeat by themselves ([`Assembler::repeating`]). A stale
@@ -92,6 +103,8 @@ pub struct Assembler {
     /// `None` before the first packet.
     clock: Option<SlotClock>,
     alignment: Alignment,
+    /// Number of boards with a rate of their own.
+    own_rates: usize,
     /// Whether a board became silent and no frame has reported it yet.
     has_news: bool,
     /// Whether frames are released: not before the tare is known.
@@ -115,14 +128,16 @@ impl Assembler {
     pub fn with_tare(floor: &Floor, tare: Tare) -> Self {
         let boards: Vec<_> =
             (0..floor.boards.len()).map(|number| BoardTrack::new(floor, number, tare)).collect();
+        let own_rates = boards.iter().filter(|board| board.own_rate.is_some()).count();
         let mut frame = ForceFrame::empty(&floor.geometry);
         frame.quality.fill([Quality::Stale; 4]);
         if !floor.noiseless {
             frame.hold_doubts.fill(Some(HoldDoubt::Unlearned));
         }
-        Self {
+        let mut assembler = Self {
             floor_tiles: floor.geometry.tile_count(),
             alignment: Alignment::new(boards.len()),
+            own_rates,
             buffers: Buffers::new(boards.len()),
             swaps: Swaps::new(&boards),
             boards,
@@ -134,7 +149,9 @@ impl Assembler {
             frame,
             health: Health::new(floor),
             counters: LinkCounters::default(),
-        }
+        };
+        assembler.note_rates();
+        assembler
     }
 
     /// Takes one packet; the caller should then call [`Assembler::ready`] until it returns `None`.
@@ -168,6 +185,8 @@ impl Assembler {
         loop {
             let (slot, buffer, received) = if let Some(first) = self.slots.take_due() {
                 (first.slot, Some(first.buffer), first.received)
+            } else if let Some(slot) = self.clocked_slot() {
+                (slot, None, instant(self.times.now_ns()))
             } else if self.started && self.slots.is_empty() && self.has_news {
                 // No board delivers: the frame only reports that boards became silent. Before the first frame there
                 // is nothing to report.
@@ -203,7 +222,8 @@ impl Assembler {
         // Boards that report from now on have the full time-out again.
         let mut patient_until_ns = now_ns + SILENT_NS;
         for board in &mut self.boards {
-            if board.stream.presence.pass(now_ns) {
+            // The frames by the clock notice the silence of a board at its own rate.
+            if board.own_rate.is_none() && board.stream.presence.pass(now_ns) {
                 self.counters.frozen += u64::from(board.repeats());
                 board.interrupt_tare();
                 self.has_news = true;
@@ -224,6 +244,9 @@ impl Assembler {
     fn sort_in(&mut self, number: usize, packet: &SensorPacket) {
         let clock = self.clock.unwrap_or_else(|| self.start());
         let (now_ns, done) = (self.times.now_ns(), self.slots.done());
+        if self.is_at_own_rate(number, packet, &clock) {
+            return;
+        }
         let board = &mut self.boards[number];
         let head = board.stream.head_slot();
         let Some(place) = board.stream.place(packet.sequence, now_ns, &clock, done, &mut self.counters)
@@ -247,7 +270,7 @@ impl Assembler {
         if place.usable {
             self.store(number, place.slot, packet);
         } else {
-            self.counters.late += 1;
+            self.note_unusable(number, &clock);
         }
         self.slots.reach(place.slot);
         self.align();
@@ -256,8 +279,9 @@ impl Assembler {
     /// Waits for every board for a while, as if all had just reported.
     fn expect_all(&mut self) {
         let now_ns = self.times.now_ns();
-        self.boards.iter_mut().for_each(|board| board.stream.expect(now_ns));
-        self.slots.await_all(self.boards.len());
+        let counting = self.boards.iter_mut().filter(|board| board.own_rate.is_none());
+        counting.for_each(|board| board.stream.expect(now_ns));
+        self.slots.await_all(self.boards.len() - self.own_rates);
     }
 
     /// Starts the sample clock with the first packet.
@@ -281,6 +305,7 @@ impl Assembler {
             board.stream.deliver(self.times.now_ns());
         }
         self.counters.packets += 1;
+        board.stream.counts.packets += 1;
         self.swaps.note(number, slot, self.buffers.sample(buffer, number), &self.boards);
         self.boards[number].set_swapped(self.swaps.of(number).is_some());
     }
@@ -294,9 +319,19 @@ impl Assembler {
         self.slots.set_done(slot);
         let (mut is_taring, mut is_swapped, mut lacks_laws) = (false, false, false);
         let Self { boards, buffers, frame, health, counters, .. } = self;
+        frame.is_new = buffer.is_some() || self.has_news;
+        if self.own_rates > 0 {
+            frame.samples.fill(TileSample::NOW);
+        }
         for board in boards {
-            board.apply(buffer, sampled_ns, buffers, frame, health, counters);
-            is_taring |= board.stream.awaited && board.is_taring();
+            if board.own_rate.is_some() {
+                let entered = board.enter(slot, at_ns, sampled_ns, frame, health, counters);
+                frame.is_new |= entered.is_new | entered.fell_silent;
+                self.has_news |= entered.fell_silent;
+            } else {
+                board.apply(buffer, sampled_ns, buffers, frame, health, counters);
+            }
+            is_taring |= board.awaits_tare();
             is_swapped |= board.is_swapped();
             lacks_laws |= board.lacks_laws();
         }
@@ -306,6 +341,7 @@ impl Assembler {
             self.frame.at = instant(at_ns).max(next);
             self.frame.received = received;
             self.health.inspect(&mut self.frame, instant(sampled_ns));
+            self.doubt_slow_boards();
             // On a floor with swapped boards all laws belong to other sensors.
             let faults = [
                 (is_swapped, CalibrationFault::BoardsSwapped),
@@ -325,10 +361,15 @@ impl Assembler {
     /// Compares each board's slots with the arrival of its packets, and the clock with all of them.
     fn align(&mut self) {
         let Some(clock) = &mut self.clock else { return };
-        let slipped = self.alignment.align(self.times.now_ns(), self.slots.done(), clock, &mut self.boards);
-        if slipped != 0 {
-            self.counters.slips += slipped;
-            self.slots.rebuild(&self.boards);
+        let Self { alignment, slots, boards, counters, .. } = self;
+        let slipped = alignment.align(self.times.now_ns(), slots.done(), clock, boards, counters);
+        let has_new_rates = alignment.take_new_rates();
+        if slipped != 0 || has_new_rates {
+            counters.slips += slipped;
+            slots.rebuild(boards);
+        }
+        if has_new_rates {
+            self.note_rates();
         }
     }
 }

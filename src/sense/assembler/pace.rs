@@ -3,13 +3,13 @@
 use arrayvec::ArrayVec;
 
 use super::clock::SLOT_NS;
-use crate::wire::BOARD_RATES_HZ;
 
 /// Time between two marks.
 const MARK_NS: i64 = 250 * SLOT_NS;
 
-/// Silence after which earlier marks are invalid: the board may have stopped counting meanwhile.
-const GAP_NS: i64 = 100 * SLOT_NS;
+/// Silence after which earlier marks are invalid: the board may have stopped counting meanwhile. Longer than a period
+/// at 10 Hz.
+const GAP_NS: i64 = 130 * SLOT_NS;
 
 /// Maximum number of marks: eight seconds.
 const MARKS: usize = 33;
@@ -25,7 +25,7 @@ const ONE: f64 = 1.0;
 /// The number of slots between two packets, and its measurement.
 ///
 /// At one packet a millisecond it is exactly 1, regardless of crystal drift: such boards steer the sample clock.
-/// Boards at another rate are mapped to the slots in which their packets arrive.
+/// Boards at another rate have times of their own ([`super::timed`]).
 #[derive(Clone, Debug)]
 pub(super) struct PacketPace {
     /// Slots between two packets.
@@ -42,20 +42,48 @@ impl Default for PacketPace {
 }
 
 impl PacketPace {
+    /// The pace of a board at this rate, in packets a second.
+    pub(super) fn of_rate(hz: f32) -> Self {
+        Self { slots: 1000.0 / f64::from(hz), ..Self::default() }
+    }
+
+    /// The pace so far, with a new measurement of it.
+    pub(super) fn anew(&self) -> Self {
+        Self { slots: self.slots, ..Self::default() }
+    }
+
+    /// Rate in packets a second.
+    pub(super) fn hz(&self) -> f32 {
+        (1000.0 / self.slots) as f32
+    }
+
+    /// Time from packet to packet, in nanoseconds.
+    pub(super) fn exact_period_ns(&self) -> f64 {
+        self.slots * SLOT_NS as f64
+    }
+
+    /// The same in whole nanoseconds, at least 1.
+    pub(super) fn period_ns(&self) -> i64 {
+        (self.exact_period_ns() as i64).max(1)
+    }
+
+    /// The pace since the first mark, with a new measurement of it.
+    pub(super) fn so_far(&self, now_ns: i64, position: i64) -> Option<Self> {
+        let (begun, first) = self.marks.first()?;
+        let packets = position - first;
+        let slots = (now_ns - begun) as f64 / SLOT_NS as f64 / packets as f64;
+        (packets > 0 && slots > 0.0).then(|| Self { slots, ..Self::default() })
+    }
+
+    /// Whether several packets come in a millisecond, beyond any error of a short measurement.
+    pub(super) fn is_fast(&self) -> bool {
+        const FAST: f64 = 0.8;
+        self.slots < FAST
+    }
+
     /// Whether it is one packet a millisecond.
     pub(super) fn is_one(&self) -> bool {
         self.slots == ONE
-    }
-
-    /// Whether the board's rate is outside the supported range ([`BOARD_RATES_HZ`]).
-    pub(super) fn is_odd(&self) -> bool {
-        let [lowest, highest] = BOARD_RATES_HZ.map(f64::from);
-        !(lowest..=highest).contains(&(1000.0 / self.slots))
-    }
-
-    /// Number of slots between position 0 and this position.
-    pub(super) fn slots(&self, position: i64) -> i64 {
-        if self.is_one() { position } else { (position as f64 * self.slots).floor() as i64 }
     }
 
     /// Notes the position of a packet further on than all before.

@@ -2,8 +2,12 @@
 
 use super::clock::SLOT_NS;
 
-/// Silence after which a board's values are stale.
+/// Silence after which the values of a board at 30 Hz or more are stale.
 pub(super) const SILENT_NS: i64 = 100 * SLOT_NS;
+
+/// Periods of a slower board after which its values are stale, and the longest such time.
+const SILENT_PERIODS: i64 = 3;
+const MOST_SILENT_NS: i64 = 150 * SLOT_NS;
 
 /// An outage within this time of the last return is flapping.
 const FLAPPING_NS: i64 = 2000 * SLOT_NS;
@@ -11,23 +15,31 @@ const FLAPPING_NS: i64 = 2000 * SLOT_NS;
 /// Time for which a flapping board must deliver before it is live again.
 const PROBATION_NS: i64 = 1000 * SLOT_NS;
 
-/// Silence that restarts the probation.
+/// Silence that restarts the probation, at least; two and a half periods of a slow board.
 const PROBATION_GAP_NS: i64 = 20 * SLOT_NS;
 
 /// Presence of one board, as a state machine:
 ///
 /// ```text
 /// Unheard  --data--> Live
-/// Live     --100 ms without--> Silent
+/// Live     --100 ms without, or three periods--> Silent
 /// Silent   --data, once a frame has shown it stale--> Live, or Probation if it was flapping
 /// Probation--1 s of data without a gap of 20 ms--> Live
 /// Probation--100 ms without--> Silent
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Presence {
     state: State,
     used_ns: Option<i64>,
     returned_ns: Option<i64>,
+    /// Time from one packet to the next.
+    period_ns: i64,
+}
+
+impl Default for Presence {
+    fn default() -> Self {
+        Self { state: State::Unheard, used_ns: None, returned_ns: None, period_ns: SLOT_NS }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,6 +60,28 @@ enum State {
 }
 
 impl Presence {
+    /// Sets the time from one packet to the next.
+    pub(super) const fn set_period(&mut self, period_ns: i64) {
+        self.period_ns = period_ns;
+    }
+
+    /// Silence after which its values are stale.
+    const fn silent_ns(&self) -> i64 {
+        let periods = SILENT_PERIODS.saturating_mul(self.period_ns);
+        if periods < SILENT_NS {
+            SILENT_NS
+        } else if periods > MOST_SILENT_NS {
+            MOST_SILENT_NS
+        } else {
+            periods
+        }
+    }
+
+    /// Whether it is live or on probation: without packets it becomes silent.
+    pub(super) const fn is_heard(&self) -> bool {
+        matches!(self.state, State::Live | State::Probation { .. })
+    }
+
     /// Whether its values may be used.
     pub(super) const fn is_live(&self) -> bool {
         matches!(self.state, State::Live)
@@ -77,7 +111,9 @@ impl Presence {
             State::Silent { shown: false, .. } => self.state,
             State::Silent { flapping: true, .. } => State::Probation { since_ns: now_ns },
             State::Silent { flapping: false, .. } => self.return_at(now_ns),
-            State::Probation { .. } if gap > PROBATION_GAP_NS => State::Probation { since_ns: now_ns },
+            State::Probation { .. } if gap > PROBATION_GAP_NS.max(self.period_ns * 5 / 2) => {
+                State::Probation { since_ns: now_ns }
+            }
             State::Probation { since_ns } if now_ns - since_ns >= PROBATION_NS => self.return_at(now_ns),
             State::Probation { .. } => self.state,
         };
@@ -90,14 +126,13 @@ impl Presence {
 
     /// Advances time; returns true if the board has just become silent.
     pub(super) fn pass(&mut self, now_ns: i64) -> bool {
-        let silent = self.used_ns.is_some_and(|used| now_ns - used >= SILENT_NS);
+        let silent = self.used_ns.is_some_and(|used| now_ns - used >= self.silent_ns());
         silent && self.interrupt(now_ns)
     }
 
     /// Time at which it becomes silent without a usable packet; `None` if it is silent already or was never heard.
     pub(super) fn silent_at_ns(&self) -> Option<i64> {
-        let is_heard = matches!(self.state, State::Live | State::Probation { .. });
-        self.used_ns.filter(|_| is_heard).map(|used| used + SILENT_NS)
+        self.used_ns.filter(|_| self.is_heard()).map(|used| used + self.silent_ns())
     }
 
     /// Makes the board silent now, because its stream was interrupted; returns false if it was silent before.
@@ -119,11 +154,11 @@ impl Presence {
     }
 }
 
-/// Slots per bucket of the loss meter.
-const BUCKET: u32 = 100;
-
-/// Slots covered by the loss meter: one second.
+/// Packets covered by the loss meter: one second of a board that sends once a millisecond.
 const SECOND: u32 = 1000;
+
+/// Buckets in that second.
+const PER_SECOND: u32 = 10;
 
 /// Buckets for that second, and the one in progress.
 const BUCKETS: usize = 11;
@@ -135,11 +170,19 @@ const DEGRADED: f32 = 0.10;
 const GOOD: f32 = 0.08;
 
 /// The share of one board's packets that were lost or came too late, over the last second.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct LossMeter {
     /// Expected and missed packets per bucket, the current one first.
     buckets: [(u32, u32); BUCKETS],
+    /// Packets in a second.
+    second: u32,
     degraded: bool,
+}
+
+impl Default for LossMeter {
+    fn default() -> Self {
+        Self { buckets: Default::default(), second: SECOND, degraded: false }
+    }
 }
 
 impl LossMeter {
@@ -147,7 +190,13 @@ impl LossMeter {
     pub(super) fn share(&self) -> f32 {
         let (expected, missed) =
             self.buckets.iter().fold((0, 0), |sum, bucket| (sum.0 + bucket.0, sum.1 + bucket.1));
-        missed as f32 / expected.max(SECOND) as f32
+        missed as f32 / expected.max(self.second) as f32
+    }
+
+    /// Sets the rate of the board, in packets a second.
+    pub(super) fn set_rate(&mut self, hz: f32) {
+        // The cast saturates.
+        self.second = (hz.round() as u32).max(PER_SECOND);
     }
 
     /// Whether the loss is too high.
@@ -158,10 +207,10 @@ impl LossMeter {
     /// Counts one packet, used or not, after `skipped` missing ones.
     pub(super) fn pass(&mut self, skipped: u32, used: bool) {
         // An outage longer than the meter's span fills it only once.
-        let skipped = skipped.min(SECOND);
+        let skipped = skipped.min(self.second);
         self.buckets[0].0 += skipped + 1;
         self.buckets[0].1 += skipped + u32::from(!used);
-        if self.buckets[0].0 >= BUCKET {
+        if self.buckets[0].0 >= self.second / PER_SECOND {
             let share = self.share();
             self.degraded = share > DEGRADED || (self.degraded && share >= GOOD);
             self.buckets.rotate_right(1);
@@ -176,7 +225,7 @@ impl LossMeter {
 
     /// Resets the meter: after an outage only later packets count.
     pub(super) fn forget(&mut self) {
-        *self = Self::default();
+        *self = Self { second: self.second, ..Self::default() };
     }
 }
 
@@ -214,6 +263,16 @@ mod tests {
     #[test]
     fn gaps_below_100_ms_go_unnoticed() {
         assert_eq!(live_during(1000, |ms| !(300..398).contains(&ms)).len(), 1000);
+    }
+
+    #[test]
+    fn a_slow_board_has_three_periods_and_150_ms_at_most() {
+        for (period_ms, silent_ms) in [(1, 100), (10, 100), (33, 100), (40, 120), (50, 150), (100, 150)] {
+            let mut presence = Presence::default();
+            presence.set_period(period_ms * MS);
+            presence.deliver(0);
+            assert!(!presence.pass(silent_ms * MS - 1) && presence.pass(silent_ms * MS), "{period_ms} ms");
+        }
     }
 
     #[test]

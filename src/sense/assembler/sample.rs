@@ -10,6 +10,8 @@ use crate::wire::{MAX_CHANNELS, Readings};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum BoardSample {
     Counts(Counts),
+    /// Counts with fractions on the scale of 16 bits, of other converters and as means; may hold NaN.
+    Scaled(ArrayVec<f32, MAX_CHANNELS>),
     /// May hold NaN and infinities.
     Newtons(ArrayVec<f32, MAX_CHANNELS>),
 }
@@ -39,7 +41,7 @@ impl BoardSample {
     pub(super) fn len(&self) -> usize {
         match self {
             Self::Counts(counts) => counts.length.into(),
-            Self::Newtons(forces) => forces.len(),
+            Self::Scaled(values) | Self::Newtons(values) => values.len(),
         }
     }
 
@@ -47,9 +49,17 @@ impl BoardSample {
     pub(super) fn replace(&mut self, readings: &Readings) -> bool {
         match (&mut *self, readings) {
             (Self::Counts(kept), Readings::Counts(counts)) => kept.replace(counts),
-            (Self::Newtons(kept), Readings::Newtons(forces)) if kept == forces => true,
+            (Self::Newtons(kept), Readings::Newtons(new)) | (Self::Scaled(kept), Readings::Scaled(new))
+                if kept == new =>
+            {
+                true
+            }
             (_, Readings::Counts(_)) => {
                 *self = Self::new(readings);
+                false
+            }
+            (_, Readings::Scaled(values)) => {
+                *self = Self::Scaled(values.clone());
                 false
             }
             (_, Readings::Newtons(forces)) => {
@@ -59,11 +69,49 @@ impl BoardSample {
         }
     }
 
+    /// Whether `readings` equal these, bit for bit.
+    pub(super) fn holds(&self, readings: &Readings) -> bool {
+        match (self, readings) {
+            (Self::Counts(_), Readings::Counts(_)) => *self == Self::new(readings),
+            (Self::Scaled(kept), Readings::Scaled(new)) | (Self::Newtons(kept), Readings::Newtons(new)) => {
+                kept == new
+            }
+            _ => false,
+        }
+    }
+
+    /// Takes the readings of one more of `packets` packets into the mean: x += (y - x) / n. Counts become
+    /// [`BoardSample::Scaled`]; readings of another kind or number replace the mean.
+    pub(super) fn average(&mut self, readings: &Readings, packets: u32) {
+        let share = 1.0 / packets.max(1) as f32;
+        let mean = |kept: &mut [f32], new: &mut dyn Iterator<Item = f32>| {
+            kept.iter_mut().zip(new).for_each(|(kept, new)| *kept += (new - *kept) * share);
+        };
+        if let Self::Counts(counts) = self {
+            *self = Self::Scaled(counts.scaled().collect());
+        }
+        match (&mut *self, readings) {
+            (Self::Scaled(kept), Readings::Counts(new)) if kept.len() == new.len() => {
+                mean(kept, &mut new.iter().map(|count| count.map_or(f32::NAN, f32::from)));
+            }
+            (Self::Scaled(kept), Readings::Scaled(new)) | (Self::Newtons(kept), Readings::Newtons(new))
+                if kept.len() == new.len() =>
+            {
+                mean(kept, &mut new.iter().copied());
+            }
+            _ => *self = Self::new(readings),
+        }
+    }
+
     /// The reading of a channel with this `law` in newtons, before subtraction of the tare; NaN without a reading.
     pub(super) fn force(&self, channel: usize, law: &Calibration) -> f32 {
         match self {
             Self::Counts(counts) if counts.is_missing(channel) => f32::NAN,
             Self::Counts(counts) => law.force(counts.values[channel % MAX_CHANNELS]).0,
+            Self::Scaled(values) => {
+                let value = values.get(channel).copied().unwrap_or(f32::NAN);
+                law.force_at(Calibration::volts_of(value)).0
+            }
             Self::Newtons(forces) => forces.get(channel).copied().unwrap_or(f32::NAN),
         }
     }
@@ -92,6 +140,12 @@ impl Counts {
     #[inline(always)]
     pub(super) const fn is_missing(&self, channel: usize) -> bool {
         channel >= MAX_CHANNELS || self.missing >> channel & 1 != 0
+    }
+
+    /// The readings with room for fractions; NaN without one.
+    fn scaled(&self) -> impl Iterator<Item = f32> + '_ {
+        let values = self.values.iter().take(self.length.into()).enumerate();
+        values.map(|(channel, value)| if self.is_missing(channel) { f32::NAN } else { f32::from(*value) })
     }
 
     /// Adds the reading of each channel to its sum, which becomes NaN without a reading.
@@ -173,6 +227,16 @@ mod tests {
             !sample.replace(&nothing) && !sample.replace(&nothing),
             "what is not a number is never the same"
         );
+    }
+
+    #[test]
+    fn the_mean_of_several_packets_keeps_fractions() {
+        let mut mean = BoardSample::new(&counts(&[Some(10), Some(65_535), None]));
+        for (packets, low) in [(2, 11), (3, 13), (4, 12)] {
+            mean.average(&counts(&[Some(low), Some(65_535), Some(3)]), packets);
+        }
+        let BoardSample::Scaled(values) = mean else { panic!("no fractions: {mean:?}") };
+        assert!((values[0] - 11.5).abs() < 1e-5 && values[1] == 65_535.0 && values[2].is_nan(), "{values:?}");
     }
 
     #[test]

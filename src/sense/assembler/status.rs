@@ -3,12 +3,24 @@
 use std::time::Duration;
 
 use super::board::BoardTrack;
+use super::numbering::TimeBase;
 use super::presence::Presence;
 use super::{Assembler, TareOutcome};
 use crate::floor::{SensorId, TileId};
 use crate::sense::{Quality, SensorHealth, Trouble};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, LinkState};
+
+/// Numbers of packets of one board since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BoardCounts {
+    /// Packets accepted.
+    pub packets: u64,
+    /// Packets that did not arrive, by gaps in the sequence numbers.
+    pub lost: u64,
+    /// Duplicate packets that were dropped.
+    pub duplicate: u64,
+}
 
 /// State of one board.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +33,46 @@ pub struct BoardStatus {
     pub loss: f32,
     /// Whether it is stale because all its readings have been constant for 100 ms under a load.
     pub frozen: bool,
-    /// Samples by which its crystal has run slower (positive) or faster than the common clock.
+    /// Samples by which its crystal has run slower (positive) or faster than the common clock; 0 with a rate of its
+    /// own.
     pub slips: i64,
+    /// Numbers of its packets.
+    pub counts: BoardCounts,
+    /// The time of its samples.
+    pub timing: BoardTiming,
+}
+
+/// The rate of a board, and the time of its samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoardTiming {
+    /// Packets a second, measured or as written in the floor file; 1000 as long as neither is known.
+    pub hz: f32,
+    /// The source of its samples' times.
+    pub base: TimeBase,
+    /// Mean error of these times by the way of the packets; zero for a board that sends once a millisecond, whose
+    /// samples are a millisecond apart.
+    pub jitter: Duration,
+}
+
+impl BoardTiming {
+    /// A board that sends once a millisecond.
+    pub(crate) const MILLISECOND: Self = Self { hz: 1000.0, base: TimeBase::Packets, jitter: Duration::ZERO };
+
+    /// Whether it is worth a report after `told`: another time base, or a rate that differs by more than a percent.
+    pub(crate) fn is_news_after(&self, told: &Self) -> bool {
+        const MOST: f32 = 0.01;
+        self.base != told.base || (self.hz / told.hz - 1.0).abs() > MOST
+    }
+}
+
+impl BoardTrack {
+    fn timing(&self) -> BoardTiming {
+        self.own_rate.as_ref().map_or(BoardTiming::MILLISECOND, |own| BoardTiming {
+            hz: own.hz(),
+            base: own.stream.base(),
+            jitter: Duration::from_nanos(own.stream.jitter_ns().max(0).cast_unsigned()),
+        })
+    }
 }
 
 impl Assembler {
@@ -62,6 +112,8 @@ impl Assembler {
             loss: board.stream.loss.share(),
             frozen: board.repeats() && !board.stream.presence.is_live(),
             slips: board.stream.slips(),
+            counts: board.stream.counts,
+            timing: board.timing(),
         })
     }
 
@@ -118,6 +170,9 @@ impl Assembler {
         health.recount(self.frame.quality.iter());
         health.uncalibrated = u32::try_from(self.uncalibrated()).unwrap_or(u32::MAX);
         health.foreign = self.is_foreign();
+        health.timings.clear();
+        let own = (0..).zip(&self.boards).filter(|(_, board)| board.own_rate.is_some());
+        health.timings.extend(own.map(|(number, board)| (number, board.timing())));
         health.troubles.clear();
         health.troubles.extend(self.troubles());
         health

@@ -1,9 +1,11 @@
 //! Maps one board's packets from sequence numbers to slots of the sample clock.
 
 use super::clock::{LeastDelay, SLOT_NS, SlotClock};
+use super::numbering::PacketNumbers;
 use super::pace::PacketPace;
 use super::presence::{LossMeter, Presence, SILENT_NS};
 use super::sequence::{PacketSequence, SequenceVerdict};
+use super::status::BoardCounts;
 use crate::wire::LinkCounters;
 
 /// Age beyond its board's usual delay above which a sample after silence is useless: it was held up on the way, and
@@ -18,16 +20,19 @@ const EARLY_NS: i64 = 3 * SLOT_NS / 4;
 const SLIP_NS: i64 = 3 * SLOT_NS / 4;
 
 /// Lead over the receive clock above which a slot is not used: the board sends more than one packet a millisecond,
-/// and its pace is not known yet.
+/// and that is not known yet.
 const AHEAD_NS: i64 = 100 * SLOT_NS;
 
-/// The packets of one board, and their slots.
+/// The packets of a board that sends once a millisecond, and their slots.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BoardStream {
     pub(super) presence: Presence,
     pub(super) loss: LossMeter,
+    /// The numbers of its packets.
+    pub(super) numbers: PacketNumbers,
     /// Whether frames wait for it.
     pub(super) awaited: bool,
+    pub(super) counts: BoardCounts,
     sequence: PacketSequence,
     arrivals: LeastDelay,
     pace: PacketPace,
@@ -37,6 +42,17 @@ pub(super) struct BoardStream {
     slips: i64,
     /// Arrival of its last packet, usable or not; frames wait for boards that reported recently.
     last_packet_ns: i64,
+    /// Packets that were counted as lost, repeated, out of order and late since the stream began.
+    miscounts: Miscounts,
+}
+
+/// Counts that are wrong if the board turns out to have another rate or time base.
+#[derive(Clone, Copy, Debug, Default)]
+struct Miscounts {
+    lost: u64,
+    duplicate: u64,
+    out_of_order: u64,
+    late: u64,
 }
 
 /// The slot of a packet.
@@ -74,28 +90,48 @@ impl BoardStream {
     }
 
     fn slot(&self, position: i64) -> i64 {
-        self.pace.slots(position) + self.offset
+        position + self.offset
     }
 
-    /// Whether it sends one packet a millisecond, so that it may steer the sample clock.
-    pub(super) fn keeps_time(&self) -> bool {
-        self.pace.is_one()
+    /// The pace so far of a board whose slots have run far ahead of the receive clock, because it sends several packets a
+    /// millisecond.
+    pub(super) fn fast_pace(&self, now_ns: i64, clock: &SlotClock) -> Option<PacketPace> {
+        let position = self.sequence.position()?;
+        let is_ahead = now_ns - clock.at_ns(self.slot(position)) <= -AHEAD_NS;
+        is_ahead.then(|| self.pace.so_far(now_ns, position))?.filter(PacketPace::is_fast)
     }
 
-    /// Whether its rate is outside the supported range.
-    pub(super) fn is_odd(&self) -> bool {
-        self.pace.is_odd()
+    /// The measured pace, if it is not one packet a millisecond.
+    pub(super) fn other_pace(&mut self) -> Option<PacketPace> {
+        self.pace.adopt().then(|| self.pace.anew()).filter(|pace| !pace.is_one())
     }
 
-    /// Adopts a measured pace that differs; returns whether it does.
-    pub(super) fn adopt_pace(&mut self, now_ns: i64, clock: &SlotClock) -> bool {
-        let Some(position) = self.sequence.position() else { return false };
-        let is_other = self.pace.adopt();
-        if is_other {
-            self.offset = clock.slot_near(now_ns) - self.pace.slots(position);
-            self.arrivals.forget();
-        }
-        is_other
+    /// Ends its mapping to slots: the board has a rate of its own. Takes back what was counted meanwhile.
+    pub(super) fn leave_slots(&mut self, counters: &mut LinkCounters) {
+        let Miscounts { lost, duplicate, out_of_order, late } = std::mem::take(&mut self.miscounts);
+        counters.lost = counters.lost.saturating_sub(lost);
+        counters.duplicate = counters.duplicate.saturating_sub(duplicate);
+        counters.out_of_order = counters.out_of_order.saturating_sub(out_of_order);
+        counters.late = counters.late.saturating_sub(late);
+        self.awaited = false;
+        self.sequence = PacketSequence::default();
+        self.arrivals.forget();
+    }
+
+    /// Begins to map its next packets to slots: it sends once a millisecond after all.
+    pub(super) fn enter_slots(&mut self) {
+        *self = Self {
+            presence: self.presence.clone(),
+            numbers: std::mem::take(&mut self.numbers),
+            ..Self::default()
+        };
+        self.presence.set_period(SLOT_NS);
+    }
+
+    /// Counts a packet that came too late for its slot.
+    pub(super) const fn note_late(&mut self, counters: &mut LinkCounters) {
+        self.miscounts.late += 1;
+        counters.late += 1;
     }
 
     /// Slots by which the board has been moved since its stream began.
@@ -114,10 +150,10 @@ impl BoardStream {
         counters: &mut LinkCounters,
     ) -> Option<PacketSlot> {
         let head = self.head_slot();
-        let (offset, pace) = (self.offset, &self.pace);
+        let offset = self.offset;
         let earliest = self.arrivals.least_ns();
-        let early = |position| {
-            let delay = now_ns - clock.at_ns(pace.slots(position) + offset);
+        let early = |position: i64| {
+            let delay = now_ns - clock.at_ns(position + offset);
             earliest.is_some_and(|earliest| delay < earliest - EARLY_NS)
         };
 
@@ -125,28 +161,35 @@ impl BoardStream {
         let (position, skipped) = match self.sequence.judge(sequence, early) {
             SequenceVerdict::Next { position, skipped } => {
                 if head.is_none() {
-                    self.offset = clock.slot_near(now_ns) - self.pace.slots(position);
+                    self.offset = clock.slot_near(now_ns) - position;
                 }
                 self.pace.note(now_ns, position);
+                self.miscounts.lost += u64::from(skipped);
                 counters.lost += u64::from(skipped);
+                self.counts.lost += u64::from(skipped);
                 (position, Some(skipped))
             }
             SequenceVerdict::Straggler { position, missed } => {
+                self.miscounts.lost = self.miscounts.lost.saturating_sub(u64::from(missed));
                 counters.lost = counters.lost.saturating_sub(u64::from(missed));
+                self.counts.lost = self.counts.lost.saturating_sub(u64::from(missed));
                 (position, None)
             }
             SequenceVerdict::Restart { position } => {
                 counters.restarts += 1;
                 restarted = true;
                 self.begin_anew(now_ns);
-                self.offset = clock.slot_near(now_ns) - self.pace.slots(position);
+                self.offset = clock.slot_near(now_ns) - position;
                 (position, Some(0))
             }
             SequenceVerdict::Duplicate => {
+                self.miscounts.duplicate += 1;
                 counters.duplicate += 1;
+                self.counts.duplicate += 1;
                 return None;
             }
             SequenceVerdict::OutOfOrder => {
+                self.miscounts.out_of_order += 1;
                 counters.out_of_order += 1;
                 return None;
             }
@@ -154,11 +197,6 @@ impl BoardStream {
 
         let slot = self.slot(position);
         let usable = self.is_usable(slot, now_ns, clock, done);
-        if !self.keeps_time() && !restarted && skipped.is_some() && Some(slot) <= head {
-            // Of several samples within a millisecond, the first is used.
-            counters.slips += 1;
-            return None;
-        }
         match skipped {
             _ if !self.presence.is_live() => {}
             Some(skipped) => self.loss.pass(skipped, usable),
@@ -170,6 +208,7 @@ impl BoardStream {
 
     fn begin_anew(&mut self, now_ns: i64) {
         self.slips = 0;
+        self.miscounts = Miscounts::default();
         self.arrivals.forget();
         self.pace.forget();
         self.presence.interrupt(now_ns);

@@ -45,12 +45,21 @@ pub(super) struct Swaps {
     misses: Vec<f32>,
 }
 
+/// The kind of a board's readings.
+#[derive(Clone, Copy, Debug, Default)]
+enum SampleKind {
+    #[default]
+    Newtons,
+    Counts,
+    Scaled,
+}
+
 /// Mean of one board's readings.
 #[derive(Clone, Debug, Default)]
 struct Block {
     sums: Vec<f32>,
     packets: u32,
-    is_counts: bool,
+    kind: SampleKind,
     /// Distance from its own tares (N).
     own: f32,
     /// Number of other places compared since the last full comparison.
@@ -77,6 +86,11 @@ impl Swaps {
             ring: Vec::with_capacity(boards.len()),
             misses: Vec::with_capacity(most),
         }
+    }
+
+    /// The slot that stands for sample `count` of board `number` at its own rate: each enters the mean.
+    pub(super) const fn turn(&self, number: usize, count: i64) -> i64 {
+        (EVERY * count).wrapping_sub(number as i64)
     }
 
     /// Takes the readings of board `number` in the millisecond of `slot`.
@@ -192,10 +206,14 @@ impl Block {
     fn add(&mut self, sample: &BoardSample) {
         self.sums.resize(sample.len(), 0.0);
         self.packets += 1;
-        self.is_counts = matches!(sample, BoardSample::Counts(_));
+        self.kind = match sample {
+            BoardSample::Counts(_) => SampleKind::Counts,
+            BoardSample::Scaled(_) => SampleKind::Scaled,
+            BoardSample::Newtons(_) => SampleKind::Newtons,
+        };
         match sample {
             BoardSample::Counts(counts) => counts.add_to(&mut self.sums),
-            BoardSample::Newtons(forces) => {
+            BoardSample::Scaled(forces) | BoardSample::Newtons(forces) => {
                 self.sums.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force);
             }
         }
@@ -205,10 +223,12 @@ impl Block {
     fn finish(&mut self) -> BoardSample {
         let packets = self.packets as f32;
         let means = self.sums.drain(..).map(|sum| sum / packets);
-        let mean = if self.is_counts {
-            Readings::Counts(means.map(|mean| mean.is_finite().then(|| mean.round() as u16)).collect())
-        } else {
-            Readings::Newtons(means.collect())
+        let mean = match self.kind {
+            SampleKind::Counts => {
+                Readings::Counts(means.map(|mean| mean.is_finite().then(|| mean.round() as u16)).collect())
+            }
+            SampleKind::Scaled => Readings::Scaled(means.collect()),
+            SampleKind::Newtons => Readings::Newtons(means.collect()),
         };
         self.packets = 0;
         BoardSample::new(&mean)

@@ -30,6 +30,9 @@ const BEARS: u8 = 2;
 /// Flag of a sensor with the nominal part's law.
 const NOMINAL: u8 = 4;
 
+/// Flag of a sensor whose converter has a sign: zero volts is the middle of its range.
+const BIPOLAR: u8 = 8;
+
 /// Consecutive sensors, tile by tile and corner by corner, and the channels that read them.
 #[derive(Clone, Debug)]
 pub(super) struct SensorWindow<const LANES: usize> {
@@ -119,9 +122,10 @@ impl<const LANES: usize> SensorWindow<LANES> {
         for (sensor, number, channel) in wired {
             let lane = sensor - first;
             window.channels[lane] = *number;
-            let [bears, nominal] = [(channel.bears, BEARS), (channel.is_nominal, NOMINAL)]
-                .map(|(holds, flag)| if holds { flag } else { 0 });
-            window.flags[lane] = WIRED | bears | nominal;
+            let [bears, nominal, bipolar] =
+                [(channel.bears, BEARS), (channel.is_nominal, NOMINAL), (channel.is_bipolar, BIPOLAR)]
+                    .map(|(holds, flag)| if holds { flag } else { 0 });
+            window.flags[lane] = WIRED | bears | nominal | bipolar;
             [window.factors[lane], window.exponents[lane]] = channel.calibration.numbers();
             laws[lane] = channel.calibration;
             window.tares[lane] = channel.tare;
@@ -169,6 +173,7 @@ impl<const LANES: usize> SensorWindow<LANES> {
                 }
                 Read { forces, ends: [RangeEnd::Within; LANES], raws, by_board: true }
             }
+            BoardSample::Scaled(values) => self.read_scaled(values),
             BoardSample::Counts(counts) => {
                 let run = self.run.and_then(|first| counts.run(first.into()));
                 let picked;
@@ -200,6 +205,45 @@ impl<const LANES: usize> SensorWindow<LANES> {
                 read
             }
         }
+    }
+
+    /// The readings of counts with fractions, by any law; NaN beyond the range of the converter.
+    #[inline(never)]
+    fn read_scaled(&self, values: &[f32]) -> Read<LANES> {
+        const MOST: f32 = u16::MAX as f32;
+        let mut read = Read {
+            forces: [f32::NAN; LANES],
+            ends: [RangeEnd::Within; LANES],
+            raws: [0; LANES],
+            by_board: false,
+        };
+        for lane in 0..LANES {
+            let value = values.get(usize::from(self.channels[lane])).copied().unwrap_or(f32::NAN);
+            let is_bipolar = self.flags[lane] & BIPOLAR != 0;
+            let least = if is_bipolar { -MOST - 2.0 } else { 0.0 };
+            // The comparison is false for NaN.
+            if !(least..=MOST + 0.5).contains(&value) {
+                continue;
+            }
+            let volts = Calibration::volts_of(value);
+            let (force, saturated) = match &self.laws {
+                Some(laws) => (laws.laws[lane].force_at(volts).0, laws.saturated[lane]),
+                None => (self.factors[lane] * exp(self.exponents[lane] * volts), Calibration::SATURATED),
+            };
+            let size = if is_bipolar { value.abs() } else { value };
+            read.forces[lane] = force;
+            read.raws[lane] = digest(value);
+            read.ends[lane] = if size >= f32::from(saturated) {
+                RangeEnd::High
+            } else if is_bipolar || value > f32::from(NOTHING) {
+                RangeEnd::Within
+            } else if self.flags[lane] & BEARS != 0 {
+                RangeEnd::Low
+            } else {
+                RangeEnd::Bare
+            };
+        }
+        read
     }
 
     /// Converts counts into forces by exponential laws, F = a exp(b U), and classifies them by the ends of the

@@ -22,6 +22,8 @@ pub struct LoadTable {
 pub struct SensorLoads {
     /// The sensor.
     pub sensor: SensorId,
+    /// Its name on its floor: [`Geometry::sensor_name`].
+    pub name: &'static str,
     /// The measurements, in the order of the table, without saturated readings.
     pub points: Vec<LoadPoint>,
     /// Number of readings left out because they are at 98 % of the converter's range or above.
@@ -92,10 +94,10 @@ impl LoadTable {
             let column = table.whole(&row, 0, geometry.block().column_range());
             let line = table.whole(&row, 1, geometry.block().row_range());
             let written = table.text(&row, 2);
-            let corner = corner(&written);
+            let corner = corner(&written, geometry);
             if corner.is_none() {
-                let found = shown(&written);
-                table.report(&row, 2, format!("expected sw, se, nw or ne, found {found}"));
+                let (found, [sw, se, nw, ne]) = (shown(&written), names(geometry));
+                table.report(&row, 2, format!("expected {sw}, {se}, {nw} or {ne}, found {found}"));
             }
             let output = if header == 0 {
                 table
@@ -113,7 +115,10 @@ impl LoadTable {
             let sensor = SensorId { tile: TileId::new(column, line), corner };
             let index = geometry.index(sensor.tile).map(|tile| tile * 4 + corner.index());
             let Some(slot) = index.and_then(|index| sensors.get_mut(index)) else { continue };
-            let loads = slot.get_or_insert_with(|| SensorLoads { sensor, points: Vec::new(), saturated: 0 });
+            let loads = slot.get_or_insert_with(|| {
+                let name = geometry.sensor_name(corner);
+                SensorLoads { sensor, name, points: Vec::new(), saturated: 0 }
+            });
             if volts >= Calibration::volts(Calibration::SATURATED) {
                 loads.saturated += 1;
             } else {
@@ -129,8 +134,14 @@ fn volts_of(counts: f32) -> f32 {
     counts * (Calibration::FULL_SCALE_VOLTS / f32::from(u16::MAX))
 }
 
-fn corner(name: &str) -> Option<Corner> {
-    Corner::ALL.into_iter().find(|corner| corner.name().eq_ignore_ascii_case(name))
+/// The sensor called `name` on a floor of this `geometry`.
+fn corner(name: &str, geometry: &Geometry) -> Option<Corner> {
+    let mut named = Corner::ALL.into_iter().zip(names(geometry));
+    named.find(|(_, other)| other.eq_ignore_ascii_case(name)).map(|(corner, _)| corner)
+}
+
+fn names(geometry: &Geometry) -> [&'static str; 4] {
+    Corner::ALL.map(|corner| geometry.sensor_name(corner))
 }
 
 impl SensorLoads {
@@ -175,7 +186,7 @@ mod tests {
     fn loads(points: impl IntoIterator<Item = (f32, f32)>) -> SensorLoads {
         let points = points.into_iter().map(|(volts, force)| LoadPoint::new(volts, Newtons(force))).collect();
         let sensor = SensorId { tile: TileId::new(0, 0), corner: Corner::SouthWest };
-        SensorLoads { sensor, points, saturated: 0 }
+        SensorLoads { sensor, name: "sw", points, saturated: 0 }
     }
 
     fn nominal(volts: f32) -> f32 {

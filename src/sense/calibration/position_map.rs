@@ -4,7 +4,7 @@ use glam::Vec2;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use crate::floor::{Corner, Geometry, PositionMap};
+use crate::floor::{Corner, Geometry, PositionMap, SensorPlaces, TileId};
 use crate::sense::Wrench;
 
 /// One known point, pressed.
@@ -20,8 +20,37 @@ pub struct PressedPoint {
 
 impl PressedPoint {
     /// Place by Eq. 3 alone, in metres from the tile's centre.
-    fn estimate(&self, geometry: &Geometry) -> Vec2 {
-        Wrench::of_corners(self.forces, geometry.sensor_reach_m()).arm(0.5 * geometry.pitch_m())
+    fn estimate(&self, on: MappedTile<'_>) -> Vec2 {
+        Wrench::of_corners(self.forces, on.places()).arm(on.half_cell())
+    }
+}
+
+/// The tile of a map.
+#[derive(Clone, Copy, Debug)]
+struct MappedTile<'a> {
+    geometry: &'a Geometry,
+    tile: TileId,
+}
+
+impl MappedTile<'_> {
+    fn places(&self) -> &SensorPlaces {
+        self.geometry.sensor_places(self.tile)
+    }
+
+    /// Half the size of its cell (m).
+    fn half_cell(&self) -> Vec2 {
+        0.5 * self.geometry.pitch_m()
+    }
+
+    /// Usual lever of its sensors along one axis (m).
+    fn reach(&self) -> f32 {
+        let mean = |sum: f32, count: usize| 0.5 * sum / count as f32;
+        let places = self.places();
+        let levers = |place: &Vec2| place.abs().element_sum();
+        match places.rectangle() {
+            Some(reach) => mean(reach.element_sum(), 1),
+            None => mean(places.as_slice().iter().map(levers).sum(), places.count()),
+        }
     }
 }
 
@@ -99,7 +128,7 @@ impl MapFit {
     /// Number of folds of the cross-validation, each tested on the map of the others.
     const FOLDS: usize = 5;
 
-    /// The map of a tile from the points pressed on it, in any order, with any forces.
+    /// The map of `tile` from the points pressed on it, in any order, with any forces.
     ///
     /// Points pressed with several forces each, from a light foot's to a person's weight, give the best map. Leave
     /// out saturated readings. The known force, where given, also corrects the measured weight.
@@ -110,7 +139,8 @@ impl MapFit {
     /// # Source
     /// Balance of moments of each point, `Σ gᵢ(fᵢ) (xᵢ − x) = 0`, linear in the trims of `gᵢ`, and a cubic polynomial
     /// for the remaining error, both by ridge regression; five-fold cross-validation selects trims, bends or both.
-    pub fn of_presses(presses: &[PressedPoint], geometry: &Geometry) -> Result<Self, MapError> {
+    pub fn of_presses(presses: &[PressedPoint], geometry: &Geometry, tile: TileId) -> Result<Self, MapError> {
+        let on = MappedTile { geometry, tile };
         let usable = |press: &PressedPoint| {
             press.at.is_finite() && press.forces.iter().chain(&press.force).all(|force| force.is_finite())
         };
@@ -119,32 +149,33 @@ impl MapFit {
         }
         let pressed: Vec<PressedPoint> =
             presses.iter().copied().filter(|press| press.forces.iter().sum::<f32>() > LEAST_N).collect();
-        let found = |map: &PositionMap, press: &PressedPoint| placed(map, press, geometry);
+        let found = |map: &PositionMap, press: &PressedPoint| placed(map, press, on);
         let candidates = |presses: &[PressedPoint]| {
             let bent = |map: PositionMap| {
                 let sighting = |press: &PressedPoint| Sighting { at: press.at, estimate: found(&map, press) };
                 let sightings: Vec<_> = presses.iter().map(sighting).collect();
-                PositionMap { bends: bends(&sightings, geometry), ..map }
+                PositionMap { bends: bends(&sightings, on), ..map }
             };
-            let trimmed = PositionMap { trims: trims(presses, geometry), ..PositionMap::NONE };
+            let trimmed = PositionMap { trims: trims(presses, on), ..PositionMap::NONE };
             [bent(trimmed), trimmed, bent(PositionMap::NONE)]
         };
-        best(&pressed, |press| press.at, geometry, candidates, found)
+        best(&pressed, |press| press.at, on, candidates, found)
     }
 
-    /// The map of a tile from points measured through the whole floor; they determine bends only.
+    /// The map of `tile` from points measured through the whole floor; they determine bends only.
     ///
     /// # Errors
     /// As [`MapFit::of_presses`].
-    pub fn of_sightings(sightings: &[Sighting], geometry: &Geometry) -> Result<Self, MapError> {
+    pub fn of_sightings(sightings: &[Sighting], geometry: &Geometry, tile: TileId) -> Result<Self, MapError> {
+        let on = MappedTile { geometry, tile };
         let usable = |sighting: &Sighting| sighting.at.is_finite() && sighting.estimate.is_finite();
         if let Some(index) = sightings.iter().position(|sighting| !usable(sighting)) {
             return Err(MapError::NotFinite { index });
         }
         let found = |map: &PositionMap, sighting: &Sighting| map.unbent(sighting.estimate, geometry);
         let candidates =
-            |sightings: &[Sighting]| [PositionMap { bends: bends(sightings, geometry), ..PositionMap::NONE }];
-        best(sightings, |sighting| sighting.at, geometry, candidates, found)
+            |sightings: &[Sighting]| [PositionMap { bends: bends(sightings, on), ..PositionMap::NONE }];
+        best(sightings, |sighting| sighting.at, on, candidates, found)
     }
 }
 
@@ -164,23 +195,23 @@ impl Errors {
 const LEAST_N: f32 = 10.0;
 
 /// Place of a press by a map.
-fn placed(map: &PositionMap, press: &PressedPoint, geometry: &Geometry) -> Vec2 {
+fn placed(map: &PositionMap, press: &PressedPoint, on: MappedTile<'_>) -> Vec2 {
     let forces = map.trimmed(press.forces);
-    map.unbent(PressedPoint { forces, ..*press }.estimate(geometry), geometry)
+    map.unbent(PressedPoint { forces, ..*press }.estimate(on), on.geometry)
 }
 
 /// The best of the maps that `candidates` fits to points, each kind evaluated on points outside of the fit.
 fn best<T: Copy, const KINDS: usize>(
     points: &[T],
     at: impl Fn(&T) -> Vec2,
-    geometry: &Geometry,
+    on: MappedTile<'_>,
     candidates: impl Fn(&[T]) -> [PositionMap; KINDS],
     found: impl Fn(&PositionMap, &T) -> Vec2,
 ) -> Result<MapFit, MapError> {
     if points.len() < MapFit::MIN_POINTS {
         return Err(MapError::TooFewPoints { points: points.len() });
     }
-    spread(points.iter().map(&at), geometry)?;
+    spread(points.iter().map(&at), on)?;
     let folds = folds(points.iter().map(&at));
     let distance = |map: &PositionMap, point: &T| found(map, point).distance(at(point));
     let before: Vec<f32> = points.iter().map(|point| distance(&PositionMap::NONE, point)).collect();
@@ -237,21 +268,26 @@ fn folds(places: impl Iterator<Item = Vec2>) -> Vec<usize> {
 }
 
 /// Checks that the points reach all four sides.
-fn spread(places: impl Iterator<Item = Vec2>, geometry: &Geometry) -> Result<(), MapError> {
-    let least = MapFit::REACH * 0.5 * geometry.tile_m();
+fn spread(places: impl Iterator<Item = Vec2>, on: MappedTile<'_>) -> Result<(), MapError> {
+    let least = MapFit::REACH * 0.5 * on.geometry.plate_size(on.tile);
     let (low, high) =
         places.fold((Vec2::MAX, Vec2::MIN), |(low, high), place| (low.min(place), high.max(place)));
-    let reached = [("east", high.x), ("west", -low.x), ("north", high.y), ("south", -low.y)];
-    match reached.into_iter().find(|&(_, reached)| reached < least) {
-        Some((side, _)) => Err(MapError::NoSpread { side }),
+    let reached = [
+        ("east", high.x, least.x),
+        ("west", -low.x, least.x),
+        ("north", high.y, least.y),
+        ("south", -low.y, least.y),
+    ];
+    match reached.into_iter().find(|&(_, reached, least)| reached < least) {
+        Some((side, ..)) => Err(MapError::NoSpread { side }),
         None => Ok(()),
     }
 }
 
 /// The trims that balance the moments of all presses best, by least squares.
-fn trims(presses: &[PressedPoint], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 4] {
+fn trims(presses: &[PressedPoint], on: MappedTile<'_>) -> [[f32; PositionMap::TRIMS]; 4] {
     const COUNT: usize = 4 * PositionMap::TRIMS;
-    let reach = geometry.sensor_reach_m();
+    let (places, reach) = (on.places(), on.reach());
     let mut sums = Normal::new(COUNT);
     for press in presses {
         let total: f32 = press.forces.iter().sum();
@@ -261,7 +297,7 @@ fn trims(presses: &[PressedPoint], geometry: &Geometry) -> [[f32; PositionMap::T
         let mut rows = [[(0, 0.0); 16]; 3];
         let mut left = [0.0; 3];
         for (corner, &force) in Corner::ALL.iter().zip(&press.forces) {
-            let lever = corner.direction() * reach - press.at;
+            let lever = places.place(*corner) - press.at;
             let (first, shares) = PositionMap::shares(force);
             let first = corner.index() * PositionMap::TRIMS + first;
             for (row, lever) in [lever.x, lever.y, reach].into_iter().enumerate() {
@@ -306,14 +342,14 @@ const TRIM_SIZE: f64 = 0.002;
 const TRIM_BEND: f64 = 0.01;
 
 /// The bends that bring all sightings closest to their true places, by least squares.
-fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BENDS]; 2] {
-    let half = 0.5 * geometry.pitch_m();
+fn bends(sightings: &[Sighting], on: MappedTile<'_>) -> [[f32; PositionMap::BENDS]; 2] {
+    let half = on.half_cell();
     let of_axis = |along: fn(Vec2) -> f32| {
         let mut sums = Normal::new(PositionMap::BENDS);
         for sighting in sightings {
             let terms = PositionMap::terms(sighting.estimate / half).map(f64::from);
             let factors: [_; PositionMap::BENDS] = std::array::from_fn(|term| (term, terms[term]));
-            sums.add(&factors, f64::from(along(sighting.at - sighting.estimate) / half));
+            sums.add(&factors, f64::from(along((sighting.at - sighting.estimate) / half)));
         }
         for term in 0..PositionMap::BENDS {
             sums.hold(&[(term, 1.0)], BEND_SIZE);
@@ -376,6 +412,7 @@ mod tests {
     use super::*;
 
     const REACH: f32 = 0.132;
+    const TILE: TileId = TileId::new(0, 0);
 
     /// A raster of 9 x 9 points, each pressed with some forces; `gain` is the gain of each sensor at a force.
     fn presses(share: f32, gain: impl Fn(usize, f32) -> f32) -> Vec<PressedPoint> {
@@ -394,7 +431,7 @@ mod tests {
     }
 
     fn fit(presses: &[PressedPoint]) -> Result<MapFit, MapError> {
-        MapFit::of_presses(presses, &Geometry::default())
+        MapFit::of_presses(presses, &Geometry::default(), TILE)
     }
 
     #[test]
@@ -411,7 +448,8 @@ mod tests {
             let load = 0.25 * 140.0 * (1.0 + corner.direction().dot(at / REACH));
             load * gain(corner.index(), load)
         });
-        let seen = placed(&found.map, &PressedPoint { at, forces, force: None }, &Geometry::default());
+        let on = MappedTile { geometry: &Geometry::default(), tile: TILE };
+        let seen = placed(&found.map, &PressedPoint { at, forces, force: None }, on);
         assert!(seen.distance(at) < 0.003, "{seen}");
     }
 

@@ -30,37 +30,48 @@ pub struct TilePoints {
     pub sightings: Vec<Sighting>,
 }
 
-const COLUMNS: [&[&str]; 3] = [
+const SIGHTED: &[&str] = &["true_x_m", "true_y_m", "est_x_m", "est_y_m"];
+
+/// Headers on floors with sensors near the corners of their tiles.
+const CORNERS: [&[&str]; 3] = [
     &["x_m", "y_m", "col", "row", "f_sw", "f_se", "f_nw", "f_ne"],
     &["x_m", "y_m", "col", "row", "f_sw", "f_se", "f_nw", "f_ne", "force_n"],
-    &["true_x_m", "true_y_m", "est_x_m", "est_y_m"],
+    SIGHTED,
 ];
 
-/// Indices of two of the headers above.
-const PRESSES_WITH_FORCE: usize = 1;
-const SIGHTINGS: usize = 2;
+/// Headers on floors with sensors at given places.
+const NUMBERS: [&[&str]; 5] = [
+    &["x_m", "y_m", "col", "row", "f_0", "f_1", "f_2"],
+    &["x_m", "y_m", "col", "row", "f_0", "f_1", "f_2", "force_n"],
+    &["x_m", "y_m", "col", "row", "f_0", "f_1", "f_2", "f_3"],
+    &["x_m", "y_m", "col", "row", "f_0", "f_1", "f_2", "f_3", "force_n"],
+    SIGHTED,
+];
 
 impl PressTable {
     /// Reads a CSV table of points pressed on `floor`, all lengths in floor metres.
     ///
     /// With the columns `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if the pressing force is known): the
-    /// point, its tile, and the readings of the tile's sensors, calibrated and tared. With
+    /// point, its tile, and the readings of the tile's sensors, calibrated and tared; on floors with sensors at given
+    /// places they are `f_0,f_1,f_2,f_3`, of which the last is empty or absent for plates with three. With
     /// `true_x_m,true_y_m,est_x_m,est_y_m`: the point and its place as measured by the floor without a map. Lines
     /// that cannot be read are skipped and listed in [`Self::notes`].
     ///
     /// # Errors
     /// [`TableError`] if the header belongs to another table, or `reader` fails.
     pub fn read(reader: impl BufRead, floor: &Floor) -> Result<Self, TableError> {
-        let mut table = TableReader::new(reader, &COLUMNS)?;
-        let (header, mut row) = (table.header(), TableRow::default());
+        let headers: &[_] = if floor.geometry.has_corners() { &CORNERS } else { &NUMBERS };
+        let mut table = TableReader::new(reader, headers)?;
+        let (header, mut row) =
+            (headers.get(table.header()).copied().unwrap_or(SIGHTED), TableRow::default());
         let mut tiles: Vec<Option<TilePoints>> = vec![None; floor.geometry.tile_count()];
         let mut saturated = 0;
         while table.next_row(&mut row)? {
-            if header == SIGHTINGS {
+            if header == SIGHTED {
                 let Some((tile, sighting)) = sighting(&mut table, &row, &floor.geometry) else { continue };
                 points(&mut tiles, floor.geometry.index(tile), tile).sightings.push(sighting);
             } else {
-                let Some((tile, press)) = press(&mut table, &row, &floor.geometry) else { continue };
+                let Some((tile, press)) = press(&mut table, &row, header, &floor.geometry) else { continue };
                 if is_saturated(floor, tile, press.forces) {
                     saturated += 1;
                 } else {
@@ -91,7 +102,7 @@ fn sighting<R: BufRead>(
         return None;
     };
     let off = at.distance(estimate);
-    if off > geometry.pitch_m() {
+    if off > geometry.pitch_m().max_element() {
         table.report(row, 2, format!("{off:.2} m from where it was pressed: more than a tile"));
         return None;
     }
@@ -99,28 +110,41 @@ fn sighting<R: BufRead>(
     Some((tile, Sighting { at: at - centre, estimate: estimate - centre }))
 }
 
+/// Place of the first sensor's force in the headers.
+const FIRST_FORCE: usize = 4;
+
 /// The point of a row and the forces under it.
 fn press<R: BufRead>(
     table: &mut TableReader<R>,
     row: &TableRow,
+    header: &[&str],
     geometry: &Geometry,
 ) -> Option<(TileId, PressedPoint)> {
     let [x, y] = std::array::from_fn(|field| place(table, row, field));
-    let [sw, se, nw, ne] =
-        std::array::from_fn(|corner| table.number(row, 4 + corner, -1e4..=1e5).map(|force| force as f32));
-    let force = if table.header() == PRESSES_WITH_FORCE {
-        table.number(row, 8, 1.0..=1e5).map(|force| Some(force as f32))
-    } else {
-        Some(None)
-    };
     let column = table.whole(row, 2, geometry.block().column_range());
     let line = table.whole(row, 3, geometry.block().row_range());
-    let (x, y, force, forces) = (x?, y?, force?, [sw?, se?, nw?, ne?]);
-    let tile = TileId::new(column?, line?);
+    let tile = column.zip(line).map(|(column, line)| TileId::new(column, line));
+    let sensors = tile.map_or(Corner::ALL.len(), |tile| geometry.sensor_places(tile).count());
+    let mut forces = [Some(0.0); 4];
+    for (sensor, force) in forces.iter_mut().enumerate().take(sensors) {
+        *force = table.number(row, FIRST_FORCE + sensor, -1e4..=1e5).map(|force| force as f32);
+    }
+    let known = header.iter().position(|name| *name == "force_n");
+    let force = match known {
+        Some(field) => table.number(row, field, 1.0..=1e5).map(|force| Some(force as f32)),
+        None => Some(None),
+    };
+    let [first, second, third, fourth] = forces;
+    let (x, y, force, forces) = (x?, y?, force?, [first?, second?, third?, fourth?]);
+    let tile = tile?;
+    if geometry.is_missing(tile) {
+        table.report(row, 2, format!("tile {tile} is missing on this floor"));
+        return None;
+    }
     let at = Vec2::new(x, y) - geometry.centre(tile);
     let half = 0.5 * geometry.pitch_m();
     let mut is_on_tile = true;
-    for (field, along, written) in [(0, at.x, x), (1, at.y, y)] {
+    for (field, along, written, half) in [(0, at.x, x, half.x), (1, at.y, y, half.y)] {
         if along.abs() > half + 1e-4 {
             is_on_tile = false;
             let (least, most) = (written - along - half, written - along + half);
@@ -141,7 +165,9 @@ fn points(tiles: &mut Vec<Option<TilePoints>>, index: Option<usize>, tile: TileI
 /// Whether a sensor is at the end of its converter's range.
 fn is_saturated(floor: &Floor, tile: TileId, forces: [f32; 4]) -> bool {
     let tares = floor.geometry.index(tile).and_then(|tile| floor.tare.get(tile));
-    Corner::ALL.into_iter().zip(forces).any(|(corner, force)| {
+    let mut sensors = floor.geometry.sensors(tile).iter();
+    sensors.any(|&corner| {
+        let force = forces[corner.index()];
         let law = floor.law(SensorId { tile, corner });
         let tare = tares.map_or(0.0, |tares| tares[corner.index()].0);
         // The law of boards that calibrate themselves is not known here.
@@ -156,9 +182,9 @@ impl TilePoints {
     /// Those of [`MapFit::of_presses`] and [`MapFit::of_sightings`].
     pub fn fit(&self, floor: &Floor) -> Result<MapFit, MapError> {
         if self.presses.is_empty() {
-            MapFit::of_sightings(&self.sightings, &floor.geometry)
+            MapFit::of_sightings(&self.sightings, &floor.geometry, self.tile)
         } else {
-            MapFit::of_presses(&self.presses, &floor.geometry)
+            MapFit::of_presses(&self.presses, &floor.geometry, self.tile)
         }
     }
 }
@@ -222,7 +248,7 @@ mod tests {
     proptest::proptest! {
         #[test]
         fn no_text_makes_it_panic(rows in "([0-9eE.,+\\-NaInf]{0,12},?\n?){0,40}") {
-            for columns in COLUMNS {
+            for columns in CORNERS {
                 let text = format!("{}\n{rows}", columns.join(","));
                 let _ = PressTable::read(text.as_bytes(), &floor());
             }

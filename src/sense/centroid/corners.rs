@@ -1,8 +1,9 @@
-//! Relations between the readings of the sensors at a tile's four corners.
+//! Relations between the readings of a tile's four sensors.
 //!
-//! Corners are in the order sw, se, nw, ne: the neighbours of a corner differ from it in one bit of its number, its
-//! diagonal in both.
+//! Sensors are in the order sw, se, nw, ne, or of the floor file: the neighbours of a sensor differ from it in one bit
+//! of its number, its diagonal in both. The forces of a plate on three supports do not depend on each other.
 
+use crate::floor::SensorPlaces;
 use crate::sense::Quality;
 
 /// Reading below which a corner has lifted off, or is about to: the plate's weight on it is gone.
@@ -40,7 +41,7 @@ pub(in crate::sense) fn is_possible(forces: &[f32; 4]) -> bool {
     forces.iter().fold(true, |all, force| all & (force.abs() <= 1e6))
 }
 
-/// Load of this corner as estimated from the other three (N); below zero where it lifts off.
+/// Load of this corner of a parallelogram as estimated from the other three (N); below zero where it lifts off.
 ///
 /// [`told`] gives the meaning of the estimate.
 ///
@@ -76,6 +77,11 @@ pub(in crate::sense) fn told(lifted: [bool; 4], corner: usize) -> KnownCorner {
     }
 }
 
+/// [`told`] on a plate with sensors at these places: no information without the balance of a parallelogram.
+fn told_of(places: &SensorPlaces, lifted: [bool; 4], corner: usize) -> KnownCorner {
+    if places.is_parallelogram() { told(lifted, corner) } else { KnownCorner::Nothing }
+}
+
 /// Whether a corner that reads `force` newtons has lifted off, or is about to.
 pub(in crate::sense) fn has_lifted(force: f32) -> bool {
     force < LIFTED_N
@@ -83,12 +89,17 @@ pub(in crate::sense) fn has_lifted(force: f32) -> bool {
 
 /// The forces of a tile's sensors, with one unknown estimated, and their quality.
 ///
-/// If one sensor is out, its force is estimated from the other three: four equal springs under a rigid plate carry
-/// f_sw + f_ne = f_se + f_nw. The tile is then [`Quality::Degraded`]. With two out, or numbers that no floor can
-/// produce (NaN, above 1 MN), returns `None`: such a tile carries no contact.
+/// If one of four sensors is out, its force is estimated from the other three: four equal springs under a rigid plate
+/// carry f_sw + f_ne = f_se + f_nw ([`SensorPlaces::balanced`]). The tile is then [`Quality::Degraded`]. With two out,
+/// with one of three out, or numbers that no floor can produce (NaN, above 1 MN), returns `None`: such a tile carries
+/// no contact.
 #[must_use]
 #[inline]
-pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4], Quality)> {
+pub fn known_corners(
+    places: &SensorPlaces,
+    forces: [f32; 4],
+    quality: [Quality; 4],
+) -> Option<([f32; 4], Quality)> {
     if quality == [Quality::Live; 4] {
         return is_possible(&forces).then_some((forces, Quality::Live));
     }
@@ -103,7 +114,7 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
         }
     }
     if let Some(corner) = out {
-        forces[corner] = expected(forces, corner).max(0.0);
+        forces[corner] = places.balanced(forces, corner)?.max(0.0);
         worst = Quality::Degraded;
     }
     is_possible(&forces).then_some((forces, worst))
@@ -112,13 +123,14 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
 /// The forces of a tile with sensors at the ends of their ranges, the [`Quality::Degraded`] ones: as estimated from
 /// the plate's other corners, or a little more than the reading without evidence from these.
 ///
-/// Near its end a part may also read too much: then the force is lowered.
-pub(in crate::sense) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
+/// Near its end a part may also read too much: then the force is lowered. On a plate that is no parallelogram the
+/// others are no evidence.
+pub(in crate::sense) fn mended(places: &SensorPlaces, forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
     let at_end = quality.map(|quality| quality == Quality::Degraded);
     let lifted = forces.map(has_lifted);
     std::array::from_fn(|corner| {
         let reads = forces[corner];
-        match told(lifted, corner) {
+        match told_of(places, lifted, corner) {
             _ if !at_end[corner] => reads,
             KnownCorner::Nothing => BEYOND * reads,
             KnownCorner::AtLeast => expected(forces, corner).max(BEYOND * reads),
@@ -149,7 +161,12 @@ fn lacking(forces: [f32; 4], at_end: [bool; 4], corner: usize) -> f32 {
 
 /// The standard deviation of each of `forces` beyond the general uncertainty of sensors (N), by the quality of the
 /// sensors; `may_start` as in [`crate::sense::ForceFrame::may_start`].
-pub(in crate::sense) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may_start: bool) -> [f32; 4] {
+pub(in crate::sense) fn extra_sigma(
+    places: &SensorPlaces,
+    forces: [f32; 4],
+    quality: [Quality; 4],
+    may_start: bool,
+) -> [f32; 4] {
     let whole: f32 = forces.iter().sum();
     let at_end = quality.iter().filter(|&&quality| quality == Quality::Degraded).count() as f32;
     let lifted = forces.map(has_lifted);
@@ -158,7 +175,7 @@ pub(in crate::sense) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may
         Quality::Degraded if may_start => UNSURE * forces[corner].abs(),
         Quality::Degraded => {
             let unseen = AT_LEAST * forces[corner].abs();
-            let is_told = told(lifted, corner) == KnownCorner::Exactly;
+            let is_told = told_of(places, lifted, corner) == KnownCorner::Exactly;
             if is_told { unseen.min(TOLD * at_end * whole) } else { unseen }
         }
         Quality::Stale | Quality::Faulty => {
@@ -210,9 +227,17 @@ pub(in crate::sense) fn contradicted([sw, se, nw, ne]: [f32; 4]) -> [f32; 4] {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
+    use crate::floor::{Geometry, TileId};
 
     const LIVE: [Quality; 4] = [Quality::Live; 4];
+
+    fn corners() -> SensorPlaces {
+        *Geometry::default().sensor_places(TileId::new(0, 0))
+    }
+
     const END: Quality = Quality::Degraded;
 
     /// A foot of 720 N, west of the middle: on springs, sw + ne = se + nw.
@@ -224,17 +249,35 @@ mod tests {
             let (mut forces, mut quality) = (FOOT, LIVE);
             forces[corner] = 9999.0;
             quality[corner] = Quality::Faulty;
-            assert_eq!(known_corners(forces, quality), Some((FOOT, Quality::Degraded)));
+            assert_eq!(known_corners(&corners(), forces, quality), Some((FOOT, Quality::Degraded)));
         }
     }
 
     #[test]
     fn two_sensors_are_too_few_and_nonsense_is_no_load() {
         let two_out = [Quality::Live, Quality::Stale, Quality::Live, Quality::Faulty];
-        assert_eq!(known_corners([1.0; 4], two_out), None);
-        assert_eq!(known_corners([f32::NAN; 4], LIVE), None);
-        assert_eq!(known_corners([f32::INFINITY; 4], LIVE), None);
-        assert_eq!(known_corners([3e38; 4], LIVE), None);
+        assert_eq!(known_corners(&corners(), [1.0; 4], two_out), None);
+        assert_eq!(known_corners(&corners(), [f32::NAN; 4], LIVE), None);
+        assert_eq!(known_corners(&corners(), [f32::INFINITY; 4], LIVE), None);
+        assert_eq!(known_corners(&corners(), [3e38; 4], LIVE), None);
+    }
+
+    #[test]
+    fn a_plate_on_three_legs_needs_all_of_them_and_a_trapezium_three_of_four() {
+        let places = |places: &[(f32, f32)]| {
+            SensorPlaces::at(&places.iter().copied().map(Vec2::from).collect::<Vec<_>>()).unwrap()
+        };
+        let three = places(&[(-0.2, -0.15), (0.2, -0.15), (0.0, 0.18)]);
+        let lost = [Quality::Live, Quality::Faulty, Quality::Live, Quality::Live];
+        let forces = [200.0, 150.0, 300.0, 0.0];
+        assert_eq!(known_corners(&three, forces, LIVE), Some((forces, Quality::Live)));
+        assert_eq!(known_corners(&three, forces, lost), None);
+        let trapezium = places(&[(-0.2, -0.1), (0.2, -0.1), (-0.1, 0.12), (0.1, 0.12)]);
+        let forces = trapezium.shares(Vec2::new(0.03, 0.01)).map(|share| 700.0 * share);
+        let mut read = forces;
+        read[1] = 0.0;
+        let (known, quality) = known_corners(&trapezium, read, lost).unwrap();
+        assert!((known[1] - forces[1]).abs() < 1e-2 && quality == Quality::Degraded, "{known:?}");
     }
 
     #[test]
@@ -260,18 +303,18 @@ mod tests {
     #[test]
     fn a_sensor_at_its_end_carries_about_what_the_others_say() {
         let at_sw = [END, Quality::Live, Quality::Live, Quality::Live];
-        nearly(mended([200.0, 130.0, 230.0, 110.0], at_sw), FOOT);
+        nearly(mended(&corners(), [200.0, 130.0, 230.0, 110.0], at_sw), FOOT);
         // A part that deviates from its law near its end reads too much there.
-        nearly(mended([290.0, 130.0, 230.0, 110.0], at_sw), FOOT);
-        assert_eq!(mended([0.0; 4], at_sw), [0.0; 4]);
+        nearly(mended(&corners(), [290.0, 130.0, 230.0, 110.0], at_sw), FOOT);
+        assert_eq!(mended(&corners(), [0.0; 4], at_sw), [0.0; 4]);
     }
 
     #[test]
     fn of_two_neighbours_at_their_ends_the_one_that_lacks_is_told_and_of_a_diagonal_only_the_sum() {
         let west = [END, Quality::Live, END, Quality::Live];
-        nearly(mended([210.0, 130.0, 230.0, 110.0], west), FOOT);
+        nearly(mended(&corners(), [210.0, 130.0, 230.0, 110.0], west), FOOT);
         let diagonal = [END, Quality::Live, Quality::Live, END];
-        let [sw, _, _, ne] = mended([220.0, 130.0, 230.0, 100.0], diagonal);
+        let [sw, _, _, ne] = mended(&corners(), [220.0, 130.0, 230.0, 100.0], diagonal);
         assert!((sw + ne - 360.0).abs() < 18.0, "{sw} and {ne} N");
     }
 
@@ -280,7 +323,7 @@ mod tests {
         // A foot of 1150 N. Its south-east sensor ends at 306 N; the north-east one reads 565 N under about 460 N:
         // unchanged, it would put 490 N on the south-east one, and 1360 N on the tile.
         let east = [Quality::Live, END, Quality::Live, END];
-        let [sw, se, nw, ne] = mended([115.0, 306.0, 193.0, 565.0], east);
+        let [sw, se, nw, ne] = mended(&corners(), [115.0, 306.0, 193.0, 565.0], east);
         assert_eq!((sw, nw), (115.0, 193.0));
         assert!((400.0..460.0).contains(&se) && (490.0..540.0).contains(&ne), "{se} and {ne} N");
         assert!((se + nw - sw - ne).abs() < 30.0, "all four make a plate");
@@ -291,10 +334,10 @@ mod tests {
         // A very heavy foot over sw, ne in the air: nw and se are its neighbours, and their readings are their loads.
         let over_sw = [685.0, 335.0, 245.0, -11.0];
         let south = [END, END, Quality::Live, Quality::Live];
-        assert_eq!(mended(over_sw, south), [753.5, 368.5, 245.0, -11.0]);
-        assert_eq!(extra_sigma(over_sw, south, false)[1], 0.5 * 335.0);
+        assert_eq!(mended(&corners(), over_sw, south), [753.5, 368.5, 245.0, -11.0]);
+        assert_eq!(extra_sigma(&corners(), over_sw, south, false)[1], 0.5 * 335.0);
         // With all on their supports the plate estimate is six times as accurate.
-        let flat = extra_sigma(FOOT, [END, Quality::Live, Quality::Live, Quality::Live], false);
+        let flat = extra_sigma(&corners(), FOOT, [END, Quality::Live, Quality::Live, Quality::Live], false);
         assert_eq!(flat, [21.6, 0.0, 0.0, 0.0]);
     }
 

@@ -3,14 +3,14 @@
 use glam::Vec2;
 
 use super::corners::{self, known_corners};
-use crate::floor::{Geometry, PositionMap, TileId};
+use crate::floor::{Geometry, PositionMap, SensorPlaces, TileId};
 use crate::sense::Quality;
 use crate::units::Newtons;
 
 /// The reading of one tile as a whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TileReading {
-    /// Sum of its four sensors.
+    /// Sum of its sensors.
     pub force: Newtons,
     /// Centroid of its load, in floor metres; `None` if the load is too light to locate, or too few sensors are
     /// known.
@@ -19,7 +19,7 @@ pub struct TileReading {
     pub quality: Quality,
 }
 
-/// Force and moment of one tile: all that four corner sensors under a rigid plate can measure.
+/// Force and moment of one tile: all that sensors under a rigid plate can measure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
     /// Total force F, in newtons.
@@ -38,26 +38,24 @@ impl TileReading {
 }
 
 impl Wrench {
-    /// The wrench of a tile whose sensors, `reach_m` from its centre along both axes, read
-    /// `corners` (sw, se, nw, ne).
+    /// The wrench of a tile whose sensors at `places` read `corners`.
     ///
     /// # Source
-    /// F = Σ fᵢ, F x_c = Σ fᵢ xᵢ over the four sensors (paper, Eq. 2-3). The tare has subtracted the plate's own load
-    /// f_p sensor by sensor, which is equivalent.
+    /// F = Σ fᵢ, F x_c = Σ fᵢ xᵢ over the sensors (paper, Eq. 2-3). The tare has subtracted the plate's own load f_p
+    /// sensor by sensor, which is equivalent.
+    #[inline]
     #[must_use]
-    pub fn of_corners([sw, se, nw, ne]: [f32; 4], reach_m: f32) -> Self {
-        Self {
-            force: (sw + se) + (nw + ne),
-            moment: Vec2::new((se - sw) + (ne - nw), (nw - sw) + (ne - se)) * reach_m,
-        }
+    pub fn of_corners(corners: [f32; 4], places: &SensorPlaces) -> Self {
+        let [sw, se, nw, ne] = corners;
+        Self { force: (sw + se) + (nw + ne), moment: places.moment(corners) }
     }
 
-    /// Position of the load relative to the tile's centre, limited to the plate of half side `half_m`.
+    /// Position of the load relative to the tile's centre, limited to the cell of half size `half`.
     ///
-    /// Noise may put the quotient beyond the plate, where no load can be. Meaningless for a force of zero or less.
+    /// Noise may put the quotient beyond the cell, where no load can be. Meaningless for a force of zero or less.
     #[must_use]
-    pub fn arm(&self, half_m: f32) -> Vec2 {
-        (self.moment / self.force).clamp(Vec2::splat(-half_m), Vec2::splat(half_m))
+    pub fn arm(&self, half: Vec2) -> Vec2 {
+        (self.moment / self.force).clamp(-half, half)
     }
 }
 
@@ -70,7 +68,8 @@ pub struct LoadedTile {
     pub index: u32,
     /// Its centre, in floor metres.
     pub centre: Vec2,
-    /// Readings of its sensors, in [`crate::floor::Corner::ALL`] order; an unknown one is estimated.
+    /// Readings of its sensors, in [`crate::floor::Corner::ALL`] order; an unknown one is estimated, and one that the
+    /// plate does not have is zero.
     pub corners: [f32; 4],
     /// Its force and moment; the force is positive.
     pub wrench: Wrench,
@@ -195,7 +194,7 @@ impl LoadedTile {
 
     /// The reading of the tile itself.
     pub(in crate::sense) fn reading(&self, geometry: &Geometry) -> TileReading {
-        let half = Vec2::splat(0.5 * geometry.pitch_m());
+        let half = 0.5 * geometry.pitch_m();
         TileReading {
             force: Newtons(self.wrench.force - self.strayed),
             centroid: Some(self.centroid.clamp(self.centre - half, self.centre + half)),
@@ -215,8 +214,8 @@ impl LoadedTile {
 
     /// Widens the standard deviations of its corners by the quality of its sensors; `may_start` as in
     /// [`crate::sense::ForceFrame::may_start`].
-    pub(in crate::sense) fn judge(&mut self, sensors: [Quality; 4], may_start: bool) {
-        let extra = corners::extra_sigma(self.corners, sensors, may_start);
+    pub(in crate::sense) fn judge(&mut self, places: &SensorPlaces, sensors: [Quality; 4], may_start: bool) {
+        let extra = corners::extra_sigma(places, self.corners, sensors, may_start);
         self.extra_sigma = std::array::from_fn(|corner| extra[corner].max(self.extra_sigma[corner]));
     }
 
@@ -258,17 +257,18 @@ impl LoadedTile {
         dt: f32,
     ) -> (Option<f32>, Option<Self>) {
         // The map applies first: the estimate of a sensor from the others requires corrected readings.
-        let known = known_corners(map.map_or(forces, |map| map.trimmed(forces)), quality);
+        let places = geometry.sensor_places(place.tile);
+        let known = known_corners(places, map.map_or(forces, |map| map.trimmed(forces)), quality);
         let is_lost = quality.iter().any(|&quality| quality >= Quality::Stale);
         let carried = is_lost.then(|| known.map_or(0.0, |(corners, _)| corners.iter().sum()));
         let Some((corners, worst)) = known else { return (carried, None) };
-        let corners = if may_start { corners } else { corners::mended(corners, quality) };
+        let corners = if may_start { corners } else { corners::mended(places, corners, quality) };
         let lag = Lag::new(quality, before, dt);
         let lag_n = lag.of(corners);
         let corners = std::array::from_fn(|corner| corners[corner] + lag_n[corner]);
         let tile = Self::of_corners(place, geometry, corners, least, map).map(|mut tile| {
             (tile.quality, tile.lost, tile.lag) = (worst, lag.lost, lag_n);
-            tile.judge(quality, may_start);
+            tile.judge(places, quality, may_start);
             tile
         });
         (carried, tile)
@@ -282,7 +282,8 @@ impl LoadedTile {
         least: Newtons,
         map: Option<&PositionMap>,
     ) -> Option<Self> {
-        let mut wrench = Wrench::of_corners(corners, geometry.sensor_reach_m());
+        let places = geometry.sensor_places(tile);
+        let mut wrench = Wrench::of_corners(corners, places);
         if wrench.force < least.0.max(f32::MIN_POSITIVE) {
             return None;
         }
@@ -298,7 +299,7 @@ impl LoadedTile {
             centre,
             corners,
             wrench,
-            extra_sigma: corners::contradicted(corners),
+            extra_sigma: if places.is_parallelogram() { corners::contradicted(corners) } else { [0.0; 4] },
             noise_n: 0.0,
             left_n: 0.0,
             centroid: centre + arm,
@@ -336,6 +337,12 @@ mod tests {
     const REACH: f32 = 0.132;
     const LIVE: [Quality; 4] = [Quality::Live; 4];
 
+    const HALF: Vec2 = Vec2::splat(0.152);
+
+    fn places() -> SensorPlaces {
+        *Geometry::default().sensor_places(TileId::new(0, 0))
+    }
+
     /// Corner forces of a point load: four equal springs under a rigid plate.
     fn springs(force: f32, at: Vec2) -> [f32; 4] {
         Corner::ALL.map(|corner| 0.25 * force * (1.0 + corner.direction().dot(at / REACH)))
@@ -345,9 +352,9 @@ mod tests {
     fn a_point_load_is_found_exactly() {
         for (x, y) in [(0.0, 0.0), (0.1, -0.02), (-0.06, 0.06)] {
             let at = Vec2::new(x, y);
-            let wrench = Wrench::of_corners(springs(100.0, at), REACH);
+            let wrench = Wrench::of_corners(springs(100.0, at), &places());
             assert!((wrench.force - 100.0).abs() < 1e-4);
-            assert!(wrench.arm(0.152).distance(at) < 1e-6, "{wrench:?}");
+            assert!(wrench.arm(HALF).distance(at) < 1e-6, "{wrench:?}");
         }
     }
 
@@ -359,16 +366,16 @@ mod tests {
             quality[corner] = Quality::Faulty;
             let mut forces = springs(400.0, at);
             forces[corner] = 9999.0;
-            let (known, quality) = known_corners(forces, quality).unwrap();
+            let (known, quality) = known_corners(&places(), forces, quality).unwrap();
             assert_eq!(quality, Quality::Degraded);
-            let wrench = Wrench::of_corners(known, REACH);
-            assert!(wrench.arm(0.152).distance(at) < 1e-5, "corner {corner}: {wrench:?}");
+            let wrench = Wrench::of_corners(known, &places());
+            assert!(wrench.arm(HALF).distance(at) < 1e-5, "corner {corner}: {wrench:?}");
         }
     }
 
     #[test]
     fn noise_cannot_put_a_light_load_off_the_plate() {
-        let wrench = Wrench::of_corners([-3.0, 4.0, -3.0, 4.0], REACH);
-        assert_eq!(wrench.arm(0.152).x, 0.152);
+        let wrench = Wrench::of_corners([-3.0, 4.0, -3.0, 4.0], &places());
+        assert_eq!(wrench.arm(HALF).x, 0.152);
     }
 }

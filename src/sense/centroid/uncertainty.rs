@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec4};
 
 use super::tile::LoadedTile;
-use crate::floor::Geometry;
+use crate::floor::{Geometry, SensorPlaces};
 use crate::sense::Covariance;
 
 /// The uncertainty that remains after calibration of the sensors.
@@ -100,10 +100,15 @@ impl SensorUncertainty {
     ) -> Covariance {
         let scale = 1.0 / (force * force).max(LEAST_N * LEAST_N);
         let strayed = UNSEEN_N * UNSEEN_N * tile.strayed_m2() * scale;
-        let reach = geometry.sensor_reach_m();
-        // In the order of `Corner::ALL`: those in the south first, of each two the western one.
-        let (low, high) = (tile.centre - reach - point, tile.centre + reach - point);
-        let (x, y) = (Vec4::new(low.x, high.x, low.x, high.x), Vec4::new(low.y, low.y, high.y, high.y));
+        let places = geometry.sensor_places(tile.tile);
+        let (x, y) = match places.rectangle() {
+            Some(reach) => {
+                // In the order of `Corner::ALL`: those in the south first, of each two the western one.
+                let (low, high) = (tile.centre - reach - point, tile.centre + reach - point);
+                (Vec4::new(low.x, high.x, low.x, high.x), Vec4::new(low.y, low.y, high.y, high.y))
+            }
+            None => levers(places, point - tile.centre),
+        };
         let misread = share * self.misread_n(Vec4::from_array(tile.corners), tile.mapped_m());
         let extra = share * Vec4::from_array(tile.extra_sigma);
         let misplaced = share * self.misplaced * tile.wrench.force;
@@ -128,6 +133,17 @@ impl SensorUncertainty {
         let mapped = left / ARM_M * (Vec4::splat(LIGHT) + heavy * heavy) * loads;
         mapped.abs().min(unmapped.abs())
     }
+}
+
+/// The sensors' levers about `point`, relative to the tile's centre, eastwards and northwards (m); zero for a sensor
+/// that the plate does not have, so that it adds no error.
+#[inline(never)]
+fn levers(places: &SensorPlaces, point: Vec2) -> (Vec4, Vec4) {
+    let (mut x, mut y) = ([0.0; 4], [0.0; 4]);
+    for (sensor, place) in places.as_slice().iter().enumerate() {
+        [x[sensor], y[sensor]] = (*place - point).to_array();
+    }
+    (x.into(), y.into())
 }
 
 impl std::ops::AddAssign for Covariance {

@@ -7,6 +7,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum HoldDoubt {
+    /// Its board sends fewer than 50 packets a second, so that a hold would end too late.
+    Slow,
     /// The noise of its sensors is still unknown: they have been idle for less than a tenth of a second since the
     /// start, or they read zero while idle.
     Unlearned,

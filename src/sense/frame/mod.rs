@@ -3,14 +3,16 @@
 mod calibration_fault;
 mod hold_doubt;
 mod quality;
+mod tile_sample;
 
 use glam::Vec2;
 
 pub use calibration_fault::CalibrationFault;
 pub use hold_doubt::HoldDoubt;
 pub use quality::Quality;
+pub use tile_sample::TileSample;
 
-use crate::floor::{Corner, Geometry};
+use crate::floor::Geometry;
 use crate::units::{Instant, Newtons};
 
 /// The forces of all sensors at one instant, calibrated and tared.
@@ -37,6 +39,11 @@ pub struct ForceFrame {
     /// calibration.
     /// With a fault, controls with the guard `HoldToRun` are off.
     pub calibration_fault: Option<CalibrationFault>,
+    /// Per tile, the sample that its forces come from; empty where all boards sample once a frame.
+    pub samples: Vec<TileSample>,
+    /// Whether any force or quality may be new. Frames between the samples of slow boards are not: they repeat the
+    /// last forces.
+    pub is_new: bool,
 }
 
 impl ForceFrame {
@@ -52,23 +59,30 @@ impl ForceFrame {
             may_start: vec![true; tiles],
             hold_doubts: vec![None; tiles],
             calibration_fault: None,
+            samples: Vec::new(),
+            is_new: true,
         }
     }
 
-    /// Adds a point load, divided among the tile's four sensors as by an ideal rigid plate.
+    /// Whether the forces of the tile at this index are new in this frame.
+    #[must_use]
+    pub fn is_new_at(&self, tile: usize) -> bool {
+        self.samples.get(tile).map_or(self.is_new, |sample| sample.is_new)
+    }
+
+    /// Adds a point load, divided among the tile's sensors as by an ideal rigid plate.
     ///
     /// A load beyond the floor, or one that is not finite, adds nothing. For apps without hardware and for tests;
     /// a simulated floor has plates, feet and sensors with their faults.
     ///
     /// # Source
-    /// Eq. 2 of the paper solved for four equal springs: `f_i = F/4 (1 + s_i . a)`, with the load's
-    /// offset `a` from the tile's centre in units of the sensors' reach and `s_i` the corner's direction.
+    /// Eq. 2 of the paper solved for equal springs: [`crate::floor::SensorPlaces::shares`].
     pub fn add_load(&mut self, geometry: &Geometry, at: Vec2, force: Newtons) {
         let Some(tile) = geometry.tile_under(at).filter(|_| force.is_finite()) else { return };
-        let arm = (at - geometry.centre(tile)) / geometry.sensor_reach_m();
+        let shares = geometry.sensor_places(tile).shares(at - geometry.centre(tile));
         let Some(sensors) = geometry.index(tile).and_then(|index| self.forces.get_mut(index)) else { return };
-        for (sensor, corner) in sensors.iter_mut().zip(Corner::ALL) {
-            *sensor += 0.25 * force.0 * (1.0 + corner.direction().dot(arm));
+        for (sensor, share) in sensors.iter_mut().zip(shares) {
+            *sensor += force.0 * share;
         }
     }
 }

@@ -20,8 +20,12 @@ pub(super) struct TileReadings {
     /// Readings in the frame before.
     pub(super) before: [f32; 4],
     pub(super) ends: [RangeEnd; 4],
+    /// Time between two samples of its board, in milliseconds.
+    pub(super) interval_ms: f32,
     /// Whether the laws of its sensors are known, so that the plate checks apply.
     pub(super) is_measured: bool,
+    /// Whether its four sensors form a parallelogram, so that a load on one of them has a response of the others.
+    pub(super) is_coupled: bool,
 }
 
 /// The result of an examination.
@@ -65,12 +69,15 @@ impl TileReadings {
 
     /// Finds broken sensors by the other sensors of the plate.
     fn find(&self, sensors: &mut [Sensor; 4], twist: &Twist, examined: &mut Examined) {
-        let Self { forces, before, ends, is_measured } = *self;
+        let Self { forces, before, ends, interval_ms, is_measured, is_coupled } = *self;
+        if !is_coupled {
+            return;
+        }
         let out = sensors.map(|sensor| sensor.is_out());
         let alone = plate::unanswered(forces, out);
         for (corner, sensor) in sensors.iter_mut().enumerate() {
-            let is_sudden = (forces[corner] - before[corner]).abs() > SUDDEN_N;
-            let fell = before[corner] - forces[corner] > FELL_N;
+            let is_sudden = (forces[corner] - before[corner]).abs() > SUDDEN_N * interval_ms;
+            let fell = before[corner] - forces[corner] > FELL_N * interval_ms;
             let found = match ends[corner] {
                 RangeEnd::High if alone == Some(corner) => Some(Trouble::Short),
                 RangeEnd::Low

@@ -18,6 +18,7 @@ mod drift;
 mod examine;
 mod foreign;
 mod intake;
+mod intervals;
 mod jump;
 mod plate;
 mod queue;
@@ -42,6 +43,7 @@ use self::averages::{Averages, SHARES};
 use self::examine::TileReadings;
 use self::foreign::FirstReadings;
 use self::intake::Intake;
+use self::intervals::SampleIntervals;
 use self::jump::Jumps;
 use self::plate::Twist;
 use self::queue::TileQueue;
@@ -89,9 +91,15 @@ pub(super) struct Health {
     /// Number of the present frame.
     number: u32,
     intake: Intake,
+    intervals: SampleIntervals,
     zeros: Zeros,
     sensors: Vec<[Sensor; 4]>,
     queue: TileQueue,
+    /// Whether the four sensors of each tile form a parallelogram; without that, their readings show no faults of each
+    /// other.
+    coupled: Vec<bool>,
+    /// The tiles with three sensors.
+    three_legged: Vec<usize>,
     /// Flexibility of the floor's plates under twist.
     twist: Twist,
     shares: FloorShares,
@@ -115,9 +123,22 @@ impl Health {
             geometry: floor.geometry,
             number: 0,
             intake: Intake::new(tiles),
+            intervals: SampleIntervals::default(),
             zeros: Zeros::new(floor),
             sensors: vec![[Sensor::default(); 4]; tiles],
             queue: TileQueue::new(tiles),
+            three_legged: floor
+                .geometry
+                .tiles()
+                .enumerate()
+                .filter(|(_, tile)| floor.geometry.sensors(*tile).len() == 3)
+                .map(|(index, _)| index)
+                .collect(),
+            coupled: floor
+                .geometry
+                .tiles()
+                .map(|tile| floor.geometry.sensor_places(tile).is_parallelogram())
+                .collect(),
             twist: Twist::default(),
             shares: FloorShares::new(&floor.geometry),
             averages: Averages::new(tiles),
@@ -144,36 +165,66 @@ impl Health {
         self.look_for_repeats(frame, sampled);
         self.visit_share(frame, sampled);
         self.jumps.mark(frame, &self.sensors, sampled);
+        // A plate that stands on three sensors is lost with one of them: the unused position counts as lost, too.
+        for &tile in &self.three_legged {
+            let [first, second, third, unused] = &mut frame.quality[tile];
+            *unused = (*first).max(*second).max(*third);
+        }
     }
 
     /// Examines the tiles with a load or a fault.
     fn examine(&mut self, frame: &mut ForceFrame) {
         let is_foreign = self.is_foreign();
-        let Self { number, intake, sensors, queue, twist, changes, found, .. } = self;
+        let Self { number, intake, intervals, sensors, queue, coupled, twist, changes, found, .. } = self;
         let ForceFrame { forces, quality, may_start, .. } = frame;
-        queue.examine(*number, forces, |tile, before| {
-            let readings = TileReadings {
-                forces: forces[tile],
-                before,
-                ends: intake.ends[tile],
-                is_measured: intake.has_laws(tile) && !is_foreign,
-            };
-            let examined = readings.examine(&mut sensors[tile], &mut quality[tile], twist);
-            may_start[tile] = examined.may_start;
-            *changes += u64::from(examined.found);
-            *found += u64::from(examined.found);
-            examined.is_open()
-        });
+        queue.examine(
+            *number,
+            forces,
+            |tile| intervals.frames(tile),
+            |tile, before| {
+                let readings = TileReadings {
+                    forces: forces[tile],
+                    before,
+                    ends: intake.ends[tile],
+                    interval_ms: intervals.ms(tile),
+                    is_measured: intake.has_laws(tile) && !is_foreign,
+                    is_coupled: coupled[tile],
+                };
+                let examined = readings.examine(&mut sensors[tile], &mut quality[tile], twist);
+                may_start[tile] = examined.may_start;
+                *changes += u64::from(examined.found);
+                *found += u64::from(examined.found);
+                examined.is_open()
+            },
+        );
     }
 
     /// Finds the plates with repeated readings, and learns the probability of chance repetitions of every
     /// [`SHARES`]th part of the floor.
     fn look_for_repeats(&mut self, frame: &mut ForceFrame, sampled: Instant) {
         let tiles = self.shares.tiles(self.number as usize % SHARES);
-        let Self { repeats, intake, sensors, jumps, .. } = self;
+        let Self { repeats, intake, intervals, sensors, jumps, .. } = self;
         let heard = Heard { raws: &intake.raws, ends: &intake.ends, news: jumps.read(), sensors };
-        repeats.compare(frame, heard, sampled);
-        repeats.visit(tiles, frame, heard, self.number / SHARES as u32);
+        repeats.compare(frame, heard, intervals, sampled);
+        let visit = self.number / SHARES as u32;
+        if intervals.are_all_one() {
+            repeats.visit(tiles, frame, heard, intervals, visit);
+        } else {
+            intervals.note_news(heard.news);
+            intervals.visit(tiles.clone());
+            let news = intervals.visited();
+            repeats.visit(tiles, frame, Heard { news, ..heard }, intervals, visit);
+        }
+    }
+
+    /// Sets the time between two samples of these tiles' boards, in milliseconds; it is 1 for all others.
+    pub(super) fn set_intervals(&mut self, intervals: impl Iterator<Item = (usize, f32)>) {
+        self.intervals.set(self.sensors.len(), intervals);
+    }
+
+    /// Whether readings have no noise of their own.
+    pub(super) const fn is_noiseless(&self) -> bool {
+        self.repeats.is_noiseless()
     }
 
     /// Number of times that a sensor became faulty or recovered.

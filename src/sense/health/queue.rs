@@ -50,11 +50,12 @@ impl TileQueue {
 
     /// Calls `examine` once for each tile of the queue, with its sensors' readings in the frame before; the tiles for
     /// which it returns true are watched from now on, and no others. `number` is that of the frame, and `forces` are
-    /// its readings.
+    /// its readings; `lasts` is the number of frames within which a tile's board sends again.
     pub(super) fn examine(
         &mut self,
         number: u32,
         forces: &[[f32; 4]],
+        lasts: impl Fn(usize) -> u32,
         mut examine: impl FnMut(usize, [f32; 4]) -> bool,
     ) {
         let Self { loud, watched, spare, examined, read } = self;
@@ -66,7 +67,7 @@ impl TileQueue {
                 continue;
             }
             // A tile that was not examined carried hardly any load.
-            let before = if last == number.wrapping_sub(1) { read[index] } else { [0.0; 4] };
+            let before = if number.wrapping_sub(last) <= lasts(index) { read[index] } else { [0.0; 4] };
             if examine(index, before) {
                 spare.push(tile);
             }

@@ -4,6 +4,7 @@ use crate::floor::SensorId;
 use crate::sense::Quality;
 
 use super::Trouble;
+use crate::sense::BoardTiming;
 
 /// The health of a floor's sensors, in numbers and by name.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,6 +15,8 @@ pub struct SensorHealth {
     pub uncalibrated: u32,
     /// Whether the readings of the empty floor differ from its file on most tiles.
     pub foreign: bool,
+    /// The boards that do not send once a millisecond, by number, each with its rate and time base.
+    pub timings: Vec<(u16, BoardTiming)>,
     /// The faulty sensors, each with its fault.
     pub troubles: Vec<(SensorId, Trouble)>,
 }
@@ -39,6 +42,12 @@ impl SensorHealth {
             || self.counts[2..] != told.counts[2..]
             || (self.uncalibrated, self.foreign) != (told.uncalibrated, told.foreign)
             || self.troubles != told.troubles
+            || self.timings.len() != told.timings.len()
+            || self
+                .timings
+                .iter()
+                .zip(&told.timings)
+                .any(|(now, then)| now.0 != then.0 || now.1.is_news_after(&then.1))
     }
 
     /// Counts the sensors of `qualities`, one entry per tile, in place of those counted before.

@@ -67,8 +67,9 @@ impl Health {
 
     fn finish_block(&mut self, tile: usize, at: Instant) {
         let alone = !self.has_loaded_neighbour(tile);
-        let is_measured = self.intake.has_laws(tile) && !self.is_foreign();
-        let Self { zeros, intake, sensors, averages, slow, twist, .. } = self;
+        let has_laws = self.intake.has_laws(tile) && self.coupled[tile];
+        let is_measured = has_laws && !self.is_foreign();
+        let Self { zeros, sensors, averages, slow, twist, .. } = self;
         let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
         let had_trouble = sensors.map(|sensor| sensor.trouble());
         if let Some(block) = slow.finish(averages.block(tile), at) {
@@ -80,7 +81,7 @@ impl Health {
             let is_sound = sensors.iter().all(|sensor| sensor.trouble().is_none());
             let has_lifted = block.lows.into_iter().any(corners::has_lifted)
                 || block.ends.iter().any(|end| end.reads_nothing());
-            if is_sound && intake.has_laws(tile) && !has_lifted && !block.ends.contains(&RangeEnd::High) {
+            if is_sound && has_laws && !has_lifted && !block.ends.contains(&RangeEnd::High) {
                 twist.learn(block.means);
             }
             if is_sound && !block.ends.contains(&RangeEnd::High) {

@@ -89,7 +89,8 @@ impl Walk {
         let mut forces = vec![[0.0_f32; 4]; geometry.tile_count()];
         for (force, at) in self.steps.iter().flat_map(|step| step.points(self.now)) {
             let Some(tile) = geometry.tile_under(at) else { continue };
-            let arm = (at - geometry.centre(tile)) / geometry.sensor_reach_m();
+            let reach = geometry.sensor_places(tile).rectangle().unwrap();
+            let arm = (at - geometry.centre(tile)) / reach;
             let Some(tile) = geometry.index(tile).and_then(|index| forces.get_mut(index)) else { continue };
             for (sensor, corner) in tile.iter_mut().zip(Corner::ALL) {
                 let side = corner.direction();

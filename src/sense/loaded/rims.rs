@@ -29,7 +29,7 @@ impl LoadedTiles {
         // Maximum distance of a centroid from its tile's centre at which loads of the far side's neighbours may
         // belong to it.
         let astray_m = REACH_M - 0.5 * self.geometry.pitch_m();
-        let faces = |arm: f32, side: i32| match side {
+        let faces = |arm: f32, side: i32, astray_m: f32| match side {
             -1 => arm < astray_m,
             1 => arm > -astray_m,
             _ => true,
@@ -43,8 +43,8 @@ impl LoadedTiles {
                 let arm = tile.centroid - tile.centre;
                 for light in self.survey.light.around(index as u32) {
                     let index = light.index as usize;
-                    if faces(arm.x, light.east)
-                        && faces(arm.y, light.north)
+                    if faces(arm.x, light.east, astray_m.x)
+                        && faces(arm.y, light.north, astray_m.y)
                         && self.survey.sums[index] > NO_WEIGHT + self.thresholds.unsure(index)
                     {
                         self.give(index, position, frame);
@@ -60,8 +60,12 @@ impl LoadedTiles {
         if frame.quality[index].iter().any(|&quality| quality >= Quality::Stale) {
             return;
         }
-        let Some((corners, _)) = known_corners(frame.forces[index], frame.quality[index]) else { return };
-        let centre = self.geometry.centre(self.geometry.tile_at_index(index));
+        let tile = self.geometry.tile_at_index(index);
+        let places = self.geometry.sensor_places(tile);
+        let Some((corners, _)) = known_corners(places, frame.forces[index], frame.quality[index]) else {
+            return;
+        };
+        let centre = self.geometry.centre(tile);
         let half = 0.5 * self.geometry.pitch_m();
         let away = |listed: &LoadedTile| ((listed.centroid - centre).abs() - half).max(Vec2::ZERO).length();
         // A rim is the smaller part of a foot; it belongs to another rim only if there is no foot for it.
@@ -80,12 +84,12 @@ impl LoadedTiles {
         }
         let map = self.maps.get(index).and_then(Option::as_ref);
         let corners = map.map_or(corners, |map| map.trimmed(corners));
-        let wrench = Wrench::of_corners(corners, self.geometry.sensor_reach_m());
+        let wrench = Wrench::of_corners(corners, places);
         let force = counted(wrench.force) * share;
         if force > 0.0 {
             // The tile hardly measures the place, but it is the edge of a foot on the listed tile.
             let rim = self.list[position].centroid - centre;
-            let rim = rim.clamp(Vec2::splat(RIM_M - half), Vec2::splat(half - RIM_M));
+            let rim = rim.clamp(RIM_M - half, half - RIM_M);
             let sure = wrench.force * wrench.force / (wrench.force * wrench.force + RIM_N * RIM_N);
             self.list[position].add_strayed(force, centre + rim.lerp(wrench.arm(half), sure));
         }

@@ -4,22 +4,29 @@ use std::collections::VecDeque;
 use std::io::{self, BufRead};
 
 use super::{TableError, TableProblems, TableReader, TableRow};
-use crate::floor::{Geometry, TileId};
+use crate::floor::{Corner, Geometry, TileId};
 use crate::sense::ForceFrame;
 use crate::units::Instant;
 
-const COLUMNS: [&[&str]; 1] = [&["t_s", "col", "row", "f_sw", "f_se", "f_nw", "f_ne"]];
+/// Columns on floors with sensors near the corners of their tiles.
+const CORNERS: [&[&str]; 1] = [&["t_s", "col", "row", "f_sw", "f_se", "f_nw", "f_ne"]];
+
+/// Columns on floors with sensors at given places, of which a table of plates with three has the first.
+const NUMBERS: [&[&str]; 2] =
+    [&["t_s", "col", "row", "f_0", "f_1", "f_2"], &["t_s", "col", "row", "f_0", "f_1", "f_2", "f_3"]];
 
 /// Maximum time in a table, in seconds: a year.
 const LATEST_S: f64 = 31_557_600.0;
 
 /// Reads a force table, one instant at a time.
 ///
-/// CSV with the columns `t_s,col,row,f_sw,f_se,f_nw,f_ne`: seconds, tile, calibrated and tared newtons. The rows of
-/// one instant are consecutive, times rise, and a tile without a row in an instant carries no load then.
+/// CSV with the columns `t_s,col,row,f_sw,f_se,f_nw,f_ne`: seconds, tile, calibrated and tared newtons. On floors with
+/// sensors at given places, the last columns are `f_0,f_1,f_2,f_3` in the order of the floor file; `f_3` is empty or
+/// absent for plates with three sensors. The rows of one instant are consecutive, times rise, and a tile without a row
+/// in an instant carries no load then.
 ///
 /// Lines that cannot be read are skipped and listed in [`Self::problems`]: a field that is missing, surplus or not a
-/// number, a tile off the floor or listed twice in one instant, a time that breaks the order, is below 0 or beyond a
+/// number, a tile off the floor, missing or listed twice in one instant, a time that breaks the order, is below 0 or beyond a
 /// year. Of two neighbours in the wrong order, the line that fits the surrounding lines less is skipped.
 #[derive(Debug)]
 pub struct ForceTable<R> {
@@ -51,7 +58,8 @@ impl<R: BufRead> ForceTable<R> {
     /// # Errors
     /// [`TableError`] if the header belongs to another table, or `reader` fails.
     pub fn new(reader: R, geometry: Geometry) -> Result<Self, TableError> {
-        let table = TableReader::new(reader, &COLUMNS)?;
+        let columns: &[_] = if geometry.has_corners() { &CORNERS } else { &NUMBERS };
+        let table = TableReader::new(reader, columns)?;
         let (row, ahead, named) = (TableRow::default(), VecDeque::new(), Vec::new());
         Ok(Self { table, geometry, row, ahead, last_s: None, named })
     }
@@ -147,9 +155,18 @@ impl<R: BufRead> ForceTable<R> {
         let t_s = table.number(row, 0, 0.0..=LATEST_S);
         let column = table.whole(row, 1, 0..u16::MAX);
         let line = table.whole(row, 2, 0..u16::MAX);
-        let [sw, se, nw, ne] =
-            std::array::from_fn(|corner| table.number(row, 3 + corner, -1e6..=1e6).map(|force| force as f32));
-        let (t_s, tile, forces) = (t_s?, TileId::new(column?, line?), [sw?, se?, nw?, ne?]);
+        let tile = column.zip(line).map(|(column, line)| TileId::new(column, line));
+        let sensors = tile.map_or(Corner::ALL.len(), |tile| self.geometry.sensor_places(tile).count());
+        let mut forces = [Some(0.0); 4];
+        for (sensor, force) in forces.iter_mut().enumerate().take(sensors) {
+            *force = table.number(row, 3 + sensor, -1e6..=1e6).map(|force| force as f32);
+        }
+        let [first, second, third, fourth] = forces;
+        let (t_s, tile, forces) = (t_s?, tile?, [first?, second?, third?, fourth?]);
+        if self.geometry.is_missing(tile) {
+            table.report_line(row.line(), format!("tile {tile} is missing on this floor"));
+            return None;
+        }
         let Some(index) = self.geometry.index(tile) else {
             let block = self.geometry.block();
             let problem = format!("tile {tile} is not on a floor of {block}: give its size (`grid`)");
@@ -162,7 +179,10 @@ impl<R: BufRead> ForceTable<R> {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
+    use crate::floor::{OwnPlate, SensorPlaces, TileBlock};
 
     const HEADER: &str = "t_s,col,row,f_sw,f_se,f_nw,f_ne";
 
@@ -197,6 +217,30 @@ mod tests {
         assert_eq!(instants, [(0.0, vec![1, 6]), (0.001, vec![35]), (0.002, vec![])]);
         assert_eq!(problems, [""; 0]);
         assert_eq!(read(&format!("{HEADER}\n")).unwrap().0, []);
+    }
+
+    #[test]
+    fn a_table_of_numbered_sensors_is_in_the_order_of_the_floor_file() {
+        let three =
+            SensorPlaces::at(&[Vec2::new(-0.1, -0.1), Vec2::new(0.1, -0.1), Vec2::new(0.0, 0.12)]).unwrap();
+        let own = OwnPlate { tile: TileId::new(1, 0), size: Vec2::splat(0.304), sensors: three };
+        let hole = TileBlock { first: TileId::new(2, 0), columns: 1, rows: 1 };
+        let geometry = Geometry::of_paper_tiles(3, 1).unwrap().with_uneven(&[hole], &[own]).unwrap();
+        let geometry = geometry.with_sensors(*geometry.sensor_places(TileId::new(0, 0))).unwrap();
+        let read = |text: &str| {
+            let mut table = ForceTable::new(text.as_bytes(), geometry).unwrap();
+            let mut frame = ForceFrame::empty(&geometry);
+            let t_s = table.next_frame(&mut frame).unwrap();
+            (t_s, frame.forces, table.problems().shown().iter().map(ToString::to_string).collect::<Vec<_>>())
+        };
+        let (t_s, forces, problems) =
+            read("t_s,col,row,f_0,f_1,f_2,f_3\n0,0,0,1,2,3,4\n0,1,0,5,6,7,\n0,2,0,1,1,1,1");
+        assert_eq!((t_s, &forces[..2]), (Some(0.0), &[[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 0.0]][..]));
+        assert_eq!(problems, ["line 4: tile (2, 0) is missing on this floor"]);
+        let (_, forces, problems) = read("t_s,col,row,f_0,f_1,f_2\n0,1,0,5,6,7\n0,0,0,1,2,3");
+        assert_eq!(forces[1], [5.0, 6.0, 7.0, 0.0]);
+        assert!(problems[0].starts_with("line 3"), "{problems:?}");
+        assert!(ForceTable::new(format!("{HEADER}\n").as_bytes(), geometry).is_err());
     }
 
     #[test]

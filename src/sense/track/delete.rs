@@ -75,7 +75,7 @@ impl Tracker {
             .flat_map(|row| (at.x - 2..=at.x + 2).filter_map(move |column| tiles.find(column, row)));
         let near = around
             .map(|position| &tiles.list()[position])
-            .filter(|tile| tile.centre.as_dvec2().distance(foot.centre()) < self.cells.pitch * 1.5);
+            .filter(|tile| tile.centre.as_dvec2().distance(foot.centre()) < self.cells.side() * 1.5);
         let on: f64 = near.map(|tile| foot.on(self.cells.of(tile)).share()).sum();
         // Allowance for the uncertainty of its place.
         let beside = 1.0 - on - MISPLACED;

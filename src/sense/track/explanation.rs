@@ -128,7 +128,8 @@ impl Explanation {
         Self { log_odds: ACCOMPANIED }
     }
 
-    /// Updates the odds with the present loads of the track's tiles, at distance `pitch` from each other; `alone`
+    /// Updates the odds with the present loads of the track's tiles, at the usual distance `side` from each other;
+    /// `alone`
     /// returns whether no other foot is within a stride.
     ///
     /// log odds += w (evidence − log odds). Returns the place of the second foot once it justifies a track.
@@ -137,7 +138,7 @@ impl Explanation {
         foot: &Track,
         seen: &Whole,
         list: &[LoadedTile],
-        pitch: f64,
+        side: f64,
         alone: impl FnOnce() -> bool,
         elapsed: &Elapsed,
     ) -> Option<Second> {
@@ -157,7 +158,7 @@ impl Explanation {
                     if foot.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };
                 evidence += standing * ((foot.anchored_s - STANDS_S) / after_s).min(1.0);
                 shift = seen.middle - foot.anchor;
-                let deviation = SWAY_M.hypot(0.5 * centroid_sigma(tiles, seen.force, pitch));
+                let deviation = SWAY_M.hypot(0.5 * centroid_sigma(tiles, seen.force, side));
                 evidence += (0.5 * (shift.length() / deviation).powi(2)).min(MOST);
             } else {
                 evidence -= (ROLL * (foot.travel / ROLL_M).powi(2)).min(ROLL);

@@ -121,7 +121,7 @@ fn place_touchdown(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells) ->
     let both = existing.tiles_with(stepping);
     let tiles = both.iter().map(|&position| &list[position as usize]);
     let strips = Strips::of(tiles.clone(), cells.pitch);
-    let sigma = centroid_sigma(tiles, strips.force, cells.pitch);
+    let sigma = centroid_sigma(tiles, strips.force, cells.side());
     // If the filter's estimate of both feet has not fitted for some time, the touchdown is estimated again.
     if !existing.ambiguous
         && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, sigma, list, cells)

@@ -131,7 +131,7 @@ impl Track {
             return;
         }
         let alone = || !near.is_beside_any(which);
-        let second = self.second(alone, list, cells.pitch, elapsed);
+        let second = self.second(alone, list, cells.side(), elapsed);
         let added = if self.age > LANDS_S { self.added(list, cells) } else { None };
         // Taken out in every frame, so an absent candidate needs no write: most feet have none.
         if let Some(candidate) = added.or(second) {
@@ -185,12 +185,12 @@ impl Track {
         &mut self,
         alone: impl FnOnce() -> bool,
         list: &[LoadedTile],
-        pitch: f64,
+        side: f64,
         elapsed: &Elapsed,
     ) -> Option<CandidateTrack> {
         let seen = Whole::of(self.tiles.as_slice().iter().map(|&position| &list[position as usize]));
         let mut explanation = self.explanation;
-        let second = explanation.update(self, &seen, list, pitch, alone, elapsed);
+        let second = explanation.update(self, &seen, list, side, alone, elapsed);
         self.explanation = explanation;
         if self.suppressed_s > 0.0 {
             return None;

@@ -104,18 +104,45 @@ const UNASSIGNED: u32 = u32::MAX;
 /// The cells of the floor's tiles, without gaps between them.
 #[derive(Clone, Copy, Debug)]
 struct Cells {
-    pitch: f64,
+    /// Width and depth of a cell (m).
+    pitch: DVec2,
     block: TileBlock,
+    /// The floor, if it lacks some of its tiles.
+    holed: Option<Geometry>,
 }
 
 impl Cells {
-    /// Returns whether the floor has a column or row of this number.
-    fn have(&self, axis: StripAxis, number: i32) -> bool {
+    fn new(geometry: &Geometry) -> Self {
+        let pitch = geometry.pitch_m().as_dvec2();
+        let holed = (!geometry.missing().is_empty()).then_some(*geometry);
+        Self { pitch, block: geometry.block(), holed }
+    }
+
+    /// Returns whether the column or row of this number has a tile at the place `across` along the other axis (m).
+    fn have(&self, axis: StripAxis, number: i32, across: f64) -> bool {
         let numbers = match axis {
             StripAxis::East => self.block.column_range(),
             StripAxis::North => self.block.row_range(),
         };
         (i32::from(numbers.start)..i32::from(numbers.end)).contains(&number)
+            && self.holed.as_ref().is_none_or(|floor| !self.is_hole(floor, axis, number, across))
+    }
+
+    /// Whether a tile is missing there.
+    #[cold]
+    fn is_hole(&self, floor: &Geometry, axis: StripAxis, number: i32, across: f64) -> bool {
+        let across = number_of(across, axis.across(self.pitch));
+        let (column, row) = match axis {
+            StripAxis::East => (number, across),
+            StripAxis::North => (across, number),
+        };
+        let tile = |column: u16, row: u16| floor.is_missing(TileId::new(column, row));
+        column.try_into().is_ok_and(|column| row.try_into().is_ok_and(|row| tile(column, row)))
+    }
+
+    /// Mean of width and depth of a cell (m).
+    fn side(&self) -> f64 {
+        0.5 * (self.pitch.x + self.pitch.y)
     }
 
     /// South-west and north-east corner of the floor.
@@ -160,8 +187,8 @@ fn number_of(along: f64, pitch: f64) -> i32 {
 
 /// The cell that contains `place`: [`number_of`] along both axes.
 #[inline]
-fn cell_of(place: DVec2, pitch: f64) -> IVec2 {
-    IVec2::new(number_of(place.x, pitch), number_of(place.y, pitch))
+fn cell_of(place: DVec2, pitch: DVec2) -> IVec2 {
+    IVec2::new(number_of(place.x, pitch.x), number_of(place.y, pitch.y))
 }
 
 /// Orders by the first number, and equal ones by their index.
@@ -172,7 +199,7 @@ fn first_of_least(a: &(f64, usize), b: &(f64, usize)) -> std::cmp::Ordering {
 impl Tracker {
     pub(super) fn new(geometry: &Geometry, uncertainty: SensorUncertainty) -> Self {
         let room = geometry.tile_count().min(1024);
-        let cells = Cells { pitch: geometry.pitch_m().into(), block: geometry.block() };
+        let cells = Cells::new(geometry);
         Self {
             uncertainty,
             near: Near::new(&cells, room),

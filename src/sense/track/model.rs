@@ -75,8 +75,9 @@ pub(super) fn observe(
         for axis in StripAxis::BOTH {
             let wide = foot.covariance[axis.half()][axis.half()].sqrt();
             let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
-            for number in number_of(c - h, cells.pitch)..=number_of(c + h, cells.pitch) {
-                if cells.have(axis, number) {
+            let (pitch, across) = (axis.along(cells.pitch), axis.across(foot.centre()));
+            for number in number_of(c - h, pitch)..=number_of(c + h, pitch) {
+                if cells.have(axis, number, across) {
                     strips.strip(axis, number);
                 }
             }
@@ -120,7 +121,7 @@ pub(super) fn observe(
         let axis = strip.axis;
         let (place, half) = (axis.place(), axis.half());
         let aside = EAST + NORTH - place;
-        let middle = (f64::from(strip.number) + 0.5) * cells.pitch;
+        let middle = strip.middle(cells.pitch);
         let mut innovation = [strip.force, strip.moment, strip.cross];
         let mut rows: Rows = Default::default();
         let [force_noise, moment_noise, cross_noise] = strip.noise;
@@ -150,7 +151,7 @@ pub(super) fn observe(
             // Errors of the patch model persist while the foot is there: they are correlated over many frames.
             let frames = foot.age.clamp(0.1, 1.0) / dt.max(1e-4);
             let strayed = frames.max(1.0) * (f * shape_error).powi(2) * straddle;
-            let lever = [1.0, (0.5 * cells.pitch).copysign(place_along - middle), offset];
+            let lever = [1.0, (0.5 * axis.along(cells.pitch)).copysign(place_along - middle), offset];
             for (row, values) in covariance.iter_mut().enumerate() {
                 for (column, value) in values.iter_mut().enumerate() {
                     *value += strayed * lever[row] * lever[column];

@@ -226,13 +226,12 @@ mod tests {
     use rand_pcg::Pcg64Mcg;
 
     use super::*;
-    use crate::floor::{TileBlock, TileId};
+    use crate::floor::Geometry;
     use crate::sense::ContactId;
 
     #[test]
     fn nobody_within_a_stride_is_overlooked() {
-        let block = TileBlock { first: TileId::default(), columns: 20, rows: 9 };
-        let cells = Cells { pitch: 0.304, block };
+        let cells = Cells::new(&Geometry::of_paper_tiles(20, 9).unwrap());
         let mut rng = Pcg64Mcg::seed_from_u64(1);
         // Some lie beside the floor: the estimated place of a touchdown may be there.
         let mut place = || DVec2::new(rng.random_range(-0.5..6.5), rng.random_range(-0.5..3.2));

@@ -1,5 +1,7 @@
 //! The shape of a foot: learnt while it stands alone, valid near that place.
 
+use glam::DVec2;
+
 use super::elapsed::{Elapsed, ShapeFade};
 use super::number_of;
 use super::params::reach::KNOWN;
@@ -14,7 +16,7 @@ impl Track {
     ///
     /// Each half width h relaxes as h = rest + k (h − rest), followed by a scalar Kalman update for each strip's
     /// share and moment.
-    fn learn_halves(&mut self, strips: &Strips, pitch: f64, fade: &ShapeFade) {
+    fn learn_halves(&mut self, strips: &Strips, pitch: DVec2, fade: &ShapeFade) {
         let ShapeFade { dt, half: decay, .. } = *fade;
         // The model error is correlated over many frames.
         let noise = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
@@ -35,7 +37,7 @@ impl Track {
                 // A wrongly placed share lies half a pitch from the strip's middle.
                 let jacobian = [slice.share_by[1], slice.moment_by[1]];
                 for (innovation, derivative, lever) in
-                    [(seen[0], jacobian[0], 1.0), (seen[1], jacobian[1], 0.5 * pitch)]
+                    [(seen[0], jacobian[0], 1.0), (seen[1], jacobian[1], 0.5 * axis.along(pitch))]
                 {
                     let gain =
                         variance * derivative / (derivative * derivative * variance + noise * lever * lever);
@@ -48,7 +50,7 @@ impl Track {
     }
 
     /// Learns the difference between the foot, alone on its tiles, and its model patch, once per learning interval.
-    pub(super) fn learn_shape(&mut self, list: &[LoadedTile], pitch: f64, elapsed: &Elapsed) {
+    pub(super) fn learn_shape(&mut self, list: &[LoadedTile], pitch: DVec2, elapsed: &Elapsed) {
         self.unlearnt_s += elapsed.dt;
         if self.alone_at.is_none() || self.unlearnt_s >= LEARN_EVERY_S - 0.5 * elapsed.dt {
             let fade = elapsed.shape_fade(std::mem::take(&mut self.unlearnt_s));
@@ -58,14 +60,15 @@ impl Track {
     }
 
     /// The same, with the decay since the last update.
-    fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, fade: &ShapeFade) {
+    fn learn_residuals(&mut self, list: &[LoadedTile], pitch: DVec2, fade: &ShapeFade) {
         let (centre, half) = (self.centre(), self.half());
         let tiles = self.tiles.as_slice().iter().map(|&position| &list[position as usize]);
         let mut strips = Strips::about(&Whole::of(tiles.clone()), pitch);
         strips.add(tiles);
         for axis in StripAxis::BOTH {
             let (c, h) = (axis.along(centre), axis.along(half));
-            for number in number_of(c - h, pitch)..=number_of(c + h, pitch) {
+            let along = axis.along(pitch);
+            for number in number_of(c - h, along)..=number_of(c + h, along) {
                 strips.strip(axis, number);
             }
         }

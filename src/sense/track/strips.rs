@@ -89,39 +89,42 @@ impl Strip {
         Self { axis, number, force: 0.0, moment: 0.0, cross: 0.0, noise: [0.0; 3] }
     }
 
-    /// Its middle along the axis (m).
-    fn middle(&self, pitch: f64) -> f64 {
-        (f64::from(self.number) + 0.5) * pitch
+    /// Its middle along the axis (m), in cells of size `pitch`.
+    pub(super) fn middle(&self, pitch: DVec2) -> f64 {
+        (f64::from(self.number) + 0.5) * self.axis.along(pitch)
     }
 
     /// The part on the strip of a patch with its middle at `c` and half width `h` along the axis.
-    pub(super) fn slice(&self, pitch: f64, c: f64, h: f64) -> Slice {
+    pub(super) fn slice(&self, pitch: DVec2, c: f64, h: f64) -> Slice {
+        let pitch = self.axis.along(pitch);
         let low = f64::from(self.number) * pitch;
         Slice::new(low, low + pitch, c, h)
     }
 
     /// Whether the strip's edges divide no patch with its middle at `c` and a half width of at most `h`: all of the
     /// patch is on the strip, or none of it.
-    pub(super) fn is_divided_by_none(&self, pitch: f64, c: f64, h: f64) -> bool {
+    pub(super) fn is_divided_by_none(&self, pitch: DVec2, c: f64, h: f64) -> bool {
+        let pitch = self.axis.along(pitch);
         let low = f64::from(self.number) * pitch;
         let (low, high) = (low - c, low + pitch - c);
         low >= h || high <= -h || low <= -h && high >= h
     }
 
     /// Like [`Self::slice`], for a half width with a standard deviation of `sigma`.
-    pub(super) fn slice_with_sigma(&self, pitch: f64, c: f64, h: f64, sigma: f64) -> Slice {
+    pub(super) fn slice_with_sigma(&self, pitch: DVec2, c: f64, h: f64, sigma: f64) -> Slice {
+        let pitch = self.axis.along(pitch);
         let low = f64::from(self.number) * pitch;
         Slice::with_sigma(low, low + pitch, c, h, sigma)
     }
 }
 
 /// Standard deviation of the centroid of `tiles`, of `force` newtons together, due to sensors at the end of their
-/// range or estimated from others (m); `pitch` is the distance between tiles.
-pub(super) fn centroid_sigma<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, force: f64, pitch: f64) -> f64 {
+/// range or estimated from others (m); `side` is the usual distance between tiles.
+pub(super) fn centroid_sigma<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, force: f64, side: f64) -> f64 {
     let vague =
         tiles.flat_map(|tile| tile.extra_sigma).map(|vague| f64::from(vague * vague)).sum::<f64>().sqrt();
     // The sensors are about half a diagonal away from the load.
-    FRAC_1_SQRT_2 * pitch * vague / force
+    FRAC_1_SQRT_2 * side * vague / force
 }
 
 /// The load of some tiles together.
@@ -158,12 +161,13 @@ pub(super) struct Strips {
     pub force: f64,
     /// Their centroid.
     pub middle: DVec2,
-    pitch: f64,
+    /// Width and depth of a cell.
+    pitch: DVec2,
 }
 
 impl Strips {
     /// Sums the loads of `tiles`; strips beyond [`MOST_STRIPS`] contribute to `force` and `middle` only.
-    pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
+    pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: DVec2) -> Self {
         let mut sums = Self::about(&Whole::of(tiles.clone()), pitch);
         sums.add(tiles);
         sums
@@ -171,7 +175,7 @@ impl Strips {
 
     /// Starts without strips, for tiles that carry `whole` together. Adding in place avoids a copy.
     #[inline]
-    pub(super) fn about(whole: &Whole, pitch: f64) -> Self {
+    pub(super) fn about(whole: &Whole, pitch: DVec2) -> Self {
         Self { strips: ArrayVec::new(), force: whole.force, middle: whole.middle, pitch }
     }
 
@@ -183,7 +187,7 @@ impl Strips {
             let at = tile.centroid.as_dvec2();
             for axis in StripAxis::BOTH {
                 let number = axis.number(tile);
-                let middle = (f64::from(number) + 0.5) * self.pitch;
+                let middle = (f64::from(number) + 0.5) * axis.along(self.pitch);
                 let cross = axis.across(self.middle);
                 if let Some(strip) = self.strip(axis, number) {
                     strip.force += force;

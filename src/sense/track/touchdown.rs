@@ -76,8 +76,8 @@ pub(super) fn place(
     // Strips without load within reach of the feet are observations too.
     for axis in StripAxis::BOTH {
         for point in [from, from + ahead * 0.3] {
-            let number = number_of(axis.along(point), cells.pitch);
-            if cells.have(axis, number) {
+            let number = number_of(axis.along(point), axis.along(cells.pitch));
+            if cells.have(axis, number, axis.across(point)) {
                 strips.strip(axis, number);
             }
         }
@@ -187,7 +187,7 @@ struct Line {
 }
 
 /// The shares of `existing`, standing at `from`, on each strip: the same for every hypothesis about the other foot.
-fn standing(existing: &Track, from: DVec2, strips: &Strips, pitch: f64) -> ArrayVec<Line, MOST_STRIPS> {
+fn standing(existing: &Track, from: DVec2, strips: &Strips, pitch: DVec2) -> ArrayVec<Line, MOST_STRIPS> {
     let lines = strips.strips.iter().map(|&strip| {
         let axis = strip.axis;
         let patch = strip.slice(pitch, axis.along(from), axis.along(existing.half()));
@@ -205,7 +205,7 @@ fn standing(existing: &Track, from: DVec2, strips: &Strips, pitch: f64) -> Array
 
 impl Pair {
     /// Misfit of all strips, with the best half widths of the new foot; infinite from `limit` on.
-    fn misfit(&self, lines: &[Line], middle: DVec2, pitch: f64, limit: f64) -> f64 {
+    fn misfit(&self, lines: &[Line], middle: DVec2, pitch: DVec2, limit: f64) -> f64 {
         let mut all = 0.0;
         for axis in StripAxis::BOTH {
             let mut best = f64::INFINITY;
@@ -244,7 +244,7 @@ impl Pair {
 
     /// Mean squared normalised deviation of the strips' forces and moments from those of the pair, with the best half
     /// widths of the new foot.
-    fn misfit_per_load(&self, lines: &[Line], middle: DVec2, pitch: f64) -> f64 {
+    fn misfit_per_load(&self, lines: &[Line], middle: DVec2, pitch: DVec2) -> f64 {
         let along = |axis: StripAxis| {
             let fits = HALVES.map(|half| {
                 let unusual = (half - HALF_REST) / HALF_SPREAD_M;
@@ -263,7 +263,7 @@ impl Pair {
     /// The logarithms are the determinant term: a hypothesis with small expected errors must fit, and one with large
     /// expected errors gains nothing. They are most of the work, so only callers that need them compute them.
     #[inline]
-    fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: f64) -> (f64, [f64; 2]) {
+    fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: DVec2) -> (f64, [f64; 2]) {
         const { assert!(MISREAD_N >= 1.0, "logarithms of variances are never negative") };
         let (strip, share) = (&line.strip, line.share);
         let axis = strip.axis;
@@ -279,7 +279,7 @@ impl Pair {
         let unsure = MISREAD_N * MISREAD_N
             + unlike(self.existing_force, share * (1.0 - share))
             + unlike(self.stepping_force, 4.0 * new.share * (1.0 - new.share));
-        let lever = 0.5 * pitch;
+        let lever = 0.5 * axis.along(pitch);
         let swaying = unsure + (SWAY_M * self.existing_force * share / lever).powi(2);
         let moments = (innovation[1] * innovation[1] + innovation[2] * innovation[2]) / (lever * lever);
         (innovation[0] * innovation[0] / unsure + moments / swaying, [unsure, swaying])

@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use self::cadence::{Cadence, Count};
 use self::range::Range;
-use crate::sense::{Assembler, ForceFrame, Quality, TareOutcome};
+use crate::floor::Board;
+use crate::sense::{Assembler, ForceFrame, Quality, TareOutcome, TimeBase};
 use crate::units::Instant;
 use crate::wire::{BOARD_RATES_HZ, LinkCause, LinkCounters, LinkState, SensorPacket};
 
@@ -40,6 +41,8 @@ pub(super) struct Facts<'a> {
 pub(super) struct CauseWatch {
     /// OSC addresses of the boards.
     addresses: Vec<String>,
+    /// Rates of the boards in the floor file, where they are written.
+    written_hz: Vec<Option<f32>>,
     cadences: Vec<Cadence>,
     ranges: Vec<Range>,
     /// Whether the floor has shown a load since the start.
@@ -77,13 +80,13 @@ impl Growth {
 }
 
 impl CauseWatch {
-    /// A watch for boards with these addresses.
-    pub(super) fn new(addresses: impl Iterator<Item = String>) -> Self {
-        let addresses: Vec<String> = addresses.collect();
+    /// A watch for these boards.
+    pub(super) fn new(boards: &[Board]) -> Self {
         Self {
-            cadences: vec![Cadence::default(); addresses.len()],
-            ranges: vec![Range::default(); addresses.len()],
-            addresses,
+            cadences: vec![Cadence::default(); boards.len()],
+            ranges: boards.iter().map(|board| Range::new(board.range)).collect(),
+            addresses: boards.iter().map(|board| board.address.clone()).collect(),
+            written_hz: boards.iter().map(|board| board.rate_hz).collect(),
             has_load: false,
             usable: Instant::START,
             looked: Instant::START,
@@ -163,21 +166,30 @@ impl CauseWatch {
             let (_, mut places) = facts.assembler.swapped();
             places.next().map(|(board, reads)| LinkCause::BoardsSwapped { board, reads })
         };
-        self.fault_of_a_board(now).or_else(swapped).or_else(|| self.missing(facts, now)).or_else(loads)
+        self.fault_of_a_board(facts.assembler, now)
+            .or_else(swapped)
+            .or_else(|| self.missing(facts, now))
+            .or_else(loads)
     }
 
     /// Returns the fault of the first board with wrong numbering, a wrong rate or unusable readings.
-    fn fault_of_a_board(&self, now: Instant) -> Option<LinkCause> {
+    fn fault_of_a_board(&self, assembler: &Assembler, now: Instant) -> Option<LinkCause> {
         let is_limited = self.limited.has_grown(HOLDS, now);
-        let counted = (0..).zip(&self.cadences).find_map(|(board, cadence)| {
-            let (count, hz) = cadence.judged(now)?;
-            match count {
-                // The gateway rejected some packets because there were too many.
-                Count::Steps(step) if is_limited => Some(LinkCause::RateHigh { board, hz: hz * step as f32 }),
-                Count::Steady => rate(board, hz),
-                count => count.fault(board),
-            }
-        });
+        let counted =
+            (0..).zip(&self.cadences).zip(&self.written_hz).find_map(|((board, cadence), written)| {
+                let (count, hz) = cadence.judged(now)?;
+                let timing = assembler.board(board)?.timing;
+                match count {
+                    // The gateway rejected some packets because there were too many.
+                    Count::Steps(step) if is_limited => {
+                        Some(LinkCause::RateHigh { board, hz: hz * step as f32 })
+                    }
+                    // Its numbers need not count packets.
+                    _ if timing.base != TimeBase::Packets => rate(board, timing.hz, *written),
+                    Count::Steady => rate(board, hz, *written),
+                    count => count.fault(board),
+                }
+            });
         counted.or_else(|| (0..).zip(&self.ranges).find_map(|(board, range)| range.fault(board)))
     }
 
@@ -235,14 +247,20 @@ impl LinkCause {
     }
 }
 
-/// Returns the fault of a board that sends `hz` packets a second, if that rate is one.
-fn rate(board: u16, hz: f32) -> Option<LinkCause> {
+/// Returns the fault of a board that sends `hz` packets a second, if that rate is one: beyond the supported range, or not
+/// the one that the floor file says.
+fn rate(board: u16, hz: f32, written: Option<f32>) -> Option<LinkCause> {
+    /// Relative error of a rate measured over half a second.
+    const ERROR: f32 = 0.05;
+    /// Relative difference from the floor file's rate beyond which boards differ from it.
+    const OTHER: f32 = 0.2;
     let [lowest, highest] = BOARD_RATES_HZ;
-    if hz < lowest {
-        Some(LinkCause::RateLow { board, hz })
-    } else if hz > highest {
-        Some(LinkCause::RateHigh { board, hz })
-    } else {
-        None
+    match written {
+        _ if hz < lowest * (1.0 - ERROR) => Some(LinkCause::RateLow { board, hz }),
+        _ if hz > highest * (1.0 + ERROR) => Some(LinkCause::RateHigh { board, hz }),
+        Some(written) if (hz / written - 1.0).abs() > OTHER => {
+            Some(LinkCause::RateOther { board, hz, written })
+        }
+        _ => None,
     }
 }

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::floor::CountRange;
 use crate::units::Instant;
 use crate::wire::{LinkCause, MAX_CHANNELS, Readings};
 
@@ -27,7 +28,10 @@ const LEAST_NEWTONS: f32 = 0.005;
 const MOVED: u32 = 200;
 
 /// Maximum of a narrow range of counts: a quarter of 16 bits, which is the full range of a 14-bit converter.
-const NARROW: u16 = 1 << 14;
+const NARROW: f32 = 16_384.0;
+
+/// The end of the scale of 16 bits.
+const WHOLE: f32 = u16::MAX as f32;
 
 /// Maximum force on one sensor, in newtons: the wheel of a truck.
 const HEAVY_N: f32 = 10_000.0;
@@ -41,8 +45,11 @@ pub(super) struct Range {
     looked: Option<Instant>,
     channels: Vec<Channel>,
     is_newtons: bool,
-    least: Option<u16>,
-    greatest: u16,
+    /// The range in the floor file.
+    range: CountRange,
+    /// Least and greatest reading within the range, on the scale of 16 bits, and the greatest beyond it.
+    within: Option<(f32, f32)>,
+    beyond: Option<f32>,
     greatest_newtons: f32,
     /// Number of samples with several readings above rest, below rest, and with a heavy reading.
     up: u32,
@@ -84,6 +91,11 @@ impl Channel {
 }
 
 impl Range {
+    /// The readings of a board whose counts have this range in the floor file.
+    pub(super) fn new(range: CountRange) -> Self {
+        Self { range, ..Self::default() }
+    }
+
     /// Records the readings of a packet that arrived at `received`.
     pub(super) fn note(&mut self, readings: &Readings, received: Instant) {
         if self.looked.is_some_and(|looked| received.since(looked) < EVERY) {
@@ -93,11 +105,20 @@ impl Range {
         match readings {
             Readings::Counts(counts) => {
                 self.is_newtons = false;
-                for count in counts.iter().flatten() {
-                    self.least = Some(self.least.map_or(*count, |least| least.min(*count)));
-                    self.greatest = self.greatest.max(*count);
-                }
-                self.look(counts.iter().map(|count| count.map(f32::from)), LEAST_COUNTS);
+                let counts = || counts.iter().map(|count| count.map(f32::from));
+                counts().flatten().for_each(|count| self.widen(count));
+                self.look(counts(), LEAST_COUNTS);
+            }
+            Readings::Scaled(values) => {
+                self.is_newtons = false;
+                let lowest = if self.range.is_bipolar() { -WHOLE - 1.0 } else { 0.0 };
+                let inside =
+                    |value: &f32| Some(*value).filter(|value| (lowest..=WHOLE + 0.5).contains(value));
+                values.iter().filter_map(inside).for_each(|count| self.widen(count));
+                let outside = values.iter().filter(|value| inside(value).is_none() && value.is_finite());
+                let beyond = outside.copied().max_by(f32::total_cmp);
+                self.beyond = self.beyond.into_iter().chain(beyond).max_by(f32::total_cmp);
+                self.look(values.iter().map(inside), LEAST_COUNTS);
             }
             Readings::Newtons(newtons) => {
                 self.is_newtons = true;
@@ -108,6 +129,11 @@ impl Range {
                 self.look(newtons.iter().map(number), LEAST_NEWTONS);
             }
         }
+    }
+
+    fn widen(&mut self, count: f32) {
+        let (least, greatest) = self.within.unwrap_or((count, count));
+        self.within = Some((least.min(count), greatest.max(count)));
     }
 
     fn look(&mut self, readings: impl ExactSizeIterator<Item = Option<f32>>, least: f32) {
@@ -135,7 +161,8 @@ impl Range {
             return Some(if self.is_newtons {
                 LinkCause::NotNumbers { board }
             } else {
-                LinkCause::CountsBeyond { board }
+                let greatest = self.beyond.map(|beyond| self.range.count(beyond));
+                LinkCause::CountsBeyond { board, greatest, full_scale: self.range.full_scale }
             });
         }
         let greatest = self.greatest_newtons;
@@ -147,11 +174,12 @@ impl Range {
         if self.up.max(self.down) < MOVED {
             return None;
         }
-        let (least, greatest) = (self.least.unwrap_or_default(), self.greatest);
+        let (least, greatest) = self.within.unwrap_or_default();
         Some(if self.is_newtons && self.up >= self.down && self.greatest_newtons < LIGHT_N {
             LinkCause::NewtonsSmall { board, greatest: self.greatest_newtons }
-        } else if !self.is_newtons && (greatest < NARROW || greatest - least < NARROW / 2) {
-            LinkCause::CountsNarrow { board, least, greatest }
+        } else if !self.is_newtons && (greatest < NARROW || greatest - least < 0.5 * NARROW) {
+            let [least, greatest] = [least, greatest].map(|scaled| self.range.count(scaled));
+            LinkCause::CountsNarrow { board, least, greatest, full_scale: self.range.full_scale }
         } else if self.down > 5 * self.up {
             LinkCause::ReadingsFall { board }
         } else {
@@ -247,8 +275,10 @@ mod tests {
         };
         assert_eq!(
             fault(Readings::Counts([None; 4].into_iter().collect())),
-            Some(LinkCause::CountsBeyond { board: 0 })
+            Some(LinkCause::CountsBeyond { board: 0, greatest: None, full_scale: 65_535 })
         );
+        let fine = fault(Readings::Scaled([8_388_700.0; 4].into_iter().collect())).unwrap();
+        assert!(fine.to_string().contains("full_scale: 16777215"), "{fine}");
         assert_eq!(
             fault(Readings::Newtons([f32::NAN; 4].into_iter().collect())),
             Some(LinkCause::NotNumbers { board: 0 })

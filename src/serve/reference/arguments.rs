@@ -3,15 +3,17 @@
 use std::ops::Range;
 
 use super::Argument;
+use super::limits::DescribedLimits;
 use crate::floor::Geometry;
 use crate::layout::{Layout, Widget};
-use crate::widget::{Behaviour, Control, Indicator, Scale, Value};
-use crate::wire::sent::{Field, FieldRange, arguments_of_value};
+use crate::widget::{Behaviour, Control, Value};
+use crate::wire::sent::{Field, arguments_of_value};
 use crate::wire::{ArgumentKind, Command};
 
-/// Returns the argument with this name, OSC type tag and range.
-pub(super) fn argument(name: &str, tag: &'static str, range: &str) -> Argument {
-    Argument { name: name.into(), tag, range: range.into() }
+/// Returns the argument with this name, OSC type tag and limits.
+pub(super) fn argument(name: &str, tag: &'static str, limits: DescribedLimits) -> Argument {
+    let DescribedLimits { text, unit, limits } = limits;
+    Argument { name: name.into(), tag, range: text, unit, limits }
 }
 
 /// Returns the arguments of a command; for a value, those of the control's value.
@@ -24,20 +26,32 @@ pub(super) fn taken(
     match command.argument {
         ArgumentKind::Nothing => Vec::new(),
         ArgumentKind::Range => {
-            ["least", "greatest"].map(|end| argument(end, "f|i", "-1000000 to 1000000")).into()
+            let limits = || DescribedLimits::numbers(-1_000_000.0, 1_000_000.0);
+            ["least", "greatest"].map(|end| argument(end, "f|i", limits())).into()
         }
-        ArgumentKind::Label => vec![argument("label", "s", "64 characters at most")],
-        ArgumentKind::Indicator => vec![argument("indicator", "s|i", &format!("{}; 0 or 1", indicators()))],
-        ArgumentKind::Page => vec![argument("page", "s", &pages(layout))],
-        ArgumentKind::Switch => vec![argument("on", "i|f|T|F", "0 or 1; 1 if left out")],
-        ArgumentKind::Flag => vec![argument("on", "i|f|T|F", "0 or 1")],
+        ArgumentKind::Label => {
+            vec![argument("label", "s", DescribedLimits::text("64 characters at most"))]
+        }
+        ArgumentKind::Indicator => {
+            let limits = DescribedLimits::indicators();
+            let text = format!("{}; 0 or 1", limits.text);
+            vec![argument("indicator", "s|i", DescribedLimits { text, ..limits })]
+        }
+        ArgumentKind::Page => vec![argument("page", "s", pages(layout))],
+        ArgumentKind::Switch => {
+            let text = "0 or 1; 1 if left out".into();
+            vec![argument("on", "i|f|T|F", DescribedLimits { text, ..DescribedLimits::flag() })]
+        }
+        ArgumentKind::Flag => vec![argument("on", "i|f|T|F", DescribedLimits::flag())],
         ArgumentKind::TileFlag => {
             let block = geometry.block();
-            let numbers = |range: Range<u16>| format!("{} to {}", range.start, range.end.saturating_sub(1));
+            let numbers = |range: Range<u16>| {
+                DescribedLimits::numbers(range.start.into(), range.end.saturating_sub(1).into())
+            };
             vec![
-                argument("column", "i", &numbers(block.column_range())),
-                argument("row", "i", &numbers(block.row_range())),
-                argument("on", "i|f|T|F", "0 or 1"),
+                argument("column", "i", numbers(block.column_range())),
+                argument("row", "i", numbers(block.row_range())),
+                argument("on", "i|f|T|F", DescribedLimits::flag()),
             ]
         }
         ArgumentKind::Value => {
@@ -58,44 +72,33 @@ pub(super) fn taken(
 /// Returns the arguments of the value of a control with this behaviour.
 pub(super) fn values(behaviour: &Behaviour, held: Value) -> Vec<Argument> {
     let fields = arguments_of_value(held, &mut Vec::new()).iter();
-    let argument = |(number, field): (usize, &Field)| {
-        let range = match field.range {
-            FieldRange::Text(text) => text.into(),
-            _ => range_of_value(behaviour, held, number),
-        };
-        Argument { name: field.name.into(), tag: field.tag, range }
+    let described = |(number, field): (usize, &Field)| {
+        let limits = DescribedLimits::of_table(field.range);
+        argument(field.name, field.tag, limits.unwrap_or_else(|| limits_of_value(behaviour, held, number)))
     };
-    fields.enumerate().map(argument).collect()
+    fields.enumerate().map(described).collect()
 }
 
-/// Returns the range of a number in the value of a control: of the first one (0) or the second (1).
-fn range_of_value(behaviour: &Behaviour, held: Value, number: usize) -> String {
+/// Returns the limits of a number in the value of a control: of the first one (0) or the second (1).
+fn limits_of_value(behaviour: &Behaviour, held: Value, number: usize) -> DescribedLimits {
     let scale = match (held, behaviour) {
         (Value::Choice(_), Behaviour::Selector(selector)) => {
             let options = selector.options.iter().enumerate();
             let options: Vec<String> =
                 options.map(|(number, option)| format!("{number}: {option}")).collect();
-            return options.join(", ");
+            let last = selector.options.len().saturating_sub(1);
+            return DescribedLimits::text(options.join(", ")).within(0.0, last as f64);
         }
-        (Value::Choice(_), _) => return "0 or more".into(),
+        (Value::Choice(_), _) => return DescribedLimits::text("0 or more"),
         (Value::Number(_), Behaviour::Pedal(pedal)) => Some(pedal.scale),
         (Value::Number(_), _) => behaviour.scale().copied(),
         (Value::Pair(_), Behaviour::Pad(pad)) => Some(if number == 0 { pad.x() } else { pad.y() }),
         (Value::Pair(_) | Value::Switch(_), _) => None,
     };
-    scale.map_or_else(|| "-1 to 1".to_owned(), |scale| range(&scale))
+    scale.map_or_else(|| DescribedLimits::numbers(-1.0, 1.0), |scale| DescribedLimits::scale(&scale))
 }
 
-fn range(scale: &Scale) -> String {
-    let steps = if scale.step > 0.0 { format!(", steps of {}", scale.step) } else { String::new() };
-    format!("{} to {}{steps}", scale.min, scale.max)
-}
-
-pub(super) fn indicators() -> String {
-    Indicator::ALL.map(Indicator::name).join(", ")
-}
-
-pub(super) fn pages(layout: &Layout) -> String {
-    let ids: Vec<&str> = layout.pages.iter().map(|page| page.id.as_str()).collect();
-    ids.join(", ")
+/// The pages of the layout.
+pub(super) fn pages(layout: &Layout) -> DescribedLimits {
+    DescribedLimits::words(layout.pages.iter().map(|page| page.id.as_str()))
 }

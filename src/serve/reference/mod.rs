@@ -1,13 +1,17 @@
 //! Every OSC address of a floor with a layout, in and out, made from the tables of the decoder and the encoder.
 
 mod arguments;
+mod limits;
 
 use serde::Serialize;
 
-use self::arguments::{argument, indicators, pages, taken, values};
+use self::arguments::{argument, pages, taken, values};
+pub use self::limits::ArgumentLimits;
+use self::limits::DescribedLimits;
+use crate::engine::Ignored;
 use crate::floor::Floor;
 use crate::ground::GroundMaterial;
-use crate::layout::{Layout, Widget};
+use crate::layout::{Layout, Region, Widget};
 use crate::widget::{Behaviour, Control, Detail, OffReason, possible_events};
 use crate::wire::sent::{self, Arguments, Field, FieldRange, Sent};
 use crate::wire::{ArgumentKind, COMMANDS, Prefix};
@@ -27,18 +31,24 @@ pub enum MessageDirection {
 }
 
 /// One argument.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Argument {
     /// Its name.
     pub name: String,
     /// Its OSC type tag; `|` separates several accepted tags.
     pub tag: &'static str,
-    /// Its unit, range or choices; may be empty.
+    /// Its unit, range or choices, for people; may be empty.
     pub range: String,
+    /// Its unit; empty without one.
+    #[serde(skip)]
+    pub unit: &'static str,
+    /// Its range or choices, for programs.
+    #[serde(skip)]
+    pub limits: ArgumentLimits,
 }
 
 /// One address.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AddressEntry {
     /// Direction of its messages.
     pub direction: MessageDirection,
@@ -51,7 +61,7 @@ pub struct AddressEntry {
 }
 
 /// All addresses of one floor, those of the floor first, then control by control.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Reference {
     /// The addresses.
@@ -68,6 +78,7 @@ impl Reference {
         for widget in &layout.widgets {
             maker.control(widget);
         }
+        layout.regions.iter().for_each(|region| maker.region(region));
         Self { entries: maker.entries }
     }
 }
@@ -107,31 +118,33 @@ impl Maker<'_> {
     }
 
     fn listed(&self, fields: &[Field], direction: MessageDirection) -> Vec<Argument> {
-        let range = |field: &Field| match field.range {
-            FieldRange::Text(text) => text.into(),
-            FieldRange::OfValue => String::new(),
-            FieldRange::Indicators => indicators(),
+        let limits = |field: &Field| match field.range {
             FieldRange::OffReasons => {
-                let reasons = OffReason::ALL.map(OffReason::name).join(", ");
-                format!("{reasons}; empty if a foot can press it")
+                let limits = DescribedLimits::words(OffReason::ALL.map(OffReason::name));
+                let text = format!("{}; empty if a foot can press it", limits.text);
+                DescribedLimits { text, ..limits }
             }
-            FieldRange::Pages if direction == MessageDirection::Answer => "empty without pages".into(),
+            FieldRange::IgnoredReasons => DescribedLimits::words(Ignored::all().map(Ignored::name)),
+            FieldRange::Pages if direction == MessageDirection::Answer => {
+                DescribedLimits { text: "empty without pages".into(), ..pages(self.layout) }
+            }
             FieldRange::Pages => pages(self.layout),
+            table => DescribedLimits::of_table(table).unwrap_or_default(),
         };
-        fields.iter().map(|field| argument(field.name, field.tag, &range(field))).collect()
+        fields.iter().map(|field| argument(field.name, field.tag, limits(field))).collect()
     }
 
     fn boards(&mut self) {
         for (number, board) in self.floor.boards.iter().enumerate() {
             let channels = board.channels.len();
             let arguments = vec![
-                argument("sequence", "i", "counts packets, wraps"),
+                argument("sequence", "i", DescribedLimits::text("counts packets, wraps")),
                 argument(
                     "readings",
                     "i|f|b",
-                    &format!(
+                    DescribedLimits::text(format!(
                         "{channels} counts 0 to 65535, {channels} newtons, or one blob of 16-bit counts"
-                    ),
+                    )),
                 ),
             ];
             let says = format!("Readings of board {number}, once a millisecond.");
@@ -169,6 +182,20 @@ impl Maker<'_> {
         self.answer::<sent::Error>();
     }
 
+    fn region(&mut self, region: &Region) {
+        for sending in &region.send {
+            self.entries.push(AddressEntry {
+                direction: MessageDirection::Target,
+                address: format!("{}: {}", sending.target, sending.payload),
+                arguments: Vec::new(),
+                says: format!(
+                    "The feet on free floor of {} send it, from {} N on.",
+                    region.id, sending.press_n
+                ),
+            });
+        }
+    }
+
     fn control(&mut self, widget: &Widget) {
         let (layout, floor, id) = (self.layout, self.floor, widget.id.as_str());
         let mut control = Control::new(&widget.behaviour, widget.area.size());
@@ -200,6 +227,8 @@ impl Maker<'_> {
         }
         let repeated = self.listed(sent::Held::FIELDS, MessageDirection::Out);
         self.add(MessageDirection::Out, &sent::path_of::<sent::Held>(id), repeated, sent::Held::REPORT);
+        let ignored = self.listed(sent::Ignored::FIELDS, MessageDirection::Out);
+        self.add(MessageDirection::Out, &sent::path_of::<sent::Ignored>(id), ignored, sent::Ignored::REPORT);
         if !held.is_empty() {
             let path = sent::path_of::<sent::ValueOfControl>(id);
             self.add(MessageDirection::Answer, &path, held.clone(), sent::ValueOfControl::ANSWER);

@@ -20,6 +20,7 @@ impl Server {
         let cancelled = self.engine.cancel_all();
         self.outputs.events(cancelled);
         self.beat();
+        self.outputs.release(self.source.now());
     }
 }
 

@@ -6,7 +6,7 @@ use tracing::{info, warn};
 
 use super::limited::Limited;
 use crate::floor::FloorFile;
-use crate::sense::{Assembler, TareOutcome};
+use crate::sense::{Assembler, BoardTiming, TareOutcome, TimeBase};
 use crate::units::Instant;
 use crate::widget::OffReason;
 use crate::wire::{LinkCause, LinkState};
@@ -27,6 +27,8 @@ pub(super) struct LinkWatch {
     frozen: u64,
     repeats: u64,
     swaps: u64,
+    /// Rate and time base of each board as last logged.
+    timings: Vec<BoardTiming>,
     notices: Limited,
 }
 
@@ -40,6 +42,7 @@ impl Default for LinkWatch {
             frozen: 0,
             repeats: 0,
             swaps: 0,
+            timings: Vec::new(),
             notices: Limited::new(10, Duration::from_secs(10)),
         }
     }
@@ -93,6 +96,32 @@ impl LinkWatch {
             None => {
                 self.notices.info(now, || "the fault of boards or link that was last named is gone".into());
             }
+        }
+    }
+
+    /// Logs the rate and the time base of each board that does not send once a millisecond, when it is known and when
+    /// it changes.
+    pub(super) fn note_timings(&mut self, assembler: &Assembler, now: Instant) {
+        let timings = (0_u16..).map_while(|board| Some(assembler.board(board)?.timing));
+        for (board, timing) in timings.enumerate() {
+            if board == self.timings.len() {
+                self.timings.push(BoardTiming::MILLISECOND);
+            }
+            let Some(told) = self.timings.get_mut(board).filter(|told| timing.is_news_after(told)) else {
+                continue;
+            };
+            *told = timing;
+            self.notices.info(now, || {
+                let times = match timing.base {
+                    TimeBase::Packets => "its samples' times come from the number of each packet".to_owned(),
+                    TimeBase::Milliseconds => "its samples' times are its stamps in milliseconds".to_owned(),
+                    TimeBase::Arrival => format!(
+                        "without useful numbers, its samples' times are those of their arrival, to {:.1} ms",
+                        1e3 * timing.jitter.as_secs_f32()
+                    ),
+                };
+                format!("board {board} sends {:.1} packets a second; {times}", timing.hz)
+            });
         }
     }
 

@@ -6,6 +6,7 @@ mod heartbeat;
 mod inbox;
 mod limited;
 mod link;
+mod messages;
 mod off;
 mod outputs;
 mod requests;
@@ -33,7 +34,7 @@ use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
 use crate::floor::Floor;
 use crate::layout::Layout;
-use crate::sense::{Assembler, Method, Tare, TareOutcome};
+use crate::sense::{Assembler, BoardStatus, Method, Tare, TareOutcome};
 use crate::serve::{Neighbours, Refusal};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
 use crate::source::{FloorInput, Incoming, SensorSource, SourceError};
@@ -71,6 +72,8 @@ pub enum Command {
     /// Returns the tare in use, per tile and corner as in [`Floor::tare`]; `None` if it is the floor's own, or
     /// unknown.
     GiveTare(SyncSender<Option<Vec<[Newtons; 4]>>>),
+    /// Returns the state of each board, in the order of the floor file.
+    GiveBoards(SyncSender<Vec<BoardStatus>>),
     /// Plays an effect on one tile under a simulated foot; replaces an effect that is still playing.
     Audition {
         /// The effect.
@@ -139,7 +142,7 @@ impl Server {
             answers: Answers::default(),
             link: LinkWatch::default(),
             link_checked: Instant::START,
-            causes: CauseWatch::new(floor.boards.iter().map(|board| board.address.clone())),
+            causes: CauseWatch::new(&floor.boards),
             sensors: SensorWatch::default(),
             off: OffWatch::default(),
             snapshots: None,
@@ -269,8 +272,11 @@ impl Server {
     /// working without it.
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.process_commands();
+        self.outputs.follow(self.engine.layout(), self.engine.layout_revision(), self.source.now());
         let mut is_silent = false;
-        match self.source.next(PATIENCE) {
+        // Frames by the clock come even where no packet does.
+        let patience = if self.assembler.follows_clock() { FRAME } else { PATIENCE };
+        match self.source.next(patience) {
             Ok(Some(packet)) => {
                 self.haptics.note_packet(self.source.now());
                 self.causes.note(&packet);
@@ -345,6 +351,7 @@ impl Server {
         if let Some(status) = self.haptics.device_news(now) {
             self.outputs.report(&Report::Device(now, Cow::Borrowed(status)));
         }
+        self.link.note_timings(&self.assembler, now);
         self.tell_everything();
         let (counters, link) = (self.counters(), self.link.state());
         self.note_cause(&counters, now);
@@ -446,6 +453,11 @@ impl Server {
                     let is_measured = self.assembler.tare_outcome() == TareOutcome::Taken;
                     // A caller that has stopped waiting needs no answer.
                     let _ = to.try_send(is_measured.then(|| self.assembler.tare()));
+                }
+                Command::GiveBoards(to) => {
+                    let boards = (0..).map_while(|number| self.assembler.board(number));
+                    // As above.
+                    let _ = to.try_send(boards.collect());
                 }
                 Command::Audition { effect, gesture, tile } => {
                     self.haptics.trial = Some(EffectTrial::new(effect, *gesture, tile));

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use super::heartbeat::Heartbeat;
+use super::messages::MessageDesk;
 use crate::engine::FrameResults;
+use crate::layout::Layout;
 use crate::serve::changes::ChangeLimiter;
 use crate::sink::{EventSink, Report};
 use crate::units::Instant;
@@ -15,13 +17,14 @@ pub(super) struct Outputs {
     pub(super) sink: Option<Box<dyn EventSink>>,
     changes: ChangeLimiter,
     heartbeat: Heartbeat,
+    messages: MessageDesk,
 }
 
 impl Outputs {
     /// Sends one report.
     pub(super) fn report(&mut self, report: &Report<'_>) {
         if let Some(sink) = &mut self.sink {
-            sink.report(report);
+            self.messages.report(report, sink.as_mut());
         }
     }
 
@@ -29,10 +32,26 @@ impl Outputs {
     pub(super) fn step(&mut self, step: &FrameResults<'_>, at: Instant) {
         let Some(sink) = &mut self.sink else { return };
         let events = self.changes.thin(step.events, at).iter().map(lent(Report::Event));
+        let ignored = step.ignored.iter().map(lent(Report::Ignored));
         let page = step.page.into_iter().map(lent(Report::Page));
         let grounds = step.grounds.iter().map(lent(Report::Ground));
         let contacts = [Report::Contacts(at, Cow::Borrowed(step.contacts))];
-        events.chain(page).chain(grounds).chain(contacts).for_each(|report| sink.report(&report));
+        let all = events.chain(ignored).chain(page).chain(grounds).chain(contacts);
+        all.for_each(|report| self.messages.report(&report, sink.as_mut()));
+    }
+
+    /// Reports the messages of `layout` from now on, if its `revision` is new.
+    pub(super) fn follow(&mut self, layout: &Layout, revision: u64, now: Instant) {
+        if let Some(sink) = &mut self.sink {
+            self.messages.follow(layout, revision, now, sink.as_mut());
+        }
+    }
+
+    /// Reports that all that messages hold comes up.
+    pub(super) fn release(&mut self, now: Instant) {
+        if let Some(sink) = &mut self.sink {
+            self.messages.release(now, sink.as_mut());
+        }
     }
 
     /// Reports events that must not wait.
@@ -48,7 +67,7 @@ impl Outputs {
         now: Instant,
     ) {
         if let Some(sink) = &mut self.sink {
-            self.heartbeat.beat(held, seen, now, |report| sink.report(report));
+            self.heartbeat.beat(held, seen, now, |report| self.messages.report(report, sink.as_mut()));
         }
     }
 
@@ -61,14 +80,15 @@ impl Outputs {
                 .thin(&[], now)
                 .iter()
                 .map(lent(Report::Event))
-                .for_each(|report| sink.report(&report));
+                .for_each(|report| self.messages.report(&report, sink.as_mut()));
         }
+        self.messages.advance(now, sink.as_mut());
         sink.poll(now);
     }
 
     /// Returns the number of reports that could not be sent so far.
     pub(super) fn dropped(&self) -> u64 {
-        self.sink.as_ref().map_or(0, |sink| sink.dropped())
+        self.sink.as_ref().map_or(0, |sink| sink.dropped()) + self.messages.unsent()
     }
 }
 

@@ -17,6 +17,7 @@ pub(super) fn line(job: &Job) -> Option<Line> {
 fn message(report: &Report<'_>) -> Option<Message> {
     Some(match report {
         Report::Event(event) => Message::Control(event.as_ref().into()),
+        Report::Ignored(press) => Message::Ignored(press.as_ref().into()),
         Report::Contacts(_, contacts) => Message::Contacts(ContactsRecord::from(contacts.as_ref())),
         Report::Page(shown) => Message::Page(PageRecord { page: Some(shown.page.as_str().into()) }),
         &Report::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
@@ -30,6 +31,7 @@ fn message(report: &Report<'_>) -> Option<Message> {
         Report::Muted(_, muted) => Message::Mute(muted.as_ref().into()),
         Report::Control(_, state) => Message::State(state.as_ref().into()),
         Report::Area(news) => Message::Area(news.as_ref().into()),
+        Report::Message(news) => Message::Sent(news.as_ref().into()),
         // The queue has the cracks in the place of ground events; alive reports have no line.
         Report::Ground(_) | Report::Alive(..) => return None,
     })

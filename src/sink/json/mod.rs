@@ -25,8 +25,9 @@ use crate::wire::LinkState;
 ///
 /// ```json
 /// {"t_s":1.234,"event":"changed","id":"zoom","value":0.5,"force_n":120.5,"x_m":0.61,"y_m":1.2,"contact":3}
+/// {"t_s":2.345,"event":"ignored","id":"zoom","reason":"too_light","why":"too light","force_n":12.5,"contact":4}
 /// {"t_s":9.876,"event":"link","state":"lost"}
-/// {"t_s":9.9,"event":"link_cause","cause":"rate_low","board":0,"why":"board 0 sends 100 packets a second: 150 at least are needed, and 1000 are best"}
+/// {"t_s":9.9,"event":"link_cause","cause":"rate_low","board":0,"why":"board 0 sends 12 packets a second: 20 at least are needed for presses in time"}
 /// {"t_s":9.9,"event":"page","page":"settings"}
 /// {"t_s":9.9,"event":"health","live":143,"degraded":0,"stale":0,"faulty":1,"uncalibrated":0,"foreign":false,"troubles":[{"col":2,"row":1,"corner":"sw","trouble":"stuck"}]}
 /// {"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"sample_rate":96000,"block":64,"underruns":0,"reopened":0,"priority":"real-time"}
@@ -82,6 +83,7 @@ impl From<Gap> for Job {
 enum Key {
     Event(WidgetId, &'static str),
     Control(WidgetId),
+    Message(usize, WidgetId),
     Area(String),
     /// Every other kind of report has only one state.
     State(Discriminant<Report<'static>>),
@@ -97,7 +99,11 @@ fn worth(report: &Report<'static>) -> Worth<Key> {
                 _ => Worth::Each(key),
             }
         }
-        Report::Ground(_) | Report::Crack(_) | Report::Alive(..) => Worth::None,
+        Report::Message(news) => {
+            let key = Key::Message(news.order.target, news.order.control.clone());
+            if news.is_replaceable() { Worth::Latest(key) } else { Worth::Each(key) }
+        }
+        Report::Ignored(_) | Report::Ground(_) | Report::Crack(_) | Report::Alive(..) => Worth::None,
         Report::Control(_, state) => Worth::Latest(Key::Control(state.id.clone())),
         Report::Area(news) => Worth::Latest(Key::Area(news.area.clone())),
         Report::Contacts(..)

@@ -193,7 +193,7 @@ impl<S: SensorSource> FaultInjector<S> {
         let channel = self.rng.random_range(0..channels);
         match &mut packet.readings {
             Readings::Counts(counts) => counts[channel] = None,
-            Readings::Newtons(forces) => forces[channel] = f32::NAN,
+            Readings::Scaled(values) | Readings::Newtons(values) => values[channel] = f32::NAN,
         }
     }
 

@@ -10,8 +10,8 @@ use rosc::{OscMessage, OscPacket, OscType};
 
 use self::messages::PATHS;
 pub(crate) use self::messages::{
-    Alive, Area, Contacts, Crack, Device, Error, Health, Held, Mute, Off, OneContact, Page, PageOfControl,
-    RangeOfChoices, RangeOfNumber, RangeOfPair, State, ValueOfControl,
+    Alive, Area, Contacts, Crack, Device, Error, Health, Held, Ignored, Mute, Off, OneContact, Page,
+    PageOfControl, RangeOfChoices, RangeOfNumber, RangeOfPair, State, ValueOfControl,
 };
 pub(crate) use self::values::{Place, arguments_of_detail, arguments_of_value};
 use super::prefix::Prefix;
@@ -32,14 +32,22 @@ pub(crate) struct Field {
 /// The unit, range or choices of an argument.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FieldRange {
-    /// These words; may be empty.
+    /// This sentence; may be empty.
     Text(&'static str),
+    /// A unit, and more about it, which may be empty.
+    Measure(&'static str, &'static str),
+    /// 0 or 1.
+    Flag,
+    /// One of these words.
+    Words(&'static [&'static str]),
     /// Those of the control's value.
     OfValue,
     /// The states of a lamp.
     Indicators,
     /// The reasons why a control is off.
     OffReasons,
+    /// The reasons why a control ignored a press.
+    IgnoredReasons,
     /// The pages of the layout.
     Pages,
 }

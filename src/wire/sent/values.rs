@@ -2,13 +2,13 @@
 
 use rosc::OscType;
 
-use super::FieldRange::{OfValue, Text};
+use super::FieldRange::{Flag, Measure, OfValue, Words};
 use super::{Append, Arguments, Field, arguments};
 use crate::widget::{Detail, Value};
 
 arguments! {
     /// Off or on.
-    Switch { on: bool = Text("0 or 1"), }
+    Switch { on: bool = Flag, }
     /// The index of a choice.
     Choice { choice: i32 = OfValue, }
     /// A number.
@@ -16,12 +16,12 @@ arguments! {
     /// Two numbers.
     Pair { x_value: f32 = OfValue, y_value: f32 = OfValue, }
     /// The direction of a swipe.
-    Swipe { direction: String = Text("north, east, south or west"), }
+    Swipe { direction: String = Words(&["north", "east", "south", "west"]), }
     /// The force and the place of an event.
     Place {
-        force: f32 = Text("N"),
-        x: f32 = Text("m, eastwards"),
-        y: f32 = Text("m, northwards"),
+        force: f32 = Measure("N", ""),
+        x: f32 = Measure("m", "eastwards"),
+        y: f32 = Measure("m", "northwards"),
     }
 }
 

@@ -40,14 +40,14 @@ fn told(bench: &Bench) -> Vec<EventKind> {
 fn bits(readings: &Readings, channel: usize) -> u32 {
     match readings {
         Readings::Counts(counts) => counts[channel].unwrap_or_default().into(),
-        Readings::Newtons(newtons) => newtons[channel].to_bits(),
+        Readings::Scaled(values) | Readings::Newtons(values) => values[channel].to_bits(),
     }
 }
 
 fn set_bits(readings: &mut Readings, channel: usize, bits: u32) {
     match readings {
         Readings::Counts(counts) => counts[channel] = Some(bits as u16),
-        Readings::Newtons(newtons) => newtons[channel] = f32::from_bits(bits),
+        Readings::Scaled(values) | Readings::Newtons(values) => values[channel] = f32::from_bits(bits),
     }
 }
 

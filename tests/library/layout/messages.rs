@@ -3,7 +3,8 @@
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::messages::{
-    Destination, KeyboardTarget, MouseButton, OscArgument, OscTarget, OscTransport, Payload, Trigger, When,
+    BendSettings, Destination, KeyboardTarget, MidiTarget, MouseButton, OscArgument, OscTarget, OscTransport,
+    Payload, Trigger, When,
 };
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout, write_layout};
 
@@ -85,6 +86,102 @@ fn messages_are_written_and_read_again() {
     let sent = |layout: &Layout| layout.widgets.iter().map(|widget| widget.send.clone()).collect::<Vec<_>>();
     assert_eq!(sent(&again), sent(&layout));
     assert_eq!(again.plan(), layout.plan());
+}
+
+const MUSIC: &str = r##"Layout(
+    version: 2,
+    targets: [
+        (name: "synth", to: Midi("underfoot")),
+        (name: "stage", to: Midi("stage", (into: "Surge"))),
+        (name: "desk", to: Osc("127.0.0.1:53000")),
+        (name: "viewer", to: Keyboard),
+    ],
+    regions: [
+        (id: "all", at: (0, 2), size: (6, 2)),
+        (id: "free", at: (0, 4), size: (6, 2),
+         send: [Contacts(Mpe("synth", (from: 60, to: 84, feet: 4))), Contacts(Mpe("stage")),
+                Contacts(Osc("desk", "/foot", (from: 0, to: 1, args: [foot, x, y, force])), (press_n: 80)),
+                Contacts(Pointer("viewer"))]),
+    ],
+    kinds: [(name: "drum", from: "button", send: [On(clicked, Note("synth", 36, (channel: 10)))])],
+    widgets: [
+        (id: "hit", kind: "button", at: (0, 2), size: (0.8, 0.8),
+         send: [On(clicked, Note("synth", "F#3", (velocity: 90, length_ms: 250))), On(pressed, Program("synth", 5))]),
+        (id: "hold", kind: "dead_man", at: (1, 2), size: (0.9, 0.9),
+         send: [While(pressed, Note("synth", 48)), While(pressed, Cc("synth", (number: 64)))]),
+        (id: "level", kind: "slider", at: (2, 2), size: (2, 0.8),
+         send: [Value(Cc("stage", (number: 7, fine: true))), Value(Bend("synth", (from: 0))),
+                Value(Pressure("synth", (channel: 2, key: 60)))]),
+        (id: "drum_{n}", kind: "drum", at: (0, 3), size: (0.7, 0.7), repeat: (columns: 2, gap: 0.2),
+         send: [On(clicked, Note("synth", "C{n}"))]),
+        (id: "other", kind: "drum", at: (3, 3), size: (0.7, 0.7)),
+    ],
+)"##;
+
+#[test]
+fn a_layout_says_what_its_controls_and_feet_play() {
+    let layout = read(MUSIC);
+    let port = |port: &str, into: Option<&str>| {
+        Destination::Midi(MidiTarget { port: port.into(), into: into.map(str::to_owned) })
+    };
+    assert_eq!(layout.targets[0].to, port("underfoot", None));
+    assert_eq!(layout.targets[1].to, port("stage", Some("Surge")));
+    let of = |id: &str| layout.widgets[layout.widget_index(id).unwrap()].send.as_slice();
+    let [note, program] = of("hit") else { panic!() };
+    let Payload::Note(54, settings) = &note.payload else { panic!("{note:?}") };
+    assert_eq!((settings.channel, settings.velocity, settings.length.as_millis()), (1, Some(90), 250));
+    assert_eq!(program.payload.to_string(), "program 5 on channel 1");
+    let [fine, bend, pressure] = of("level") else { panic!() };
+    let Payload::Controller(fine) = &fine.payload else { panic!("{fine:?}") };
+    assert_eq!((fine.number, fine.fine, fine.top()), (7, true, 16_383));
+    assert_eq!(bend.payload, Payload::Bend(BendSettings { channel: 1, from: 0, to: 8191 }));
+    assert_eq!(pressure.payload.to_string(), "pressure of note C4 on channel 2");
+    let drums = ["drum_1", "drum_2", "other"].map(|id| of(id)[0].payload.to_string());
+    assert_eq!(drums, ["note C1 on channel 1", "note C2 on channel 1", "note C2 on channel 10"]);
+    let [keys, usual, osc, pointer] = layout.regions[1].send.as_slice() else { panic!() };
+    assert_eq!(keys.payload.to_string(), "MPE, keys 60 to 84, up to 4 feet");
+    assert_eq!(usual.payload.to_string(), "MPE, keys 48 to 72, up to 15 feet");
+    assert_eq!((osc.press_n, pointer.press_n), (80.0, 40.0));
+    let again = read(&write_layout(&layout));
+    assert_eq!((&again.targets, again.plan()), (&layout.targets, layout.plan()));
+    assert_eq!(again.regions[1].send, layout.regions[1].send);
+}
+
+/// Everything that may sound is released before the first message, and nothing else.
+#[test]
+fn a_plan_knows_all_that_it_can_hold() {
+    let held: Vec<String> = read(MUSIC).plan().holdables().iter().map(|(_, what)| what.to_string()).collect();
+    for what in ["note C3 on channel 1", "controller 64 on channel 1", "all notes on channel 5"] {
+        assert!(held.contains(&what.to_owned()), "{what}: {held:?}");
+    }
+    assert!(!held.iter().any(|what| what.contains("controller 7")), "{held:?}");
+}
+
+#[test]
+fn what_midi_lacks_is_refused_with_its_place() {
+    let wrong = [
+        (r#"On(clicked, Note("synth", 128))"#, "expected 0 to 127"),
+        (r#"On(clicked, Note("synth", "H4"))"#, "there is no note called \"H4\""),
+        (r#"On(clicked, Note("synth", 60, (channel: 17)))"#, "expected 1 to 16"),
+        (r#"On(clicked, Cc("synth", (number: 120)))"#, "expected 0 to 119"),
+        (r#"On(clicked, Cc("synth", (number: 40, fine: true)))"#, "this controller has 7 bits only"),
+        (r#"On(clicked, Cc("synth", (number: 7, to: 200)))"#, "more than 7 bits"),
+        (r#"On(clicked, Bend("synth"))"#, "it follows a value"),
+        (r#"On(clicked, Note("viewer", 60))"#, "\"viewer\" can't receive Note"),
+        (r#"On(clicked, Key("synth", "a"))"#, "\"synth\" can't receive Key"),
+        (r#"On(clicked, Note("organ", 60))"#, "there is no target \"organ\""),
+        (r#"On(clicked, Osc("desk", "/a", (args: [foot])))"#, "only the feet of a region have numbers"),
+    ];
+    for (message, expected) in wrong {
+        let text = MUSIC.replace(r#"On(pressed, Program("synth", 5))"#, message);
+        assert_ne!(text, MUSIC);
+        let problems = parse_layout(&text, "it", &Kinds::builtin(), &Floor::default().geometry);
+        let problems = problems.map(|loaded| loaded.warnings).unwrap_err().to_string();
+        assert!(problems.contains(expected), "{message}: {problems}");
+    }
+    let port = MUSIC.replace("Midi(\"underfoot\")", "Midi(\"under:foot\")");
+    let problems = parse_layout(&port, "it", &Kinds::builtin(), &Floor::default().geometry).unwrap_err();
+    assert!(problems.to_string().contains("name of a port"), "{problems}");
 }
 
 /// Files of version 1 have no messages, and stay as they are.

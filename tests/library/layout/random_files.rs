@@ -320,7 +320,7 @@ fn build((geometry, sensors, actuators, rewired, seed): Parts) -> Floor {
         floor.boards = sensors
             .chunks(31)
             .enumerate()
-            .map(|(number, chunk)| Board { address: address(number), channels: channels(chunk) })
+            .map(|(number, chunk)| Board::new(address(number), channels(chunk)))
             .collect();
     }
     floor

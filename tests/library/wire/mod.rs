@@ -5,6 +5,7 @@ mod assembler;
 mod hostile;
 mod mute;
 mod osc_out;
+mod rates;
 mod server;
 mod tuio;
 mod tuio_client;

@@ -137,7 +137,7 @@ fn print(judged: &[(&SensorLoads, Judgement)], all_laws: bool) {
     outln!("tile      corner  law          {:<wide$}  residual  points  verdict", "f in N, v in V");
     for (loads, judgement) in judged {
         let tile = loads.sensor.tile.to_string();
-        let corner = loads.sensor.corner.name();
+        let corner = loads.name;
         let law = judgement.fit.map_or("-", |fit| fit.calibration.kind().name());
         let (formula, residual) = (formula(&judgement.fit), residual(&judgement.fit));
         let (points, verdict) = (loads.points.len(), verdict(judgement));
@@ -202,7 +202,7 @@ fn as_json(loads: &SensorLoads, judgement: &Judgement) -> Value {
     let mut sensor = json!({
         "col": loads.sensor.tile.column,
         "row": loads.sensor.tile.row,
-        "corner": loads.sensor.corner.name(),
+        "corner": loads.name,
         "law": judgement.laws.chosen.map(LawKind::name),
         "a_n": null,
         "b_per_volt": null,
@@ -252,6 +252,6 @@ fn failures(judged: &[(&SensorLoads, Judgement)]) -> impl Iterator<Item = String
             }
             Err(error) => error.to_string(),
         };
-        Some(format!("the sensor of {}: {reason}: {advice}", loads.sensor))
+        Some(format!("the sensor of tile {} {}: {reason}: {advice}", loads.sensor.tile, loads.name))
     })
 }

@@ -159,7 +159,7 @@ fn complaints(scene: &mut Scene, area: Rect, judged: &[(&SensorLoads, Judgement)
     for (loads, judgement) in of_tile.filter(|(_, judgement)| judgement.verdict != Verdict::Good) {
         let colour = if judgement.verdict == Verdict::Poor { THEME.warning } else { THEME.fault };
         let residual = judgement.fit.map_or(String::new(), |fit| format!(", {:.0} %", 100.0 * fit.residual));
-        let words = format!("{}: {}{residual}", loads.sensor.corner.name(), judgement.verdict.name());
+        let words = format!("{}: {}{residual}", loads.name, judgement.verdict.name());
         text(scene, at, Anchor::Start, 0.011, colour, &words);
         at.y -= 0.014;
     }

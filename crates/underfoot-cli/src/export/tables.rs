@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use serde_json::Value;
+use underfoot::floor::Corner;
 use underfoot::recording::{Recording, Speed};
 use underfoot::sense::{Assembler, Tare};
 use underfoot::serve::Ended;
@@ -46,7 +47,8 @@ fn forces(file: &Path, to: &Path, part: &RecordedPart, tell: Tell<'_>) -> Result
     let mut source = FloorInput::from(recording.source(Speed::Max)).source;
     let mut assembler = Assembler::with_tare(&floor, Tare::suited_to(&floor));
     let mut out = create(to)?;
-    writeln!(out, "t_s,col,row,f_sw,f_se,f_nw,f_ne").map_err(failed)?;
+    let names = Corner::ALL.map(|sensor| floor.geometry.sensor_name(sensor));
+    writeln!(out, "t_s,col,row,f_{}", names.join(",f_")).map_err(failed)?;
     loop {
         match source.next(Duration::ZERO) {
             Ok(Some(packet)) => assembler.take(&packet),

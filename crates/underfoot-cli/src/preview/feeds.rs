@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use underfoot::feel::ScopeReader;
 use underfoot::glam::Vec2;
+use underfoot::messages::MessageNews;
 use underfoot::runtime::Session;
 use underfoot::sink::{EventSink, Report};
 use underfoot::widget::WidgetEvent;
@@ -20,10 +21,12 @@ pub(super) struct ToWindow {
 
 impl EventSink for ToWindow {
     fn report(&mut self, report: &Report<'_>) {
-        if let Report::Event(event) = report
-            && let Err(TrySendError::Full(_)) =
-                self.events.try_send(EventNews::Event(WidgetEvent::clone(event)))
-        {
+        let news = match report {
+            Report::Event(event) => EventNews::Event(WidgetEvent::clone(event)),
+            Report::Message(news) => EventNews::Sent(MessageNews::clone(news)),
+            _ => return,
+        };
+        if let Err(TrySendError::Full(_)) = self.events.try_send(news) {
             self.missed += 1;
         }
     }

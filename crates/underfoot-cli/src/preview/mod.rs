@@ -5,6 +5,7 @@ mod commands;
 mod feeds;
 mod followed;
 mod joined;
+mod layers;
 mod player;
 mod visits;
 
@@ -28,6 +29,7 @@ use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
 use underfoot::source::{FloorInput, LinkFaults};
 use underfoot::units::HostClock;
+use underfoot_scene::scene::Show;
 use underfoot_sim::{
     ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
     feet_by_hand, watched,
@@ -41,6 +43,7 @@ use self::commands::{CommandHandler, Desk};
 use self::feeds::{Mouse, SignalScopes, ToWindow, shoe, stop_and_wait};
 use self::followed::FollowedFeed;
 use self::joined::Joined;
+use self::layers::read_layers;
 use self::player::ShownRecording;
 use self::visits::Visits;
 use super::actuate::ActuateArgs;
@@ -91,12 +94,16 @@ pub(crate) struct Args {
     /// Open the window for a projector at once, over the whole screen: the controls alone, laid onto the floor.
     #[arg(long)]
     project: bool,
-    /// The screen that the projection fills, counted from 0.
-    #[arg(long, value_name = "NUMBER", requires = "project")]
-    monitor: Option<usize>,
-    /// File that remembers where the floor's corners are on the projection, in place of the usual one.
+    /// The screen that the projection fills, counted from 0; `1,2` for two projectors.
+    #[arg(long, value_name = "NUMBER[,NUMBER]", requires = "project", value_parser = read_monitors)]
+    monitor: Option<[Option<usize>; 2]>,
+    /// File that remembers corners, brightness and screens of the projectors, in place of the usual one.
     #[arg(long, value_name = "FILE")]
     corners: Option<PathBuf>,
+    /// Layers over the floor at the start, separated by commas, as the menu *Layers* names them: `contacts,tile-forces`.
+    /// Also `usual`, `all` and `none`.
+    #[arg(long, value_name = "NAMES", value_parser = read_layers)]
+    layers: Option<Show>,
     #[command(flatten)]
     sim: SimArgs,
     #[command(flatten)]
@@ -106,6 +113,18 @@ pub(crate) struct Args {
     /// The paper's plain sensing: one contact per group of connected tiles.
     #[arg(long)]
     eq4: bool,
+}
+
+/// Reads the screens of one or two projectors.
+fn read_monitors(text: &str) -> Result<[Option<usize>; 2], String> {
+    let number = |text: &str| text.trim().parse::<usize>().map_err(|error| format!("`{text}`: {error}"));
+    match text.split_once(',') {
+        None => Ok([Some(number(text)?), None]),
+        Some((first, second)) if number(first)? == number(second)? => {
+            Err("both projectors would fill the same screen".into())
+        }
+        Some((first, second)) => Ok([Some(number(first)?), Some(number(second)?)]),
+    }
 }
 
 /// Options of a floor that is served and felt here; a floor served elsewhere is only shown.
@@ -343,11 +362,12 @@ impl Args {
         let projection = ProjectionOptions {
             open: self.project,
             keeps_awake: true,
-            monitor: self.monitor,
+            monitors: self.monitor.unwrap_or_default(),
             corners: self.corners.clone(),
         };
         let settings = Some(preview::usual_state().join("window"));
-        PreviewOptions { projection, settings, ..PreviewOptions::default() }
+        let usual = PreviewOptions::default();
+        PreviewOptions { projection, settings, layers: self.layers.unwrap_or(usual.layers), ..usual }
     }
 
     /// The address for the packets of a real floor; `None` for a simulated one.
@@ -443,13 +463,22 @@ impl Args {
 mod tests {
     use clap::Args as _;
 
-    use super::{Args, served_here};
+    use super::{Args, read_monitors, served_here};
 
     /// Options of the view, for a floor served here or elsewhere, and the hidden one that explains where a layout stands.
-    const SHOWN: [&str; 11] = [
+    const SHOWN: [&str; 12] = [
         "_option", "layout", "widgets", "effects", "floor", "grid", "join", "follow", "project", "monitor",
-        "corners",
+        "corners", "layers",
     ];
+
+    #[test]
+    fn one_or_two_different_screens_are_read() {
+        assert_eq!(read_monitors("1"), Ok([Some(1), None]));
+        assert_eq!(read_monitors("1,2"), Ok([Some(1), Some(2)]));
+        for bad in ["", "one", "1,", "1,2,3", "-1", "1,1"] {
+            assert!(read_monitors(bad).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn every_option_is_of_a_floor_served_here_or_of_any() {

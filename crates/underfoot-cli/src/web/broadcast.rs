@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use serde::Serialize;
 use tracing::warn;
 use tungstenite::{Bytes, Message};
 use underfoot::outgoing::json::{self, ClientsRecord, Line};
@@ -22,6 +23,19 @@ pub(super) struct Clients {
     state: Mutex<State>,
     /// Number of joined windows.
     windows: Arc<AtomicUsize>,
+}
+
+/// Numbers of clients.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(super) struct ClientCounts {
+    /// Clients that are connected now.
+    pub(super) connected: usize,
+    /// Clients since the start.
+    pub(super) served: u64,
+    /// Clients that did not read.
+    pub(super) dropped: u64,
+    /// Web pages of other origins.
+    pub(super) refused: u64,
 }
 
 #[derive(Debug, Default)]
@@ -113,10 +127,10 @@ impl Clients {
         }
     }
 
-    /// Numbers of clients that were served and dropped.
-    pub(super) fn counts(&self) -> (u64, u64) {
-        let state = self.lock();
-        (state.served, state.dropped)
+    /// The numbers of clients so far.
+    pub(super) fn counts(&self) -> ClientCounts {
+        let State { ref there, served, dropped, refused, .. } = *self.lock();
+        ClientCounts { connected: there.len(), served, dropped, refused }
     }
 }
 
@@ -200,6 +214,12 @@ impl Drop for Broadcast {
 mod tests {
     use super::*;
 
+    /// The numbers of served and of dropped clients.
+    fn served_and_dropped(clients: &Clients) -> (u64, u64) {
+        let ClientCounts { served, dropped, .. } = clients.counts();
+        (served, dropped)
+    }
+
     #[test]
     fn who_does_not_read_is_dropped_and_the_others_hear_of_it() {
         let clients = Arc::<Clients>::default();
@@ -211,10 +231,10 @@ mod tests {
             out.write_all(b"}\n").unwrap();
             heard += reading.queue.try_iter().filter(|line| line.to_string().contains("number")).count();
         }
-        assert_eq!((heard, clients.counts()), (WAITING + 1, (2, 1)));
+        assert_eq!((heard, served_and_dropped(&clients)), (WAITING + 1, (2, 1)));
         assert!(stalled.dropped.load(Ordering::Relaxed) && !reading.dropped.load(Ordering::Relaxed));
         clients.leave(([127, 0, 0, 1], 1).into(), true);
-        assert_eq!(clients.counts(), (2, 1), "counted once");
+        assert_eq!(served_and_dropped(&clients), (2, 1), "counted once");
         drop(out);
         assert!(reading.queue.recv().is_err(), "the floor has ended");
     }
@@ -231,6 +251,6 @@ mod tests {
         assert_eq!(clients.windows().load(Ordering::Relaxed), 1);
         (0..=WAITING_FRAMES).for_each(|_| clients.tell_frame(vec![1]));
         assert!(window.dropped.load(Ordering::Relaxed) && !page.dropped.load(Ordering::Relaxed));
-        assert_eq!((clients.windows().load(Ordering::Relaxed), clients.counts()), (0, (2, 1)));
+        assert_eq!((clients.windows().load(Ordering::Relaxed), served_and_dropped(&clients)), (0, (2, 1)));
     }
 }

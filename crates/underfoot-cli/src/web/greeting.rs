@@ -44,6 +44,7 @@ pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
         serde_json::to_value(control).unwrap_or_default()
     });
     let (size, cause) = (geometry.bounds().max, seen.floor.link_cause.as_ref());
+    let tile = geometry.tile_m();
     let record = FloorRecord {
         controls: controls.collect(),
         depth_m: size.y.into(),
@@ -51,7 +52,8 @@ pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
         link: seen.floor.link.name().into(),
         link_cause: cause.map(|cause| cause.name().into()),
         page: seen.page().map(Into::into),
-        tile_m: geometry.tile_m().into(),
+        tile_depth_m: (tile.x != tile.y).then(|| tile.y.into()),
+        tile_m: tile.x.into(),
         title: seen.layout.title.clone(),
         why: cause.map(|cause| Sentence(cause.to_string())),
         width_m: size.x.into(),

@@ -1,38 +1,43 @@
 //! The server for web pages: events as JSON lines over WebSocket, requests the other way, and one page of ours. Windows
-//! that show the same floor join here, at `/mirror`.
+//! that show the same floor join here, at `/mirror`; `watch` answers those who watch the floor for months. `query` is a
+//! server of its own, for programs that ask for the floor's OSC addresses.
 
+mod accept;
 mod broadcast;
 mod budget;
 mod checks;
 mod client;
 mod greeting;
+mod http;
 mod layout;
 mod origin;
+mod pages;
+mod query;
 mod request;
 mod rooms;
+mod socket;
+mod watch;
 
-use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::{self, Builder, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use tracing::warn;
 use underfoot::floor::{Floor, Geometry, Network, read_address};
 use underfoot::mirror::MirrorFeed;
 use underfoot::runtime::Session;
 use underfoot::sense::Method;
-use underfoot::sink::{EventSink, JsonSink};
+use underfoot::sink::{Fanout, JsonSink};
 use underfoot::source::FloorInput;
-
-use super::failure::Failure;
-use broadcast::{Broadcast, Clients};
 use underfoot_io::targets::LoadedPlan;
 
+use super::failure::Failure;
+use accept::Accepting;
+use broadcast::{Broadcast, ClientCounts, Clients};
 use checks::Checks;
+use http::{head, wait_for};
 use origin::PageOrigin;
-use rooms::{Refusals, Rooms};
+pub(crate) use query::QueryArgs;
+use watch::{CountingSink, EventCounts, FloorWatch};
 
 /// Options of the server for web pages.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -58,20 +63,13 @@ const MOST_BYTES: usize = 4096;
 /// Maximum time for the head of a client's request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Maximum size of that head, in bytes.
-const MOST_HEAD: usize = 8192;
-
-/// Interval between two checks for new connections.
-const LOOK_EVERY: Duration = Duration::from_millis(20);
-
-const PAGE: &str = include_str!("page.html");
-
 /// The server before the floor exists: its port is open, but it accepts no clients yet.
 pub(crate) struct WebListener {
     listener: TcpListener,
     origins: Vec<PageOrigin>,
     takes_layouts: bool,
     clients: Arc<Clients>,
+    events: Arc<EventCounts>,
     feed: MirrorFeed,
 }
 
@@ -86,35 +84,37 @@ struct Shared {
     /// Networks from which requests are accepted.
     apps: Vec<Network>,
     clients: Arc<Clients>,
-    over: AtomicBool,
+    watch: FloorWatch,
 }
 
 /// The running server; ends when dropped.
 pub(crate) struct WebServer {
     shared: Arc<Shared>,
     feed: MirrorFeed,
-    thread: Option<JoinHandle<()>>,
+    /// Present until the server ends.
+    accepting: Option<Accepting>,
 }
 
 impl WebArgs {
     /// Opens the port, if an address is given.
     pub(crate) fn open(&self) -> Result<Option<WebListener>, Failure> {
         let Some(address) = self.web else { return Ok(None) };
-        let failed = |error| Failure::Other(format!("can't listen on {address} for web pages: {error}"));
-        let listener = TcpListener::bind(address).map_err(failed)?;
-        listener.set_nonblocking(true).map_err(failed)?;
+        let listener = accept::open(address, "web pages")?;
         let clients = Arc::<Clients>::default();
         let told = Arc::clone(&clients);
         let feed = MirrorFeed::start(clients.windows(), move |frame| told.tell_frame(frame))?;
         let (origins, takes_layouts) = (self.web_origin.clone(), self.web_layouts);
-        Ok(Some(WebListener { listener, origins, takes_layouts, clients, feed }))
+        let events = Arc::<EventCounts>::default();
+        Ok(Some(WebListener { listener, origins, takes_layouts, clients, events, feed }))
     }
 }
 
 impl WebListener {
-    /// The sink that sends events to the clients.
-    pub(crate) fn sink(&self) -> Result<impl EventSink + 'static, Failure> {
-        Ok(JsonSink::new(Broadcast::new(Arc::clone(&self.clients)))?.with_contacts())
+    /// Adds the sinks that send events to the clients, and count them.
+    pub(crate) fn listen(&self, outputs: &mut Fanout) -> Result<(), Failure> {
+        outputs.push(JsonSink::new(Broadcast::new(Arc::clone(&self.clients)))?.with_contacts());
+        outputs.push(CountingSink::new(Arc::clone(&self.events)));
+        Ok(())
     }
 
     /// Wraps `input`, so that joined windows get its results.
@@ -131,10 +131,10 @@ impl WebListener {
         apps: Vec<Network>,
         messages: LoadedPlan,
     ) -> Result<WebServer, Failure> {
-        let Self { listener, origins, takes_layouts, clients, feed } = self;
+        let Self { listener, origins, takes_layouts, clients, events, feed } = self;
         let failed = |error| Failure::Other(format!("web pages can't be served: {error}"));
         errln!("The floor as a web page: http://{}/", listener.local_addr().map_err(failed)?);
-        let start = || Checks::start(session.clone(), floor.geometry, messages);
+        let start = || Checks::start(session.clone(), floor.geometry, messages.clone());
         let checks = takes_layouts.then(start).transpose();
         let shared = Arc::new(Shared {
             session,
@@ -144,21 +144,20 @@ impl WebListener {
             origins,
             apps,
             clients,
-            over: AtomicBool::new(false),
+            watch: FloorWatch::new(events, messages),
         });
         let own = Arc::clone(&shared);
-        let serve = move || accept(&listener, &own);
-        let thread = Some(Builder::new().name("web server".into()).spawn(serve).map_err(failed)?);
-        Ok(WebServer { shared, feed, thread })
+        let serve = move |stream, peer| receive(stream, peer, &own);
+        let accepting = Some(Accepting::start(listener, serve).map_err(failed)?);
+        Ok(WebServer { shared, feed, accepting })
     }
 }
 
 impl Drop for WebServer {
     fn drop(&mut self) {
-        self.shared.over.store(true, Ordering::Relaxed);
-        // A panic of the thread has been reported.
-        let _ = self.thread.take().map(JoinHandle::join);
-        let (served, dropped) = self.shared.clients.counts();
+        // Waits for the clients, so that the numbers are the last ones.
+        self.accepting = None;
+        let ClientCounts { served, dropped, .. } = self.shared.clients.counts();
         errln!("Web: clients served {served}, dropped because they did not read {dropped}.");
         if self.feed.lost() > 0 {
             errln!("Web: {} packets could not be shown to windows.", self.feed.lost());
@@ -166,93 +165,13 @@ impl Drop for WebServer {
     }
 }
 
-/// Accepts clients until the server ends, and waits for the connected ones.
-fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
-    let (mut rooms, refusals) = (Rooms::default(), Refusals::start());
-    while !shared.over.load(Ordering::Relaxed) {
-        match listener.accept() {
-            Ok((stream, peer)) => {
-                let now = Instant::now();
-                if let Some(why) = rooms.why_not(peer.ip(), now) {
-                    refusals.refuse(stream, why);
-                    continue;
-                }
-                let own = Arc::clone(shared);
-                match Builder::new().name("web client".into()).spawn(move || receive(stream, peer, &own)) {
-                    Ok(room) => rooms.take(peer.ip(), room, now),
-                    Err(error) => warn!("a web client can't be served: {error}"),
-                }
-            }
-            Err(error) => {
-                if error.kind() != ErrorKind::WouldBlock {
-                    warn!("a web client can't come in: {error}");
-                }
-                thread::sleep(LOOK_EVERY);
-            }
-        }
-    }
-    rooms.wait();
-}
-
-/// Answers one connection: with a page, or with events for as long as it lasts.
+/// Answers one connection: with a page or a number, or with events for as long as it lasts.
 fn receive(stream: TcpStream, peer: SocketAddr, shared: &Shared) {
     // A client that has left meanwhile is not an error.
-    let Some(head) = wait_for(&stream, PATIENCE).ok().and_then(|()| head(&stream)) else { return };
-    if head.to_ascii_lowercase().contains("\r\nupgrade: websocket\r\n") {
-        client::serve(stream, peer, shared, head.starts_with("GET /mirror "));
-    } else if head.starts_with("GET / ") {
-        show_page(stream);
+    let Some(head) = wait_for(&stream, PATIENCE).ok().and_then(|()| head(&stream, PATIENCE)) else { return };
+    if head.is_upgrade() {
+        client::serve(stream, peer, shared, head.path == "/mirror");
     } else {
-        turn_away(stream, "404 Not Found", "there is one page here: /");
+        pages::answer(stream, &head, shared);
     }
-}
-
-/// Makes `stream` block on its client, up to this time-out.
-fn wait_for(stream: &TcpStream, patience: Duration) -> std::io::Result<()> {
-    stream.set_nonblocking(false)?;
-    stream.set_read_timeout(Some(patience))?;
-    stream.set_write_timeout(Some(patience))?;
-    stream.set_nodelay(true)
-}
-
-/// The head of the request, which remains in the stream.
-fn head(stream: &TcpStream) -> Option<String> {
-    let begun = Instant::now();
-    let mut bytes = [0; MOST_HEAD];
-    while begun.elapsed() < PATIENCE {
-        let count = stream.peek(&mut bytes).ok().filter(|&count| count > 0)?;
-        let head = &bytes[..count];
-        if let Some(end) = head.windows(4).position(|end| end == b"\r\n\r\n") {
-            return Some(String::from_utf8_lossy(&head[..end + 4]).into_owned());
-        }
-        if count == MOST_HEAD {
-            return None;
-        }
-        thread::sleep(Duration::from_millis(5));
-    }
-    None
-}
-
-fn show_page(stream: TcpStream) {
-    // The page loads nothing from elsewhere, and no other page may frame it.
-    const HEAD: &str = "Content-Type: text/html; charset=utf-8\r\nCache-Control: no-cache\r\n\
-        Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
-        connect-src 'self' ws:; frame-ancestors 'none'\r\nX-Content-Type-Options: nosniff\r\n";
-    answer(stream, "200 OK", HEAD, PAGE);
-}
-
-fn turn_away(stream: TcpStream, status: &str, why: &str) {
-    answer(stream, status, "Content-Type: text/plain; charset=utf-8\r\n", why);
-}
-
-fn answer(mut stream: TcpStream, status: &str, head: &str, body: &str) {
-    let length = body.len();
-    // The client may not wait for the answer.
-    let _ = write!(
-        stream,
-        "HTTP/1.1 {status}\r\n{head}Content-Length: {length}\r\nConnection: close\r\n\r\n{body}"
-    );
-    // Reads the request, so that the system does not cut the answer off.
-    let _ = stream.set_read_timeout(Some(LOOK_EVERY));
-    let _ = stream.read(&mut [0; MOST_HEAD]);
 }

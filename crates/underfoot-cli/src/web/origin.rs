@@ -35,6 +35,23 @@ pub(super) fn may_connect(origin: Option<&str>, own: SocketAddr, allowed: &[Page
     ip.is_some_and(|ip| ip.is_loopback() || read_address(authority) == Ok(canonical(own)))
 }
 
+/// Whether a request that names `host` as its receiver may be answered: a number, this machine, or the host of an
+/// allowed origin. Any other name may belong to a page that made it lead here (DNS rebinding). A client without a host
+/// is not a browser.
+pub(super) fn may_be_named(receiver: Option<&str>, allowed: &[PageOrigin]) -> bool {
+    let Some(receiver) = receiver else { return true };
+    let receiver = receiver.to_ascii_lowercase();
+    let Some(name) = host(&receiver) else { return false };
+    let is_allowed = |origin: &PageOrigin| {
+        origin
+            .0
+            .split_once("://")
+            .and_then(|(_, authority)| host(authority))
+            .is_some_and(|other| other == name)
+    };
+    name == "localhost" || name.parse::<IpAddr>().is_ok() || allowed.iter().any(is_allowed)
+}
+
 /// The host of `host:port` or `[host]:port`.
 fn host(authority: &str) -> Option<&str> {
     match authority.strip_prefix('[') {
@@ -76,6 +93,26 @@ mod tests {
             assert!(!may(bad), "{bad}");
         }
         assert!(may_connect(None, own, &[]));
+    }
+
+    #[test]
+    fn names_that_may_lead_here_by_a_trick_are_no_receivers() {
+        let allowed: Vec<PageOrigin> = vec!["http://floor.lan:9002".parse().unwrap()];
+        for good in
+            ["127.0.0.1:9002", "[::1]:9002", "192.168.1.5", "LocalHost:80", "floor.lan:9002", "floor.lan"]
+        {
+            assert!(may_be_named(Some(good), &allowed), "{good}");
+        }
+        for bad in [
+            "evil.example:9002",
+            "",
+            "localhost.evil.example",
+            "floor.lan.evil.example",
+            "127.0.0.1.evil.example",
+        ] {
+            assert!(!may_be_named(Some(bad), &allowed), "{bad}");
+        }
+        assert!(may_be_named(None, &[]));
     }
 
     #[test]

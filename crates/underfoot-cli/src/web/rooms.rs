@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use tracing::warn;
 
-use super::{MOST, turn_away, wait_for};
+use super::MOST;
+use super::http::{turn_away, wait_for};
 
 /// Maximum number of clients of one other machine: a wall of screens, each with a page.
 const MOST_OF_ONE: usize = 6;

@@ -49,7 +49,7 @@ fn events(lines: &[String]) -> Vec<Vec<Value>> {
         let line: Value = serde_json::from_str(line).unwrap();
         let is_told = match line["event"].as_str() {
             Some("link") => true,
-            Some("state") | None => false,
+            Some("state" | "ignored" | "sent") | None => false,
             Some(_) => line["id"].is_string(),
         };
         is_told.then(|| FIELDS.map(|field| line[field].clone()).to_vec())

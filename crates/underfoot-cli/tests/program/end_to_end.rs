@@ -21,11 +21,11 @@ pub(super) fn said(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
-/// Events of controls from JSON lines: time, control, kind and value.
+/// Events of controls from JSON lines, without ignored feet: time, control, kind and value.
 fn events(lines: &str) -> Vec<(f64, String, String, Value)> {
     let parsed = lines.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
     parsed
-        .filter(|event| event["id"].is_string())
+        .filter(|event| event["id"].is_string() && event["event"] != "ignored")
         .map(|event| {
             let text = |field: &str| event[field].as_str().unwrap().to_string();
             (event["t_s"].as_f64().unwrap(), text("id"), text("event"), event["value"].clone())

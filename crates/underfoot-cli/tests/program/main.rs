@@ -25,10 +25,13 @@ mod hostile_pages;
 mod input;
 #[cfg(target_os = "linux")]
 mod letters;
+#[cfg(target_os = "linux")]
+mod midi;
 mod mirror;
 mod output;
 mod page_commands;
 mod plan;
+mod query;
 mod rack;
 mod recordings;
 mod senders;
@@ -41,8 +44,8 @@ mod storage;
 mod strange_boards;
 mod systemd;
 mod tables;
-#[cfg(target_os = "linux")]
 mod targets;
 mod unit_files;
+mod watch;
 mod web;
 mod wiring;

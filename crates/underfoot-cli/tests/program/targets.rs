@@ -15,7 +15,7 @@ use crate::holds::client::Client;
 use crate::holds::site::{BoardFault, Boards, Run, Site};
 
 /// Longest time for which anything may stay down.
-const SOON: Duration = Duration::from_millis(150);
+pub const SOON: Duration = Duration::from_millis(150);
 
 /// Number of attempts on a machine that may be busy.
 const TRIES: usize = 6;
@@ -24,7 +24,7 @@ const TRIES: usize = 6;
 const AT_LAST: Duration = Duration::from_secs(30);
 
 /// The page of the other tests, with `send` for the pedal.
-fn page(targets: &str, send: &str) -> String {
+pub fn page(targets: &str, send: &str) -> String {
     format!(
         r#"Layout(
     version: 2,
@@ -40,7 +40,7 @@ fn page(targets: &str, send: &str) -> String {
 }
 
 /// An observer of what is down.
-trait Observer {
+pub trait Observer {
     /// Whether it is down now.
     fn is_down(&mut self) -> bool;
 }
@@ -137,7 +137,7 @@ impl Drop for VirtualScreen {
 }
 
 /// The guardian of the running program: its only child.
-fn guardian(run: &Run) -> u32 {
+pub fn guardian(run: &Run) -> u32 {
     let threads = PathBuf::from(format!("/proc/{}/task", run.child.id()));
     let children = threads.read_dir().unwrap().flatten().flat_map(|thread| {
         let children = std::fs::read_to_string(thread.path().join("children")).unwrap_or_default();
@@ -146,11 +146,11 @@ fn guardian(run: &Run) -> u32 {
     children.last().expect("a guardian")
 }
 
-fn kill(id: u32, signal: &str) {
+pub fn kill(id: u32, signal: &str) {
     assert!(Command::new("kill").args(["-s", signal, &id.to_string()]).status().unwrap().success());
 }
 
-fn until(what: &str, mut is_so: impl FnMut() -> bool) -> Duration {
+pub fn until(what: &str, mut is_so: impl FnMut() -> bool) -> Duration {
     let begun = Instant::now();
     while !is_so() {
         assert!(begun.elapsed() < AT_LAST, "never: {what}");
@@ -160,9 +160,9 @@ fn until(what: &str, mut is_so: impl FnMut() -> bool) -> Duration {
 }
 
 /// An end of a hold: what happens to the program, its guardian or its boards.
-type End = (&'static str, fn(&Run, &Boards));
+pub type End = (&'static str, fn(&Run, &Boards));
 
-const ENDS: [End; 9] = [
+pub const ENDS: [End; 9] = [
     ("server SIGTERM", |run, _| kill(run.child.id(), "TERM")),
     ("server kill -9", |run, _| kill(run.child.id(), "KILL")),
     ("server SIGSTOP", |run, _| kill(run.child.id(), "STOP")),
@@ -178,7 +178,7 @@ const ENDS: [End; 9] = [
 ];
 
 /// Holds the pedal, does `end`, and returns the time until the observer sees it up.
-fn held_for(site: &Site, observer: &mut impl Observer, end: fn(&Run, &Boards)) -> Duration {
+pub fn held_for(site: &Site, observer: &mut impl Observer, end: fn(&Run, &Boards)) -> Duration {
     let client = Client::new();
     let run = site.run(&client, &[]);
     let boards = Boards::start(site, run.address);
@@ -197,7 +197,7 @@ fn held_for(site: &Site, observer: &mut impl Observer, end: fn(&Run, &Boards)) -
     took
 }
 
-fn comes_up_soon(site: &Site, observer: &mut impl Observer) {
+pub fn comes_up_soon(site: &Site, observer: &mut impl Observer) {
     for (name, end) in ENDS {
         let mut times: Vec<Duration> = Vec::new();
         // An X server may lose the last requests of a client that ends: once is not enough there.
@@ -242,9 +242,14 @@ fn site_with_key(screen: &VirtualScreen) -> (Site, OscDesk) {
 fn twenty_rounds_of_each_end_of_a_key() {
     let Some(mut screen) = VirtualScreen::open() else { return };
     let (site, _desk) = site_with_key(&screen);
+    twenty_rounds(&site, &mut screen);
+}
+
+/// Plays twenty rounds of each end and prints the median and the longest time.
+pub fn twenty_rounds(site: &Site, observer: &mut impl Observer) {
     let mut late = Vec::new();
     for (name, end) in ENDS {
-        let mut times: Vec<Duration> = (0..20).map(|_| held_for(&site, &mut screen, end)).collect();
+        let mut times: Vec<Duration> = (0..20).map(|_| held_for(site, observer, end)).collect();
         times.sort();
         println!("{name}: median {:?}, longest {:?}", times[10], times[19]);
         late.extend((times[19] > SOON).then(|| format!("{name}: {times:?}")));

@@ -51,7 +51,7 @@ fn connected(web: SocketAddr) -> WebSocket<TcpStream> {
 }
 
 /// The answer to a request with these headers.
-fn answer(web: SocketAddr, path: &str, headers: &str) -> String {
+pub(super) fn answer(web: SocketAddr, path: &str, headers: &str) -> String {
     let mut stream = stream(web);
     write!(stream, "GET {path} HTTP/1.1\r\nHost: {web}\r\n{headers}\r\n").unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(2))).unwrap();

@@ -202,7 +202,13 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, BadMessage> {
 pub fn fingerprint(floor: &Floor) -> u64 {
     let geometry = &floor.geometry;
     let areas: Vec<_> = floor.areas.iter().map(|area| (&area.id, area.tiles)).collect();
-    let text = format!("{:?} {} {areas:?}", geometry.block(), geometry.pitch_m());
+    let pitch = geometry.pitch_m();
+    let square = format!("{:?} {} {areas:?}", geometry.block(), pitch.x);
+    // Computers with older programs serve square grids.
+    let text = match geometry.is_square_grid() {
+        true => square,
+        false => format!("{square} {pitch} {:?} {:?}", geometry.missing(), geometry.own_plates()),
+    };
     fnv(text.as_bytes())
 }
 

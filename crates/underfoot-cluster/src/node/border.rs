@@ -510,7 +510,7 @@ mod tests {
         let mut floor = Floor::of(Geometry::of_paper_tiles(24, 1).unwrap()).with_areas(areas);
         let sensors = |tile| Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
         let channels = (6..18).flat_map(|column| sensors(TileId::new(column, 0))).collect();
-        floor.boards = vec![Board { address: "/underfoot/board/0".into(), channels }];
+        floor.boards = vec![Board::new("/underfoot/board/0", channels)];
         let ids = |number: usize| -> Vec<&str> {
             Border::neighbours(&floor, &floor.areas[number]).into_iter().map(|area| &*area.id).collect()
         };

@@ -125,9 +125,9 @@ fn what_belongs_to_one_computer_is_felt_on_the_tiles_of_both() {
 fn wide_boards() -> Floor {
     let mut floor = listening();
     let sensors = |tile| Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
-    let board = |row: u16| Board {
-        address: format!("/underfoot/board/{row}"),
-        channels: (0..12).flat_map(|column| sensors(TileId::new(column, row))).collect(),
+    let board = |row: u16| {
+        let channels = (0..12).flat_map(|column| sensors(TileId::new(column, row))).collect();
+        Board::new(format!("/underfoot/board/{row}"), channels)
     };
     floor.boards = (0..12).map(board).collect();
     floor

@@ -23,8 +23,8 @@ impl Line {
     /// The control and its event.
     pub(crate) fn done(&self) -> Option<(String, String)> {
         let text = |name: &str| self.json[name].as_str().map(str::to_owned);
-        // States are not events.
-        Some((text("id")?, text("event").filter(|event| event != "state")?))
+        // States and ignored feet are not events.
+        Some((text("id")?, text("event").filter(|event| event != "state" && event != "ignored")?))
     }
 
     pub(crate) fn area(&self) -> Option<(&str, &str)> {

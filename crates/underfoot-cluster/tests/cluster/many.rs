@@ -41,7 +41,7 @@ fn corridor(count: u16) -> Floor {
         let (west, south) = (number / 3 * SIDE, number % 3 * 2);
         let tiles = (0..2 * SIDE).map(|tile| TileId::new(west + tile % SIDE, south + tile / SIDE));
         let sensors = |tile| Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
-        Board { address: format!("/underfoot/board/{number}"), channels: tiles.flat_map(sensors).collect() }
+        Board::new(format!("/underfoot/board/{number}"), tiles.flat_map(sensors).collect())
     };
     let mut floor = Floor::of(Geometry::of_paper_tiles(SIDE * count, SIDE).unwrap())
         .with_areas((0..count).map(area).collect());

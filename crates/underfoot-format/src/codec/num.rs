@@ -144,7 +144,7 @@ macro_rules! whole {
     };
 }
 
-whole!(u8, u16, u32, usize);
+whole!(i16, u8, u16, u32, usize);
 
 impl<T: Scalar> Codec<T> for Num {
     type Context = ();

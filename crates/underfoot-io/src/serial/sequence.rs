@@ -4,8 +4,10 @@ use std::time::Duration;
 
 use underfoot::units::Instant;
 
-/// Silence after which a sample begins a new stream: after it, the number of lines says nothing about the time.
+/// Silence after which a sample begins a new stream: after it, the number of lines says nothing about the time. At
+/// least so long, and so many intervals of a slow board.
 const SILENT: Duration = Duration::from_millis(100);
+const SILENT_INTERVALS: u32 = 4;
 
 /// Distance back to the first number of a new stream: no number of the old one lies near.
 const BACK: u32 = 1 << 20;
@@ -15,15 +17,20 @@ const BACK: u32 = 1 << 20;
 pub(super) struct LineSequence {
     next: u32,
     last: Option<Instant>,
+    /// The shorter one of the last two intervals.
+    interval: Duration,
+    before: Duration,
 }
 
 impl LineSequence {
     /// The number of the line that ended at `now`.
     pub(super) fn number(&mut self, now: Instant) -> u32 {
-        if self.last.is_some_and(|last| now.since(last) > SILENT) {
+        let passed = self.last.map_or(Duration::ZERO, |last| now.since(last));
+        if passed > SILENT.max(SILENT_INTERVALS * self.interval) {
             self.restart();
         }
-        self.last = Some(now);
+        self.interval = passed.min(self.before);
+        (self.before, self.last) = (passed, Some(now));
         let number = self.next;
         self.next = number.wrapping_add(1);
         number
@@ -38,6 +45,14 @@ impl LineSequence {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_board_at_9_hz_has_one_stream() {
+        let mut sequence = LineSequence::default();
+        let numbers: Vec<u32> = (0..20).map(|n| sequence.number(Instant::from_micros(110_000 * n))).collect();
+        // Its interval is known from the third line on.
+        assert!(numbers[3..].windows(2).all(|pair| pair[1] == pair[0] + 1), "{numbers:?}");
+    }
 
     #[test]
     fn a_stream_after_a_silence_is_a_new_one() {

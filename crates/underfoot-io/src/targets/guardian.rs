@@ -15,6 +15,7 @@ use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use underfoot::messages::{Act, Holdable};
+use underfoot::sink::{Rank, claim_priority};
 
 use super::PATIENCE;
 use super::link::{FromGuardian, ToGuardian, next, put};
@@ -22,6 +23,12 @@ use super::outlets::Outlets;
 
 /// Longest time between two attempts to release a key.
 const AGAIN: Duration = Duration::from_millis(20);
+
+/// Longest wait for targets to open, before the guardian answers.
+const OPENING: Duration = Duration::from_millis(500);
+
+/// Time between two looks at the connections of ports.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// Time for which the guardian tries to release keys after its server has ended.
 const LAST: Duration = Duration::from_secs(3);
@@ -34,6 +41,8 @@ const QUEUE: usize = 4096;
 /// # Errors
 /// The system gives no thread.
 pub fn guard(mut from: impl BufRead + Send + 'static, to: impl Write) -> std::io::Result<()> {
+    // A computer that is busy otherwise lets holds end early; the thread that reads inherits it.
+    claim_priority(Rank::Telling);
     let (queue, messages) = sync_channel(QUEUE);
     let read = move || {
         while let Some(message) = next::<ToGuardian>(&mut from) {
@@ -44,7 +53,8 @@ pub fn guard(mut from: impl BufRead + Send + 'static, to: impl Write) -> std::io
     };
     Builder::new().name("guardian in".into()).spawn(read)?;
     let (outlets, down, starting) = (Outlets::new(Vec::new()), BTreeSet::new(), BTreeSet::new());
-    Guardian { outlets, down, starting, begun: Instant::now(), to, undone: 0 }.run(&messages);
+    let connections = Connections { told: Vec::new(), looked: Instant::now() };
+    Guardian { outlets, down, starting, begun: Instant::now(), to, undone: 0, connections }.run(&messages);
     Ok(())
 }
 
@@ -59,6 +69,13 @@ struct Guardian<W> {
     begun: Instant,
     to: W,
     undone: u64,
+    connections: Connections,
+}
+
+/// The connections of ports, which the server keeps in case this process ends.
+struct Connections {
+    told: Vec<(usize, Vec<String>)>,
+    looked: Instant,
 }
 
 impl<W: Write> Guardian<W> {
@@ -104,7 +121,9 @@ impl<W: Write> Guardian<W> {
         match message {
             ToGuardian::Setup(targets, holdables) => {
                 self.release_all();
-                self.outlets = Outlets::new(targets);
+                self.outlets.change(targets);
+                self.connections.told.clear();
+                self.open_all();
                 self.starting = holdables.into_iter().collect();
                 self.begun = Instant::now();
                 self.release_old();
@@ -117,15 +136,26 @@ impl<W: Write> Guardian<W> {
                 if undone > 0 {
                     self.say(&FromGuardian::Undone(undone));
                 }
+                self.look_at_connections();
             }
             ToGuardian::Release => self.release_all(),
+            ToGuardian::Connect(target, receivers) => self.outlets.connect(target, receivers),
+        }
+    }
+
+    /// Opens all targets, so that the first message goes out.
+    fn open_all(&mut self) {
+        let begun = Instant::now();
+        self.outlets.open();
+        while self.outlets.are_opening() && begun.elapsed() < OPENING {
+            std::thread::sleep(Duration::from_millis(2));
         }
     }
 
     fn act(&mut self, target: usize, act: &Act) {
         let mut notices = Vec::new();
         match act {
-            Act::Down(what) => {
+            Act::Down(what, _) => {
                 let key = (target, what.clone());
                 // Noted first: an act that fails half-way may have pressed a part.
                 self.down.insert(key.clone());
@@ -174,6 +204,25 @@ impl<W: Write> Guardian<W> {
         let Self { outlets, starting, .. } = self;
         starting.retain(|(target, what)| !outlets.release(*target, what, &mut |text| notices.push(text)));
         self.tell(notices);
+    }
+
+    /// Reports connections that have changed.
+    fn look_at_connections(&mut self) {
+        if self.connections.looked.elapsed() < LOOK {
+            return;
+        }
+        self.connections.looked = Instant::now();
+        self.outlets.settle();
+        let now = self.outlets.receivers();
+        // A new guardian has none, until the server names those of the one before it.
+        let is_new =
+            |it: &&(usize, Vec<String>)| match self.connections.told.iter().find(|told| told.0 == it.0) {
+                Some(told) => told.1 != it.1,
+                None => !it.1.is_empty(),
+            };
+        let news: Vec<_> = now.iter().filter(is_new).cloned().collect();
+        news.into_iter().for_each(|(target, names)| self.say(&FromGuardian::Receivers(target, names)));
+        self.connections.told = now;
     }
 
     fn tell(&mut self, notices: Vec<String>) {

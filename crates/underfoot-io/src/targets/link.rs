@@ -20,6 +20,8 @@ pub(super) enum ToGuardian {
     Beat(u64),
     /// Let everything come up.
     Release,
+    /// These ports received from the target with this index of an earlier guardian.
+    Connect(usize, Vec<String>),
 }
 
 /// From the guardian.
@@ -31,6 +33,8 @@ pub(super) enum FromGuardian {
     Notice(String),
     /// Orders that were not carried out since the last such message.
     Undone(u64),
+    /// These ports receive from the target with this index.
+    Receivers(usize, Vec<String>),
 }
 
 /// Writes one message.

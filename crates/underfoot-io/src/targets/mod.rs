@@ -1,8 +1,9 @@
-//! Targets: the messages of controls as keys, pointer and OSC, with the guarantee that each key that goes down comes up.
+//! Targets: the messages of controls as keys, pointer, OSC and MIDI, with the guarantee that each key that goes down comes
+//! up.
 //!
 //! ```text
 //! sensing thread          supervisor thread               process `underfoot guardian`
-//! TargetSink(Messenger) -> orders, heartbeats -> stdin ->  Guardian -> Outlets -> X server, OSC
+//! TargetSink(Messenger) -> orders, heartbeats -> stdin ->  Guardian -> Outlets -> X server, OSC, MIDI
 //!                          acknowledgements   <- stdout <-
 //!                          guardian failed: Outlets of its own release everything, and a new guardian starts
 //! ```
@@ -12,11 +13,14 @@
 
 mod guardian;
 mod link;
+#[cfg(any(feature = "midi", feature = "jack"))]
+mod midi;
 mod osc;
 mod outlet;
 mod outlets;
 mod redirect;
 mod sink;
+mod standby;
 mod supervisor;
 #[cfg(all(test, unix))]
 mod tests;
@@ -28,7 +32,7 @@ use std::time::Duration;
 pub use guardian::guard;
 pub use outlet::{Outlet, OutletError};
 pub use redirect::redirect;
-pub use sink::{LoadedPlan, TargetSink};
+pub use sink::{LoadedPlan, TargetCounts, TargetSink};
 pub use supervisor::GuardianCommand;
 
 /// Time between two heartbeats.

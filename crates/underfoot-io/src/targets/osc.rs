@@ -29,6 +29,8 @@ enum OscWay {
     Opening(Receiver<io::Result<OscWay>>),
     Udp(UdpSocket),
     Tcp(TcpStream),
+    /// It could not be opened, for this reason.
+    Failed(String),
 }
 
 impl OscOutlet {
@@ -44,7 +46,7 @@ impl OscOutlet {
 
     fn send(&mut self, address: &str, values: &[OscValue]) -> Result<(), OutletError> {
         let packet = encoded(address, values)?;
-        self.settle()?;
+        self.settle();
         let gone = |error: io::Error| OutletError::Gone(format!("{}: {error}", self.address));
         match &mut self.way {
             // A receiver on this computer that is not there answers so at the next message.
@@ -55,6 +57,7 @@ impl OscOutlet {
                 sent => sent.map(drop).map_err(gone),
             },
             OscWay::Opening(_) => Err(OutletError::Refused(format!("{} is not connected yet", self.address))),
+            OscWay::Failed(reason) => Err(OutletError::Gone(reason.clone())),
             // A stream that takes only a part of a frame is of no use any more.
             OscWay::Tcp(stream) => {
                 let mut frame = Vec::with_capacity(packet.len() + 2);
@@ -65,27 +68,27 @@ impl OscOutlet {
     }
 
     /// Uses the way that has been opened meanwhile.
-    fn settle(&mut self) -> Result<(), OutletError> {
-        let OscWay::Opening(opened) = &self.way else { return Ok(()) };
-        match opened.try_recv() {
-            Ok(Ok(way)) => {
-                self.way = way;
-                Ok(())
-            }
-            Ok(Err(error)) => Err(OutletError::Gone(format!("{}: {error}", self.address))),
-            Err(TryRecvError::Empty) => Ok(()),
-            Err(TryRecvError::Disconnected) => {
-                Err(OutletError::Gone(format!("{}: no connection", self.address)))
-            }
-        }
+    fn settle(&mut self) {
+        let OscWay::Opening(opened) = &self.way else { return };
+        self.way = match opened.try_recv() {
+            Ok(Ok(way)) => way,
+            Ok(Err(error)) => OscWay::Failed(format!("{}: {error}", self.address)),
+            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Disconnected) => OscWay::Failed(format!("{}: no connection", self.address)),
+        };
     }
 }
 
 impl Outlet for OscOutlet {
+    fn is_opening(&mut self) -> bool {
+        self.settle();
+        matches!(self.way, OscWay::Opening(_))
+    }
+
     fn carry_out(&mut self, act: &Act) -> Result<(), OutletError> {
         match act {
             Act::Osc(address, values) => self.send(address, values),
-            Act::Down(Holdable::Osc(address)) => self.send(address, &[OscValue::Int(1)]),
+            Act::Down(Holdable::Osc(address), _) => self.send(address, &[OscValue::Int(1)]),
             Act::Up(Holdable::Osc(address)) => self.send(address, &[OscValue::Int(0)]),
             _ => Err(OutletError::Refused("a receiver of OSC has neither keys nor a pointer".into())),
         }
@@ -94,7 +97,7 @@ impl Outlet for OscOutlet {
     fn release(&mut self, what: &Holdable) -> Result<(), OutletError> {
         match what {
             Holdable::Osc(address) => self.send(address, &[OscValue::Int(0)]),
-            Holdable::Key(_) | Holdable::Button(_) => Ok(()),
+            _ => Ok(()),
         }
     }
 }

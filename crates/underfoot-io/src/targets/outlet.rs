@@ -19,6 +19,25 @@ pub trait Outlet: Send {
     /// # Errors
     /// As [`Outlet::carry_out`].
     fn release(&mut self, what: &Holdable) -> Result<(), OutletError>;
+
+    /// Whether the way is still being opened.
+    fn is_opening(&mut self) -> bool {
+        false
+    }
+
+    /// The ports that receive from this target by connections that others may make and break; `None` for a target that
+    /// knows of none.
+    fn receivers(&mut self) -> Option<Vec<String>> {
+        None
+    }
+
+    /// Connects this target to ports that received from the same one before; returns those that are not there.
+    ///
+    /// # Errors
+    /// As [`Outlet::carry_out`].
+    fn connect(&mut self, _receivers: &[String]) -> Result<Vec<String>, OutletError> {
+        Ok(Vec::new())
+    }
 }
 
 /// Reasons why an act was not carried out.
@@ -39,6 +58,13 @@ pub enum OutletError {
 pub(super) fn open(target: &SendTarget) -> Result<Box<dyn Outlet>, OutletError> {
     match &target.to {
         Destination::Osc(osc) => Ok(Box::new(OscOutlet::open(osc)?)),
+        #[cfg(any(feature = "midi", feature = "jack"))]
+        Destination::Midi(midi) => Ok(Box::new(super::midi::MidiOutlet::open(midi)?)),
+        #[cfg(not(any(feature = "midi", feature = "jack")))]
+        Destination::Midi(midi) => Err(OutletError::Gone(format!(
+            "the MIDI port {}: this program was built without the features midi and jack",
+            midi.port
+        ))),
         #[cfg(all(unix, not(target_os = "macos")))]
         Destination::Keyboard(keyboard) => Ok(Box::new(super::x11::X11Outlet::open(keyboard)?)),
         #[cfg(not(all(unix, not(target_os = "macos"))))]

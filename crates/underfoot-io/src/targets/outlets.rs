@@ -22,13 +22,64 @@ struct Door {
     tried: Option<Instant>,
     /// The last problem that was reported; each is reported once.
     told: Option<String>,
+    /// The ports that received from it when somebody looked last.
+    receivers: Vec<String>,
+    /// Those of them that it must be connected to once both are there.
+    missing: Vec<String>,
 }
 
 impl Outlets {
     /// The ways to `targets`, none of them open yet.
     pub(super) fn new(targets: Vec<SendTarget>) -> Self {
-        let door = |target| Door { target, open: None, tried: None, told: None };
-        Self { doors: targets.into_iter().map(door).collect() }
+        Self { doors: targets.into_iter().map(Door::new).collect() }
+    }
+
+    /// Changes to the ways to `targets`; one that was there before stays open, with its connections.
+    pub(super) fn change(&mut self, targets: Vec<SendTarget>) {
+        let mut before = std::mem::take(&mut self.doors);
+        let door = |target: SendTarget| match before.iter().position(|door| door.target == target) {
+            Some(index) => before.swap_remove(index),
+            None => Door::new(target),
+        };
+        self.doors = targets.into_iter().map(door).collect();
+    }
+
+    /// Opens all targets; those that are gone are tried again later.
+    pub(super) fn open(&mut self) {
+        self.doors.iter_mut().for_each(|door| drop(door.opened()));
+    }
+
+    /// Whether the way to a target is still being opened.
+    pub(super) fn are_opening(&mut self) -> bool {
+        self.doors.iter_mut().filter_map(|door| door.open.as_mut()).any(|open| open.is_opening())
+    }
+
+    /// The ports that receive from each open target by connections, with the index of the target.
+    pub(super) fn receivers(&mut self) -> Vec<(usize, Vec<String>)> {
+        let open = self.doors.iter_mut().enumerate().filter_map(|(index, door)| {
+            let mut receivers = door.open.as_mut()?.receivers()?;
+            receivers.extend(door.missing.iter().cloned());
+            receivers.sort();
+            receivers.dedup();
+            door.receivers.clone_from(&receivers);
+            Some((index, receivers))
+        });
+        open.collect()
+    }
+
+    /// Opens the target with this index, and connects it to these ports.
+    pub(super) fn connect(&mut self, target: usize, receivers: Vec<String>) {
+        if let Some(door) = self.doors.get_mut(target) {
+            door.missing = receivers;
+            // Problems appear with its first message.
+            let _ = door.opened();
+        }
+    }
+
+    /// Connects what has opened or appeared meanwhile.
+    pub(super) fn settle(&mut self) {
+        let waiting = self.doors.iter_mut().filter(|door| door.open.is_some() && !door.missing.is_empty());
+        waiting.for_each(|door| drop(door.opened()));
     }
 
     /// Carries out `act` at the target with this index; returns whether it was done. `notice` gets problems, each once,
@@ -60,6 +111,7 @@ impl Outlets {
             Err(error) => {
                 if matches!(error, OutletError::Gone(_)) {
                     door.open = None;
+                    door.missing.clone_from(&door.receivers);
                 }
                 let problem = error.to_string();
                 if door.told.as_ref() != Some(&problem) {
@@ -73,6 +125,10 @@ impl Outlets {
 }
 
 impl Door {
+    const fn new(target: SendTarget) -> Self {
+        Self { target, open: None, tried: None, told: None, receivers: Vec::new(), missing: Vec::new() }
+    }
+
     /// The open way; opens it unless that has just failed.
     fn opened(&mut self) -> Result<&mut dyn Outlet, OutletError> {
         if self.open.is_none() {
@@ -85,7 +141,14 @@ impl Door {
             self.open = Some(outlet::open(&self.target)?);
         }
         match &mut self.open {
-            Some(open) => Ok(open.as_mut()),
+            Some(open) => {
+                if !self.missing.is_empty()
+                    && let Ok(missing) = open.connect(&self.missing)
+                {
+                    self.missing = missing;
+                }
+                Ok(open.as_mut())
+            }
             None => Err(OutletError::Gone("it is not open".into())),
         }
     }

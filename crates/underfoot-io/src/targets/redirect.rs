@@ -1,9 +1,9 @@
 //! Targets that the command line moves: `desk=10.0.0.5:53000`, `viewer=:1`.
 
-use underfoot::messages::{Destination, OscTarget, OscTransport, SendTarget};
+use underfoot::messages::{Destination, MidiTarget, OscTarget, OscTransport, SendTarget};
 
 /// Moves the target called `name` in `targets` to `place`: for OSC a host and a port, after `tcp:` or `udp:` for
-/// another protocol; for a keyboard an X display such as `:1`.
+/// another protocol; for a keyboard an X display such as `:1`; for MIDI the name of its port.
 ///
 /// # Errors
 /// Says that there is no such target, or that the place does not suit it.
@@ -33,6 +33,12 @@ pub fn redirect(targets: &mut [SendTarget], name: &str, place: &str) -> Result<(
                 return Err(format!("{name} receives OSC: write {name}=127.0.0.1:53000"));
             }
             (osc.address, osc.over) = (address.to_owned(), over);
+        }
+        Destination::Midi(midi) => {
+            if !MidiTarget::is_port(place) {
+                return Err(format!("{name} is a MIDI port: write its name, such as {name}=stage"));
+            }
+            place.clone_into(&mut midi.port);
         }
     }
     Ok(())

@@ -10,9 +10,10 @@ use std::time::{Duration, Instant};
 
 use tracing::{info, warn};
 use underfoot::messages::{MessageOrder, MessagePlan};
+use underfoot::sink::{Rank, claim_priority};
 
 use super::link::{FromGuardian, ToGuardian, next, put};
-use super::outlets::Outlets;
+use super::standby::Standby;
 use super::{BEAT, PATIENCE, POLLED};
 
 /// Makes the command that starts a guardian: its standard input and output are the link.
@@ -43,10 +44,14 @@ pub(super) enum TargetJob {
 /// Numbers that the supervisor shares with the sink.
 #[derive(Debug, Default)]
 pub(super) struct TargetStatus {
-    /// Milliseconds since [`GuardianSupervisor::begun`] at which the sensing thread last polled.
+    /// Milliseconds since [`GuardianSupervisor::begun`] at which the sensing thread last polled; 0 before the first time.
     pub(super) polled: AtomicU64,
     /// Orders that were not carried out.
     pub(super) undone: AtomicU64,
+    /// Orders that were passed on, without those that only let something come up.
+    pub(super) passed_on: AtomicU64,
+    /// Orders that were lost before they were passed on, or left out because they came too fast.
+    pub(super) left_out: AtomicU64,
 }
 
 /// The supervisor's state, on a thread of its own.
@@ -55,6 +60,9 @@ pub(super) struct GuardianSupervisor {
     pub(super) shared: Arc<TargetStatus>,
     pub(super) begun: Instant,
     pub(super) plan: MessagePlan,
+    /// Gets a word when the first guardian is ready.
+    pub(super) ready: Option<SyncSender<()>>,
+    pub(super) standby: Standby,
 }
 
 /// A guardian that runs.
@@ -73,6 +81,9 @@ struct RunningGuardian {
 impl GuardianSupervisor {
     /// Runs until the sink ends.
     pub(super) fn run(mut self, jobs: &Receiver<TargetJob>) {
+        // As the guardian's: without it a busy computer ends holds early.
+        claim_priority(Rank::Telling);
+        self.standby.prepare(&self.plan);
         let mut running: Option<RunningGuardian> = None;
         let mut started: Option<Instant> = None;
         loop {
@@ -92,7 +103,10 @@ impl GuardianSupervisor {
                 self.shared.undone.fetch_add(1, Ordering::Relaxed);
             }
             match job {
-                Ok(TargetJob::Setup(plan)) => self.plan = plan,
+                Ok(TargetJob::Setup(plan)) => {
+                    self.standby.prepare(&plan);
+                    self.plan = plan;
+                }
                 Err(RecvTimeoutError::Disconnected) => break,
                 _ => {}
             }
@@ -132,19 +146,27 @@ impl GuardianSupervisor {
         let (tell, answers) = sync_channel(MAX_ANSWERS);
         Builder::new().name("guardian out".into()).spawn(move || read(output, &tell))?;
         put(&mut input, &plan_for(&self.plan))?;
+        for (target, receivers) in self.standby.receivers() {
+            put(&mut input, &ToGuardian::Connect(*target, receivers.clone()))?;
+        }
         let (beaten, waits) = (Instant::now(), None);
         Ok(RunningGuardian { child, input, answers, beat: 0, waits, beaten, is_ready: false })
     }
 
     /// Processes the guardian's answers; false if it has failed.
-    fn listen(&self, guardian: &mut RunningGuardian) -> bool {
+    fn listen(&mut self, guardian: &mut RunningGuardian) -> bool {
         loop {
             match guardian.answers.try_recv() {
                 Ok(FromGuardian::Beat(number)) => {
                     guardian.is_ready = true;
+                    if let Some(ready) = self.ready.take() {
+                        // Nobody may wait for it.
+                        let _ = ready.try_send(());
+                    }
                     guardian.waits = (number != guardian.beat).then(Instant::now);
                 }
                 Ok(FromGuardian::Notice(text)) => warn!("{text}"),
+                Ok(FromGuardian::Receivers(target, receivers)) => self.standby.connect(target, receivers),
                 Ok(FromGuardian::Undone(count)) => {
                     self.shared.undone.fetch_add(count, Ordering::Relaxed);
                 }
@@ -157,9 +179,13 @@ impl GuardianSupervisor {
     }
 
     /// Passes on `job` and the heartbeat, if it is due; false if the guardian has failed.
-    fn serve(&self, guardian: &mut RunningGuardian, job: &Result<TargetJob, RecvTimeoutError>) -> bool {
+    fn serve(&mut self, guardian: &mut RunningGuardian, job: &Result<TargetJob, RecvTimeoutError>) -> bool {
         let sent = match job {
-            Ok(TargetJob::Setup(plan)) => put(&mut guardian.input, &plan_for(plan)),
+            Ok(TargetJob::Setup(plan)) => {
+                // It opens targets, which takes as long as at a start.
+                guardian.is_ready = false;
+                put(&mut guardian.input, &plan_for(plan))
+            }
             Ok(TargetJob::Send(_)) if !guardian.is_ready => {
                 self.shared.undone.fetch_add(1, Ordering::Relaxed);
                 Ok(())
@@ -167,6 +193,7 @@ impl GuardianSupervisor {
             Ok(TargetJob::Send(order)) => {
                 let name = self.plan.targets.get(order.target).map_or("", |target| &target.name);
                 info!("{name}: {} ({})", order.act, order.control);
+                self.standby.note(order);
                 put(&mut guardian.input, &ToGuardian::Act(order.target, order.act.clone()))
             }
             Ok(TargetJob::Release) => put(&mut guardian.input, &ToGuardian::Release),
@@ -175,12 +202,14 @@ impl GuardianSupervisor {
         sent.is_ok() && (guardian.beaten.elapsed() < BEAT || self.beat(guardian).is_ok())
     }
 
-    fn beat(&self, guardian: &mut RunningGuardian) -> io::Result<()> {
+    fn beat(&mut self, guardian: &mut RunningGuardian) -> io::Result<()> {
         guardian.beaten = Instant::now();
+        self.standby.settle();
         let now = self.begun.elapsed().as_millis();
-        let silent = now.saturating_sub(self.shared.polled.load(Ordering::Relaxed).into());
-        // Without the sensing thread there is no heartbeat: the guardian releases everything.
-        if silent > POLLED.as_millis() {
+        let polled = self.shared.polled.load(Ordering::Relaxed);
+        // Without the sensing thread there is no heartbeat: the guardian releases everything. Before that thread starts
+        // nothing is down.
+        if polled > 0 && now.saturating_sub(polled.into()) > POLLED.as_millis() {
             return Ok(());
         }
         guardian.beat += 1;
@@ -192,11 +221,9 @@ impl GuardianSupervisor {
     fn take_over(&mut self, mut failed: RunningGuardian) {
         // It ends first, so that it presses nothing afterwards.
         let _ = failed.child.kill();
-        let mut outlets = Outlets::new(self.plan.targets.clone());
-        for (target, what) in self.plan.holdables() {
-            outlets.release(target, &what, &mut |text| warn!("{text}"));
-        }
+        self.standby.release(&self.plan);
         let _ = failed.child.wait();
+        self.standby.close(&self.plan);
         warn!("the guardian of held keys has failed; everything was released, and another one starts");
     }
 }

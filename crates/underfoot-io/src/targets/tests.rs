@@ -121,7 +121,7 @@ impl GuardedServer {
     }
 
     fn press(&mut self) {
-        self.say(&ToGuardian::Act(0, Act::Down(Holdable::Osc("/drive".into()))));
+        self.say(&ToGuardian::Act(0, Act::Down(Holdable::Osc("/drive".into()), 127)));
         assert_eq!(self.heard(), "/drive 1");
     }
 }
@@ -141,7 +141,7 @@ fn a_hold_lasts_while_its_server_is_heard_and_no_longer() {
     assert_eq!(server.heard(), "/drive 0");
     assert!(silent.elapsed() >= PATIENCE / 2, "{:?}", silent.elapsed());
     // A press from a server that was silent is old.
-    server.say(&ToGuardian::Act(0, Act::Down(Holdable::Osc("/drive".into()))));
+    server.say(&ToGuardian::Act(0, Act::Down(Holdable::Osc("/drive".into()), 127)));
     server.beat(30);
     assert!(matches!(next(&mut server.answers), Some(FromGuardian::Undone(1))));
     server.press();

@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use glam::Vec2;
 use serde::Serialize;
 
 use super::errors::{PositionErrors, Summary};
 use super::rig::ExperimentError;
 use super::spot::{Bench, Thing, Way, geometry, spread};
-use underfoot::floor::{Rect, TileId};
+use underfoot::floor::TileId;
 use underfoot::units::Newtons;
 use underfoot_scene::ergonomics::Zone;
 
@@ -48,8 +47,7 @@ impl PlaceTable {
         let mut bench = Bench::new(seed)?;
         self.floors += 1;
         let geometry = geometry();
-        let tile =
-            Rect::from_centre_size(geometry.centre(TileId::new(1, 1)), Vec2::splat(geometry.pitch_m()));
+        let tile = geometry.cell(TileId::new(1, 1));
         for step in 0..self.places {
             let at = tile.min + tile.size() * spread(step);
             let zone = Zone::of(&geometry, at);

@@ -86,7 +86,7 @@ impl TileScan {
 fn scan(mut rig: Rig) -> Vec<ScanPoint> {
     let geometry = *rig.geometry();
     let mut sensing = rig.sensing(Method::Eq4);
-    let span = geometry.tile_m() - 2.0 * MARGIN_TO_EDGE_M;
+    let span = geometry.tile_m().x - 2.0 * MARGIN_TO_EDGE_M;
     let along = |step: u16| MARGIN_TO_EDGE_M + span * f32::from(step) / f32::from(SIDE - 1);
     let places = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| Vec2::new(along(column), along(row))));
     let mut points = Vec::new();

@@ -329,7 +329,7 @@ fn place_in_the_middle(step: u16) -> Vec2 {
 /// Within 2 cm of one of the middle tile's four seams, in the middle half of that seam.
 fn place_at_a_seam(step: u16) -> Vec2 {
     let geometry = geometry();
-    let half = 0.5 * geometry.pitch_m();
+    let half = 0.5 * geometry.pitch_m().x;
     let spread = spread(step) - 0.5;
     let across = half + spread.x * 0.04;
     let way = [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y][usize::from(step % 4)];

@@ -1,4 +1,4 @@
-//! Thin lines with soft edges, as textured meshes.
+//! Lines with soft edges, as textured meshes.
 
 use egui::epaint::{Mesh, Vertex};
 use egui::{
@@ -6,22 +6,22 @@ use egui::{
 };
 
 /// Maximum width of a line that is drawn as a textured strip, in points.
-const WIDEST: f32 = 3.0;
+const WIDEST: f32 = 12.0;
 
 /// Margin of the texture beyond the edges of a line, in points: the reach of soft edges.
 const SOFT: f32 = 1.0;
 
 /// Texture size: pixels across a line, and number of different widths.
-const ACROSS: usize = 32;
-const WIDTHS: usize = 16;
+const ACROSS: usize = 64;
+const WIDTHS: usize = 64;
 
 /// Mitre limit: maximum distance of a corner's tip, in half widths.
 const MITRE: f32 = 2.0;
 
 /// Draws each fine line as one strip of triangles with the texture of a line.
 ///
-/// egui draws soft edges as separate triangles beside those of the line. For lines hardly wider than their edges,
-/// that is two to three times the work, which matters for thousands of lines without a graphics card.
+/// egui draws soft edges as separate triangles beside those of the line, which is three times the work. That matters
+/// for thousands of lines, and for the arcs of dials, without a graphics card.
 #[derive(Default)]
 pub(super) struct FineLine {
     profile: Option<TextureHandle>,

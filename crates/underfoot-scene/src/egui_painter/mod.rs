@@ -1,5 +1,6 @@
 //! Draws a scene with egui: for the window, and for the widget that the crate `underfoot-egui` offers to other apps.
 
+mod batches;
 mod fields;
 mod fine_line;
 mod patches;
@@ -15,6 +16,7 @@ use egui::{Color32, FontFamily, FontId, Pos2, Rect, Shape, pos2, vec2};
 use glam::Vec2;
 use smallvec::SmallVec;
 
+use self::batches::Batches;
 use self::fields::FieldImages;
 use self::fine_line::FineLine;
 use self::patches::{BoxLook, Patches};
@@ -32,18 +34,19 @@ pub struct Palette {
     line: FineLine,
     fields: FieldImages,
     patches: Patches,
+    batches: Batches,
 }
 
 /// Draws `scene`, placed by `map`.
 pub fn paint(painter: &egui::Painter, palette: &mut Palette, scene: &Scene, map: ScreenFromFloor) {
     palette.fields.begin();
-    let mut brush = Brush { painter, palette, map, points: Vec::new(), texts: Vec::new() };
+    palette.batches.begin(painter.clip_rect().intersect(map.rect(scene.bounds())));
+    let mut brush = Brush { painter, palette, map, points: Vec::new() };
     for mark in scene.marks() {
-        brush.write_under(scene, mark);
         brush.mark(scene, mark);
     }
-    brush.write();
-    brush.palette.fields.end();
+    palette.batches.draw(painter);
+    palette.fields.end();
 }
 
 /// Converts a colour to egui's type.
@@ -69,48 +72,12 @@ struct Brush<'a> {
     palette: &'a mut Palette,
     map: ScreenFromFloor,
     points: Vec<Pos2>,
-    /// Texts that wait to be drawn, with their areas: letters use a texture of their own, and switching textures for
-    /// each control takes longer than drawing it.
-    texts: Vec<(Rect, TextShape)>,
 }
 
 impl Brush<'_> {
-    /// Draws the waiting texts if `mark` might cover one of them.
-    fn write_under(&mut self, scene: &Scene, mark: &Mark) {
-        if self.texts.is_empty() || matches!(mark, Mark::Text { .. }) {
-            return;
-        }
-        let area = self.covered(scene, mark);
-        if self.texts.iter().any(|(text, _)| text.intersects(area)) {
-            self.write();
-        }
-    }
-
-    fn write(&mut self) {
-        self.painter.extend(self.texts.drain(..).map(|(_, text)| text.into()));
-    }
-
-    /// An area that contains all of `mark`.
-    fn covered(&self, scene: &Scene, mark: &Mark) -> Rect {
-        let line = |paint: &Paint| paint.stroke.map_or(0.0, |stroke| self.stroke(&stroke).width);
-        let around = |points: &[Vec2]| {
-            points.iter().fold(Rect::NOTHING, |area, point| area | Rect::from_pos(self.map.point(*point)))
-        };
-        let (area, beyond) = match mark {
-            Mark::Box { area, paint, .. } => (self.map.rect(*area), line(paint)),
-            Mark::Ellipse { centre, radii, paint } => {
-                (self.map.rect(floor::Rect::from_centre_size(*centre, 2.0 * *radii)), line(paint))
-            }
-            // The tip of a sharp corner is some line widths long.
-            Mark::Path { points, paint, .. } => (around(scene.points(*points)), 4.0 * line(paint)),
-            Mark::Field { area, .. } => (self.map.rect(*area), 0.0),
-            Mark::Band { points, reach, .. } => {
-                (around(scene.points(*points)), reach.length() * self.map.scale())
-            }
-            Mark::Halo { area, reach_m, .. } => (self.map.rect(*area), reach_m * self.map.scale()),
-            Mark::Text { .. } => (Rect::NOTHING, 0.0),
-        };
-        area.expand(beyond + 2.0)
+    /// Draws a shape that stays within its bounds.
+    fn add(&mut self, shape: impl Into<Shape>) {
+        self.palette.batches.add(shape, 0.0);
     }
 
     fn mark(&mut self, scene: &Scene, mark: &Mark) {
@@ -129,9 +96,9 @@ impl Brush<'_> {
                     let area = Rect::from_center_size(centre, 2.0 * radius + egui::Vec2::splat(stroke.width));
                     self.rounded(area, f32::INFINITY, paint);
                 } else if radius.x == radius.y {
-                    self.painter.add(CircleShape { center: centre, radius: radius.x, fill, stroke });
+                    self.add(CircleShape { center: centre, radius: radius.x, fill, stroke });
                 } else {
-                    self.painter.add(EllipseShape { center: centre, radius, fill, stroke, angle: 0.0 });
+                    self.add(EllipseShape { center: centre, radius, fill, stroke, angle: 0.0 });
                 }
                 self.dashes(scene, mark, paint);
             }
@@ -144,11 +111,13 @@ impl Brush<'_> {
                 let stroke = self.plain_stroke(paint);
                 if !closed && FineLine::suits(stroke.width) {
                     let mesh = self.palette.line.mesh(self.painter.ctx(), &self.points, stroke);
-                    self.painter.add(Shape::mesh(mesh));
+                    self.add(Shape::mesh(mesh));
                 } else if stroke.width > 0.0 {
                     let stroke = PathStroke::from(stroke);
-                    let (points, closed) = (self.points.clone(), *closed);
-                    self.painter.add(PathShape { points, closed, fill: Color32::TRANSPARENT, stroke });
+                    let (points, closed, width) = (self.points.clone(), *closed, stroke.width);
+                    let path = PathShape { points, closed, fill: Color32::TRANSPARENT, stroke };
+                    // The tip of a sharp corner is some line widths long.
+                    self.palette.batches.add(path, 4.0 * width);
                 }
                 self.dashes(scene, mark, paint);
             }
@@ -168,13 +137,13 @@ impl Brush<'_> {
                     Rounded::new(rect, radius, pixels).halo(&mut mesh, reach, ink);
                     mesh
                 });
-                self.painter.add(Shape::mesh(mesh));
+                self.add(Shape::mesh(mesh));
             }
         }
     }
 
     fn pixels_per_point(&self) -> f32 {
-        self.painter.ctx().pixels_per_point()
+        self.painter.pixels_per_point()
     }
 
     /// A box with round corners; an infinite radius makes a circle.
@@ -186,7 +155,7 @@ impl Brush<'_> {
             let radius = radius.min(0.5 * rect.size().min_elem()).max(0.0);
             let look = BoxLook::filled(radius, fill, stroke, self.pixels_per_point());
             if let Some(mesh) = self.palette.patches.mesh(self.painter.ctx(), rect, look) {
-                self.painter.add(Shape::mesh(mesh));
+                self.add(Shape::mesh(mesh));
                 return;
             }
         }
@@ -200,7 +169,7 @@ impl Brush<'_> {
             shape.stroke(&mut mesh, stroke);
         }
         if !mesh.is_empty() {
-            self.painter.add(Shape::mesh(mesh));
+            self.add(Shape::mesh(mesh));
         }
     }
 
@@ -213,11 +182,11 @@ impl Brush<'_> {
         let margin = vec2(0.5 / size[0] as f32, 0.5 / size[1] as f32);
         let (west, east, south, north) = (margin.x, 1.0 - margin.x, margin.y, 1.0 - margin.y);
         let uv = Rect::from_min_max(pos2(west, north), pos2(east, south));
-        self.painter.image(texture, self.map.rect(area), uv, Color32::WHITE);
+        self.add(Shape::image(texture, self.map.rect(area), uv, Color32::WHITE));
     }
 
     /// The area between a line and the same line moved by `reach`.
-    fn band(&self, points: &[Vec2], reach: Vec2, near: Color32, far: Color32) {
+    fn band(&mut self, points: &[Vec2], reach: Vec2, near: Color32, far: Color32) {
         let mut mesh = Mesh::default();
         for (at, point) in (0..).zip(points) {
             mesh.colored_vertex(self.map.point(*point), near);
@@ -228,11 +197,11 @@ impl Brush<'_> {
                 mesh.add_triangle(first + 1, first + 3, first + 2);
             }
         }
-        self.painter.add(Shape::mesh(mesh));
+        self.add(Shape::mesh(mesh));
     }
 
     /// The interior of a path, as triangles around the mean of its points.
-    fn fan(&self, color: Color32) {
+    fn fan(&mut self, color: Color32) {
         let count = self.points.len() as u32;
         let sum = self.points.iter().fold(egui::Vec2::ZERO, |sum, point| sum + point.to_vec2());
         let mut mesh = Mesh::default();
@@ -241,7 +210,7 @@ impl Brush<'_> {
             mesh.colored_vertex(*point, color);
             mesh.add_triangle(0, at + 1, (at + 1) % count + 1);
         }
-        self.painter.add(Shape::mesh(mesh));
+        self.add(Shape::mesh(mesh));
     }
 
     fn stroke(&self, stroke: &Stroke) -> egui::Stroke {
@@ -266,7 +235,7 @@ impl Brush<'_> {
         self.points.clear();
         outline_of(scene, mark, |point| self.points.push(map.point(point)));
         let dashes = Shape::dashed_line(&self.points, self.stroke(&stroke), on * scale, off * scale);
-        self.painter.extend(dashes);
+        dashes.into_iter().for_each(|dash| self.add(dash));
     }
 
     fn text(&mut self, letters: &str, lettering: &Lettering) {
@@ -297,12 +266,11 @@ impl Brush<'_> {
             along += galley.size().x;
             let mut shape = TextShape::new(self.map.point(lettering.at) + corner, galley, color);
             shape.angle = -lettering.turn_rad;
-            let area = shape.visual_bounding_rect();
             if lettering.strong {
                 // The font has one weight; drawing the text twice makes its soft edges heavier.
-                self.texts.push((area, shape.clone()));
+                self.add(shape.clone());
             }
-            self.texts.push((area, shape));
+            self.add(shape);
         }
     }
 }
@@ -314,6 +282,42 @@ fn fill(paint: &Paint) -> Color32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::sample::{at_rest, map, others, step_on};
+    use crate::scene::{self, Show, Theme, View};
+
+    /// Number of draw calls for a page of `count` controls with all layers and one foot.
+    fn draw_calls(count: usize) -> usize {
+        let (mut layout, geometry) = (map(), floor::Geometry::default());
+        let shipped = std::mem::take(&mut layout.widgets);
+        let kinds = shipped.iter().map(|widget| widget.behaviour.clone()).chain(others());
+        let kinds: Vec<_> = kinds.collect();
+        layout.widgets.extend(kinds.iter().cycle().take(count).enumerate().map(|(number, behaviour)| {
+            let corner = Vec2::new((number % 10) as f32, (number / 10) as f32) * 0.18;
+            let area = floor::Rect::from_min_size(corner + 0.01, Vec2::splat(0.15));
+            let behaviour = behaviour.clone();
+            underfoot::layout::Widget { area, behaviour, ..shipped[0].clone() }
+        }));
+        let mut snapshot = at_rest(&layout);
+        step_on(&mut snapshot, 1, Vec2::new(0.9, 0.9), 400.0, Vec2::X);
+        let mut show = Show::WINDOW;
+        Show::LAYERS.iter().for_each(|(_, layer)| *layer(&mut show) = true);
+        let mut scene = Scene::new();
+        let view = View { show, ..View::new(&geometry, &layout, &snapshot, &Theme::LIGHT) };
+        scene::draw(&mut scene, &view);
+        let screen = Rect::from_min_size(Pos2::ZERO, egui::Vec2::splat(1000.0));
+        let map = ScreenFromFloor::fit(scene.bounds(), screen);
+        let input = egui::RawInput { screen_rect: Some(screen), ..Default::default() };
+        let (ctx, mut palette) = (egui::Context::default(), Palette::default());
+        let mut output = ctx.run_ui(input, |ui| paint(ui.painter(), &mut palette, &scene, map));
+        output.textures_delta.clear();
+        ctx.tessellate(output.shapes, 1.0).len()
+    }
+
+    #[test]
+    fn a_hundred_controls_take_fewer_draw_calls_than_controls() {
+        let (few, many) = (draw_calls(20), draw_calls(100));
+        assert!(few < 25 && many < 50, "{few} for twenty, {many} for a hundred");
+    }
 
     /// The texts that are drawn for one line, from left to right, with the positions of their base lines.
     fn painted(text: &str, lettering: Lettering) -> Vec<(String, Pos2)> {

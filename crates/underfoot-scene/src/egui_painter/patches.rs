@@ -54,6 +54,8 @@ pub(super) struct Patches {
     /// The first frame in which the texture was full. The images of that frame must stay, because it is painted at
     /// its end.
     full_in: Option<u64>,
+    /// Whether the images are moved off the pixels after they are drawn.
+    pub(super) are_warped: bool,
 }
 
 impl BoxLook {
@@ -78,6 +80,14 @@ impl BoxLook {
                 (half, radius.max(half))
             }
             Line::Halo(reach) => (f32::from(reach) / PARTS, radius.max(0.5)),
+        }
+    }
+
+    /// The depth of ink inside a straight edge without a filling, in pixels.
+    fn line_depth(&self) -> f32 {
+        match self.line {
+            Line::Stroke(width) => 0.5 * f32::from(width) / PARTS + 0.5,
+            Line::Halo(_) => 0.0,
         }
     }
 
@@ -164,9 +174,13 @@ impl Patches {
         let rows = pieces(height, place.corner as f32, place.at[1] as f32);
         let point = |x: f32, y: f32| pos2((left + x) / scale, (top + y) / scale);
         let dot = |u: f32, v: f32| pos2(u / SIDE as f32, v / SIDE as f32);
-        for (row, [y, y_end, v, v_end]) in rows.into_iter().enumerate() {
-            for (column, [x, x_end, u, u_end]) in columns.into_iter().enumerate() {
+        // Pixels without ink take as long as others, so the sides of a box without a filling are as deep as its line.
+        let deep = if is_hollow { (edge + look.line_depth()).ceil() } else { f32::INFINITY };
+        for (row, down) in rows.into_iter().enumerate() {
+            for (column, across) in columns.into_iter().enumerate() {
                 let is_inside = row == 1 && column == 1;
+                let [x, x_end, u, u_end] = if row == 1 { outer_part(across, column, deep) } else { across };
+                let [y, y_end, v, v_end] = if column == 1 { outer_part(down, row, deep) } else { down };
                 if x_end > x && y_end > y && !(is_inside && is_hollow) {
                     let area = Rect::from_min_max(point(x, y), point(x_end, y_end));
                     let uv = Rect::from_min_max(dot(u, v), dot(u_end, v_end));
@@ -200,11 +214,13 @@ impl Patches {
         let at = self.next;
         self.next[0] += side;
         self.row = self.row.max(side);
+        // Images lie on pixels, so nothing needs mixing, which a processor does for each pixel.
+        let filter = if self.are_warped { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
         let texture = self.texture.get_or_insert_with(|| {
             let empty = ColorImage::filled([SIDE, SIDE], Color32::TRANSPARENT);
-            ctx.load_texture("boxes", empty, TextureOptions::LINEAR)
+            ctx.load_texture("boxes", empty, filter)
         });
-        texture.set_partial(at, look.picture(corner, edge), TextureOptions::LINEAR);
+        texture.set_partial(at, look.picture(corner, edge), filter);
         let place = Place { at, corner };
         self.places.insert(look, place);
         Some(place)
@@ -222,6 +238,16 @@ fn pieces(length: f32, corner: f32, start: f32) -> [[f32; 4]; 3] {
         [first, length - last, middle, middle],
         [length - last, length, end - last, end],
     ]
+}
+
+/// The part of a first or last piece at most `deep` pixels from its outer end; other pieces stay whole.
+fn outer_part([from, to, first, last]: [f32; 4], piece: usize, deep: f32) -> [f32; 4] {
+    let length = (to - from).min(deep);
+    match piece {
+        0 => [from, from + length, first, first + length],
+        2 => [to - length, to, last - length, last],
+        _ => [from, to, first, last],
+    }
 }
 
 #[cfg(test)]
@@ -313,6 +339,18 @@ mod tests {
             patches.mesh(&ctx, rect(300.0), BoxLook::filled(90.0, FILL, Stroke::NONE, 1.0)).is_none(),
             "too large"
         );
+        frame(&ctx);
+    }
+
+    #[test]
+    fn a_halo_draws_little_more_than_its_ink() {
+        let (ctx, mut patches) = patches();
+        let rect = Rect::from_min_size(pos2(10.0, 10.0), vec2(200.0, 200.0));
+        let mesh = patches.mesh(&ctx, rect, BoxLook::halo(12.0, 8.0, FILL, 1.0)).unwrap();
+        let area: f32 =
+            mesh.vertices.chunks(4).map(|it| (it[3].pos.x - it[0].pos.x) * (it[3].pos.y - it[0].pos.y)).sum();
+        // Four corners of 20 pixels each way, and four sides of 176 by 8.
+        assert_eq!(area, 4.0 * 400.0 + 4.0 * 176.0 * 8.0);
         frame(&ctx);
     }
 

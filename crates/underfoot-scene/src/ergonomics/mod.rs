@@ -25,7 +25,9 @@ mod space;
 pub use place_error::{Zone, predicted_error_m};
 pub use press::{PressProposal, PressSpread, propose_press};
 pub use rules::{RULES, Rule, rule};
-pub use space::{REACH_M, STEP_AWAY_M, footing, free_tiles, gap_between_m, needed_gap_m, reach_m};
+pub use space::{
+    REACH_M, SMALL_M, STEP_AWAY_M, footing, free_tiles, gap_between_m, needed_gap_m, reach_m, smallest_part,
+};
 
 use underfoot::floor::Floor;
 use underfoot::layout::{Layout, Widget};

@@ -11,8 +11,8 @@ use underfoot::widget::{Axis, Behaviour, Guard, Mapping};
 
 /// Feet miss a control with a shorter side (m).
 const MISSED_M: f32 = 0.05;
-/// A shoe covers a control with a shorter side (m).
-const SMALL_M: f32 = 0.10;
+/// A shoe covers a control, or a part of one, with a shorter side (m).
+pub const SMALL_M: f32 = 0.10;
 /// Half the width of a foot (m).
 const HALF_FOOT_M: f32 = 0.055;
 /// Minimum gap between pedals for one foot, operated in sequence (m).
@@ -40,7 +40,7 @@ pub(super) fn review(subject: &mut Subject<'_>) {
 }
 
 fn size(subject: &mut Subject<'_>) {
-    let (size, part) = target(subject.widget);
+    let (size, part) = smallest_part(subject.widget);
     let side = size.min_element();
     let expected = format!("it is {} x {}", cm(size.x), cm(size.y));
     if side < MISSED_M - SLACK_M {
@@ -168,7 +168,7 @@ fn place_error(subject: &mut Subject<'_>) {
     let widget = subject.widget;
     let press = widget.behaviour.thresholds().press;
     let error = predicted_error_m(subject.floor, widget.area, press);
-    let (size, part) = target(widget);
+    let (size, part) = smallest_part(widget);
     let half = 0.5 * size.min_element();
     let expected = format!(
         "found within {} in 95 of 100 cases at {:.0} N, its edge is {} from its middle",
@@ -206,8 +206,10 @@ fn steps(subject: &mut Subject<'_>) {
     subject.warning("U106", Part::Step, message, format!("{} from one value to the next", cm(step)));
 }
 
-/// Size of the smallest part of a control that a foot must hit, and the name of that part.
-fn target(widget: &Widget) -> (Vec2, &'static str) {
+/// Size of the smallest part of a control that a foot must hit, in metres, and the name of that part: empty for the
+/// control as a whole.
+#[must_use]
+pub fn smallest_part(widget: &Widget) -> (Vec2, &'static str) {
     let size = widget.area.size();
     let split = |axis: Axis, parts: f32| match axis {
         Axis::East => Vec2::new(size.x / parts, size.y),

@@ -86,6 +86,22 @@ impl Scene {
         })
     }
 
+    /// Iterates over the areas of all lines of text, in floor metres: of their letters with a little room around them.
+    pub fn written(&self) -> impl Iterator<Item = Rect> {
+        self.texts().map(|(text, lettering)| {
+            let size = Vec2::new(widths::width(text), widths::CAP_HEIGHT) * lettering.size_m;
+            let west = match lettering.anchor {
+                Anchor::Start => 0.0,
+                Anchor::Middle => -0.5 * size.x,
+                Anchor::End => -size.x,
+            };
+            let turn = Vec2::from_angle(lettering.turn_rad);
+            let (one, other) = (Vec2::new(west, 0.0), Vec2::new(west + size.x, size.y));
+            let [one, other] = [one, other].map(|off| lettering.at + turn.rotate(off));
+            Rect::new(one.min(other), one.max(other)).grown(0.3 * lettering.size_m)
+        })
+    }
+
     /// Adds a rectangle with corners rounded by `radius_m`, which is limited to half of the smaller side.
     pub fn add_box(&mut self, area: Rect, radius_m: f32, paint: Paint) {
         let radius_m = radius_m.clamp(0.0, 0.5 * area.size().min_element().max(0.0));

@@ -2,27 +2,16 @@
 
 use glam::Vec2;
 
-use super::fit::{Fitted, fit};
-use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
-use super::theme::{contrast, readable};
-use super::widths::{CAP_HEIGHT, LINE_HEIGHT};
-use super::{Scene, TextDirection, Theme, icon, outline};
+use super::face_colours::FaceColours;
+use super::mark::{Ink, Paint, Stroke};
+use super::{Scene, Theme, outline};
 use underfoot::engine::WidgetState;
 use underfoot::floor::Rect;
 use underfoot::layout::{Colour, Shape, Widget};
 use underfoot::widget::{Guard, Indicator, OffReason};
 
-/// Maximum letter size of a label, in metres: easy to read from standing height.
-const LABEL_M: f32 = 0.046;
-
 /// Minimum letter size of a label, in metres: 8 pixels on a floor displayed 600 pixels wide.
 pub(super) const SMALL_M: f32 = 0.024;
-
-/// Maximum side of an icon, in metres.
-const ICON_M: f32 = 0.11;
-
-/// Minimum side of a recognisable icon, in metres; below it the face has only the label.
-const ICON_LEAST_M: f32 = 0.02;
 
 /// Shrinkage of a pressed face on each side, in metres.
 const SINK_M: f32 = 0.004;
@@ -42,29 +31,27 @@ pub(super) struct Face<'a> {
     pub(super) colour: Colour,
     /// Colour of the letters.
     pub(super) ink: Colour,
+    /// The colours from which the current ones come.
+    colours: FaceColours,
 }
 
 impl<'a> Face<'a> {
     /// Creates the face of `widget`; `lit` mixes its colour at rest (0) with its lit one (1).
     pub(super) fn new(widget: &'a Widget, state: WidgetState, theme: &'a Theme, lit: f32) -> Self {
-        let look = &widget.look;
-        let (rest, lit_up, ink) =
-            theme.faces.map_or((look.face, look.lit, look.ink), |all| (all.rest, all.lit, all.ink));
-        let at_rest = rest.mix(lit_up, lit);
+        let colours = FaceColours::of(&widget.look, theme);
         let is_off = off(&state).is_some();
         let out_of_use = is_off || state.needs_lift;
-        let colour = if out_of_use { at_rest.mix(theme.plate, 0.72) } else { at_rest };
-        let ink = readable(ink, colour);
-        // The text of a control that is off is fainter, but stays legible.
-        let faded = ink.mix(colour, 0.4);
-        let ink = if is_off && contrast(faded, colour) >= 3.0 { faded } else { ink };
+        let face = colours.face(if out_of_use && colours.mark.is_some() { 0.0 } else { lit });
+        let colour = if out_of_use { face.mix(theme.plate, 0.72) } else { face };
+        let ink = theme.readable(colours.ink, colour);
+        let ink = if is_off { faded(ink, colour, theme) } else { ink };
         let area = widget.area.grown(if state.pressed { -SINK_M } else { 0.0 });
         let shape = widget.look.shape;
         let radius_m = match shape {
             Shape::Box => (0.16 * area.size().min_element()).min(0.028),
             Shape::Round => 0.5 * area.size().min_element(),
         };
-        Self { widget, state, theme, shape, area, radius_m, colour, ink }
+        Self { widget, state, theme, shape, area, radius_m, colour, ink, colours }
     }
 
     /// The label; may be empty.
@@ -77,15 +64,55 @@ impl<'a> Face<'a> {
         off(&self.state).is_some() || self.state.needs_lift
     }
 
-    /// Colour of the lit face.
-    fn lit_up(&self) -> Colour {
-        self.theme.faces.map_or(self.widget.look.lit, |all| all.lit)
-    }
-
     /// Colour of lit elements on the face.
     pub(super) fn lit(&self) -> Colour {
-        let lit = self.lit_up();
+        let lit = self.colours.lit;
         if self.is_out_of_use() { lit.mix(self.theme.plate, 0.6) } else { lit }
+    }
+
+    /// Colour of a line along which a handle slides.
+    pub(super) fn groove(&self) -> Colour {
+        match self.colours.mark {
+            Some(mark) => self.colour.mix(mark, 0.45),
+            None => self.colour.mix(self.theme.shadow, 0.14),
+        }
+    }
+
+    /// Paint of a field in which a handle slides, or of one of several parts.
+    pub(super) fn sunk(&self) -> Paint {
+        match self.colours.mark {
+            // On black a shade is invisible, so that the field has an edge.
+            Some(_) => Paint::fill(Ink::solid(self.colour))
+                .with_stroke(Stroke::new(0.003, Ink::solid(self.groove()))),
+            None => Paint::fill(Ink::solid(self.colour.mix(self.theme.shadow, 0.13))),
+        }
+    }
+
+    /// Colour of icon and guard on the face: its hue with high contrast, otherwise that of the letters.
+    pub(super) fn mark(&self) -> Colour {
+        let mark =
+            self.colours.mark.filter(|mark| !self.is_out_of_use() && mark.contrast(self.colour) >= 3.0);
+        mark.unwrap_or(self.ink)
+    }
+
+    /// The edge of the face in its present state.
+    fn edge(&self) -> Stroke {
+        let theme = self.theme;
+        let is_outlined = self.colours.mark.is_some();
+        match (self.state.needs_lift, off(&self.state).is_some()) {
+            (true, _) => Stroke::new(0.005, Ink::solid(theme.warning)).dashed(0.018, 0.012),
+            (_, true) => Stroke::new(0.003, Ink::solid(theme.quiet)).dashed(0.010, 0.010),
+            _ if self.state.warned => Stroke::new(0.008, Ink::solid(theme.warning)),
+            _ if self.state.armed => Stroke::new(0.008, Ink::solid(theme.accent)),
+            _ if self.state.locked => Stroke::new(0.005, Ink::solid(theme.quiet)),
+            _ if self.state.pressed && is_outlined => Stroke::new(0.010, Ink::solid(theme.ink)),
+            _ if self.state.pressed => Stroke::new(0.004, Ink::solid(self.colour.mix(theme.ink, 0.45))),
+            _ => match self.colours.mark {
+                // With high contrast only the edge separates a face from the plate.
+                Some(mark) => Stroke::new(0.006, Ink::solid(mark)),
+                None => Stroke::new(0.002, Ink::faint(self.colour.mix(theme.ink, 0.28), 0.8)),
+            },
+        }
     }
 
     /// Draws shadow, face, edge, guard mark, and the ring that fills as the force grows.
@@ -96,21 +123,7 @@ impl<'a> Face<'a> {
         } else if !flat {
             self.shadow(scene);
         }
-        let edge = self.colour.mix(self.theme.ink, 0.28);
-        let stroke = match (self.state.needs_lift, off(&self.state).is_some()) {
-            (true, _) => Stroke::new(0.005, Ink::solid(self.theme.warning)).dashed(0.018, 0.012),
-            (_, true) => Stroke::new(0.003, Ink::solid(self.theme.quiet)).dashed(0.010, 0.010),
-            _ if self.state.warned => Stroke::new(0.008, Ink::solid(self.theme.warning)),
-            _ if self.state.armed => Stroke::new(0.008, Ink::solid(self.theme.accent)),
-            _ if self.state.locked => Stroke::new(0.005, Ink::solid(self.theme.quiet)),
-            _ if self.state.pressed => Stroke::new(0.004, Ink::solid(self.colour.mix(self.theme.ink, 0.45))),
-            _ => match self.theme.faces {
-                // With the high-contrast colours only the edge separates a face from the plate.
-                Some(all) => Stroke::new(0.005, Ink::solid(all.ink)),
-                None => Stroke::new(0.002, Ink::faint(edge, 0.8)),
-            },
-        };
-        self.outlined(scene, 0.0, Paint::fill(Ink::solid(self.colour)).with_stroke(stroke));
+        self.outlined(scene, 0.0, Paint::fill(Ink::solid(self.colour)).with_stroke(self.edge()));
         if !flat {
             self.guard(scene);
             self.ring(scene);
@@ -120,7 +133,10 @@ impl<'a> Face<'a> {
     /// A second line inside the edge of a guarded control: solid if a second press confirms, dashed if it must be
     /// held.
     fn guard(&self, scene: &mut Scene) {
-        let line = Stroke::new(0.003, Ink::faint(self.ink, 0.55));
+        let line = match self.colours.mark {
+            Some(_) => Stroke::new(0.005, Ink::solid(self.mark())),
+            None => Stroke::new(0.003, Ink::faint(self.ink, 0.55)),
+        };
         let stroke = match self.widget.behaviour.thresholds().guard {
             Guard::Free => return,
             Guard::Confirm { .. } => line,
@@ -136,7 +152,7 @@ impl<'a> Face<'a> {
             Shape::Box => self.area.max - Vec2::splat(0.005),
             Shape::Round => self.area.centre() + 0.5 * self.area.size() * std::f32::consts::FRAC_1_SQRT_2,
         };
-        let edge = Stroke::new(0.003, Ink::solid(readable(self.theme.ink, self.colour)));
+        let edge = Stroke::new(0.003, Ink::solid(self.theme.readable(self.theme.ink, self.colour)));
         let radius = 0.0095;
         let paint = |colour: Colour| Paint::fill(Ink::solid(colour)).with_stroke(edge);
         match self.state.indicator {
@@ -163,13 +179,13 @@ impl<'a> Face<'a> {
 
     /// A halo in the lit colour around a pressed face.
     fn glow(&self, scene: &mut Scene) {
-        self.halo(scene, self.area, 0.030, Ink::faint(self.lit_up(), 0.55));
+        self.halo(scene, self.area, 0.030, Ink::faint(self.colours.lit, 0.55));
     }
 
     fn halo(&self, scene: &mut Scene, area: Rect, reach_m: f32, ink: Ink) {
         let size = area.size();
         match self.shape {
-            Shape::Round if size.x != size.y => {
+            Shape::Round if !is_circle(size) => {
                 let stroke = Stroke::new(0.5 * reach_m, Ink::faint(ink.colour, 0.6 * ink.opacity));
                 scene.add_ellipse(area.centre(), 0.5 * size, Paint::stroke(stroke));
             }
@@ -209,6 +225,8 @@ impl<'a> Face<'a> {
                 let grown = 0.5 * (area.size().x - self.area.size().x);
                 scene.add_box(area, (self.radius_m + grown).max(0.0), paint);
             }
+            // Boxes lie on whole pixels, so all round faces of one size look the same.
+            Shape::Round if is_circle(area.size()) => scene.add_box(area, 0.5 * area.size().x, paint),
             Shape::Round => scene.add_ellipse(area.centre(), area.size() * 0.5, paint),
         }
     }
@@ -267,64 +285,20 @@ impl<'a> Face<'a> {
             WidgetState { warned: true, .. } => self.theme.warning,
             _ => self.theme.accent,
         };
-        let ink = Ink::solid(readable(self.theme.plate, ground));
+        let ink = Ink::solid(self.theme.readable(self.theme.plate, ground));
         scene.add_badge(middle, SMALL_M, ink, Paint::fill(Ink::solid(ground)), format_args!("{text}"));
     }
+}
 
-    /// Writes the label in the centre of the face, under the icon if there is one.
-    pub(super) fn write_label(&self, scene: &mut Scene) {
-        let room = self.draw_icon(scene, self.room());
-        let label = &self.widget.label;
-        if self.widget.look.icon.is_some() {
-            self.write(scene, label, room, Anchor::Middle);
-            return;
-        }
-        let fitted = fit(label, room.size(), LABEL_M, SMALL_M);
-        if self.shape == Shape::Round && self.badge().is_none() {
-            // In a circle, one line may be longer than the width of the inscribed square.
-            let middle = Rect::from_centre_size(self.area.centre(), self.area.size() * Vec2::new(0.88, 0.42));
-            let flat = fit(label, middle.size(), LABEL_M, SMALL_M);
-            if (fitted.shortened && !flat.shortened) || flat.size_m > fitted.size_m {
-                set(scene, label, middle, Anchor::Middle, self.ink, &flat);
-                return;
-            }
-        }
-        set(scene, label, room, Anchor::Middle, self.ink, &fitted);
-    }
+/// The ink of a control that is off: as faint as text may be.
+fn faded(ink: Colour, ground: Colour, theme: &Theme) -> Colour {
+    let mixed = [0.4, 0.3, 0.2, 0.1].map(|share| ink.mix(ground, share));
+    mixed.into_iter().find(|ink| ink.contrast(ground) >= theme.least_contrast()).unwrap_or(ink)
+}
 
-    /// Writes `text` into `room`, as large as it fits, with its lines centred vertically.
-    pub(super) fn write(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor) {
-        self.write_in(scene, text, room, anchor, self.ink);
-    }
-
-    /// Draws the icon, if there is one, and returns the remaining room: beside it if the room is wide, otherwise
-    /// below.
-    pub(super) fn draw_icon(&self, scene: &mut Scene, room: Rect) -> Rect {
-        let Some(icon) = self.widget.look.icon else { return room };
-        let size = room.size();
-        let labelled = !self.widget.label.is_empty();
-        let beside = labelled && size.x > 1.8 * size.y;
-        // The label keeps at least one line of small letters.
-        let strip = if labelled && !beside { (0.36 * size.y).max(LINE_HEIGHT * SMALL_M) } else { 0.0 };
-        let side = (0.92 * (size.y - strip)).min(0.8 * size.x).min(ICON_M);
-        if side < ICON_LEAST_M {
-            return room;
-        }
-        if beside {
-            let middle = Vec2::new(room.min.x + 0.5 * side, room.centre().y);
-            icon::draw(scene, icon, middle, side, self.ink);
-            return Rect::new(Vec2::new(room.min.x + 1.15 * side, room.min.y), room.max);
-        }
-        let top = room.centre().y + 0.5 * (side + strip);
-        icon::draw(scene, icon, Vec2::new(room.centre().x, top - 0.5 * side), side, self.ink);
-        let label = Rect::new(Vec2::new(room.min.x, top - side - strip), Vec2::new(room.max.x, top - side));
-        Rect::new(label.min.max(room.min), label.max)
-    }
-
-    /// The same in another colour.
-    pub(super) fn write_in(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour) {
-        set(scene, text, room, anchor, ink, &fit(text, room.size(), LABEL_M, SMALL_M));
-    }
+/// True if an ellipse of this size is a circle, within the rounding errors of metres.
+fn is_circle(size: Vec2) -> bool {
+    (size.x - size.y).abs() < 1e-4
 }
 
 /// Reason why a control is drawn as off. While the floor waits for its first frame, controls are drawn as ready.
@@ -352,6 +326,7 @@ fn off_badge(reason: OffReason) -> Option<&'static str> {
         OffReason::RepeatedReadings => "frozen",
         OffReason::CoarseReadings => "coarse",
         OffReason::OtherHeld => "wait",
+        OffReason::SlowReadings => "too slow",
         OffReason::Waiting => return None,
         // A test checks that each known reason has its own.
         _ => UNNAMED_BADGE,
@@ -360,30 +335,6 @@ fn off_badge(reason: OffReason) -> Option<&'static str> {
 
 /// Height of the strip that a badge takes from the label, in metres.
 pub(super) const BADGE_STRIP_M: f32 = 0.036;
-
-fn set(scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour, fitted: &Fitted) {
-    let x = match anchor {
-        Anchor::Start => room.min.x,
-        Anchor::Middle => room.centre().x,
-        Anchor::End => room.max.x,
-    };
-    let top = room.centre().y + 0.5 * fitted.height_m();
-    let direction = TextDirection::of(text);
-    for (line, bytes) in fitted.lines.iter().enumerate() {
-        let middle = top - (line as f32 + 0.5) * LINE_HEIGHT * fitted.size_m;
-        let lettering = Lettering::new(
-            Vec2::new(x, middle - 0.5 * CAP_HEIGHT * fitted.size_m),
-            anchor,
-            fitted.size_m,
-            Ink::solid(ink),
-        )
-        .strong()
-        .reading(direction);
-        let last = line + 1 == fitted.lines.len();
-        let end = if fitted.shortened && last { "…" } else { "" };
-        scene.add_text(lettering, format_args!("{}{end}", &text[bytes.clone()]));
-    }
-}
 
 #[cfg(test)]
 mod tests {

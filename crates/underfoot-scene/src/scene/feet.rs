@@ -126,8 +126,7 @@ fn tag_place(view: &View<'_>, at: Vec2, radius: f32, by: f32, tags: &mut Vec<Rec
     ];
     let half = HALF * by;
     let floor = view.geometry.bounds();
-    let controls = view.layout.widgets.iter().filter(|widget| widget.is_on(view.snapshot.page));
-    let areas: Vec<Rect> = controls.map(|widget| widget.area).chain(tags.iter().copied()).collect();
+    let areas: Vec<Rect> = view.controls().map(|widget| widget.area).chain(tags.iter().copied()).collect();
     let mut best = (f32::INFINITY, at);
     for step in 0..12_u8 {
         let farther = 0.03 * by * f32::from(step);

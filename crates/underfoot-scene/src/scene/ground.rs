@@ -4,9 +4,9 @@ use glam::Vec2;
 
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::widths::CAP_HEIGHT;
-use super::{Scene, View, outline, terrain};
+use super::{Scene, View, names, outline, terrain};
 use underfoot::engine::TileState;
-use underfoot::floor::{Corner, Rect, TileId};
+use underfoot::floor::{Rect, TileId};
 use underfoot::sense::Quality;
 use underfoot::wire::LinkState;
 
@@ -16,34 +16,56 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     let slab = view.geometry.bounds();
     // On a floor of a few tiles, the whole shadow must stay within the margin.
     let by = super::magnification(view.geometry).min(1.0);
-    // A soft shadow, shifted a little to the south, as from a lamp at the floor's far end.
+    // A soft shadow, shifted a little to the south, as from a lamp at the floor's far end; one that has another outline
+    // has none.
     let south = Vec2::new(0.0, 0.006);
     let shade = Rect::new(slab.min - south, slab.max - south);
-    scene.add_halo(shade.grown(-0.006), 0.010, 0.036 * by, Ink::faint(theme.shadow, 0.11));
-    // If plates touch, a seam of 2 mm on each side separates them visibly.
-    let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022 * seen_from(view));
-    seams(scene, view, gap);
+    if view.geometry.missing().is_empty() {
+        scene.add_halo(shade.grown(-0.006), 0.010, 0.036 * by, Ink::faint(theme.shadow, 0.11));
+    }
+    seams(scene, view, gap_around(view, view.geometry.tile_m()));
     for (index, tile) in view.geometry.tiles().enumerate() {
         let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
         // Full colour at 700 N, one person on one foot; the square root makes light steps visible too.
-        let share = if view.show.loads { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
-        let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
-        if terrain::hides(view, cell) {
+        let share = if view.show.loads { (load / 700.0).sqrt().min(1.0) * MOST_LOAD } else { 0.0 };
+        let cell = view.geometry.cell(tile);
+        if view.geometry.is_missing(tile) || terrain::hides(view, cell) {
             continue;
         }
         let is_active = view.layout.regions.iter().any(|region| tints_plates(view, region.area, cell));
         let plate = if is_active { theme.plate.mix(theme.accent, TINT) } else { theme.plate };
         let colour = plate.mix(theme.load, share);
-        scene.add_box(cell.grown(-gap), 0.008, Paint::fill(Ink::solid(colour)));
+        let gap = gap_around(view, view.geometry.plate_size(tile));
+        let plate = Rect::new(cell.min + gap, cell.max - gap);
+        scene.add_box(plate, 0.008, Paint::fill(Ink::solid(colour)));
     }
     // On a large floor plates are drawn to whole pixels, which would close every other seam.
     if super::magnification(view.geometry) > 1.5 {
-        seams(scene, view, 0.0);
+        seams(scene, view, Vec2::ZERO);
     }
 }
 
+/// Width of the gap on each side of a plate of this size; if plates touch, a seam of 2 mm on each side separates them
+/// visibly.
+fn gap_around(view: &View<'_>, plate: Vec2) -> Vec2 {
+    (0.5 * (view.geometry.pitch_m() - plate)).max(Vec2::splat(0.0022 * seen_from(view)))
+}
+
+/// Covers the holes of the floor, on which grounds may lie.
+pub(super) fn holes(scene: &mut Scene, view: &View<'_>) {
+    let missing = view.geometry.missing().iter().filter(|tile| view.geometry.index(**tile).is_some());
+    let cells = missing.map(|tile| view.geometry.cell(*tile));
+    let is_covered = |cell: &Rect| view.layout.grounds.iter().any(|ground| ground.spec.area.overlaps(*cell));
+    for cell in cells.filter(is_covered) {
+        scene.add_box(cell, 0.0, Paint::fill(Ink::solid(view.theme.canvas)));
+    }
+}
+
+/// Maximum share of the colour of loads in a plate.
+pub(super) const MOST_LOAD: f32 = 0.55;
+
 /// Share of the accent colour in an active area.
-const TINT: f32 = 0.045;
+pub(super) const TINT: f32 = 0.045;
 
 /// True if the plate of `cell` is tinted to show that it is active: a region of whole plates needs no extra rectangle
 /// over them, which would be painted pixel by pixel once more.
@@ -62,27 +84,37 @@ fn tints_plates(view: &View<'_>, region: Rect, cell: Rect) -> bool {
 /// Factor for the width of seams on a floor larger than the paper's, which is seen from further away: without it,
 /// half of the seams would fall between a screen's pixels. Limited to 4 % of the tile pitch.
 fn seen_from(view: &View<'_>) -> f32 {
-    super::magnification(view.geometry).clamp(1.0, 0.04 * view.geometry.pitch_m() / 0.0022).max(1.0)
+    let most = 0.04 * view.geometry.pitch_m().min_element() / 0.0022;
+    super::magnification(view.geometry).clamp(1.0, most.max(1.0))
 }
 
 /// Draws a frame around all plates and lines between them.
 ///
 /// Lines rather than one large background: painting without a graphics card takes time in proportion to the area.
-fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
+///
+/// A floor with holes has a frame around each tile.
+fn seams(scene: &mut Scene, view: &View<'_>, gap: Vec2) {
     let slab = view.geometry.bounds();
     let colour = Ink::solid(view.theme.seam);
     let width_m = 0.014 * super::magnification(view.geometry).clamp(0.4, 1.0);
-    scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(width_m, colour)));
     // A little wider than the seam, because of the plates' round corners.
-    let stroke = Paint::stroke(Stroke::new(2.0 * gap + 0.006 * seen_from(view), colour));
+    let stroke = |gap: f32| Paint::stroke(Stroke::new(2.0 * gap + 0.006 * seen_from(view), colour));
+    if !view.geometry.missing().is_empty() {
+        let frame = stroke(0.5 * gap.min_element());
+        for tile in view.geometry.tiles().filter(|tile| view.geometry.has(*tile)) {
+            scene.add_box(view.geometry.cell(tile), 0.010, frame);
+        }
+        return;
+    }
+    scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(width_m, colour)));
     let (size, pitch_m) = (slab.size(), view.geometry.pitch_m());
     for column in 1..view.geometry.columns() {
-        let south = slab.min + Vec2::new(f32::from(column) * pitch_m, 0.0);
-        scene.add_line(south, south + Vec2::new(0.0, size.y), stroke);
+        let south = slab.min + Vec2::new(f32::from(column) * pitch_m.x, 0.0);
+        scene.add_line(south, south + Vec2::new(0.0, size.y), stroke(gap.x));
     }
     for row in 1..view.geometry.rows() {
-        let west = slab.min + Vec2::new(0.0, f32::from(row) * pitch_m);
-        scene.add_line(west, west + Vec2::new(size.x, 0.0), stroke);
+        let west = slab.min + Vec2::new(0.0, f32::from(row) * pitch_m.y);
+        scene.add_line(west, west + Vec2::new(size.x, 0.0), stroke(gap.y));
     }
 }
 
@@ -92,14 +124,14 @@ pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
     let size_m = 0.030 * by;
     let mut lettering = Lettering::new(Vec2::ZERO, Anchor::Middle, size_m, Ink::solid(view.theme.quiet));
     // If tiles are smaller than their numbers, only every n-th tile has one.
-    let every = (2.0 * size_m / view.geometry.pitch_m()).ceil().max(1.0) as usize;
+    let every = (2.0 * size_m / view.geometry.pitch_m()).ceil().max(Vec2::ONE).as_usizevec2();
     let (block, corner) = (view.geometry.block(), view.geometry.bounds().min);
-    for column in block.column_range().step_by(every) {
+    for column in block.column_range().step_by(every.x) {
         let middle = Vec2::new(view.geometry.centre(TileId::new(column, 0)).x, corner.y);
         lettering.at = middle - Vec2::new(0.0, 0.058 * by);
         scene.add_text(lettering, format_args!("{column}"));
     }
-    for row in block.row_range().step_by(every) {
+    for row in block.row_range().step_by(every.y) {
         let middle = Vec2::new(corner.x, view.geometry.centre(TileId::new(0, row)).y);
         lettering.at = middle - Vec2::new(0.048 * by, 0.5 * CAP_HEIGHT * size_m);
         scene.add_text(lettering, format_args!("{row}"));
@@ -110,9 +142,9 @@ pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
 pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for region in &view.layout.regions {
-        let is_tinted = view.geometry.tiles().all(|tile| {
-            let middle = view.geometry.centre(tile);
-            let cell = Rect::from_centre_size(middle, Vec2::splat(view.geometry.pitch_m()));
+        let mut tiles = view.geometry.tiles().filter(|tile| view.geometry.has(*tile));
+        let is_tinted = tiles.all(|tile| {
+            let cell = view.geometry.cell(tile);
             !region.area.overlaps(cell.grown(-1e-4)) || tints_plates(view, region.area, cell)
         });
         let area = region.area.grown(-0.004);
@@ -125,9 +157,9 @@ pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
             Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),
             Anchor::Start,
             size_m,
-            Ink::faint(theme.accent, 0.9),
+            names::ink(theme, theme.accent),
         );
-        scene.add_line_of(lettering, &region.id, area.size().x - 0.04, size_m);
+        names::write(scene, view, lettering, &region.id, (area.size().x - 0.04, size_m));
     }
 }
 
@@ -161,9 +193,9 @@ pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
             Vec2::new(area.centre().x, area.min.y + 0.022),
             Anchor::Middle,
             0.032,
-            Ink::solid(theme.quiet),
+            names::ink(theme, theme.quiet),
         );
-        scene.add_line_of(lettering, &stance.label, size.x - 0.03, 0.02);
+        names::write(scene, view, lettering, &stance.label, (size.x - 0.03, 0.02));
     }
 }
 
@@ -199,7 +231,7 @@ pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
         if state.quality == [Quality::Stale; 4] {
             continue;
         }
-        for corner in Corner::ALL {
+        for &corner in view.geometry.sensors(tile) {
             let at = view.geometry.sensor(tile, corner);
             let force = state.forces[corner.index()];
             let quality = state.quality[corner.index()];
@@ -302,5 +334,6 @@ pub(super) fn chosen(scene: &mut Scene, view: &View<'_>) {
 /// True if there are sensors and all are degraded or worse, as on an uncalibrated floor.
 pub(super) fn none_live(view: &View<'_>) -> bool {
     let tiles = &view.snapshot.tiles;
-    !tiles.is_empty() && !tiles.iter().any(|tile| tile.quality.contains(&Quality::Live))
+    let mut known = view.geometry.tiles().zip(tiles).filter(|(tile, _)| view.geometry.has(*tile));
+    !tiles.is_empty() && !known.any(|(_, tile)| tile.quality.contains(&Quality::Live))
 }

@@ -8,7 +8,7 @@ use glam::Vec2;
 use super::mark::{Ink, Paint, Stroke};
 use super::{Scene, View};
 use underfoot::engine::{Ignored, IgnoredPress};
-use underfoot::floor::{Corner, Rect};
+use underfoot::floor::Rect;
 use underfoot::layout::Widget;
 use underfoot::sense::{Covariance, Quality};
 use underfoot::wire::LinkState;
@@ -26,7 +26,11 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
     }
     let theme = view.theme;
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
-        let plate = view.geometry.plate(view.geometry.tile_at_index(index)).grown(-0.004);
+        let tile = view.geometry.tile_at_index(index);
+        if view.geometry.is_missing(tile) {
+            continue;
+        }
+        let plate = view.geometry.plate(tile).grown(-0.004);
         // A tile with live sensors gets only a frame, which needs no area without a graphics card.
         if state.quality == [Quality::Live; 4] {
             let frame = Paint::stroke(Stroke::new(0.005, Ink::faint(theme.good, 0.4)));
@@ -34,7 +38,8 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
             continue;
         }
         let half = 0.5 * plate.size();
-        for (corner, quality) in Corner::ALL.into_iter().zip(state.quality) {
+        for &corner in view.geometry.sensors(tile) {
+            let quality = state.quality[corner.index()];
             // Worse qualities are more opaque, so that the map is readable without its colours.
             let ink = match quality {
                 Quality::Live => Ink::faint(theme.good, 0.14),
@@ -42,11 +47,17 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
                 Quality::Stale => Ink::faint(theme.stale, 0.5),
                 Quality::Faulty => Ink::faint(theme.fault, 0.66),
             };
-            let side = Vec2::new(
-                f32::from(u8::from(matches!(corner, Corner::SouthEast | Corner::NorthEast))),
-                f32::from(u8::from(matches!(corner, Corner::NorthWest | Corner::NorthEast))),
-            );
-            let quarter = Rect::from_min_size(plate.min + side * half, half).grown(-0.002);
+            let quarter = match view.geometry.has_corners() {
+                true => {
+                    let side = 0.5 + 0.5 * corner.direction();
+                    Rect::from_min_size(plate.min + side * half, half).grown(-0.002)
+                }
+                // Sensors at other places have a square around each.
+                false => {
+                    let at = plate.min + plate.size() * view.geometry.share_of_plate(tile, corner);
+                    Rect::from_centre_size(at, Vec2::splat(0.5 * half.min_element()))
+                }
+            };
             scene.add_box(quarter, 0.004, Paint::fill(ink));
         }
     }
@@ -148,7 +159,7 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) 
             text.push_str(&format!(", takes {:.0} N", wanted.press.0));
         }
         let half = Vec2::new(0.5 * (super::widths::width(&text) * size_m + size_m), 0.8 * size_m);
-        let middle = beside(widget.area, half, view.geometry.bounds(), &taken);
+        let middle = beside(widget.area, half, view, &taken);
         taken.push(Rect::new(middle - half, middle + half));
         let plate = Paint::fill(Ink::solid(theme.plate))
             .with_stroke(Stroke::new(0.0025 * by, Ink::solid(theme.warning)));
@@ -184,7 +195,7 @@ fn near_misses(scene: &mut Scene, view: &View<'_>, size_m: f32, taken: &mut Vec<
         }
         let half = Vec2::new(0.5 * (super::widths::width(&miss.text) * size_m + size_m), 0.8 * size_m);
         let press = Rect::new(miss.place, miss.place).grown(arm);
-        let middle = beside(press, half, view.geometry.bounds(), taken);
+        let middle = beside(press, half, view, taken);
         taken.push(Rect::new(middle - half, middle + half));
         let plate = Paint::fill(Ink::solid(theme.plate))
             .with_stroke(Stroke::new(0.09 * size_m, Ink::solid(theme.warning)));
@@ -192,22 +203,37 @@ fn near_misses(scene: &mut Scene, view: &View<'_>, size_m: f32, taken: &mut Vec<
     }
 }
 
-/// Place for a text that extends `half` to each side, at a control: along its south edge, or else further south or in
-/// the north, clear of the texts in `taken`; always within the floor.
-fn beside(control: Rect, half: Vec2, floor: Rect, taken: &[Rect]) -> Vec2 {
+/// Place for a text that extends `half` to each side, at a control or a press: along its south edge, or else further
+/// south, in the north, or aside. It is clear of the texts in `taken`, if possible also of all controls, and always
+/// within the floor.
+fn beside(at: Rect, half: Vec2, view: &View<'_>, taken: &[Rect]) -> Vec2 {
+    let floor = view.geometry.bounds();
     let low = (floor.min + half).min(floor.centre());
     let high = (floor.max - half).max(low);
-    let lines = (0..4_u8).flat_map(|line| {
-        let away = half.y * (1.0 + 2.2 * f32::from(line));
-        [control.min.y - away, control.max.y + away]
+    let lines = (0..6_u8).flat_map(|line| {
+        let away = half.y * (1.05 + 2.2 * f32::from(line));
+        [at.min.y - away, at.max.y + away]
     });
-    let places = lines.map(|y| Vec2::new(control.centre().x, y).clamp(low, high));
-    let is_free = |place: &Vec2| {
-        let words = Rect::new(*place - half, *place + half);
-        !taken.iter().any(|other| other.overlaps(words))
+    let far = 2.0 * half.x;
+    let aside = [
+        at.centre().x,
+        at.max.x + half.x,
+        at.min.x - half.x,
+        at.max.x + half.x + far,
+        at.min.x - half.x - far,
+    ];
+    let places = lines.flat_map(|y| aside.map(|x| Vec2::new(x, y)));
+    let level = [at.max.x + 1.1 * half.x, at.min.x - 1.1 * half.x].map(|x| Vec2::new(x, at.centre().y));
+    let places: Vec<Vec2> = places.chain(level).map(|place| place.clamp(low, high)).collect();
+    let covers = |areas: &[Rect], place: Vec2| {
+        let words = Rect::new(place - half, place + half);
+        areas.iter().any(|other| other.overlaps(words))
     };
-    let first = Vec2::new(control.centre().x, control.min.y - half.y).clamp(low, high);
-    places.into_iter().find(is_free).unwrap_or(first)
+    let controls: Vec<Rect> = view.controls().map(|widget| widget.area).collect();
+    let is_free = |place: &&Vec2| !covers(taken, **place);
+    let best = places.iter().filter(is_free).find(|place| !covers(&controls, **place));
+    let first = Vec2::new(at.centre().x, at.min.y - half.y).clamp(low, high);
+    best.or(places.iter().find(is_free)).copied().unwrap_or(first)
 }
 
 #[cfg(test)]
@@ -217,6 +243,7 @@ mod tests {
     use super::*;
     use underfoot::engine::Snapshot;
     use underfoot::floor::Geometry;
+    use underfoot::layout::Layout;
     use underfoot::sense::ContactId;
     use underfoot::units::{Instant, Newtons};
 
@@ -327,17 +354,38 @@ mod tests {
 
     #[test]
     fn reasons_stand_clear_of_what_is_written_already() {
-        let floor = Geometry::default().bounds();
+        let (layout, geometry, snapshot) = (Layout::default(), Geometry::default(), Snapshot::default());
+        let view = View::new(&geometry, &layout, &snapshot, &Theme::LIGHT);
+        let floor = geometry.bounds();
         let half = Vec2::new(0.1, 0.02);
         for control in [floor.centre(), floor.min, floor.max] {
             let control = Rect::from_centre_size(control, Vec2::splat(0.15));
             let mut taken: Vec<Rect> = Vec::new();
             for _ in 0..4 {
-                let middle = beside(control, half, floor, &taken);
+                let middle = beside(control, half, &view, &taken);
                 let words = Rect::new(middle - half, middle + half);
                 assert!(!taken.iter().any(|other| other.overlaps(words)), "{words:?} on {taken:?}");
                 assert!(floor.grown(1e-4).contains(words.min) && floor.grown(1e-4).contains(words.max));
                 taken.push(words);
+            }
+        }
+    }
+
+    #[test]
+    fn reasons_cover_no_control_where_there_is_room() {
+        let (mut layout, geometry) = (map(), Geometry::default());
+        let mut number = 0;
+        layout.widgets.retain(|_| {
+            number += 1;
+            number % 2 == 0
+        });
+        let snapshot = at_rest(&layout);
+        let view = View::new(&geometry, &layout, &snapshot, &Theme::LIGHT);
+        for widget in &layout.widgets {
+            let middle = beside(widget.area, Vec2::new(0.06, 0.02), &view, &[]);
+            let words = Rect::from_centre_size(middle, Vec2::new(0.12, 0.04));
+            for other in &layout.widgets {
+                assert!(!other.area.overlaps(words), "the reason of {} covers {}", widget.id, other.id);
             }
         }
     }

@@ -16,14 +16,19 @@
 mod board;
 mod control;
 mod face;
+mod face_colours;
+mod face_words;
 mod feet;
 mod fit;
 mod ground;
 mod icon;
 mod layers;
 mod mark;
+mod names;
 mod outline;
 mod pieces;
+#[cfg(test)]
+mod readable_tests;
 #[cfg(test)]
 #[path = "../../../../tests/support/sample.rs"]
 pub(crate) mod sample;
@@ -36,12 +41,14 @@ mod view;
 mod widths;
 
 pub use board::Scene;
+pub use face_colours::Faces;
 pub use layers::TOLD;
 pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::{outline_of, sole};
 pub use pieces::{TextDirection, TextPiece, in_drawn_order, pieces};
-pub use theme::{Faces, Theme};
+pub use theme::Theme;
 pub use view::{Layer, PressBeside, Shoe, Show, Trail, View};
+pub use widths::CAP_HEIGHT;
 
 use glam::Vec2;
 
@@ -86,6 +93,7 @@ pub fn draw(scene: &mut Scene, view: &View<'_>) {
     scene.clear(bounds, view.theme.canvas);
     ground::plates(scene, view);
     terrain::draw(scene, view);
+    ground::holes(scene, view);
     layers::health(scene, view);
     ground::unknown(scene, view);
     if view.show.ruler {

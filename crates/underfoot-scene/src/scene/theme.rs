@@ -1,5 +1,6 @@
-//! Themes: the colours of everything but the controls' faces, and, for high contrast, of the faces too.
+//! Themes: the colours of everything but the controls' faces, and the treatment of those.
 
+use super::face_colours::Faces;
 use underfoot::layout::Colour;
 
 /// Colours of everything except the controls' own faces.
@@ -41,19 +42,8 @@ pub struct Theme {
     pub good: Colour,
     /// Shadows.
     pub shadow: Colour,
-    /// Common colours of all controls; `None` for the colours of the layout.
-    pub faces: Option<Faces>,
-}
-
-/// Common colours of all controls, for themes in which contrast is more important than the layout's colours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Faces {
-    /// A face at rest.
-    pub rest: Colour,
-    /// A face while it is pressed or on.
-    pub lit: Colour,
-    /// The edge of a face, and its text if that is readable.
-    pub ink: Colour,
+    /// Use of the layout's colours for controls and grounds.
+    pub faces: Faces,
 }
 
 impl Theme {
@@ -76,7 +66,7 @@ impl Theme {
         ink: Colour::rgb(0x2a, 0x28, 0x25),
         quiet: Colour::rgb(0x6e, 0x68, 0x5e),
         line: Colour::rgb(0xd9, 0xd3, 0xc8),
-        accent: Colour::rgb(0x2f, 0x6b, 0xd8),
+        accent: Colour::rgb(0x2b, 0x64, 0xcc),
         stance: Colour::rgb(0x7b, 0x71, 0x62),
         contact: Colour::rgb(0x0f, 0x76, 0x82),
         cursor: Colour::rgb(0xc2, 0x1c, 0x60),
@@ -87,10 +77,11 @@ impl Theme {
         stale: Colour::rgb(0x7d, 0x83, 0x8a),
         good: Colour::rgb(0x24, 0x76, 0x3f),
         shadow: Colour::rgb(0x4a, 0x40, 0x30),
-        faces: None,
+        faces: Faces::OfLayout,
     };
 
-    /// Dark grey, for a darkened room.
+    /// Dark grey, for a darkened room: the floor lies below the plates, the plates below the controls, and each is
+    /// lighter than what it lies on.
     pub const DARK: Self = Self {
         canvas: Colour::rgb(0x1d, 0x1e, 0x20),
         seam: Colour::rgb(0x15, 0x16, 0x17),
@@ -110,11 +101,11 @@ impl Theme {
         stale: Colour::rgb(0x9a, 0xa0, 0xa8),
         good: Colour::rgb(0x6c, 0xc2, 0x85),
         shadow: Colour::rgb(0x00, 0x00, 0x00),
-        faces: None,
+        faces: Faces::Dark,
     };
 
-    /// Black with white edges and few, bright colours, at least 7 to 1: for low vision, bright rooms and weak
-    /// projectors. On and off also differ in lightness.
+    /// Black with few, bright colours, at least 7 to 1: for low vision, bright rooms and weak projectors. Controls
+    /// have thick edges in their own hues; on and off also differ in lightness.
     pub const CONTRAST: Self = Self {
         canvas: Colour::rgb(0x00, 0x00, 0x00),
         seam: Colour::rgb(0x5c, 0x5c, 0x5c),
@@ -134,17 +125,65 @@ impl Theme {
         stale: Colour::rgb(0xb8, 0xb8, 0xb8),
         good: Colour::rgb(0x74, 0xff, 0x98),
         shadow: Colour::rgb(0x00, 0x00, 0x00),
-        faces: Some(Faces {
-            rest: Colour::rgb(0x00, 0x00, 0x00),
-            lit: Colour::rgb(0xff, 0xe6, 0x00),
-            ink: Colour::rgb(0xff, 0xff, 0xff),
-        }),
+        faces: Faces::Outlined,
     };
 
-    /// Returns true if text is lighter than the background.
+    /// Returns true if text is lighter than the plates.
     #[must_use]
     pub fn is_dark(&self) -> bool {
-        self.canvas.luminance() < self.ink.luminance()
+        self.plate.luminance() < self.ink.luminance()
+    }
+
+    /// Returns the colours of a projection onto real plates: black around the floor, and with a dark theme on the
+    /// plates too, because black throws no light. Controls keep the layout's own colours there, which throw most.
+    #[must_use]
+    pub fn projected(self) -> Self {
+        let black = Colour::rgb(0, 0, 0);
+        let faces = if self.faces == Faces::Dark { Faces::OfLayout } else { self.faces };
+        if self.is_dark() {
+            let quiet = Colour::rgb(0xd8, 0xd4, 0xcc);
+            Self { canvas: black, seam: black, plate: black, quiet, faces, ..self }
+        } else {
+            Self { canvas: black, ..self }
+        }
+    }
+
+    /// Returns the minimum contrast of text with its ground in this theme.
+    ///
+    /// # Source
+    /// Web Content Accessibility Guidelines 2.2: 1.4.3 (level AA), and 1.4.6 (level AAA) for high contrast.
+    #[must_use]
+    pub const fn least_contrast(&self) -> f32 {
+        match self.faces {
+            Faces::Outlined => 7.0,
+            Faces::OfLayout | Faces::Dark => 4.5,
+        }
+    }
+
+    /// Returns `wish` if it is readable on `ground`, otherwise near-black, black or white: the first that is
+    /// readable, or the one with the highest contrast.
+    #[must_use]
+    pub fn readable(&self, wish: Colour, ground: Colour) -> Colour {
+        let most = [DARK_INK, BLACK, WHITE].into_iter().max_by(|one, other| {
+            let contrast = |ink: &Colour| ink.contrast(ground);
+            contrast(one).total_cmp(&contrast(other))
+        });
+        let inks = [wish, self.preferred(ground), BLACK, WHITE];
+        let is_readable = |ink: &Colour| ink.contrast(ground) >= self.least_contrast();
+        inks.into_iter().find(is_readable).or(most).unwrap_or(wish)
+    }
+
+    /// Near-black or white, whichever has the higher contrast.
+    fn preferred(&self, ground: Colour) -> Colour {
+        if DARK_INK.contrast(ground) >= WHITE.contrast(ground) { DARK_INK } else { WHITE }
+    }
+
+    /// Returns `wish` for text on `ground`, mixed with as much of the theme's ink as it needs to be readable there.
+    #[must_use]
+    pub fn legible(&self, wish: Colour, ground: Colour) -> Colour {
+        let mixed = (0..=8_u8).map(|eighths| wish.mix(self.ink, f32::from(eighths) / 8.0));
+        let mut readable = mixed.filter(|ink| ink.contrast(ground) >= self.least_contrast());
+        readable.next().unwrap_or_else(|| self.readable(self.ink, ground))
     }
 }
 
@@ -154,79 +193,69 @@ impl Default for Theme {
     }
 }
 
-/// Minimum contrast of readable text of any size.
-///
-/// # Source
-/// Web Content Accessibility Guidelines 2.2, 1.4.3, level AA.
-pub(super) const READABLE: f32 = 4.5;
-
+/// Text on light grounds.
 const DARK_INK: Colour = Colour::rgb(0x1c, 0x1b, 0x19);
-const LIGHT_INK: Colour = Colour::rgb(0xff, 0xff, 0xff);
 
-/// `wish` if it is readable on `ground`, otherwise near-black or white, whichever has the higher contrast.
-pub(super) fn readable(wish: Colour, ground: Colour) -> Colour {
-    if contrast(wish, ground) >= READABLE {
-        wish
-    } else if contrast(DARK_INK, ground) >= contrast(LIGHT_INK, ground) {
-        DARK_INK
-    } else {
-        LIGHT_INK
-    }
-}
+pub(super) const BLACK: Colour = Colour::rgb(0, 0, 0);
 
-/// Contrast ratio of two colours, 1 (equal) to 21.
-pub(super) fn contrast(one: Colour, other: Colour) -> f32 {
-    one.contrast(other)
-}
+pub(super) const WHITE: Colour = Colour::rgb(0xff, 0xff, 0xff);
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn contrast_runs_from_1_to_21() {
-        let (black, white) = (Colour::rgb(0, 0, 0), Colour::rgb(255, 255, 255));
-        assert!((contrast(black, white) - 21.0).abs() < 1e-3);
-        assert_eq!(contrast(white, white), 1.0);
+    fn words_of_every_theme_can_be_read_on_canvas_and_plates() {
+        for (name, theme) in Theme::NAMED {
+            let Theme { ink, quiet, accent, contact, cursor, haptic, warning, fault, stale, good, .. } =
+                theme;
+            for ground in [theme.canvas, theme.plate] {
+                assert!(ink.contrast(ground) > 7.0);
+                for colour in [quiet, contact, cursor, fault, warning, good, accent, haptic] {
+                    let ratio = colour.contrast(ground);
+                    assert!(ratio >= theme.least_contrast() - 0.1, "{name}: {colour} on {ground}: {ratio}");
+                }
+                // Marks without letters.
+                assert!(stale.contrast(ground) >= 3.0);
+            }
+        }
+        assert!(Theme::DARK.is_dark() && Theme::CONTRAST.is_dark() && !Theme::LIGHT.is_dark());
     }
 
     #[test]
-    fn words_of_both_themes_can_be_read() {
-        for theme in [Theme::LIGHT, Theme::DARK] {
-            for ground in [theme.canvas, theme.plate] {
-                assert!(contrast(theme.ink, ground) > 7.0);
-                for colour in
-                    [theme.quiet, theme.contact, theme.cursor, theme.fault, theme.warning, theme.good]
-                {
-                    assert!(
-                        contrast(colour, ground) >= 4.4,
-                        "{colour} on {ground}: {}",
-                        contrast(colour, ground)
-                    );
+    fn each_level_of_the_dark_theme_is_lighter_than_the_one_below() {
+        let Theme { seam, canvas, plate, line, .. } = Theme::DARK;
+        for pair in [seam, canvas, plate, line].windows(2) {
+            assert!(pair[0].luminance() < pair[1].luminance(), "{} under {}", pair[0], pair[1]);
+        }
+    }
+
+    #[test]
+    fn dark_projections_throw_no_light_on_bare_plates_and_much_from_controls() {
+        for (name, theme) in Theme::NAMED {
+            let projected = theme.projected();
+            assert_eq!(projected.canvas, BLACK, "{name}");
+            assert_eq!(projected.plate == BLACK, theme.is_dark(), "{name}");
+            assert_ne!(projected.faces, Faces::Dark, "{name}");
+        }
+    }
+
+    #[test]
+    fn an_ink_that_cannot_be_read_is_replaced_on_any_ground() {
+        let theme = Theme::LIGHT;
+        let yellow = Colour::rgb(0xff, 0xe0, 0x40);
+        assert_eq!(theme.readable(WHITE, yellow), DARK_INK);
+        assert_eq!(theme.readable(DARK_INK, yellow), DARK_INK);
+        let navy = Colour::rgb(0x10, 0x20, 0x60);
+        assert_eq!(theme.readable(DARK_INK, navy), WHITE);
+        // Between the lightest ground for white and the darkest for near-black, only black is left.
+        for level in 0..=255 {
+            let ground = Colour::rgb(level, level, level);
+            for (_, theme) in &Theme::NAMED[..2] {
+                for ink in [theme.readable(theme.accent, ground), theme.legible(theme.accent, ground)] {
+                    assert!(ink.contrast(ground) >= 4.5, "{ink} on {ground}");
                 }
             }
         }
-        assert!(Theme::DARK.is_dark() && !Theme::LIGHT.is_dark());
-    }
-
-    #[test]
-    fn every_word_of_high_contrast_stands_off_by_seven() {
-        let theme = Theme::CONTRAST;
-        let Theme { ink, quiet, accent, contact, cursor, haptic, warning, fault, stale, good, .. } = theme;
-        for colour in [ink, quiet, accent, contact, cursor, haptic, warning, fault, stale, good] {
-            assert!(contrast(colour, theme.plate) >= 7.0, "{colour}: {}", contrast(colour, theme.plate));
-        }
-        let faces = theme.faces.unwrap();
-        assert!(contrast(faces.ink, faces.rest) >= 7.0 && contrast(faces.lit, faces.rest) >= 7.0);
-        assert!(theme.is_dark() && theme.name() == Some("High contrast"));
-    }
-
-    #[test]
-    fn an_ink_that_cannot_be_read_is_replaced() {
-        let yellow = Colour::rgb(0xff, 0xe0, 0x40);
-        assert_eq!(readable(LIGHT_INK, yellow), DARK_INK);
-        assert_eq!(readable(DARK_INK, yellow), DARK_INK);
-        let navy = Colour::rgb(0x10, 0x20, 0x60);
-        assert_eq!(readable(DARK_INK, navy), LIGHT_INK);
     }
 }

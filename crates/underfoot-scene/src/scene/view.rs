@@ -201,6 +201,12 @@ impl<'a> View<'a> {
         }
     }
 
+    /// The controls of the page on display.
+    pub(super) fn controls(&self) -> impl Iterator<Item = &'a Widget> {
+        let page = self.snapshot.page;
+        self.layout.widgets.iter().filter(move |widget| widget.is_on(page))
+    }
+
     /// State of the control at `index`; the state at rest if the snapshot does not fit the layout.
     pub(super) fn widget_state(&self, index: usize) -> WidgetState {
         let Some(widget) = self.layout.widgets.get(index) else { return WidgetState::default() };

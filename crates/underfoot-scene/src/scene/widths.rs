@@ -7,7 +7,7 @@ use unicode_width::UnicodeWidthChar;
 ///
 /// # Source
 /// Ubuntu Light, the font of both painters.
-pub(super) const CAP_HEIGHT: f32 = 0.693;
+pub const CAP_HEIGHT: f32 = 0.693;
 
 /// Distance between base lines, in em.
 pub(super) const LINE_HEIGHT: f32 = 1.15;

@@ -71,6 +71,8 @@ impl Boards {
                         })
                     }));
                 }
+                // No simulated board gives counts with fractions.
+                Readings::Scaled(_) => {}
                 Readings::Newtons(read) => {
                     read.clear();
                     read.extend(outputs.map(|sensor| match sensor {

@@ -71,7 +71,7 @@ impl SimFloor {
         let geometry = floor.geometry;
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let plates: Vec<_> =
-            geometry.tiles().map(|_| Plate::new(&geometry, &config.plate, &mut rng)).collect();
+            geometry.tiles().map(|tile| Plate::new(&geometry, tile, &config.plate, &mut rng)).collect();
         let part_config = match config.sensing {
             SimulatedSensors::Counts(config) | SimulatedSensors::Newtons(config) => config,
             SimulatedSensors::Exact => PartConfig::exact(),

@@ -24,7 +24,7 @@ fn sensed(floor: &Floor, readings: &[Readings]) -> (f32, Vec2) {
 fn all_counts(readings: &[Readings]) -> Vec<u16> {
     let counts = |board: &Readings| match board {
         Readings::Counts(counts) => counts.iter().map(|count| count.unwrap()).collect::<Vec<_>>(),
-        Readings::Newtons(_) => panic!("a board that sends counts"),
+        Readings::Scaled(_) | Readings::Newtons(_) => panic!("a board that sends counts"),
     };
     readings.iter().flat_map(counts).collect()
 }

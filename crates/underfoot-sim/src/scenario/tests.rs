@@ -41,6 +41,7 @@ fn layout() -> Layout {
             id: "all".into(),
             area: Geometry::default().bounds(),
             cursor: CursorRule::Largest,
+            send: Vec::new(),
         }],
         stances: Vec::new(),
         pages: Vec::new(),

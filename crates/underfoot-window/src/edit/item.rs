@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 
 use super::address::{Address, RecordList};
 use super::document::Document;
@@ -99,11 +99,11 @@ impl Document {
         record.find(self.root())?.field("id")?.value.says.as_deref()
     }
 
-    /// The unit of the layout's places, in metres.
+    /// The unit of the layout's places, in metres east and north.
     #[must_use]
-    pub fn unit_m(&self) -> f64 {
+    pub fn unit_m(&self) -> DVec2 {
         let units = self.written(&Address::LAYOUT, "units");
-        if units == Some("Metres") { 1.0 } else { self.floor().geometry.pitch_m().into() }
+        if units == Some("Metres") { DVec2::ONE } else { self.floor().geometry.pitch_m().as_dvec2() }
     }
 
     /// The topmost control, stance zone, region or ground at `point` on the page with index `page`; for a group, one

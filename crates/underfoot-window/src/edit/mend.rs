@@ -1,16 +1,14 @@
 //! Repairs of findings: sizes, thresholds, and places that keep the rules for room and reach.
 
-use glam::{DVec2, Vec2};
-
-use super::address::RecordList;
+use super::address::{Address, RecordList};
 use super::change::Edit;
 use super::document::Document;
+use super::grid_room::{GridRoom, good_size, is_crowded};
 use super::item::Item;
-use super::place::pair;
 use super::room::{PlaceRule, SLACK_M, is_inside, moved};
-use super::snap::{Edges, round_step_m};
+use super::snap::Edges;
+use super::zones::{ZoneRepair, region_beside, stance_beside};
 use underfoot::floor::Rect;
-use underfoot::layout::Widget;
 use underfoot::schema::Diagnostic;
 use underfoot_scene::ergonomics::{Finding, Part, gap_between_m, needed_gap_m};
 
@@ -29,14 +27,12 @@ impl Mend {
     }
 }
 
-/// A width that suits a shoe, in metres (rule U101).
-const GOOD_M: f32 = 0.12;
-
 /// The repair of a finding; `None` where only the user can decide, or where there is no place that keeps all rules.
 ///
-/// A control that is too small becomes 12 cm wide and deep; a threshold returns to the value of its kind; a control
-/// that is too close to another one, out of reach or beside a stance zone goes to the nearest place of its region where
-/// it is none of these. The control moves by steps of round numbers and keeps its size.
+/// A control with parts that are too small becomes larger, until each is 12 cm wide and deep; a threshold returns to the
+/// value of its kind; a control that is too close to another one, out of reach or beside a stance zone goes to the
+/// nearest place of its region where it is none of these. The control moves by steps of round numbers and keeps its
+/// size.
 #[must_use]
 pub fn mend(document: &Document, finding: &Finding, items: &[Item]) -> Option<Mend> {
     let record = document.record_of(finding.widget)?;
@@ -44,16 +40,19 @@ pub fn mend(document: &Document, finding: &Finding, items: &[Item]) -> Option<Me
     let is_single = item.widgets.len() == 1;
     match (finding.rule.code, finding.part) {
         ("U101", Part::Size) if is_single => {
-            let size = item.area.size().max(Vec2::splat(GOOD_M));
-            let area = Rect::from_centre_size(item.area.centre(), size);
+            let widget = document.layout().widgets.get(finding.widget)?;
+            let area = Rect::from_centre_size(item.area.centre(), good_size(widget));
             Some(Mend::new("Make it 12 cm", document.placing(&[(item, area)]).ok()?))
         }
+        ("U101", Part::Size) => grid(document, item, "Make it 12 cm"),
         (_, Part::Press) if is_single && document.written(&record, "press_n").is_some() => {
             let fields = ["press_n", "release_n"];
             let written = fields.iter().filter(|field| document.written(&record, field).is_some());
             Some(Mend::new("Press as its kind", written.map(|field| Edit::unset(&record, field)).collect()))
         }
-        ("U102", _) if is_crowded_grid(document, item) => wider_grid(document, item),
+        ("U102", _) if !item.is_group && is_crowded(document.layout().widgets.get(item.widgets.clone())?) => {
+            grid(document, item, "Move them apart")
+        }
         ("U102", _) => {
             // Where it has no other place, a neighbour may have one.
             let own = moved(document, item, PlaceRule::Gap);
@@ -82,31 +81,6 @@ pub fn mend_warning(document: &Document, problem: &Diagnostic, items: &[Item]) -
     }
 }
 
-/// The text of the layout with all repairs of which each leaves fewer problems, and the number of problems that are
-/// gone; `None` if there is no such repair.
-#[must_use]
-pub fn mend_all(document: &Document) -> Option<(String, usize)> {
-    let count = |document: &Document| document.findings().len() + document.warnings().iter().count();
-    let before = count(document);
-    let (mut best, mut left) = (document.clone(), before);
-    loop {
-        let items = best.items();
-        let found = best.findings();
-        let repairs = found.iter().filter_map(|finding| mend(&best, finding, &items));
-        let warnings = best.warnings().iter().filter_map(|problem| mend_warning(&best, problem, &items));
-        let better = repairs.chain(warnings).find_map(|mend| {
-            let mut tried = best.clone();
-            tried.edit(&mend.edits).ok()?;
-            (count(&tried) < left).then_some(tried)
-        });
-        match better {
-            Some(better) => (best, left) = (better.clone(), count(&better)),
-            None => break,
-        }
-    }
-    (left < before).then(|| (best.text().to_owned(), before - left))
-}
-
 /// The items that are too close to `item`.
 fn crowding<'i>(document: &Document, item: &Item, items: &'i [Item]) -> Vec<&'i Item> {
     let layout = document.layout();
@@ -123,25 +97,10 @@ fn crowding<'i>(document: &Document, item: &Item, items: &'i [Item]) -> Vec<&'i 
     items.iter().filter(is_close).collect()
 }
 
-/// Whether cells of the same grid are too close to each other.
-fn is_crowded_grid(document: &Document, item: &Item) -> bool {
-    let cells = document.layout().widgets.get(item.widgets.clone()).unwrap_or_default();
-    let is_close = |at: usize, one: &Widget| {
-        cells
-            .iter()
-            .skip(at + 1)
-            .any(|other| gap_between_m(one.area, other.area) < needed_gap_m(one) - SLACK_M)
-    };
-    !item.is_group && cells.iter().enumerate().any(|(at, one)| is_close(at, one))
-}
-
-/// Writes the gap that the cells of a grid need.
-fn wider_grid(document: &Document, item: &Item) -> Option<Mend> {
-    let needed = needed_gap_m(document.layout().widgets.get(item.widgets.start)?);
-    let step = f64::from(round_step_m(document.unit_m(), &document.floor().geometry)) / document.unit_m();
-    let gap = (f64::from(needed - SLACK_M) / document.unit_m() / step).ceil() * step;
-    let edits = vec![Edit::set(&item.record, "repeat.gap", pair(DVec2::splat(gap)).inline())];
-    document.trial(&edits).ok().map(|_| Mend::new("Move them apart", edits))
+/// Gives the cells of a grid the room that they need.
+fn grid(document: &Document, item: &Item, name: &str) -> Option<Mend> {
+    let edits = GridRoom::needed(document, item)?.edits(document, item);
+    document.trial(&edits).ok().map(|_| Mend::new(name, edits))
 }
 
 /// Moves a control into its region.
@@ -157,48 +116,17 @@ fn into_region(document: &Document, item: &Item) -> Option<Mend> {
 
 /// Moves a stance zone beside the regions that it reaches into, or cuts such a region off at its edge.
 fn out_of_regions(document: &Document, item: &Item) -> Option<Mend> {
-    let layout = document.layout();
-    let floor = document.floor().geometry.bounds();
-    let inner: Vec<Rect> =
-        layout.regions.iter().map(|region| region.area).filter(|area| area.overlaps(item.area)).collect();
-    let region = *inner.first()?;
-    let (stance, size) = (item.area, item.area.size());
-    let mut places = [
-        Vec2::new(region.min.x - size.x, stance.min.y),
-        Vec2::new(region.max.x, stance.min.y),
-        Vec2::new(stance.min.x, region.min.y - size.y),
-        Vec2::new(stance.min.x, region.max.y),
-    ];
-    places.sort_by(|a, b| a.distance(stance.min).total_cmp(&b.distance(stance.min)));
-    let free = places.into_iter().map(|at| Rect::from_min_size(at, size)).find(|area| {
-        let shrunk = area.grown(-SLACK_M);
-        is_inside(*area, floor) && layout.regions.iter().all(|region| !region.area.overlaps(shrunk))
-    });
-    if let Some(area) = free {
-        let edits = document.placing(&[(item, area)]).ok()?;
-        return document.trial(&edits).ok().map(|_| Mend::new("Move it beside the region", edits));
-    }
+    let (layout, floor) = (document.layout(), document.floor().geometry.bounds());
+    let stance = item.record.split().map(|(.., index)| index)?;
+    let repair = stance_beside(layout, floor, stance).or_else(|| region_beside(layout, stance, true))?;
     let items = document.items();
-    let of_region =
-        items.iter().find(|item| item.record.list() == Some(RecordList::Regions) && item.area == region)?;
-    let is_used = |area: Rect| {
-        let own = layout.widgets.iter().filter(|widget| region.contains(widget.area.centre()));
-        own.into_iter().all(|widget| is_inside(widget.area, area))
+    let (list, index, area) = match repair {
+        ZoneRepair::Stance(index, area) => (RecordList::Stances, index, area),
+        ZoneRepair::Region(index, area) => (RecordList::Regions, index, area),
     };
-    let cuts = [
-        Rect::new(Vec2::new(stance.max.x, region.min.y), region.max),
-        Rect::new(region.min, Vec2::new(stance.min.x, region.max.y)),
-        Rect::new(Vec2::new(region.min.x, stance.max.y), region.max),
-        Rect::new(region.min, Vec2::new(region.max.x, stance.min.y)),
-    ];
-    let area = cuts.into_iter().filter(|area| area.size().min_element() > GOOD_M && is_used(*area)).max_by(
-        |a, b| {
-            let extent = |area: &Rect| area.size().element_product();
-            extent(a).total_cmp(&extent(b))
-        },
-    )?;
-    let edits = document.placing(&[(of_region, area)]).ok()?;
-    document.trial(&edits).ok().map(|_| Mend::new("End the region beside it", edits))
+    let zone = items.iter().find(|item| item.record == Address::of(list, index))?;
+    let edits = document.placing(&[(zone, area)]).ok()?;
+    document.trial(&edits).ok().map(|_| Mend::new(repair.name(), edits))
 }
 
 #[cfg(test)]
@@ -296,28 +224,6 @@ mod tests {
         );
         mended(&mut document, "U102", "Move them apart");
         assert_eq!(document.layout().widgets[0].area.min.x, 0.0, "{}", document.text());
-    }
-
-    #[test]
-    fn a_crowd_of_controls_is_mended_at_once_and_undone_at_once() {
-        let rows: String = (0..6)
-            .map(|n| {
-                let (east, north) = (1.0 + 0.62 * f64::from(n % 3), 2.2 + 0.62 * f64::from(n / 3));
-                format!("(id: \"c{n}\", kind: \"button\", at: ({east:.2}, {north:.2}), size: (0.6, 0.6), label: \"C\"),\n")
-            })
-            .collect();
-        let mut document = open(&rows);
-        let before = document.text().to_owned();
-        assert!(codes(&document).len() >= 4, "{:?}", codes(&document));
-        let (text, mended) = mend_all(&document).unwrap();
-        let count = codes(&document).len();
-        document.write(&text, None).unwrap();
-        assert_eq!(codes(&document).len(), count - mended);
-        // The others would need two moves at once: each of them is crowded from two sides.
-        assert!(mended >= 2, "{:?}\n{text}", codes(&document));
-        assert_eq!(mend_all(&document), None);
-        document.undo().unwrap();
-        assert_eq!(document.text(), before);
     }
 
     #[test]

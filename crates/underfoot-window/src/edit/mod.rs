@@ -11,6 +11,7 @@
 //! only.
 
 mod address;
+mod alike;
 mod arrange;
 mod change;
 mod clipboard;
@@ -19,6 +20,8 @@ mod comment_tests;
 mod document;
 mod facets;
 mod file;
+mod free_row;
+mod grid_room;
 mod group;
 #[cfg(test)]
 mod habit_tests;
@@ -26,8 +29,12 @@ mod history;
 mod inspect;
 mod item;
 mod mend;
+mod mend_all;
+#[cfg(test)]
+mod mend_all_tests;
 mod merge;
 mod place;
+mod place_plan;
 mod refit;
 mod refusal;
 mod rename;
@@ -40,17 +47,21 @@ mod template;
 #[cfg(test)]
 mod tests;
 mod threshold;
+mod zones;
 
 pub use address::{Address, RecordList};
+pub use alike::alike_edits;
 pub use arrange::{Align, align, distribute};
 pub use change::{Edit, quoted};
 pub use document::Document;
 pub use facets::{Facet, facet_edits};
 pub use file::{LayoutFile, Saving};
+pub use free_row::free_row;
 pub use group::{grouping, ungrouping};
 pub use inspect::{FieldOrigin, FieldSection, Property};
 pub use item::{Item, around};
-pub use mend::{Mend, mend, mend_all, mend_warning};
+pub use mend::{Mend, mend, mend_warning};
+pub use mend_all::{mend_all, mends_together};
 pub use merge::{Merge, merge};
 pub use refit::refit;
 pub use refusal::EditRefusal;

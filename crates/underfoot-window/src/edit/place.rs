@@ -8,6 +8,7 @@ use super::document::Document;
 use super::item::{Item, around};
 use super::refusal::EditRefusal;
 use super::rename::NEIGHBOURS;
+use super::snap::Edges;
 use underfoot::floor::Rect;
 use underfoot::widget::{Axis, Behaviour, Track};
 use underfoot_format::text::{Entry, Text};
@@ -25,12 +26,32 @@ impl Document {
     pub fn placing(&self, moved: &[(&Item, Rect)]) -> Result<Vec<Edit>, EditRefusal> {
         let mut edits = Vec::new();
         for (item, area) in moved {
-            self.place(item, *area, &mut edits)?;
+            self.place(item, *area, false, &mut edits)?;
         }
         Ok(edits)
     }
 
-    fn place(&self, item: &Item, area: Rect, edits: &mut Vec<Edit>) -> Result<(), EditRefusal> {
+    /// [`Self::placing`] for records whose neighbours move as well: each is written with a place of its own, also
+    /// where it stays.
+    ///
+    /// # Errors
+    /// As [`Self::placing`].
+    pub(super) fn placing_alone(&self, moved: &[(&Item, Rect)]) -> Result<Vec<Edit>, EditRefusal> {
+        let mut edits = Vec::new();
+        for (item, area) in moved {
+            self.place(item, *area, true, &mut edits)?;
+        }
+        Ok(edits)
+    }
+
+    /// With `is_alone`, a record beside a neighbour gets a place of its own even if it stays.
+    fn place(
+        &self,
+        item: &Item,
+        area: Rect,
+        is_alone: bool,
+        edits: &mut Vec<Edit>,
+    ) -> Result<(), EditRefusal> {
         let record = &item.record;
         let unit = self.unit_m();
         let written = self.pair(record, "at");
@@ -47,7 +68,7 @@ impl Document {
         let is_resized = (size - old).abs().max_element() > 1e-4;
         let is_whole = written.is_none() && !is_relative;
         let is_moved = written.is_none_or(|written| (written - at).abs().max_element() > 1e-6);
-        if is_moved && (!is_relative || area.min.distance(item.area.min) > 1e-5) {
+        if is_moved && (!is_relative || is_alone || area.min.distance(item.area.min) > 1e-5) {
             if is_relative {
                 let fields = RELATIVE.iter().filter(|field| self.written(record, field).is_some());
                 edits.extend(fields.map(|field| Edit::unset(record, field)));
@@ -87,6 +108,7 @@ impl Document {
     }
 
     /// The edits that turn `items` by a quarter: width and depth are exchanged, and an axis changes to the other one.
+    /// A control that would stick out of its region moves back into it.
     ///
     /// # Errors
     /// As [`Document::placing`].
@@ -94,8 +116,11 @@ impl Document {
         let mut edits = Vec::new();
         for item in items.iter().filter(|item| !item.is_group && item.widgets.len() <= 1) {
             let (middle, size) = (item.area.centre(), item.area.size());
-            self.place(item, Rect::from_centre_size(middle, Vec2::new(size.y, size.x)), &mut edits)?;
             let widget = item.widgets.clone().next().and_then(|at| self.layout().widgets.get(at));
+            let turned = Rect::from_centre_size(middle, Vec2::new(size.y, size.x));
+            let region = widget.and_then(|widget| self.layout().regions.get(widget.region));
+            let stopped = region.map_or(turned, |region| Edges::ALL.stopped(turned, region.area).0);
+            self.place(item, stopped, false, &mut edits)?;
             let axis = match widget.map(|widget| &widget.behaviour) {
                 Some(Behaviour::Slider(slider)) => match slider.track {
                     Track::Line { degrees: 0.0 } => Some("North"),
@@ -116,14 +141,22 @@ impl Document {
         Ok(edits)
     }
 
-    /// The text of a control of this kind on this area, in floor metres, with a unique id.
+    /// The text of a control of this kind on this area, in floor metres. It has a unique id, after its `label` if that
+    /// has Latin letters; without a `label`, it gets one after its id.
     #[must_use]
-    pub fn new_control(&self, kind: &str, area: Rect) -> String {
-        let id = self.free_id(kind, &[]);
-        let mut label = id.replace('_', " ");
-        if let Some(first) = label.get_mut(0..1) {
-            first.make_ascii_uppercase();
-        }
+    pub fn new_control(&self, kind: &str, area: Rect, label: Option<&str>) -> String {
+        let id = label.map(as_id).filter(|id| !id.is_empty());
+        let id = self.free_id(id.as_deref().unwrap_or(kind), &[]);
+        let label = label.map_or_else(
+            || {
+                let mut label = id.replace('_', " ");
+                if let Some(first) = label.get_mut(0..1) {
+                    first.make_ascii_uppercase();
+                }
+                label
+            },
+            str::to_owned,
+        );
         let [at, size] = self.placed(area);
         let fields = vec![
             ("id", Text::quoted(id)),
@@ -170,6 +203,13 @@ impl Document {
     pub fn bounds_of(&self, items: &[Item], records: &[Address]) -> Option<Rect> {
         around(items.iter().filter(|item| records.contains(&item.record)).map(|item| item.area))
     }
+}
+
+/// A label as an id: small letters, digits and `_`, at most 40 of them.
+fn as_id(label: &str) -> String {
+    let words = label.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    let id = words.map(str::to_ascii_lowercase).collect::<Vec<String>>().join("_");
+    id.get(..40).map_or_else(|| id.clone(), |short| short.trim_end_matches('_').to_owned())
 }
 
 fn other(axis: Axis) -> &'static str {

@@ -116,7 +116,8 @@ impl TypedChange {
 /// The value of `number` of `items`, in the layout's units; `None` without items.
 #[must_use]
 pub fn shared_number(document: &Document, items: &[&Item], number: PlaceNumber) -> Option<SharedNumber> {
-    let values = items.iter().map(|item| f64::from(number.of(item.area)) / document.unit_m());
+    let unit = document.unit_m()[number.axis()];
+    let values = items.iter().map(|item| f64::from(number.of(item.area)) / unit);
     let round = |value: f64| (value * 1e4).round() / 1e4;
     let (least, most) = values.map(|value| (value, value)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
     let is_same = most - least < 1e-4;
@@ -142,7 +143,7 @@ pub fn changing(
     if let Some(item) = items.iter().find(has_no_size).filter(|_| number.is_size()) {
         return Err(EditRefusal::NoSize(item.record.clone()));
     }
-    let unit = document.unit_m();
+    let unit = document.unit_m()[number.axis()];
     let placed = items.iter().map(|item| {
         let value = change.of(f64::from(number.of(item.area)) / unit);
         (*item, number.set(item.area, (value * unit) as f32))

@@ -1,15 +1,15 @@
 //! Snapping of places: to neighbours, equal gaps, tiles, half tiles and round numbers; and the edge of the floor.
 
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 
 use super::spacing::equal_places;
 use underfoot::floor::{Geometry, Rect};
 
-/// The step of round numbers, in metres, for a layout in units of `unit_m` metres on a floor with this `geometry`:
-/// 0.05 tiles, or 1 cm.
+/// The steps of round numbers, in metres east and north, for a layout in units of `unit_m` metres on a floor with this
+/// `geometry`: 0.05 tiles, or 1 cm.
 #[must_use]
-pub fn round_step_m(unit_m: f64, geometry: &Geometry) -> f32 {
-    if unit_m == 1.0 { 0.01 } else { 0.05 * geometry.pitch_m() }
+pub fn round_step_m(unit_m: DVec2, geometry: &Geometry) -> Vec2 {
+    if unit_m == DVec2::ONE { Vec2::splat(0.01) } else { 0.05 * geometry.pitch_m() }
 }
 
 /// The origin of a guide line; among the lines within reach, the first variant wins.
@@ -131,8 +131,8 @@ pub struct SnapGrid<'a> {
     pub row: &'a [Rect],
     /// Maximum distance of a line, in metres.
     pub reach_m: f32,
-    /// The step of round numbers, in metres, as [`round_step_m`].
-    pub step_m: f32,
+    /// The steps of round numbers, in metres east and north, as [`round_step_m`].
+    pub step_m: Vec2,
 }
 
 impl SnapGrid<'_> {
@@ -164,8 +164,8 @@ impl SnapGrid<'_> {
                 best = Some((reason, by, to));
             }
         };
-        let pitch = self.geometry.pitch_m();
-        let round = |length: f32| (length / self.step_m).round() * self.step_m;
+        let (pitch, step_m) = (self.geometry.pitch_m()[axis], self.step_m[axis]);
+        let round = |length: f32| (length / step_m).round() * step_m;
         let is_round = |length: f32| (length - round(length)).abs() < 1e-4;
         // Where tiles are the unit, their lines must leave the number in the file round.
         let keeps_round = |at: f32, to: f32| !(is_round(pitch) && low && high) || is_round(min + to - at);
@@ -197,7 +197,7 @@ impl SnapGrid<'_> {
             (true, _) => Some((SnapReason::Round, round(min) - min, round(min))),
             // The size becomes round, also behind an edge that is not.
             (false, true) => {
-                let to = min + round(max - min).max(self.step_m);
+                let to = min + round(max - min).max(step_m);
                 Some((SnapReason::Round, to - max, to))
             }
             (false, false) => None,
@@ -214,7 +214,7 @@ mod tests {
 
     fn snap(at: Vec2, neighbours: &[Rect], reach_m: f32) -> (Vec2, Vec<SnapReason>) {
         let geometry = Geometry::default();
-        let step_m = round_step_m(geometry.pitch_m().into(), &geometry);
+        let step_m = round_step_m(geometry.pitch_m().as_dvec2(), &geometry);
         let grid = SnapGrid { geometry: &geometry, neighbours, row: &[], reach_m, step_m };
         let (area, guides) = grid.snap(Rect::from_min_size(at, SIZE), Edges::ALL);
         assert!((area.size() - SIZE).abs().max_element() < 1e-6, "what is moved keeps its size");
@@ -247,7 +247,13 @@ mod tests {
     #[test]
     fn only_the_dragged_edge_moves() {
         let geometry = Geometry::default();
-        let grid = SnapGrid { geometry: &geometry, neighbours: &[], row: &[], reach_m: 0.01, step_m: 0.01 };
+        let grid = SnapGrid {
+            geometry: &geometry,
+            neighbours: &[],
+            row: &[],
+            reach_m: 0.01,
+            step_m: Vec2::splat(0.01),
+        };
         let east = Edges { east: true, west: false, south: false, north: false };
         let area = Rect::new(Vec2::new(0.31, 0.31), Vec2::new(0.603, 0.5));
         let (snapped, guides) = grid.snap(area, east);
@@ -260,7 +266,13 @@ mod tests {
     #[test]
     fn a_dragged_edge_gives_a_round_size() {
         let geometry = Geometry::default();
-        let grid = SnapGrid { geometry: &geometry, neighbours: &[], row: &[], reach_m: 0.001, step_m: 0.01 };
+        let grid = SnapGrid {
+            geometry: &geometry,
+            neighbours: &[],
+            row: &[],
+            reach_m: 0.001,
+            step_m: Vec2::splat(0.01),
+        };
         let east = Edges { east: true, west: false, south: false, north: false };
         let area = Rect::new(Vec2::new(0.313, 0.31), Vec2::new(0.5571, 0.5));
         let (snapped, _) = grid.snap(area, east);

@@ -307,14 +307,14 @@ fn copies_get_ids_of_their_own_and_stand_where_they_are_put() {
 }
 
 #[test]
-fn a_quarter_turn_makes_a_slider_upright() {
+fn a_quarter_turn_makes_a_slider_upright_within_its_region() {
     let mut document = open("map", builtin_layout("map").unwrap());
     let zoom = document.items().into_iter().find(|item| item.name == "zoom").unwrap();
     document.edit(&document.turning(&[&zoom]).unwrap()).unwrap();
     let line = document.text().lines().find(|line| line.contains("zoom")).unwrap().trim();
     assert_eq!(
         line,
-        "(id: \"zoom\", kind: \"slider\", at: (4.875, 1.825), size: (0.6, 1.35), label: \"Zoom\", initial: 0.3, axis: North),"
+        "(id: \"zoom\", kind: \"slider\", at: (4.875, 2), size: (0.6, 1.35), label: \"Zoom\", initial: 0.3, axis: North),"
     );
 }
 

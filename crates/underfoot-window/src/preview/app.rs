@@ -1,7 +1,5 @@
 //! The window's contents, frame by frame.
 
-use std::time::{Duration, Instant};
-
 use eframe::egui::{self, Ui};
 
 use super::PreviewOptions;
@@ -15,6 +13,7 @@ use super::floor_view::{FloorFeet, FloorView, OnFloor};
 use super::focus::FocusRing;
 use super::messages::{Happened, WindowMessages};
 use super::mode::WindowMode;
+use super::pace::{FramePace, WindowMotion};
 use super::panel::{SidePanel, Tuner, handle_undo_key};
 use super::plots::Plots;
 use super::presses::PressLog;
@@ -31,12 +30,6 @@ use super::visit::VisitBar;
 use super::walks::Walks;
 use super::watch::FloorWatch;
 use underfoot_scene::scene::{self, Theme};
-
-/// Time between frames: 60 a second.
-const PICTURE: Duration = Duration::from_nanos(16_666_667);
-
-/// Time between frames while only the lines of plots move.
-const PLOT: Duration = Duration::from_millis(50);
 
 /// The window's contents and their state from one frame to the next.
 pub(super) struct App {
@@ -72,9 +65,8 @@ pub(super) struct App {
 pub(super) struct WindowState {
     closing: Closing,
     pub(super) title: Title,
-    turns: Turns,
-    /// Time of the next frame.
-    due: Instant,
+    pub(super) turns: Turns,
+    pace: FramePace,
     focus: FocusRing,
     widths: PanelWidths,
     /// Whether the last frame showed Design mode.
@@ -92,7 +84,7 @@ impl App {
         wrong.into_iter().chain(unread).for_each(|wrong| messages.note(wrong));
         let floor = input.floor;
         Self {
-            view: FloorView::default(),
+            view: FloorView::new(options.layers),
             feet: FloorFeet::new(input.feet, input.shoes),
             selection: Selection::new(&floor.geometry),
             presses: if input.playback.is_some() { PressLog::recorded() } else { PressLog::default() },
@@ -113,7 +105,7 @@ impl App {
                 closing: Closing::default(),
                 title: Title::new(&options.title),
                 turns: Turns::default(),
-                due: Instant::now(),
+                pace: FramePace::default(),
                 focus: FocusRing::default(),
                 widths: PanelWidths::default(),
                 was_designing: false,
@@ -170,7 +162,6 @@ impl App {
         let begun = self.designer.as_mut().filter(|designer| designer.is_open).map(|it| it.begin_frame(ui));
         let first: &[egui::Id] = if begun.is_none() { self.view.controls() } else { &[] };
         self.window.focus.begin(ui, first);
-        let window = ui.available_rect_before_wrap();
         self.show_top_bar(ui);
         let theme = self.appearance.theme();
         self.status.show(ui, &theme, &self.shown);
@@ -178,13 +169,9 @@ impl App {
         if let Some(line) = &mut self.time_line {
             line.show(ui, &theme);
         }
-        let mut stage = StageOfWindow {
-            window,
-            canvas: ui.available_rect_before_wrap(),
-            widths: self.window.widths,
-            designs: self.designer.is_some(),
-            has_side: self.panel.is_shown(window.width(), self.is_designing()),
-        };
+        let (room, widths) = (ui.available_rect_before_wrap(), self.window.widths);
+        let has_side = self.panel.is_shown(room.width(), self.is_designing());
+        let mut stage = StageOfWindow::new(room, widths, self.designer.is_some(), has_side);
         match (&mut self.designer, begun) {
             (Some(designer), Some(before)) => {
                 // A click on the switch of the modes leaves Design mode some frames later.
@@ -211,12 +198,13 @@ impl App {
         });
     }
 
-    /// Keeps the visible part of the floor when the mode changes.
+    /// Keeps the visible part of the floor when the mode changes; Design mode begins with the control in use.
     fn share_zoom(&mut self) {
         let designs = self.is_designing();
         if let Some(designer) = self.designer.as_mut().filter(|_| designs != self.window.was_designing) {
             if designs {
                 *designer.zoom_mut() = self.view.zoom;
+                designer.select_used(self.selection.control());
             } else {
                 self.view.zoom = *designer.zoom_mut();
             }
@@ -227,17 +215,18 @@ impl App {
     /// Draws the floor with the panels around it.
     fn show_floor(&mut self, ui: &mut Ui, stage: &mut StageOfWindow) {
         let theme = self.appearance.theme();
+        let tunes = self.tuner.as_ref().is_some_and(|tuner| tuner.is_open);
         match self.floor_check.as_mut().filter(|check| check.is_running()) {
             Some(check) => check.panel(ui, &theme, &self.shown, self.feet.are_led()),
+            // A narrow window has room for one panel.
+            None if tunes && !stage.is_wide() => {}
             None => {
                 self.show_side_panel(ui);
-                if stage.is_wide() {
-                    stage.widths.note_right(stage.window, ui.available_rect_before_wrap());
-                }
+                stage.note_right(ui.available_rect_before_wrap());
             }
         }
         if let Some(tuner) = &mut self.tuner {
-            tuner.panel(ui, &theme, &self.shown, self.selection.tile());
+            tuner.panel(ui, &theme, &self.shown, self.selection.tile(), stage);
         }
         if let Some(visit) = &mut self.visit {
             visit.show(ui, &theme, self.time_line.as_ref().and_then(TimeLine::part));
@@ -253,7 +242,7 @@ impl App {
                 check: self.floor_check.as_ref(),
                 has_steps,
             };
-            self.view.show(ui, &theme, &self.shown, on_floor, stage.floor());
+            self.view.show(ui, &theme, &self.shown, on_floor, stage.view_room());
         });
         self.projection.show(ui, &mut self.shown, &self.appearance);
     }
@@ -296,7 +285,10 @@ impl App {
         if let Some(designer) = self.designer.as_mut().filter(|designer| !designer.is_open) {
             designer.keys_to_save(ui);
         }
-        handle_mute_key(ui, &self.shown);
+        let is_adjusting = self.projection.takes_keys(ui.ctx());
+        if !is_adjusting {
+            handle_mute_key(ui, &self.shown);
+        }
         // A check of the floor excludes editing.
         let is_checking = self.is_checking();
         if let Some(designer) = self.designer.as_mut().filter(|_| !is_checking) {
@@ -306,7 +298,9 @@ impl App {
         if let Some(designer) = &mut self.designer {
             self.window.closing.ask(ui.ctx(), designer);
         }
-        handle_undo_key(ui, &self.shown, &mut self.presses, self.designer.as_mut());
+        if !is_adjusting {
+            handle_undo_key(ui, &self.shown, &mut self.presses, self.designer.as_mut());
+        }
         let is_designing = self.is_designing();
         if !is_designing {
             self.plots.handle_key(ui);
@@ -327,10 +321,10 @@ impl App {
     }
 
     /// Shows the button that records, if anything can be recorded.
-    pub(super) fn show_visit_button(&mut self, ui: &mut Ui) {
+    pub(super) fn show_visit_button(&mut self, ui: &mut Ui, is_compact: bool) {
         let theme = self.appearance.theme();
         if let Some(visit) = &mut self.visit {
-            visit.button(ui, &theme, self.shown.snapshot());
+            visit.button(ui, &theme, self.shown.snapshot(), is_compact);
         }
     }
 
@@ -355,24 +349,18 @@ impl App {
         }
     }
 
-    /// Draws 60 times a second while something moves without messages about it, also where the display does not pace
-    /// frames; otherwise the next frame comes with news from the floor ([`super::lookout`]) or with input.
+    /// Requests the frames that nothing else requests.
     fn request_next_frame(&mut self, ui: &Ui) {
-        let (now, shown) = (Instant::now(), &self.shown);
-        self.window.due = (self.window.due + PICTURE).max(now);
-        if self.shows_for_a_while() {
-            ui.ctx().request_repaint_after(Duration::from_millis(500));
-        }
+        let shown = &self.shown;
         let selected = self.selection.control_of(shown.layout()).map(|widget| &widget.id);
-        if self.plots.are_moving(shown.now_s, &shown.floor.geometry, selected) {
-            ui.ctx().request_repaint_after(PLOT);
-        }
         let is_held = ui.input(|i| i.pointer.any_down() || !i.keys_down.is_empty());
         let fades = self.view.show.trails && !self.view.trails.all().is_empty();
-        if is_held || fades || shown.scopes.are_moving() {
-            // A delay of zero would request two frames.
-            ui.ctx().request_repaint_after((self.window.due - now).max(Duration::from_micros(100)));
-        }
+        let moves = WindowMotion {
+            tells: self.shows_for_a_while(),
+            plots: self.plots.are_moving(shown.now_s, &shown.floor.geometry, selected),
+            floor: is_held || fades || shown.scopes.are_moving(),
+        };
+        self.window.pace.request(ui.ctx(), moves);
     }
 
     /// Whether the screen shows a message that disappears after a while.
@@ -389,31 +377,5 @@ impl App {
                 .file
                 .as_ref()
                 .is_some_and(|file| self.shown.now_s - file.at_s < 2.0 * TELL_S)
-    }
-}
-
-impl eframe::App for App {
-    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        self.handle_close(ctx);
-    }
-
-    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
-        self.show(ui);
-    }
-
-    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
-        if input.viewport_id == egui::ViewportId::ROOT
-            && self.window.turns.take(&mut input.events, self.is_designing())
-        {
-            ctx.request_repaint();
-        }
-    }
-
-    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        underfoot_scene::egui_painter::color(self.appearance.theme().canvas).to_normalized_gamma_f32()
-    }
-
-    fn persist_egui_memory(&self) -> bool {
-        false
     }
 }

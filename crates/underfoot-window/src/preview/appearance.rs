@@ -11,7 +11,6 @@ use super::icons::{self, Icon};
 use super::messages::WindowMessages;
 use super::style;
 use super::style::quiet;
-use underfoot::layout::Colour;
 use underfoot::schema::save_text;
 use underfoot_format::file::read_bounded;
 use underfoot_scene::scene::Theme;
@@ -27,8 +26,6 @@ const TENTHS: (u8, u8) = (7, 20);
 
 /// The usual size of the text, in tenths.
 const USUAL: u8 = 10;
-
-const BLACK: Colour = Colour::rgb(0, 0, 0);
 
 /// The user's choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,15 +82,9 @@ impl Appearance {
         self.choice.window
     }
 
-    /// The theme of the projection. It throws no light beyond the floor, and a dark theme none on the plates, which
-    /// are real ones.
+    /// The theme of the projection, which throws no light beyond the floor.
     pub(super) fn projected(&self) -> Theme {
-        let theme = self.choice.projected;
-        if theme.is_dark() {
-            Theme { canvas: BLACK, seam: BLACK, plate: BLACK, quiet: Colour::rgb(0xd8, 0xd4, 0xcc), ..theme }
-        } else {
-            Theme { canvas: BLACK, ..theme }
-        }
+        self.choice.projected.projected()
     }
 
     /// Enlarges letters and panels in large windows, because people see those from farther away. The user's text size
@@ -249,16 +240,5 @@ mod tests {
         let (appearance, wrong) = Appearance::new(Theme::DARK, Some(file));
         assert_eq!(appearance.theme(), Theme::DARK);
         assert!(wrong.is_some_and(|wrong| wrong.contains("is not used")));
-    }
-
-    #[test]
-    fn dark_themes_throw_no_light_on_bare_plates() {
-        let (mut appearance, _) = Appearance::new(Theme::LIGHT, None);
-        for (name, theme) in Theme::NAMED {
-            appearance.choice.projected = theme;
-            let projected = appearance.projected();
-            assert_eq!(projected.canvas, BLACK, "{name}");
-            assert_eq!(projected.plate == BLACK, theme.is_dark(), "{name}");
-        }
     }
 }

@@ -13,6 +13,7 @@ use underfoot::engine::Snapshot;
 use underfoot::feel::{Effect, Gesture};
 use underfoot::floor::{Floor, TileId};
 use underfoot::layout::Layout;
+use underfoot::messages::MessageNews;
 use underfoot::recording::TappedPackets;
 use underfoot::schema::{Diagnostics, NamedEffect};
 use underfoot::sink::{AreaNews, LatencyStages};
@@ -150,6 +151,8 @@ pub enum ServerLink {
 pub enum EventNews {
     /// A control's event.
     Event(WidgetEvent),
+    /// A message that a control or a foot gives to another program.
+    Sent(MessageNews),
     /// A recording starts again with its initial layout; earlier events no longer apply.
     Restarted(Arc<Layout>),
 }

@@ -1,9 +1,7 @@
 //! Small text over the floor, placed beside its control and clear of all other controls and texts.
 
-use std::sync::Arc;
-
 use eframe::egui;
-use eframe::egui::{Align2, Color32, FontId, Galley, Pos2, Rect, Stroke, StrokeKind, Vec2, pos2, vec2};
+use eframe::egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, Vec2, pos2, vec2};
 
 use underfoot::layout::Colour;
 use underfoot_scene::egui_painter::color;
@@ -31,7 +29,8 @@ pub(super) struct StepCard<'a> {
 
 /// Texts beside controls.
 pub(super) struct Labels {
-    within: Rect,
+    /// The part of the screen for texts.
+    pub(super) within: Rect,
     /// Areas that no text may cover.
     taken: Vec<Rect>,
 }
@@ -56,6 +55,21 @@ impl Labels {
         plate(painter, place, colour, theme);
         painter.galley(place.min + PADDING, galley, color(theme.ink));
         place
+    }
+
+    /// Writes a short text beside `subject`, such as a gap between controls.
+    pub(super) fn note(
+        &mut self,
+        painter: &egui::Painter,
+        subject: Rect,
+        text: &str,
+        colour: Color32,
+        theme: &Theme,
+    ) {
+        let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(11.5), colour);
+        let place = self.take(subject, galley.size() + vec2(8.0, 2.0));
+        painter.rect_filled(place, 3, color(theme.plate).gamma_multiply(0.92));
+        painter.galley(place.min + vec2(4.0, 1.0), galley, colour);
     }
 
     /// Draws a card beside `control`; returns its area.
@@ -125,14 +139,6 @@ impl Labels {
 fn plate(painter: &egui::Painter, place: Rect, colour: Colour, theme: &Theme) {
     let edge = Stroke::new(1.2, color(colour));
     painter.rect(place, 5, color(theme.plate), edge, StrokeKind::Inside);
-}
-
-/// Small text on a plate, legible on any background.
-pub(super) fn label(painter: &egui::Painter, at: Pos2, text: &str, colour: Color32, theme: &Theme) {
-    let galley: Arc<Galley> = painter.layout_no_wrap(text.to_owned(), FontId::proportional(11.5), colour);
-    let plate = Align2::LEFT_TOP.anchor_size(at, galley.size() + vec2(8.0, 2.0));
-    painter.rect_filled(plate, 3, color(theme.plate).gamma_multiply(0.92));
-    painter.galley(plate.min + vec2(4.0, 1.0), galley, colour);
 }
 
 #[cfg(test)]

@@ -44,9 +44,12 @@ pub(super) fn start(mut input: PreviewInput, ctx: &egui::Context) -> PreviewInpu
     let mut notices = Relay::before(&mut input.channels.notices);
     let ctx = ctx.clone();
     let mut pace = Pace::new(snapshots.read().clone(), Instant::now());
+    let mut due = Instant::now();
     let look = move || {
         loop {
-            thread::sleep(pace.pause(Instant::now()));
+            let now = Instant::now();
+            due = pace.next(due, now);
+            thread::sleep(due - now);
             let now = Instant::now();
             let is_fresh = snapshots.update();
             let snapshot = snapshots.output_buffer();
@@ -88,6 +91,12 @@ impl Pace {
     /// Time until the next check.
     fn pause(&self, now: Instant) -> Duration {
         if now.duration_since(self.drawn_at) > QUIET { 2 * EVERY } else { EVERY }
+    }
+
+    /// Time of the next check after the one that was due at `due`: late checks do not make the later ones late, or
+    /// there would be less than 60 a second.
+    fn next(&self, due: Instant, now: Instant) -> Instant {
+        (due + self.pause(now)).max(now)
     }
 
     fn is_due(&mut self, snapshot: &Snapshot, is_fresh: bool, news: bool, now: Instant) -> bool {
@@ -217,6 +226,16 @@ mod tests {
         assert!(pace.is_due(&foot, true, false, begun + EVERY * 301));
         assert!(!pace.is_due(&foot, true, false, begun + EVERY * 302), "it rests");
         assert!(pace.is_due(&foot, true, true, begun + EVERY * 303), "news");
+    }
+
+    #[test]
+    fn late_checks_leave_sixty_a_second_and_missed_ones_are_not_made_up_for() {
+        let (pace, begun) = pace(&at_rest(&map()));
+        let late = Duration::from_millis(3);
+        let last = (0..60).fold(begun, |due, _| pace.next(due, due + late));
+        assert_eq!(last - begun, 60 * EVERY);
+        let much_later = last + Duration::from_millis(400);
+        assert_eq!(pace.next(last, much_later), much_later);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::feed::{EventNews, LayoutCause, LayoutNews, Warnings};
 use super::near_misses::NearMiss;
 use underfoot::engine::{IgnoredPress, Snapshot};
 use underfoot::layout::Layout;
+use underfoot::messages::MessageNews;
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, Value, WidgetEvent};
 
@@ -27,6 +28,8 @@ const SAME_WALK: Duration = Duration::from_secs(2);
 pub(super) enum Happened {
     /// A control's event.
     Event(WidgetEvent),
+    /// A control or a foot gave a message to another program.
+    Sent(MessageNews),
     /// A control did not answer a press.
     Ignored(IgnoredPress),
     /// A press beside a control.
@@ -48,6 +51,7 @@ impl Happened {
     fn at(&self) -> Instant {
         match self {
             Self::Event(event) => event.at,
+            Self::Sent(news) => news.at,
             Self::Ignored(press) => press.at,
             Self::NearMiss(miss) => miss.at,
             Self::GroundEvent { at, .. } => *at,
@@ -141,6 +145,11 @@ impl WindowMessages {
         for event in self.events.try_iter() {
             let event = match event {
                 EventNews::Event(event) => event,
+                EventNews::Sent(news) => {
+                    self.event_count += 1;
+                    note_sent(&mut self.recent, news);
+                    continue;
+                }
                 EventNews::Restarted(layout) => {
                     self.recent.clear();
                     self.counted.clear();
@@ -150,8 +159,10 @@ impl WindowMessages {
                 }
             };
             self.event_count += 1;
-            match self.recent.front_mut() {
-                // A moving slider updates one line; otherwise it would displace all other lines.
+            // A moving slider updates one line; otherwise it would displace all other lines. Its message may follow it.
+            let newest =
+                self.recent.iter_mut().take(2).find(|happened| !matches!(happened, Happened::Sent(_)));
+            match newest {
                 Some(Happened::Event(newest)) if follows(newest, &event) => *newest = event,
                 _ => {
                     self.recent.truncate(KEPT - 1);
@@ -242,6 +253,25 @@ impl WindowMessages {
         }
         while self.notes.len() > NOTICES {
             self.notes.pop_front();
+        }
+    }
+}
+
+/// Lists a message; those of a moving value or pointer are one line for each control.
+fn note_sent(recent: &mut VecDeque<Happened>, news: MessageNews) {
+    let is_same = |newest: &MessageNews| {
+        newest.is_replaceable() && news.is_replaceable() && newest.order.control == news.order.control
+    };
+    // The change of the value stands between two of its messages.
+    let newest = recent.iter_mut().take(2).find_map(|happened| match happened {
+        Happened::Sent(newest) if is_same(newest) => Some(newest),
+        _ => None,
+    });
+    match newest {
+        Some(newest) => *newest = news,
+        None => {
+            recent.truncate(KEPT - 1);
+            recent.push_front(Happened::Sent(news));
         }
     }
 }

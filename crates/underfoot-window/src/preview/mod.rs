@@ -22,8 +22,10 @@ mod labels;
 mod lookout;
 mod messages;
 mod mode;
+mod native;
 mod near_misses;
 mod off_hint;
+mod pace;
 mod panel;
 mod playback;
 mod plots;
@@ -37,6 +39,7 @@ mod rehearsal;
 #[path = "../../../../tests/support/sample.rs"]
 mod sample;
 mod scopes;
+mod screen_report;
 mod selection;
 mod shown;
 mod stage;
@@ -69,7 +72,7 @@ use std::path::PathBuf;
 use eframe::egui;
 use thiserror::Error;
 
-use underfoot_scene::scene::Theme;
+use underfoot_scene::scene::{Show, Theme};
 
 /// The initial state of the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +85,8 @@ pub struct PreviewOptions {
     pub theme: Theme,
     /// File that stores the user's colours and text size; `None` to store nothing.
     pub settings: Option<PathBuf>,
+    /// The layers over the floor.
+    pub layers: Show,
     /// The window for a projector.
     pub projection: ProjectionOptions,
 }
@@ -93,6 +98,7 @@ impl Default for PreviewOptions {
             size: (1280.0, 800.0),
             theme: Theme::LIGHT,
             settings: None,
+            layers: Show::WINDOW,
             projection: ProjectionOptions::default(),
         }
     }
@@ -137,6 +143,7 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         context.egui_ctx.add_font_provider(std::sync::Arc::new(underfoot_scene::letters::Installed::new()));
         // The window has its own text size, which it stores.
         context.egui_ctx.options_mut(|options| options.zoom_with_keyboard = false);
+        screen_report::report_screen(&context.egui_ctx);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     eframe::run_native(&title, native, start)

@@ -71,7 +71,7 @@ impl Selection {
         (self.control, self.pinned) = (Some(control), true);
     }
 
-    #[cfg(test)]
+    /// The control in use, the one of the last press, or the pinned one; `None` before any.
     pub(super) fn control(&self) -> Option<&WidgetId> {
         self.control.as_ref()
     }

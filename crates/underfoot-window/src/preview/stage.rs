@@ -1,15 +1,23 @@
-//! The part of the window into which the floor is fitted: the same in every mode, so that the floor stays where it is.
+//! The part of the window into which the floor is fitted: the same whatever mode and panels are open, so that the
+//! floor stays where it is. Panels cover a part of it where the window has no room beside it.
 
 use eframe::egui::Rect;
 
-/// Width of a window, in points, from which the floor keeps its place beside the panels of all modes; in a narrower
-/// one, it gets all the room that the present mode leaves.
+use super::zoom::ViewRoom;
+
+/// Width of a window, in points, that has room for the floor between the panels of all modes.
 const WIDE: f32 = 1010.0;
+
+/// Width of a window, in points, that has room for the floor beside one panel; narrower ones show panels over it.
+pub(super) const BESIDE: f32 = 669.0;
+
+/// Margin around the floor, in points.
+const MARGIN: f32 = 6.0;
 
 /// Widths, in points, that the panels of all modes need at each side of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PanelWidths {
-    /// The palette at the left.
+    /// The palette at the left of a wide window.
     left: f32,
     /// The side panel or the inspector at the right, whichever is wider.
     right: f32,
@@ -22,56 +30,72 @@ impl Default for PanelWidths {
 }
 
 impl PanelWidths {
-    /// Takes in the widths that the panels of Design mode have on the screen, in points.
-    pub(super) fn note(&mut self, window: Rect, canvas: Rect) {
-        self.left = self.left.max(canvas.left() - window.left()).min(0.3 * window.width());
-        self.note_right(window, canvas);
-    }
-
-    /// Takes in the width of the panel at the right, in points.
-    pub(super) fn note_right(&mut self, window: Rect, canvas: Rect) {
-        self.right = self.right.max(window.right() - canvas.right()).min(0.4 * window.width());
-    }
-
-    /// The area for the floor within `canvas`, which the panels of the present mode leave free.
-    ///
-    /// `designs` tells whether the window has a Design mode, and `has_side` whether the panel at the right is wanted.
-    pub(super) fn stage(self, window: Rect, canvas: Rect, designs: bool, has_side: bool) -> Rect {
-        if !designs || window.width() < WIDE {
-            return canvas;
+    /// The part of `room` that stays free when all panels are open.
+    fn stage(self, room: Rect, designs: bool) -> Rect {
+        let width = room.width();
+        let mut stage = room;
+        // Panels that a user has widened leave room for the floor.
+        if width >= WIDE && designs {
+            stage.min.x += self.left.min(0.3 * width);
         }
-        let mut stage = canvas;
-        stage.min.x = canvas.left().max(window.left() + self.left);
-        if has_side {
-            stage.max.x = canvas.right().min(window.right() - self.right);
+        if width >= BESIDE {
+            stage.max.x -= self.right.min(if width >= WIDE { 0.4 } else { 0.5 } * width);
         }
-        // Panels that a user has widened may leave no room between the others.
-        if stage.width() < 0.3 * window.width() { canvas } else { stage }
+        stage
     }
 }
 
 /// The place of the floor in one frame.
 pub(super) struct StageOfWindow {
-    /// The whole window.
-    pub(super) window: Rect,
-    /// The part of it that bars and panels leave free; drawing the panels sets it.
+    /// The part of the window between the bars of all modes.
+    room: Rect,
+    /// The part of it that panels leave free; drawing the panels sets it.
     pub(super) canvas: Rect,
     pub(super) widths: PanelWidths,
     /// Whether the window has a Design mode.
-    pub(super) designs: bool,
+    designs: bool,
     /// Whether the panel at the right is wanted.
     pub(super) has_side: bool,
 }
 
 impl StageOfWindow {
-    /// Whether the floor keeps its place in all modes.
-    pub(super) fn is_wide(&self) -> bool {
-        self.window.width() >= WIDE
+    /// The stage in `room`, the part of the window between the bars of all modes.
+    pub(super) fn new(room: Rect, widths: PanelWidths, designs: bool, has_side: bool) -> Self {
+        Self { room, canvas: room, widths, designs, has_side }
     }
 
-    /// The area for the floor, with a margin.
-    pub(super) fn floor(&self) -> Rect {
-        self.widths.stage(self.window, self.canvas, self.designs, self.has_side).shrink(6.0)
+    /// Whether the window has room for the panels of all modes; a narrow one shows one panel at a time, at the right.
+    pub(super) fn is_wide(&self) -> bool {
+        self.room.width() >= WIDE
+    }
+
+    /// Maximum width of a panel, in points: half of a narrow window stays with the floor.
+    pub(super) fn widest(&self) -> f32 {
+        0.5 * self.room.width()
+    }
+
+    /// Takes in the widths that the panels beside `free` have on the screen.
+    pub(super) fn note(&mut self, free: Rect) {
+        if self.is_wide() && self.designs {
+            self.widths.left = self.widths.left.max(free.left() - self.room.left());
+        }
+        self.note_right(free);
+    }
+
+    /// Takes in the width of the panel at the right of `free`.
+    pub(super) fn note_right(&mut self, free: Rect) {
+        self.widths.right = self.widths.right.max(self.room.right() - free.right());
+    }
+
+    /// The area for the floor, and the part of the window in which it can be seen.
+    pub(super) fn view_room(&self) -> ViewRoom {
+        let stage = self.widths.stage(self.room, self.designs);
+        let mut free = self.canvas;
+        free.min.x = free.left().max(stage.left());
+        if self.has_side {
+            free.max.x = free.right().min(stage.right());
+        }
+        ViewRoom { stage: stage.shrink(MARGIN), free: free.shrink(MARGIN) }
     }
 }
 
@@ -84,28 +108,36 @@ mod tests {
         Rect::from_min_max(pos2(left, 40.0), pos2(right, 740.0))
     }
 
-    #[test]
-    fn the_floor_gets_the_same_place_beside_the_panels_of_each_mode() {
-        let window = area(0.0, 1280.0);
-        let mut widths = PanelWidths::default();
-        let designing = area(232.0, 926.0);
-        widths.note(window, designing);
-        assert_eq!(widths.stage(window, area(0.0, 956.0), true, true), designing);
-        assert_eq!(widths.stage(window, designing, true, true), designing);
+    fn seen(width: f32, canvas: Rect) -> ViewRoom {
+        let mut stage = StageOfWindow::new(area(0.0, width), PanelWidths::default(), true, true);
+        stage.canvas = canvas;
+        stage.view_room()
     }
 
     #[test]
-    fn a_narrow_window_gives_the_floor_all_that_is_free() {
-        let canvas = area(0.0, 640.0);
-        assert_eq!(PanelWidths::default().stage(canvas, canvas, true, true), canvas);
+    fn the_floor_has_the_same_place_whatever_panels_are_open() {
+        for width in [640.0, 900.0, 1280.0, 2560.0] {
+            let alone = seen(width, area(0.0, width));
+            for canvas in [area(204.0, width - 330.0), area(0.0, 0.5 * width), area(0.5 * width, width)] {
+                assert_eq!(seen(width, canvas).stage, alone.stage, "{width}");
+            }
+            assert!(alone.stage.width() >= 0.5 * width - 2.0 * MARGIN, "{width}: {}", alone.stage.width());
+        }
     }
 
     #[test]
-    fn panels_that_fill_the_window_still_leave_a_floor() {
-        let window = area(0.0, 1100.0);
-        let mut widths = PanelWidths::default();
-        widths.note(window, area(320.0, 660.0));
-        let canvas = area(300.0, 560.0);
-        assert_eq!(widths.stage(window, canvas, true, true), canvas);
+    fn a_wide_window_leaves_room_for_all_panels_and_a_narrow_one_shows_them_over_the_floor() {
+        let wide = seen(1280.0, area(204.0, 950.0));
+        assert_eq!((wide.stage, wide.free), (area(204.0, 950.0).shrink(MARGIN), wide.stage));
+        let narrow = seen(640.0, area(0.0, 320.0));
+        assert_eq!(narrow.stage, area(0.0, 640.0).shrink(MARGIN));
+        assert_eq!(narrow.free, area(0.0, 320.0).shrink(MARGIN));
+    }
+
+    #[test]
+    fn panels_that_a_user_has_widened_still_leave_a_floor() {
+        let mut stage = StageOfWindow::new(area(0.0, 1100.0), PanelWidths::default(), true, true);
+        stage.note(area(520.0, 560.0));
+        assert!(stage.view_room().stage.width() > 0.25 * 1100.0);
     }
 }

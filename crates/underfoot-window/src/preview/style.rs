@@ -2,6 +2,7 @@
 
 use eframe::egui;
 use eframe::egui::epaint::FontColorTransferFunction;
+use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2,
 };
@@ -9,7 +10,7 @@ use eframe::egui::{
 use super::icons::{self, Icon};
 use underfoot::layout::Colour;
 use underfoot_scene::egui_painter::color;
-use underfoot_scene::scene::Theme;
+use underfoot_scene::scene::{Faces, Theme};
 
 /// The fonts of the window: those of pictures, and icons.
 pub(super) fn fonts() -> egui::FontDefinitions {
@@ -58,13 +59,15 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
     visuals.warn_fg_color = color(theme.warning);
     visuals.error_fg_color = color(theme.fault);
     visuals.weak_text_color = Some(color(theme.quiet));
-    visuals.selection.bg_fill = color(theme.accent.mix(panel, 0.7));
-    visuals.selection.stroke = Stroke::new(1.0, color(theme.accent));
+    visuals.selection.bg_fill = color(selected_ground(theme));
+    visuals.selection.stroke = Stroke::new(1.0, color(theme.legible(theme.accent, selected_ground(theme))));
     visuals.striped = false;
     visuals.collapsing_header_frame = false;
     // The largest radius for which a corner takes four steps instead of eight: without a graphics card, buttons cost
     // as much as the floor's controls.
     let radius = CornerRadius::same(5);
+    // With high contrast, edges tell states apart, and not only shades.
+    let (width, touched) = if theme.faces == Faces::Outlined { (1.5, 2.5) } else { (1.0, 1.0) };
     let states = &mut visuals.widgets;
     let faces = [
         (&mut states.noninteractive, 0.0, 0.0),
@@ -77,14 +80,22 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
         let fill = color(panel.mix(theme.ink, shade));
         (face.bg_fill, face.weak_bg_fill) = (fill, fill);
         face.bg_stroke =
-            Stroke::new(1.0, if edge > 0.0 { color(theme.line.mix(theme.ink, shade)) } else { line });
+            Stroke::new(width, if edge > 0.0 { color(theme.line.mix(theme.ink, shade)) } else { line });
         face.fg_stroke = Stroke::new(1.0, ink);
         face.corner_radius = radius;
         face.expansion = 0.0;
     }
-    visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, color(theme.accent));
+    visuals.widgets.hovered.bg_stroke = Stroke::new(touched, color(theme.accent));
+    if theme.faces == Faces::Outlined {
+        visuals.widgets.active.bg_stroke = Stroke::new(touched, ink);
+    }
     // Check boxes must be visible on the panel.
     visuals.widgets.inactive.bg_fill = color(panel.mix(theme.ink, 0.10));
+}
+
+/// The background of a button that is on, and of selected text.
+pub(super) fn selected_ground(theme: &Theme) -> Colour {
+    theme.accent.mix(panel_colour(theme), 0.7)
 }
 
 /// The background of panels: between canvas and plate.
@@ -157,15 +168,31 @@ pub(super) fn quiet(theme: &Theme, text: impl Into<String>) -> RichText {
 
 /// `text` on a small rounded background of `colour`.
 pub(super) fn pill(ui: &mut Ui, colour: Colour, theme: &Theme, text: &str) -> egui::Response {
-    let ground = color(panel_colour(theme).mix(colour, 0.16));
-    let frame = egui::Frame::new().fill(ground).corner_radius(9).inner_margin(Margin::symmetric(8, 2));
-    frame.show(ui, |ui| ui.label(RichText::new(text).color(color(colour)))).inner
+    let ground = panel_colour(theme).mix(colour, 0.16);
+    let frame = egui::Frame::new().fill(color(ground)).corner_radius(9).inner_margin(Margin::symmetric(8, 2));
+    let ink = color(theme.legible(colour, ground));
+    frame.show(ui, |ui| ui.label(RichText::new(text).color(ink))).inner
 }
 
 /// Whether Enter has just ended the typing in `field`, so that the dialog acts. Call it before the field regains the
 /// focus.
 pub(super) fn is_entered(ui: &Ui, field: &egui::Response) -> bool {
     field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter))
+}
+
+/// Writes one line that begins at `at`, centred vertically there; text wider than `width` points ends with dots.
+pub(super) fn write_within(
+    painter: &egui::Painter,
+    at: egui::Pos2,
+    width: f32,
+    text: &str,
+    font: FontId,
+    color: Color32,
+) {
+    let mut job = LayoutJob::simple_singleline(text.to_owned(), font, color);
+    job.wrap = TextWrapping::truncate_at_width(width.max(0.0));
+    let galley = painter.layout_job(job);
+    painter.galley(at - vec2(0.0, 0.5 * galley.size().y), galley, color);
 }
 
 /// One line of a table: texts at the given places (shares of the width), numbers right-aligned there.
@@ -176,14 +203,12 @@ pub(super) struct TextRow<'a> {
 }
 
 impl TextRow<'_> {
-    /// Draws from `share` of the width to the right, at most up to `end` of it.
+    /// Draws from `share` of the width to the right; text that would go beyond `end` of it ends with dots.
     pub(super) fn left(&self, share: f32, end: f32, text: &str, color: Color32) {
         let x = self.rect.left() + share * self.rect.width();
-        let clip =
-            egui::Rect::from_x_y_ranges(x..=self.rect.left() + end * self.rect.width(), self.rect.y_range());
-        let painter = self.ui.painter().with_clip_rect(clip.intersect(self.ui.clip_rect()));
-        let font = FontId::proportional(self.size);
-        painter.text(egui::pos2(x, self.rect.center().y), egui::Align2::LEFT_CENTER, text, font, color);
+        let at = egui::pos2(x, self.rect.center().y);
+        let width = (end - share) * self.rect.width();
+        write_within(self.ui.painter(), at, width, text, FontId::proportional(self.size), color);
     }
 
     /// Draws so that the text ends at `share` of the width.
@@ -199,4 +224,50 @@ pub(super) fn row<'a>(ui: &'a mut Ui, height: f32, size: f32, spoken: &str) -> T
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, spoken));
     TextRow { ui, rect, size }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The colours of every theme that stand on panels, as text or as the edge of something.
+    #[test]
+    fn words_on_buttons_pills_and_panels_can_be_read_in_every_theme() {
+        for (name, theme) in Theme::NAMED {
+            let mut style = egui::Visuals::default();
+            visuals(&mut style, &theme);
+            let least = theme.least_contrast();
+            let ratio = |ink: Color32, ground: Color32| {
+                let of = |it: Color32| Colour::rgb(it.r(), it.g(), it.b());
+                of(ink).contrast(of(ground))
+            };
+            let states = &style.widgets;
+            for (state, face) in [
+                ("inactive", &states.inactive),
+                ("hovered", &states.hovered),
+                ("active", &states.active),
+                ("open", &states.open),
+            ] {
+                assert!(ratio(face.fg_stroke.color, face.weak_bg_fill) >= least, "{name}: {state}");
+            }
+            let panel = style.panel_fill;
+            for ink in [
+                style.text_color(),
+                style.weak_text_color(),
+                style.hyperlink_color,
+                style.warn_fg_color,
+                style.error_fg_color,
+            ] {
+                for ground in [panel, style.extreme_bg_color, style.faint_bg_color] {
+                    assert!(ratio(ink, ground) >= least - 0.1, "{name}: {ink:?} on {ground:?}");
+                }
+            }
+            let Stroke { color: ink, .. } = style.selection.stroke;
+            assert!(ratio(ink, style.selection.bg_fill) >= least, "{name}: selected");
+            for colour in [theme.good, theme.warning, theme.fault, theme.accent, theme.quiet] {
+                let ground = panel_colour(&theme).mix(colour, 0.16);
+                assert!(theme.legible(colour, ground).contrast(ground) >= least, "{name}: {colour}");
+            }
+        }
+    }
 }

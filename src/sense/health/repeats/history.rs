@@ -3,8 +3,10 @@
 /// Number of readings kept per sensor: twice the longest repetition of interest.
 const KEPT: usize = 256;
 
-/// Number of readings that must equal those a fixed time before.
+/// Number of readings a millisecond apart that must equal those a fixed time before; of a slow board, those of 100 ms,
+/// and at least so many.
 const REPEATED: usize = 100;
+const FEWEST_REPEATED: usize = 16;
 
 /// Maximum lag, in readings, after which a replayed buffer starts again.
 pub(super) const MOST_LAG: usize = KEPT - REPEATED;
@@ -31,14 +33,17 @@ impl ReadingHistory {
         self.read[corner] = 0;
     }
 
-    /// Number of last readings of the sensor at `corner` that equal those a fixed lag before: [`REPEATED`], or 0 if
-    /// there are fewer for every lag of 2 to [`MOST_LAG`] readings.
-    pub(super) fn cycle(&self, corner: usize) -> u32 {
+    /// Number of last readings of the sensor at `corner`, `interval_ms` apart, that equal those a fixed lag before:
+    /// [`REPEATED`] or those of 100 ms, or 0 if there are fewer for every lag of 2 to [`MOST_LAG`] readings.
+    pub(super) fn cycle(&self, corner: usize, interval_ms: f32) -> u32 {
         let (readings, read) = (&self.readings[corner], self.read[corner]);
-        let Some(most) = read.min(KEPT).checked_sub(REPEATED) else { return 0 };
+        // The cast saturates.
+        let repeated = ((REPEATED as f32 / interval_ms) as usize).clamp(FEWEST_REPEATED, REPEATED);
+        let Some(most) = read.min(KEPT).checked_sub(repeated) else { return 0 };
+        let most = most.min(MOST_LAG);
         let at = |back: usize| readings[(read - 1 - back) % KEPT];
-        let repeats = |lag: usize| (0..REPEATED).all(|back| at(back) == at(back + lag));
-        if (2..=most).any(repeats) { REPEATED as u32 } else { 0 }
+        let repeats = |lag: usize| (0..repeated).all(|back| at(back) == at(back + lag));
+        if (2..=most).any(repeats) { repeated as u32 } else { 0 }
     }
 }
 
@@ -61,13 +66,13 @@ mod tests {
     fn a_buffer_that_is_replayed_is_found_whatever_its_length() {
         for length in [2, 3, 7, 64, 128, MOST_LAG as u32] {
             let played = history((0..300).map(noise).chain((0..400).map(|at| noise(at % length))));
-            assert!(played.cycle(2) > 0, "{length}");
-            assert_eq!(played.cycle(0), 0, "the sensor beside it");
+            assert!(played.cycle(2, 1.0) > 0, "{length}");
+            assert_eq!(played.cycle(0, 1.0), 0, "the sensor beside it");
         }
     }
 
     #[test]
     fn readings_that_come_once_are_no_cycle() {
-        assert_eq!(history((0..1000).map(noise)).cycle(2), 0);
+        assert_eq!(history((0..1000).map(noise)).cycle(2, 1.0), 0);
     }
 }

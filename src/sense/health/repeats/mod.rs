@@ -27,6 +27,7 @@ use self::history::{MOST_LAG, ReadingHistory};
 use self::noise::{ExaminedReadings, NoiseClass, SensorNoise, is_within};
 use self::run::{REPEATED_FOR, Run};
 use super::RangeEnd;
+use super::intervals::SampleIntervals;
 use super::trouble::Sensor;
 use crate::sense::{ForceFrame, HoldDoubt, Quality};
 use crate::units::Instant;
@@ -109,6 +110,11 @@ impl Repeats {
         self.count
     }
 
+    /// Whether the readings have no noise of their own.
+    pub(super) const fn is_noiseless(&self) -> bool {
+        self.noiseless
+    }
+
     /// Whether a repetition of this sensor's readings is improbable.
     pub(super) fn tells(&self, tile: usize, corner: usize) -> bool {
         !self.noiseless && self.noise.is_fine(tile, corner)
@@ -120,12 +126,18 @@ impl Repeats {
     }
 
     /// Compares the readings of the plates under load, and marks repeating plates in `frame`.
-    pub(super) fn compare(&mut self, frame: &mut ForceFrame, heard: Heard<'_>, now: Instant) {
+    pub(super) fn compare(
+        &mut self,
+        frame: &mut ForceFrame,
+        heard: Heard<'_>,
+        intervals: &SampleIntervals,
+        now: Instant,
+    ) {
         let Self { noise, watched, count, .. } = self;
         for watch in watched {
             let tile = watch.tile as usize;
             watch.read(heard.raws[tile], heard.ends[tile], heard.news[tile], now);
-            if watch.repeats(noise, heard.ends[tile], &heard.sensors[tile], now) {
+            if watch.repeats(noise, heard.ends[tile], &heard.sensors[tile], intervals.ms(tile), now) {
                 *count += u64::from(watch.until.is_none());
                 watch.until = Some(now + REPEATED_FOR);
             } else if watch.until.is_some_and(|until| now >= until) {
@@ -148,6 +160,7 @@ impl Repeats {
         tiles: Range<usize>,
         frame: &mut ForceFrame,
         heard: Heard<'_>,
+        intervals: &SampleIntervals,
         visit: u32,
     ) {
         if self.noiseless {
@@ -158,13 +171,18 @@ impl Repeats {
             let place = self.place[tile];
             self.idle[tile] = [load < IDLE_N; 4];
             if place != NONE {
-                self.visit_watched(place as usize, load, &frame.forces[tile], heard);
+                self.visit_watched(place as usize, load, &frame.forces[tile], heard, intervals.ms(tile));
             } else if load >= LOADED_N {
                 self.watch(tile, &frame.forces[tile], heard.raws[tile]);
             }
         }
-        let seen =
-            ExaminedReadings { raws: heard.raws, ends: heard.ends, news: heard.news, idle: &self.idle };
+        let seen = ExaminedReadings {
+            raws: heard.raws,
+            ends: heard.ends,
+            news: heard.news,
+            idle: &self.idle,
+            has_pauses: !intervals.are_all_one(),
+        };
         self.noise.look(tiles.clone(), seen, visit);
         for tile in tiles {
             if frame.hold_doubts[tile] != Some(HoldDoubt::Repeats) {
@@ -182,12 +200,19 @@ impl Repeats {
         }
     }
 
-    fn visit_watched(&mut self, place: usize, load: f32, newtons: &[f32; 4], heard: Heard<'_>) {
+    fn visit_watched(
+        &mut self,
+        place: usize,
+        load: f32,
+        newtons: &[f32; 4],
+        heard: Heard<'_>,
+        interval_ms: f32,
+    ) {
         let watch = &mut self.watched[place];
         let tile = watch.tile as usize;
         watch.empty = if load < EMPTY_N { watch.empty + 1 } else { 0 };
         for corner in 0..4 {
-            watch.runs[corner].note_cycle(watch.history.cycle(corner));
+            watch.runs[corner].note_cycle(watch.history.cycle(corner, interval_ms));
             let raws = [heard.raws[tile][corner], watch.raws[corner]];
             let is_known = heard.news[tile][corner] && is_within(heard.ends[tile][corner], raws[0]);
             if load >= IDLE_N && is_known && watch.until.is_none() {
@@ -221,7 +246,14 @@ impl Watch {
     }
 
     /// Whether two of its sensors, or all usable ones, repeat with an improbable run.
-    fn repeats(&self, noise: &SensorNoise, ends: [RangeEnd; 4], sensors: &[Sensor; 4], now: Instant) -> bool {
+    fn repeats(
+        &self,
+        noise: &SensorNoise,
+        ends: [RangeEnd; 4],
+        sensors: &[Sensor; 4],
+        interval_ms: f32,
+        now: Instant,
+    ) -> bool {
         let (mut told, mut repeated, mut nats) = (0, 0, 0.0);
         let tile = self.tile as usize;
         for corner in 0..4 {
@@ -229,7 +261,8 @@ impl Watch {
                 && !sensors[corner].is_out()
                 && noise.is_fine(tile, corner);
             if can_tell {
-                let found = self.runs[corner].nats(noise.same(tile, corner), MOST_LAG as u32, now);
+                let found =
+                    self.runs[corner].nats(noise.same(tile, corner), MOST_LAG as u32, interval_ms, now);
                 told += 1;
                 repeated += u8::from(found > 0.0);
                 nats += found;

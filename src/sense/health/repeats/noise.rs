@@ -79,6 +79,8 @@ pub(super) struct ExaminedReadings<'a> {
     pub news: &'a [[bool; 4]],
     /// Whether each tile is nearly empty.
     pub idle: &'a [[bool; 4]],
+    /// Whether a sensor may have no reading between two looks, so that the next one is compared with the last.
+    pub has_pauses: bool,
 }
 
 impl SensorNoise {
@@ -169,6 +171,7 @@ impl Likeness {
             seen.raws[tiles.clone()].as_flattened(),
             seen.ends[tiles.clone()].as_flattened(),
             [seen.news, seen.idle].map(|all| all[tiles.clone()].as_flattened()),
+            seen.has_pauses,
         );
     }
 
@@ -195,6 +198,7 @@ fn look(
     raws: &[u16],
     ends: &[RangeEnd],
     [news, idle]: [&[bool]; 2],
+    has_pauses: bool,
 ) {
     let sensors = raws.len();
     let (same, looks, last) = (&mut same[..sensors], &mut looks[..sensors], &mut last[..sensors]);
@@ -206,7 +210,7 @@ fn look(
         let now = f32::from(u8::from(raws[at] == last[at]));
         same[at] += counts * (now - same[at]) / (looks[at] + (PRIOR_LOOKS + 1.0));
         looks[at] = (looks[at] + counts).min(MOST_LOOKS);
-        has_last[at] = counts_now;
+        has_last[at] = counts_now | (has_pauses & has_last[at] & !news[at]);
         last[at] = if news[at] { raws[at] } else { last[at] };
     }
 }
@@ -226,6 +230,7 @@ mod tests {
                 ends: &[[RangeEnd::Within; 4]],
                 news: &[[true; 4]],
                 idle: &[[true; 4]],
+                has_pauses: false,
             };
             noise.look(0..1, seen, visit);
             grain = noise.grain(0, 2);
@@ -252,6 +257,22 @@ mod tests {
         let quiet = |at| if chance(at) < 0.2 { 181 } else { 180 };
         assert_eq!(known(60, quiet).1, NoiseClass::Unknown);
         assert_eq!(known(80, quiet).1, NoiseClass::Coarse);
+    }
+
+    #[test]
+    fn a_slow_board_s_readings_are_compared_over_the_looks_between_them() {
+        let mut noise = SensorNoise::new(1);
+        for visit in 0..100 {
+            let seen = ExaminedReadings {
+                raws: &[[chance(visit / 3) as u16 + 9000 + (visit / 3 % 50) as u16; 4]],
+                ends: &[[RangeEnd::Within; 4]],
+                news: &[[visit % 3 == 0; 4]],
+                idle: &[[true; 4]],
+                has_pauses: true,
+            };
+            noise.look(0..1, seen, visit);
+        }
+        assert_eq!(noise.grain(0, 2), NoiseClass::Fine);
     }
 
     #[test]

@@ -7,7 +7,8 @@ use crate::units::Instant;
 /// Minimum duration of a repetition.
 pub(super) const REPEATED_FOR: Duration = Duration::from_millis(100);
 
-/// Milliseconds between two looks of [`super::noise`]: its share of repetitions applies to that many readings.
+/// Milliseconds between two looks of [`super::noise`]: its share of repetitions applies to that many readings, and to
+/// each reading of a board that sends less often.
 const LOOK_MS: f32 = 8.0;
 
 /// Maximum ratio of the probability of two values to that of one: for noise of one count 0.68 against 0.28 (normal
@@ -60,11 +61,13 @@ impl Run {
     }
 
     /// Negative log likelihood (nats) of the repetition by chance, given the probabilities that the sensor reads the
-    /// same value after 8 ms, and after a period of hum; zero before [`REPEATED_FOR`] has passed.
+    /// same value after 8 ms, and after a period of hum; zero before [`REPEATED_FOR`] has passed. Its readings are
+    /// `interval_ms` apart.
     ///
     /// A repetition in order may have any of `lags` lags, which reduces the result by ln `lags`.
-    pub(super) fn nats(&self, [same, in_order]: [f32; 2], lags: u32, now: Instant) -> f32 {
-        let of = |readings: u32, same: f32| readings as f32 / LOOK_MS * -same.clamp(1e-6, 1.0).ln();
+    pub(super) fn nats(&self, [same, in_order]: [f32; 2], lags: u32, interval_ms: f32, now: Instant) -> f32 {
+        let looks = interval_ms.min(LOOK_MS) / LOOK_MS;
+        let of = |readings: u32, same: f32| readings as f32 * looks * -same.clamp(1e-6, 1.0).ln();
         let has_lasted = |since: Instant| now.since(since) >= REPEATED_FOR;
         let mut nats: f32 = 0.0;
         if has_lasted(self.alike_since) {
@@ -99,7 +102,7 @@ mod tests {
         let before = [7, 9, 4, 12, 8];
         for (repeated, is_improbable) in [(90, false), (110, true)] {
             let (run, now) = run(before.into_iter().chain(std::iter::repeat_n(8, repeated)));
-            assert_eq!(run.nats([0.01; 2], 1, now) > 30.0, is_improbable, "{repeated}");
+            assert_eq!(run.nats([0.01; 2], 1, 1.0, now) > 30.0, is_improbable, "{repeated}");
         }
     }
 
@@ -110,15 +113,27 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             if state >> 31 == 0 { 4000 } else { 4256 }
         }));
-        assert!(run.nats([0.01; 2], 1, now) > 30.0);
-        assert!(run.nats([0.35; 2], 1, now) < 3.0, "noise of less than a count does so");
+        assert!(run.nats([0.01; 2], 1, 1.0, now) > 30.0);
+        assert!(run.nats([0.35; 2], 1, 1.0, now) < 3.0, "noise of less than a count does so");
+    }
+
+    #[test]
+    fn a_slow_board_needs_as_long_and_fewer_readings() {
+        // Five readings at 50 Hz.
+        let (mut run, mut now) = (Run::default(), Instant::from_millis(5));
+        for raw in [7, 9, 8, 8, 8, 8, 8, 8] {
+            now = now + Duration::from_millis(20);
+            run.read(raw, now);
+        }
+        assert!(run.nats([0.001; 2], 1, 20.0, now) > 30.0);
+        assert!(run.nats([0.3; 2], 1, 20.0, now) < 10.0);
     }
 
     #[test]
     fn a_third_value_begins_anew() {
         let values = std::iter::repeat_n(1, 60).chain(std::iter::repeat_n(2, 30)).chain([3, 2, 3, 2]);
         let (run, now) = run(values);
-        assert_eq!(run.nats([0.01; 2], 1, now), 0.0);
+        assert_eq!(run.nats([0.01; 2], 1, 1.0, now), 0.0);
         assert_eq!(run.two, 34, "the last two values");
     }
 }

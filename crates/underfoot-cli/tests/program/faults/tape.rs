@@ -238,9 +238,9 @@ impl Played {
     }
 }
 
-/// The events of controls, in order, such as `it pressed`; without intermediate values.
+/// The events of controls, in order, such as `it pressed`; without intermediate values and ignored feet.
 pub fn events(lines: &[Value]) -> Vec<String> {
     let named = lines.iter().filter_map(|line| Some((line["id"].as_str()?, line["event"].as_str()?)));
-    let told = named.filter(|(_, event)| !["state", "changed", "ticked"].contains(event));
+    let told = named.filter(|(_, event)| !["state", "changed", "ticked", "ignored"].contains(event));
     told.map(|(id, event)| format!("{id} {event}")).collect()
 }

@@ -40,6 +40,8 @@ fn any_port() -> UdpSocket {
 pub struct Site {
     pub folder: tempfile::TempDir,
     pub floor: Floor,
+    /// The environment of the program, in addition to that of the test.
+    pub environment: Vec<(&'static str, String)>,
     sim: SimFloor,
     format: SensorFormat,
 }
@@ -63,7 +65,7 @@ impl Site {
         let floor = sim::calibrated(&wired, &sim, 7).unwrap();
         save_floor(&floor, &folder.path().join("floor.ron")).unwrap();
         std::fs::write(folder.path().join("page.ron"), PAGE).unwrap();
-        Self { folder, floor, sim, format }
+        Self { folder, floor, environment: Vec::new(), sim, format }
     }
 
     /// The folder of its files: `page.ron` and `floor.ron`.
@@ -77,6 +79,7 @@ impl Site {
         let [osc, tuio] = client.addresses().map(|address| address.to_string());
         let mut child = underfoot()
             .current_dir(self.folder.path())
+            .envs(self.environment.iter().cloned())
             .args(["run", "page.ron", "--floor", "floor.ron", "--json", "--listen", &address.to_string()])
             .args(["--osc", &osc, "--tuio", &tuio])
             .args(more)

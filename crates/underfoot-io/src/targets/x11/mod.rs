@@ -29,6 +29,8 @@ const MOST_STEPS: u32 = 200;
 pub(super) struct X11Outlet {
     connection: RustConnection,
     root: Window,
+    /// Width and height of the screen, in pixels.
+    size: [u16; 2],
     keymap: Keymap,
     /// Part of the title or class of the window that may receive.
     window: Option<String>,
@@ -45,15 +47,15 @@ impl X11Outlet {
             OutletError::Gone(format!("the X display {named:?} can't be used: {error}"))
         };
         let (connection, screen) = RustConnection::connect(display).map_err(|error| gone(&error))?;
-        let root = connection.setup().roots.get(screen).map(|screen| screen.root);
-        let root = root.ok_or_else(|| gone(&"it has no such screen"))?;
+        let screen = connection.setup().roots.get(screen).ok_or_else(|| gone(&"it has no such screen"))?;
+        let (root, size) = (screen.root, [screen.width_in_pixels, screen.height_in_pixels]);
         connection
             .xtest_get_version(2, 2)
             .map_err(ReplyError::from)
             .and_then(x11rb::cookie::Cookie::reply)
             .map_err(|error| gone(&format!("it lacks the extension XTEST: {error}")))?;
         let keymap = Keymap::read(&connection).map_err(|error| gone(&error))?;
-        Ok(Self { connection, root, keymap, window: target.window.clone(), down: BTreeMap::new() })
+        Ok(Self { connection, root, size, keymap, window: target.window.clone(), down: BTreeMap::new() })
     }
 
     fn fake(&self, kind: u8, detail: u8, [x, y]: [i16; 2]) -> Result<(), ConnectionError> {
@@ -109,7 +111,7 @@ impl X11Outlet {
             Holdable::Button(button) => {
                 self.fake(BUTTON_PRESS_EVENT, number(*button), [0; 2]).map_err(|error| lost(&error))
             }
-            Holdable::Osc(_) => Err(OutletError::Refused("a keyboard receives no OSC".into())),
+            _ => Err(no_key()),
         }
     }
 
@@ -119,7 +121,7 @@ impl X11Outlet {
             Holdable::Button(button) => {
                 self.fake(BUTTON_RELEASE_EVENT, number(*button), [0; 2]).map_err(|error| lost(&error))
             }
-            Holdable::Osc(_) => Ok(()),
+            _ => Ok(()),
         }
     }
 
@@ -148,7 +150,7 @@ impl Outlet for X11Outlet {
             self.check_window()?;
         }
         match act {
-            Act::Down(what) => self.down(what)?,
+            Act::Down(what, _) => self.down(what)?,
             Act::Up(what) => self.up(what, false)?,
             Act::Stroke(what) => {
                 self.down(what)?;
@@ -168,7 +170,13 @@ impl Outlet for X11Outlet {
                 // Detail 1: relative to the present place.
                 self.fake(MOTION_NOTIFY_EVENT, 1, bounded).map_err(|error| lost(&error))?;
             }
-            Act::Osc(..) => return Err(OutletError::Refused("a keyboard receives no OSC".into())),
+            Act::Place(place) => {
+                let [width, height] = self.size.map(|pixels| f32::from(pixels.saturating_sub(1)));
+                let [x, y] = [place[0] * width, place[1] * height].map(|at| at.clamp(0.0, 32_767.0) as i16);
+                // Detail 0: a place of the screen.
+                self.fake(MOTION_NOTIFY_EVENT, 0, [x, y]).map_err(|error| lost(&error))?;
+            }
+            Act::Osc(..) | Act::Midi(_) => return Err(no_key()),
         }
         self.settle()
     }
@@ -184,6 +192,10 @@ impl Outlet for X11Outlet {
 
 fn lost(error: &dyn std::fmt::Display) -> OutletError {
     OutletError::Gone(format!("the X server has failed: {error}"))
+}
+
+fn no_key() -> OutletError {
+    OutletError::Refused("a keyboard receives neither OSC nor MIDI".into())
 }
 
 const fn number(button: MouseButton) -> u8 {

@@ -5,7 +5,6 @@ use glam::Vec2;
 use super::super::Scene;
 use super::super::face::{Face, SMALL_M};
 use super::super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
-use super::super::theme::readable;
 use super::super::widths::CAP_HEIGHT;
 use super::reading::Reading;
 use super::{HANDLE, stops};
@@ -35,9 +34,8 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Tra
         Track::Arc { .. } => (0.0, 1.0),
     };
     let share = scale.share(value).clamp(low, high);
-    let ground = face.colour.mix(face.theme.shadow, 0.13);
     let broadly = |colour| Paint::stroke(Stroke::new(broad, Ink::solid(colour)));
-    scene.add_path(line(low, high), false, broadly(ground));
+    scene.add_path(line(low, high), false, broadly(face.groove()));
     if share > low {
         scene.add_path(line(low, share), false, broadly(face.lit()));
     }
@@ -46,7 +44,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Tra
         scene.add_circle(at(stop), 0.003, tick);
     }
     let colour = HANDLE.mix(face.colour, if face.is_out_of_use() { 0.5 } else { 0.0 });
-    let outline = readable(face.ink, colour);
+    let outline = face.theme.readable(face.ink, colour);
     let edge = Stroke::new(if face.state.pressed { 0.006 } else { 0.0035 }, Ink::solid(outline));
     scene.add_circle(at(share), 0.5 * broad + 0.004, Paint::fill(Ink::solid(colour)).with_stroke(edge));
     scene.add_circle(at(share), 0.005, Paint::fill(Ink::faint(outline, 0.7)));

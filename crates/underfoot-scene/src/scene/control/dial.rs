@@ -30,7 +30,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &DialSpec, value: f
         (0..=steps).map(move |step| at(to * step as f32 / steps as f32, ring))
     };
     let broadly = |colour| Paint::stroke(Stroke::new(broad, Ink::solid(colour)));
-    scene.add_path(arc(1.0), false, broadly(face.colour.mix(face.theme.shadow, 0.16)));
+    scene.add_path(arc(1.0), false, broadly(face.groove()));
     if share > 0.0 {
         scene.add_path(arc(share), false, broadly(face.lit()));
     }

@@ -5,7 +5,6 @@ use glam::Vec2;
 use super::super::Scene;
 use super::super::face::Face;
 use super::super::mark::{Ink, Paint, Stroke};
-use super::super::theme::readable;
 use super::reading::Reading;
 use super::{HANDLE, caption, stops, strip_m};
 use underfoot::floor::Rect;
@@ -19,8 +18,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &PadSpec, value: Ve
     let top = Rect::new(Vec2::new(area.min.x, area.max.y - strip), area.max);
     caption(scene, face, top, &Reading::pair(&spec.x(), &spec.y(), value));
     let field = Rect::new(area.min + 0.010, Vec2::new(area.max.x - 0.010, area.max.y - strip));
-    let ground = face.colour.mix(face.theme.shadow, 0.13);
-    scene.add_box(field, face.radius_m - 0.008, Paint::fill(Ink::solid(ground)));
+    scene.add_box(field, face.radius_m - 0.008, face.sunk());
     // The foot's position is measured from the control's own edges.
     let whole = face.widget.area;
     let at = |share: Vec2| (whole.min + share * whole.size()).clamp(field.min, field.max);
@@ -39,8 +37,10 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &PadSpec, value: Ve
     let radius = (0.09 * field.size().min_element()).clamp(0.010, 0.022);
     let middle = mark.clamp(field.min + radius, (field.max - radius).max(field.min + radius));
     let fill = if face.state.pressed { face.lit() } else { HANDLE.mix(face.colour, 0.1) };
-    let edge =
-        Stroke::new(if face.state.pressed { 0.006 } else { 0.004 }, Ink::solid(readable(face.ink, fill)));
+    let edge = Stroke::new(
+        if face.state.pressed { 0.006 } else { 0.004 },
+        Ink::solid(face.theme.readable(face.ink, fill)),
+    );
     scene.add_circle(middle, radius, Paint::fill(Ink::solid(fill)).with_stroke(edge));
     face.draw_badge(scene);
 }

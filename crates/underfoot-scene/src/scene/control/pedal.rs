@@ -22,8 +22,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, value: f32
     caption(scene, face, top, &Reading::of(scale, value));
     let plate = Rect::new(area.min + 0.010, Vec2::new(area.max.x - 0.010, area.max.y - strip));
     let radius = face.radius_m - 0.008;
-    let ground = face.colour.mix(face.theme.shadow, 0.13);
-    scene.add_box(plate, radius, Paint::fill(Ink::solid(ground)));
+    scene.add_box(plate, radius, face.sunk());
     let full = Vec2::new(plate.max.x, plate.min.y + scale.share(value) * plate.size().y);
     if full.y - plate.min.y > 0.002 {
         scene.add_box(Rect::new(plate.min, full), radius, Paint::fill(Ink::solid(face.lit())));

@@ -5,7 +5,6 @@ use glam::Vec2;
 use super::super::Scene;
 use super::super::face::{Face, SMALL_M};
 use super::super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
-use super::super::theme::readable;
 use super::super::widths::CAP_HEIGHT;
 use super::strip_m;
 use underfoot::floor::Rect;
@@ -52,9 +51,11 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &SelectorSpec, choi
 }
 
 fn segment(scene: &mut Scene, face: &Face<'_>, cell: Rect, option: &str, chosen: bool, pending: bool) {
-    let ground = if chosen { face.lit() } else { face.colour.mix(face.theme.shadow, 0.10) };
-    let ink = readable(face.ink, ground);
-    let mut paint = Paint::fill(Ink::solid(ground));
+    let (mut paint, ground) = match chosen {
+        true => (Paint::fill(Ink::solid(face.lit())), face.lit()),
+        false => (face.sunk(), face.sunk().fill.map_or(face.colour, |ink| ink.colour)),
+    };
+    let ink = face.theme.readable(face.ink, ground);
     if pending {
         paint = paint.with_stroke(Stroke::new(0.006, Ink::solid(face.ink)).dashed(0.014, 0.009));
     } else if chosen {

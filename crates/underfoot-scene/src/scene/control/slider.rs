@@ -5,7 +5,6 @@ use glam::Vec2;
 use super::super::Scene;
 use super::super::face::{BADGE_STRIP_M, Face, SMALL_M};
 use super::super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
-use super::super::theme::readable;
 use super::super::widths::CAP_HEIGHT;
 use super::reading::Reading;
 use super::{HANDLE, caption, stops};
@@ -51,8 +50,7 @@ fn track(scene: &mut Scene, face: &Face<'_>, scale: &Scale, axis: Axis, track: R
     let out_of_use = face.is_out_of_use();
     let lit = face.lit();
     let radius = face.radius_m - 0.008;
-    let ground = face.colour.mix(face.theme.shadow, 0.13);
-    scene.add_box(track, radius, Paint::fill(Ink::solid(ground)));
+    scene.add_box(track, radius, face.sunk());
     let along = match axis {
         Axis::East => Vec2::X,
         Axis::North => Vec2::Y,
@@ -75,7 +73,7 @@ fn track(scene: &mut Scene, face: &Face<'_>, scale: &Scale, axis: Axis, track: R
     }
     // The handle is light on a lit track; its edge separates it from the track.
     let colour = HANDLE.mix(face.colour, if out_of_use { 0.5 } else { 0.0 });
-    let outline = readable(face.ink, colour);
+    let outline = face.theme.readable(face.ink, colour);
     let edge = Stroke::new(if face.state.pressed { 0.006 } else { 0.0035 }, Ink::solid(outline));
     scene.add_box(handle, 0.009, Paint::fill(Ink::solid(colour)).with_stroke(edge));
     let grip = 0.5 * handle.size() * (Vec2::ONE - along) * 0.45;

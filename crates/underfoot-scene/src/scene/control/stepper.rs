@@ -29,7 +29,8 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &StepperSpec, value
     for (half, strength, plus) in halves {
         let ground = face.lit().mix(face.colour, if face.state.pressed { 0.2 } else { 0.55 });
         scene.add_box(half, (face.radius_m - 0.008).max(0.004), Paint::fill(Ink::solid(ground)));
-        let paint = Paint::stroke(Stroke::new(0.008, Ink::faint(face.ink, strength)));
+        let ink = face.theme.readable(face.ink, ground);
+        let paint = Paint::stroke(Stroke::new(0.008, Ink::faint(ink, strength)));
         let middle = half.centre();
         scene.add_line(middle - Vec2::X * sign, middle + Vec2::X * sign, paint);
         if plus {

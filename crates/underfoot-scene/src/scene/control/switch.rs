@@ -5,7 +5,6 @@ use glam::Vec2;
 use super::super::Scene;
 use super::super::face::Face;
 use super::super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
-use super::super::theme::readable;
 use super::super::widths::CAP_HEIGHT;
 use super::beside;
 use underfoot::floor::Rect;
@@ -31,9 +30,12 @@ fn pill(scene: &mut Scene, face: &Face<'_>, area: Rect, on: bool) {
     let reach = 0.5 * area.size().x - radius;
     let side = if on { reach } else { -reach };
     let centre = area.centre();
-    scene.add_circle(centre + Vec2::new(side, 0.0), radius - 0.009, Paint::fill(Ink::solid(knob)));
+    // A box like the pill, round all around.
+    let round = radius - 0.009;
+    let place = Rect::from_centre_size(centre + Vec2::new(side, 0.0), Vec2::splat(2.0 * round));
+    scene.add_box(place, round, Paint::fill(Ink::solid(knob)));
     let size_m = (1.05 * radius).min(0.032);
-    let ink = if on { readable(face.colour, face.ink) } else { face.ink };
+    let ink = if on { face.theme.readable(face.colour, face.ink) } else { face.ink };
     let lettering = Lettering::new(
         centre - Vec2::new(0.85 * side, 0.5 * CAP_HEIGHT * size_m),
         Anchor::Middle,

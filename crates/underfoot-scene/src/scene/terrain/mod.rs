@@ -8,7 +8,8 @@ mod wood;
 use glam::Vec2;
 
 use super::mark::Ink;
-use super::{Scene, View};
+use super::theme::{BLACK, WHITE};
+use super::{Faces, Scene, Theme, View};
 use noise::TerrainNoise;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
@@ -16,11 +17,41 @@ use underfoot::ground::{GroundMaterial, GroundState, Relief};
 use underfoot::layout::{Colour, Ground};
 use underfoot::units::Instant;
 
-const WHITE: Colour = Colour::rgb(0xff, 0xff, 0xff);
-const BLACK: Colour = Colour::rgb(0x00, 0x00, 0x00);
+/// The colours of one ground in a theme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct LandColours {
+    surface: Colour,
+    deep: Colour,
+    white: Colour,
+    line: Colour,
+}
 
-/// Darkening of grounds in a dark theme.
-const DARKER: f32 = 0.32;
+impl LandColours {
+    /// Returns the colours of `ground`. On a dark floor a ground is as dark as at night and its light stays bright, so
+    /// that ice still looks like ice; with high contrast, only its bright lines stay.
+    fn of(ground: &Ground, theme: &Theme) -> Self {
+        let Ground { surface, deep, .. } = *ground;
+        let dark = |colour: Colour, share: f32| colour.mix(BLACK, share);
+        match theme.faces {
+            Faces::OfLayout if !theme.is_dark() => Self { surface, deep, white: WHITE, line: deep },
+            // Projected onto bare plates: black throws no light.
+            Faces::OfLayout => {
+                let [surface, deep, white] = [surface, deep, WHITE].map(|colour| dark(colour, 0.32));
+                Self { surface, deep, white, line: deep }
+            }
+            Faces::Dark => Self {
+                surface: dark(surface, 0.56),
+                deep: dark(deep, 0.58),
+                white: surface.mix(WHITE, 0.55).mix(BLACK, 0.14),
+                line: dark(deep, 0.75),
+            },
+            Faces::Outlined => {
+                let white = surface.mix(WHITE, 0.5);
+                Self { surface: dark(surface, 0.74), deep: dark(deep, 0.92), white, line: white }
+            }
+        }
+    }
+}
 
 /// True if a visible ground hides all of `cell`.
 pub(super) fn hides(view: &View<'_>, cell: Rect) -> bool {
@@ -28,6 +59,12 @@ pub(super) fn hides(view: &View<'_>, cell: Rect) -> bool {
         .grounds
         .iter()
         .any(|ground| ground.spec.is_on(view.snapshot.page) && super::holds(ground.spec.area, cell))
+}
+
+/// True if a part of a visible ground lies in `area`.
+pub(super) fn is_under(view: &View<'_>, area: Rect) -> bool {
+    let mut grounds = view.layout.grounds.iter();
+    grounds.any(|ground| ground.spec.is_on(view.snapshot.page) && ground.spec.area.overlaps(area))
 }
 
 /// Draws the grounds of the current page.
@@ -56,7 +93,10 @@ struct Land<'a> {
     noise: TerrainNoise,
     surface: Colour,
     deep: Colour,
+    /// Light on the surface: crystals, edges of cracks, crests.
     white: Colour,
+    /// Lines on the surface, such as the grain of wood.
+    line: Colour,
     /// Number of grid points, eastwards and northwards.
     columns: u32,
     rows: u32,
@@ -67,7 +107,7 @@ impl<'a> Land<'a> {
         // Ignore the state of another layout's ground.
         let state =
             state.filter(|state| state.relief.size() == (0, 0) || state.relief.area() == ground.spec.area);
-        let tone = |colour: Colour| if view.theme.is_dark() { colour.mix(BLACK, DARKER) } else { colour };
+        let LandColours { surface, deep, white, line } = LandColours::of(ground, view.theme);
         let known = state.map(|state| state.relief.size()).filter(|size| *size != (0, 0));
         let plain = (ground.spec.area.size() / 0.04).ceil().as_uvec2() + 1;
         let (columns, rows) = known.unwrap_or((plain.x.clamp(2, 257), plain.y.clamp(2, 257)));
@@ -76,9 +116,10 @@ impl<'a> Land<'a> {
             state,
             now: snapshot.at,
             noise: TerrainNoise(ground.spec.seed),
-            surface: tone(ground.surface),
-            deep: tone(ground.deep),
-            white: tone(WHITE),
+            surface,
+            deep,
+            white,
+            line,
             columns,
             rows,
         }
@@ -119,16 +160,16 @@ impl<'a> Land<'a> {
     /// Draws the tile borders faintly: forces are still shown tile by tile.
     fn seams(&self, scene: &mut Scene, view: &View<'_>) {
         let (area, pitch_m) = (self.area(), view.geometry.pitch_m());
-        let paint = super::Paint::stroke(super::Stroke::new(0.0012, Ink::faint(self.deep, 0.16)));
-        let lines = |low: f32, high: f32| {
+        let paint = super::Paint::stroke(super::Stroke::new(0.0012, Ink::faint(self.line, 0.16)));
+        let lines = |low: f32, high: f32, pitch_m: f32| {
             let (first, last) =
                 ((low / pitch_m).floor() as u32 + 1, (high / pitch_m - 1e-3).floor().max(0.0) as u32);
             (first..=last).map(move |line| line as f32 * pitch_m)
         };
-        for x in lines(area.min.x, area.max.x) {
+        for x in lines(area.min.x, area.max.x, pitch_m.x) {
             scene.add_line(Vec2::new(x, area.min.y), Vec2::new(x, area.max.y), paint);
         }
-        for y in lines(area.min.y, area.max.y) {
+        for y in lines(area.min.y, area.max.y, pitch_m.y) {
             scene.add_line(Vec2::new(area.min.x, y), Vec2::new(area.max.x, y), paint);
         }
     }
@@ -136,7 +177,7 @@ impl<'a> Land<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Mark, Theme};
+    use super::super::Mark;
     use super::*;
     use underfoot::floor::Geometry;
     use underfoot::ground::Crack;

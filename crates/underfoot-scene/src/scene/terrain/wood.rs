@@ -43,7 +43,7 @@ pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, spec: &WoodSpec) {
             for along in [from + 0.016, to - 0.016] {
                 for side in [0.22, 0.78] {
                     let nail = place(along, across + side * each);
-                    scene.add_circle(nail, 0.0026, Paint::fill(Ink::faint(land.deep, 0.8)));
+                    scene.add_circle(nail, 0.0026, Paint::fill(Ink::faint(land.line, 0.8)));
                     scene.add_circle(
                         nail + Vec2::new(-0.0006, 0.0007),
                         0.0010,
@@ -69,7 +69,7 @@ fn grain(
     for line in 0..lines {
         let middle =
             across + each * (line as f32 + 0.5 + 0.3 * noise.signed(6, board * 16 + line)) / lines as f32;
-        let ink = Ink::faint(land.deep, 0.14 + 0.16 * noise.at(7, board * 16 + line));
+        let ink = Ink::faint(land.line, 0.14 + 0.16 * noise.at(7, board * 16 + line));
         let points = (0..=20).map(|step| {
             let along = from + 0.004 + (to - from - 0.008) * step as f32 / 20.0;
             let wave = noise.hills(8 + board, Vec2::new(along, middle * 0.6), 0.30);

@@ -1,7 +1,7 @@
 //! Help: the keys and gestures of the present mode, at the lower edge and in a menu.
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
-use eframe::egui::{Grid, Margin, Panel, PopupCloseBehavior, RichText, Ui};
+use eframe::egui::{Color32, FontId, Grid, Margin, Panel, PopupCloseBehavior, RichText, Ui};
 
 use crate::preview::appearance::Appearance;
 use crate::preview::icons::{Icon, named, short};
@@ -13,8 +13,8 @@ use underfoot_scene::scene::Theme;
 /// Height of the window below which the help bar is hidden, in points.
 const HELP: f32 = 560.0;
 
-/// Width of the window below which the help bar shows only the first hints, in points.
-const NARROW: f32 = 1010.0;
+/// Size of the letters in the help bar, in points.
+const LETTERS: f32 = 12.0;
 
 /// The use of the window by its user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,11 +72,13 @@ impl HelpTopic {
             ],
             Self::Projecting => &[
                 ("In the projected window: C", "adjust the corners"),
-                ("1 to 4, Arrows", "move one of them"),
-                ("M", "mirror"),
-                ("F", "full screen"),
-                ("N", "next screen"),
-                ("F11", "close it"),
+                ("Tab, Arrows", "move one by a pixel"),
+                ("Ctrl-Z", "undo"),
+                ("F, N", "full screen, next screen"),
+                ("T", "check page"),
+                ("+, -", "brightness"),
+                ("M, R", "mirror, turn"),
+                ("F11", "close"),
             ],
             Self::Replaying => &[
                 ("Space", "pause"),
@@ -102,14 +104,19 @@ pub(in crate::preview) fn help_bar(ui: &mut Ui, theme: &Theme, activity: HelpTop
     }
     let frame = panel_frame(theme, Margin::symmetric(14, 5));
     Panel::bottom("help bar").frame(frame).resizable(false).show(ui, |ui| {
-        let steps = activity.steps();
-        // A narrow window shows the first ones only; the menu lists the rest.
-        let told = if ui.available_width() < NARROW { 4 } else { steps.len() };
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 5.0;
-            for (key, does) in steps.iter().take(told) {
-                ui.label(RichText::new(*key).size(12.0).color(color(theme.ink)));
-                ui.label(RichText::new(*does).size(12.0).color(color(theme.quiet)));
+            let width = |ui: &Ui, text: &str| {
+                let font = FontId::proportional(LETTERS);
+                ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x
+            };
+            // A narrow window shows the first ones only; the menu lists the rest.
+            for (key, does) in activity.steps() {
+                if width(ui, key) + width(ui, does) + 5.0 > ui.available_width() {
+                    break;
+                }
+                ui.label(RichText::new(*key).size(LETTERS).color(color(theme.ink)));
+                ui.label(RichText::new(*does).size(LETTERS).color(color(theme.quiet)));
                 ui.add_space(9.0);
             }
         });

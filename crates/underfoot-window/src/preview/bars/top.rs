@@ -10,6 +10,7 @@ use crate::preview::app::App;
 use crate::preview::closing::file_name;
 use crate::preview::feed::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet};
+use crate::preview::visit::VisitBar;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::{Theme, in_drawn_order};
 
@@ -37,6 +38,26 @@ pub(in crate::preview) struct TopBar {
     pub(in crate::preview) lists_warnings: bool,
     /// Width of the part at the right in the last frame, in points.
     end_width: f32,
+    tools: ToolsWidth,
+}
+
+/// The width of the tools of Try with their words, which decides whether they keep them.
+#[derive(Default)]
+struct ToolsWidth {
+    /// The width when they were last written out, in points; 0 before that.
+    full: f32,
+    /// The states that add a button or lengthen a text.
+    of: [bool; 3],
+}
+
+impl ToolsWidth {
+    /// Whether the tools lose their words in a bar with this room, in points.
+    fn is_compact(&mut self, room: f32, of: [bool; 3]) -> bool {
+        if self.of != of {
+            *self = Self { full: 0.0, of };
+        }
+        self.full > room
+    }
 }
 
 impl TopBar {
@@ -81,24 +102,39 @@ impl App {
                 self.heading(ui, &theme, is_compact);
                 if !has_two_lines {
                     ui.add_space(4.0);
-                    self.tools(ui, &theme);
+                    let room = ui.available_width() - self.top_bar.end_width - ui.spacing().item_spacing.x;
+                    self.tools(ui, &theme, room);
                 }
                 self.end(ui, &theme, is_compact);
             });
             if has_two_lines {
-                line(ui, |ui| self.tools(ui, &theme));
+                line(ui, |ui| {
+                    let room = ui.available_width();
+                    self.tools(ui, &theme, room);
+                });
             }
         });
     }
 
-    /// The tools of the present mode.
-    fn tools(&mut self, ui: &mut Ui, theme: &Theme) {
+    /// The tools of the present mode, in a part of the bar that is `room` points wide.
+    fn tools(&mut self, ui: &mut Ui, theme: &Theme, room: f32) {
         match &mut self.designer {
             Some(designer) if designer.is_open => {
                 designer.tools(ui, theme, &self.top_bar.choices);
-                self.panel.button(ui, true);
+                self.panel.button(ui, true, true);
             }
-            _ => self.try_tools(ui, theme),
+            _ => {
+                let [records, kept] = self.visit.as_ref().map_or([false; 2], VisitBar::shows);
+                let warns = self.shown.messages.warnings.count > 0;
+                let is_compact = self.top_bar.tools.is_compact(room, [records, kept, warns]);
+                let left = ui.cursor().left();
+                self.try_tools(ui, theme, is_compact);
+                let full = ui.min_rect().right() - left;
+                if !is_compact && (full - self.top_bar.tools.full).abs() > 0.5 {
+                    self.top_bar.tools.full = full;
+                    ui.ctx().request_repaint();
+                }
+            }
         }
     }
 

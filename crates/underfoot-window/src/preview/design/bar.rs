@@ -114,7 +114,8 @@ impl Designer {
         let count = areas.len();
         ui.add_enabled_ui(count > 0, |ui| {
             ui.menu_button("Arrange", |ui| {
-                let entries: [(bool, &str, &str, Action); 6] = [
+                let entries: [(bool, &str, &str, Action); 7] = [
+                    (count > 1, "Make alike", "Ctrl+E", EditedLayout::make_alike),
                     (count > 0, "Group", "Ctrl+G", EditedLayout::group),
                     (is_group, "Ungroup", "Ctrl+Shift+G", EditedLayout::ungroup),
                     (count == 1, "To the front", "Ctrl+]", |edited| edited.reorder(false)),

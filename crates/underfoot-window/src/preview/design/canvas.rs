@@ -11,11 +11,12 @@ use super::gestures::{PointerGesture, reachable_at, touched};
 use super::in_place::InPlace;
 use super::marks::marks;
 use super::menu::{begin, show_menu};
-use super::palette::PaletteThing;
+use super::palette::InHand;
 use super::spacing_marks::spacing_marks;
 use super::trial::GestureResult;
 use crate::edit::{Address, Item, RecordList};
-use crate::preview::zoom::Zoom;
+use crate::preview::labels::Labels;
+use crate::preview::zoom::{ViewRoom, Zoom};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
@@ -26,11 +27,13 @@ use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 #[derive(Default)]
 pub(super) struct Canvas {
     pub(super) view: Zoom,
+    /// Whether the next frame shows the whole floor.
+    fits: bool,
     scene: Scene,
     pub(super) scale: DrawnToScale,
     pub(super) gesture: PointerGesture,
     /// The thing that the next click or drag puts down.
-    pub(super) placing: Option<PaletteThing>,
+    pub(super) placing: Option<InHand>,
     /// The text that is edited on the floor.
     pub(super) in_place: Option<InPlace>,
 }
@@ -43,14 +46,14 @@ pub(super) struct DrawnToScale {
 }
 
 impl Canvas {
-    /// Shows the floor in the remaining part of the window, fitted into `screen`.
+    /// Shows the floor in the remaining part of the window, fitted into `room`.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         theme: &Theme,
         palette: &mut Palette,
         edited: &mut EditedLayout,
-        screen: egui::Rect,
+        room: ViewRoom,
     ) {
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::click_and_drag());
@@ -58,13 +61,16 @@ impl Canvas {
         let geometry = edited.document.floor().geometry;
         let show = Show { sensors: false, contacts: false, ..Show::WINDOW };
         let bounds = scene::extent(&geometry, show);
-        self.zoom(ui, &canvas, bounds, screen);
-        let map = self.view.map(bounds, screen);
+        if std::mem::take(&mut self.fits) {
+            self.view = Zoom::fitted(bounds, room);
+        }
+        self.zoom(ui, &canvas, bounds, room);
+        let map = self.view.map(bounds, room.stage);
         self.menu(&canvas, map, edited);
         let trial = if self.is_typed_under(ui, edited, map) {
             GestureResult::default()
         } else {
-            self.gestures(ui, &canvas, map, screen, edited)
+            self.gestures(ui, &canvas, map, room, edited)
         };
         self.edit_on_double_click(&canvas, map, edited);
         let shown = trial.layout.as_ref().unwrap_or_else(|| edited.document.layout());
@@ -76,9 +82,12 @@ impl Canvas {
         scene::draw(&mut self.scene, &view);
         let painter = ui.painter_at(rect);
         egui_painter::paint(&painter, palette, &self.scene, map);
-        self.scale.reach(&painter, map, theme, edited.layout());
-        marks(edited, ui, rect, map, theme, &trial);
-        spacing_marks(&painter, map, theme, geometry.bounds(), &trial);
+        let controls = shown.widgets.iter().filter(|widget| widget.is_on(edited.page));
+        let taken = controls.map(|widget| widget.area).chain(self.scene.written());
+        let mut notes = Labels::within(rect, taken.map(|area| map.rect(area)));
+        self.scale.reach(&painter, map, theme, edited.layout(), &mut notes);
+        marks(edited, ui, map, theme, &trial, &mut notes);
+        spacing_marks(&painter, map, theme, geometry.bounds(), &trial, &mut notes);
         names(edited, ui, map);
         if let Some(mut editor) = self.in_place.take()
             && editor.show(ui, theme, map, edited)
@@ -123,20 +132,20 @@ impl Canvas {
         canvas.context_menu(|ui| show_menu(ui, edited, &mut self.in_place));
     }
 
-    fn zoom(&mut self, ui: &Ui, canvas: &egui::Response, bounds: Rect, screen: egui::Rect) {
+    fn zoom(&mut self, ui: &Ui, canvas: &egui::Response, bounds: Rect, room: ViewRoom) {
         let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|_| canvas.contains_pointer()) else {
             return;
         };
         let (wheel, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let by = pinch * (wheel * 0.004).exp();
         if (by - 1.0).abs() > 1e-4 {
-            self.view.about(pointer, by, bounds, screen);
+            self.view.about(pointer, by, bounds, room);
         }
     }
 
-    /// Shows the whole floor again.
+    /// Shows the whole floor again, from this frame on.
     pub(super) fn fit(&mut self) {
-        self.view = Zoom::default();
+        self.fits = true;
     }
 }
 
@@ -165,8 +174,11 @@ fn without_hidden<'l>(edited: &EditedLayout, layout: &'l Layout) -> Cow<'l, Layo
     Cow::Owned(layout)
 }
 
-/// Gives screen readers and tests the name and place of each record.
+/// Gives screen readers, tests and scripts the place of the floor, and the name and place of each record.
 fn names(edited: &EditedLayout, ui: &Ui, map: ScreenFromFloor) {
+    let bounds = map.rect(edited.document.floor().geometry.bounds());
+    let floor = ui.interact(bounds, ui.scope_id().with("floor"), Sense::hover());
+    floor.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Whole floor"));
     let is_seen = |item: &&Item| item.is_on(edited.page) && !item.is_group && !edited.is_hidden(&item.record);
     for item in edited.items.iter().filter(is_seen) {
         let id = ui.scope_id().with(("record", item.record.to_string()));

@@ -4,7 +4,9 @@ use eframe::egui;
 use glam::Vec2;
 
 use super::edited::EditedLayout;
-use crate::edit::{Address, Document, Edit, EditRefusal, Facet, Item, facet_edits, grouping, ungrouping};
+use crate::edit::{
+    Address, Document, Edit, EditRefusal, Facet, Item, alike_edits, facet_edits, grouping, ungrouping,
+};
 use underfoot::floor::Rect;
 use underfoot::schema::Diagnostics;
 
@@ -87,6 +89,24 @@ impl EditedLayout {
         match facet_edits(&self.document, facet, pasted, &targets) {
             Ok(edits) => drop(self.edit(&edits)),
             Err(refusal) => self.complain(format!("No {} is pasted: {}", facet.name(), refusal.short())),
+        }
+    }
+
+    /// Makes the other selected controls as the one that was selected first.
+    pub(super) fn make_alike(&mut self) {
+        if self.holds_locked() {
+            return;
+        }
+        let items = self.selected_items();
+        let Some((model, others)) = items.split_first() else { return };
+        match alike_edits(&self.document, model, others) {
+            Ok(edits) => {
+                let said = format!("as {} is: size, thresholds, appearance, feel", model.name);
+                if self.edit(&edits) {
+                    self.say(said);
+                }
+            }
+            Err(refusal) => self.complain(refusal.short()),
         }
     }
 

@@ -4,7 +4,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{self, RichText, Ui, WidgetInfo};
 
 use super::edited::EditedLayout;
-use crate::edit::{Address, Mend, mend, mend_all, mend_warning};
+use crate::edit::{Address, Mend, mend, mend_all, mend_warning, mends_together};
 use crate::preview::style::{quiet, section};
 use underfoot_format::diagnostic::Severity;
 use underfoot_scene::egui_painter::color;
@@ -16,6 +16,8 @@ struct ProblemRow {
     severity: Severity,
     text: String,
     mend: Option<Mend>,
+    /// Whether *Mend all* looks for a repair, such as moves of several controls.
+    is_mendable: bool,
 }
 
 /// The problems of one revision, most severe first.
@@ -34,12 +36,14 @@ pub(super) fn findings_list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayou
         return;
     }
     section(ui, theme, &if count == 1 { "1 problem".into() } else { format!("{count} problems") }, |_| {});
-    let mendable = edited.problems.rows.iter().filter(|row| row.mend.is_some()).count();
+    let mendable = edited.problems.rows.iter().filter(|row| row.is_mendable).count();
     let all = egui::Button::new(format!("Mend all ({mendable} of {count})"));
     let is_all = ui
         .add_enabled(mendable > 0, all)
-        .on_hover_text("One step of undo; what it cannot mend stays in the list")
-        .on_disabled_hover_text("None of these has only one repair: move or change the controls")
+        .on_hover_text(
+            "Moves controls together where one move is not enough; what it cannot mend stays in the list",
+        )
+        .on_disabled_hover_text("None of these has only one repair: change the controls")
         .clicked();
     let (mut selected, mut chosen) = (None, None);
     for (number, row) in edited.problems.rows.iter().enumerate() {
@@ -62,6 +66,9 @@ pub(super) fn findings_list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayou
                     if button.clicked() {
                         chosen = Some(mend.clone());
                     }
+                }
+                None if row.is_mendable => {
+                    drop(ui.label(quiet(theme, "only with others: see above").size(11.5)));
                 }
                 None => drop(ui.label(quiet(theme, "yours to decide").size(11.5))),
             }
@@ -99,17 +106,25 @@ fn refresh(edited: &mut EditedLayout) {
         return;
     }
     let document = &edited.document;
-    let found = edited.findings.iter().map(|finding| ProblemRow {
-        record: document.found_in(finding),
-        severity: finding.severity,
-        text: format!("{}: {}; {}", finding.rule.code, finding.message, finding.expected),
-        mend: mend(document, finding, &edited.items),
+    let found = edited.findings.iter().map(|finding| {
+        let mend = mend(document, finding, &edited.items);
+        ProblemRow {
+            record: document.found_in(finding),
+            severity: finding.severity,
+            text: format!("{}: {}; {}", finding.rule.code, finding.message, finding.expected),
+            is_mendable: mend.is_some() || mends_together(finding),
+            mend,
+        }
     });
-    let told = edited.told().map(|problem| ProblemRow {
-        record: document.told_of(problem),
-        severity: problem.severity,
-        text: format!("{}: {}", problem.message, problem.expected),
-        mend: mend_warning(document, problem, &edited.items),
+    let told = edited.told().map(|problem| {
+        let mend = mend_warning(document, problem, &edited.items);
+        ProblemRow {
+            record: document.told_of(problem),
+            severity: problem.severity,
+            text: format!("{}: {}", problem.message, problem.expected),
+            is_mendable: mend.is_some(),
+            mend,
+        }
     });
     let mut rows: Vec<ProblemRow> = found.chain(told).collect();
     rows.sort_by_key(|row| row.severity);

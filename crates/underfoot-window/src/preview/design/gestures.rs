@@ -9,6 +9,7 @@ use super::edited::EditedLayout;
 use super::trial::{GestureResult, Snapping, copying, moving, rect_between};
 use crate::edit::{Address, Edges, Item, RecordList};
 use crate::preview::pointer::way_while_down;
+use crate::preview::zoom::ViewRoom;
 use underfoot_scene::egui_painter::ScreenFromFloor;
 
 /// Half the side of a handle, and the distance within which the pointer grabs it, in points.
@@ -44,6 +45,8 @@ pub(super) struct Pressing {
     pub(super) released: bool,
     /// Whether it brings the thing from the palette and lets go of it.
     pub(super) dropped: bool,
+    /// Whether the thing to put down stays in hand for another one.
+    pub(super) stays: bool,
 }
 
 impl Canvas {
@@ -53,7 +56,7 @@ impl Canvas {
         ui: &Ui,
         canvas: &egui::Response,
         map: ScreenFromFloor,
-        screen: egui::Rect,
+        room: ViewRoom,
         edited: &mut EditedLayout,
     ) -> GestureResult {
         let (pointer, pressed, released, space, modifiers) = ui.input(|i| {
@@ -75,14 +78,14 @@ impl Canvas {
         };
         let panned = button.map_or(egui::Vec2::ZERO, |button| ui.input(|i| way_while_down(i, button)));
         if panned != egui::Vec2::ZERO {
-            self.view.pan(panned, screen);
+            self.view.pan(panned, room);
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         }
-        if let Some(thing) = self.placing.clone() {
+        if let Some(hand) = self.placing.clone() {
             // For a drag onto the canvas, the press began elsewhere.
             let dropped = released && !canvas.clicked() && !canvas.drag_stopped();
-            let pressing = Pressing { at, inside, pressed, released, dropped };
-            return self.put_down(edited, &thing, &pressing, snapping);
+            let pressing = Pressing { at, inside, pressed, released, dropped, stays: shift };
+            return self.put_down(edited, hand, &pressing, snapping);
         }
         if pressed && inside {
             canvas.request_focus();

@@ -26,6 +26,7 @@ impl Designer {
             let at = at.unwrap_or(if back > 0 { count } else { count - 1 });
             self.panes.pane = panes.get((at + on + back * (count - 1)) % count).copied();
             self.panes.focus = self.panes.pane;
+            self.panes.is_led = true;
         }
         self.keys_to_save(ui);
     }
@@ -72,6 +73,9 @@ impl Designer {
         }
         if command(Key::D) {
             self.edited.duplicate();
+        }
+        if command(Key::E) {
+            self.edited.make_alike();
         }
         if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::G)) {
             self.edited.ungroup();

@@ -7,15 +7,24 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Sense, Ui, WidgetInfo, vec2};
 
 use super::edited::EditedLayout;
+use super::in_place::InPlace;
 use super::list_keys::go_on;
+use super::menu::show_menu;
 use super::{Pane, Panes};
 use crate::edit::{Address, RecordList};
 use crate::preview::style::quiet;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::{Theme, in_drawn_order};
 
-/// Lists the records of the page on display, to be selected by name.
-pub(super) fn list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes: &mut Panes) {
+/// Lists the records of the page on display, to be selected by name; each row has the menu that its record has on the
+/// floor.
+pub(super) fn list(
+    ui: &mut Ui,
+    theme: &Theme,
+    edited: &mut EditedLayout,
+    in_place: &mut Option<InPlace>,
+    panes: &mut Panes,
+) {
     if edited.layout().pages.len() > 1 {
         let names: Vec<String> = edited.layout().pages.iter().map(|page| page.id.to_string()).collect();
         for (number, name) in names.iter().enumerate() {
@@ -27,7 +36,7 @@ pub(super) fn list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes:
     }
     let mut chosen = None;
     let (mut locks, mut hides) = (None, None);
-    let mut rows = Vec::new();
+    let (mut rows, mut records) = (Vec::new(), Vec::new());
     let mut is_led = panes.leads_to(Pane::Floor);
     for item in edited.items.iter().filter(|item| item.is_on(edited.page)) {
         let what = match item.record.list() {
@@ -72,12 +81,19 @@ pub(super) fn list(ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes:
                     if row.clicked() {
                         chosen = Some(item.record.clone());
                     }
+                    records.push(item.record.clone());
                     rows.push(row);
                 });
             });
         });
     }
     go_on(ui, &rows);
+    for (row, record) in rows.iter().zip(records) {
+        if row.secondary_clicked() && !edited.selected.contains(&record) {
+            edited.select_only(record);
+        }
+        row.context_menu(|ui| show_menu(ui, edited, in_place));
+    }
     if let Some(record) = locks {
         edited.turn_lock(&[record]);
     }
@@ -104,7 +120,7 @@ impl Sign {
     fn button(self, ui: &mut Ui, theme: &Theme, is_on: bool) -> egui::Response {
         let (rect, response) = ui.allocate_exact_size(vec2(18.0, 18.0), Sense::click());
         let is_touched = response.hovered() || response.has_focus();
-        let ink = if is_on || is_touched { theme.ink } else { theme.quiet.mix(theme.plate, 0.5) };
+        let ink = if is_on || is_touched { theme.ink } else { theme.quiet.mix(theme.plate, 0.25) };
         let line = egui::Stroke::new(1.3, color(ink));
         let (painter, at) = (ui.painter(), rect.center());
         if response.has_focus() {

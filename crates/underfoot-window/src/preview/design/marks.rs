@@ -9,7 +9,7 @@ use super::canvas::DrawnToScale;
 use super::edited::EditedLayout;
 use super::gestures::{HANDLE, can_be_sized, handles};
 use super::trial::GestureResult;
-use crate::preview::labels::{Labels, label};
+use crate::preview::labels::Labels;
 use underfoot::floor::Rect;
 use underfoot::layout::Layout;
 use underfoot::units::Newtons;
@@ -21,19 +21,20 @@ use underfoot_scene::scene::{Shoe, Theme};
 /// Radius of a badge, in points.
 const BADGE: f32 = 8.5;
 
-/// Draws the selection, its guide lines and the findings.
+/// Draws the selection, its guide lines and the findings; `notes` has a place for each text about the gesture.
 pub(super) fn marks(
     edited: &EditedLayout,
     ui: &Ui,
-    rect: egui::Rect,
     map: ScreenFromFloor,
     theme: &Theme,
     trial: &GestureResult,
+    notes: &mut Labels,
 ) {
+    let rect = notes.within;
     let painter = ui.painter_at(rect);
     let accent = color(theme.accent);
     if trial.layout.is_none() {
-        badges(edited, ui, rect, map, theme);
+        badges(edited, ui, map, theme, notes);
     }
     let is_moving = !trial.areas.is_empty();
     for item in edited.selected_items() {
@@ -56,10 +57,10 @@ pub(super) fn marks(
         painter.rect(shown, 2, colour.gamma_multiply(0.12), Stroke::new(2.0, colour), StrokeKind::Outside);
         let size = area.size() * 100.0;
         let text = format!("{:.1} x {:.1} cm", size.x, size.y);
-        label(&painter, pos2(shown.left(), shown.top() - 20.0), &text, colour, theme);
+        notes.note(&painter, shown, &text, colour, theme);
     }
     if let (Some(refused), Some(area)) = (&trial.refused, trial.areas.first()) {
-        label(&painter, pos2(map.rect(*area).left(), map.rect(*area).bottom() + 4.0), refused, bad, theme);
+        notes.note(&painter, map.rect(*area), refused, bad, theme);
     }
     for guide in &trial.guides {
         let at = map.point(Vec2::splat(guide.at_m));
@@ -78,11 +79,10 @@ pub(super) fn marks(
 
 /// Draws one badge for each control with findings, in the colour of the worst; the texts appear beside the control
 /// under the pointer and beside those that are selected.
-fn badges(edited: &EditedLayout, ui: &Ui, rect: egui::Rect, map: ScreenFromFloor, theme: &Theme) {
+fn badges(edited: &EditedLayout, ui: &Ui, map: ScreenFromFloor, theme: &Theme, labels: &mut Labels) {
+    let rect = labels.within;
     let painter = ui.painter_at(rect);
     let widgets = &edited.layout().widgets;
-    let on_page = widgets.iter().filter(|widget| widget.is_on(edited.page));
-    let mut labels = Labels::within(rect, on_page.map(|widget| map.rect(widget.area)));
     let pointer = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at));
     for (index, widget) in widgets.iter().enumerate().filter(|(_, widget)| widget.is_on(edited.page)) {
         let record = |finding: &Finding| edited.document.found_in(finding);
@@ -143,7 +143,14 @@ impl DrawnToScale {
     }
 
     /// Draws how far feet reach from each place to stand, without a step and with one, if that is switched on.
-    pub(super) fn reach(self, painter: &egui::Painter, map: ScreenFromFloor, theme: &Theme, layout: &Layout) {
+    pub(super) fn reach(
+        self,
+        painter: &egui::Painter,
+        map: ScreenFromFloor,
+        theme: &Theme,
+        layout: &Layout,
+        notes: &mut Labels,
+    ) {
         if !self.reach {
             return;
         }
@@ -155,7 +162,8 @@ impl DrawnToScale {
                 let north = line.iter().copied().min_by(|a, b| a.y.total_cmp(&b.y));
                 painter.extend(egui::Shape::dashed_line(&line, Stroke::new(1.5, colour), 7.0, 5.0));
                 if let Some(at) = north {
-                    label(painter, at + vec2(-24.0, -8.0), &format!("{text}, {far:.1} m"), colour, theme);
+                    let subject = egui::Rect::from_center_size(at, vec2(48.0, 2.0));
+                    notes.note(painter, subject, &format!("{text}, {far:.1} m"), color(theme.accent), theme);
                 }
             }
         }

@@ -15,6 +15,7 @@ enum MenuEntry {
     Cut,
     Paste(Option<Facet>),
     Duplicate,
+    MakeAlike,
     Group,
     Ungroup,
     ToFront,
@@ -34,6 +35,7 @@ const SECTIONS: [&[(MenuEntry, &str, &str)]; 4] = [
         (MenuEntry::Duplicate, "Duplicate", "Ctrl+D"),
     ],
     &[
+        (MenuEntry::MakeAlike, "Make alike", "Ctrl+E"),
         (MenuEntry::Group, "Group", "Ctrl+G"),
         (MenuEntry::Ungroup, "Ungroup", "Ctrl+Shift+G"),
         (MenuEntry::ToFront, "To the front", "Ctrl+]"),
@@ -70,6 +72,7 @@ fn why_off(entry: MenuEntry, edited: &EditedLayout) -> Option<&'static str> {
         MenuEntry::EditText | MenuEntry::Rename | MenuEntry::ToFront | MenuEntry::ToBack if !is_one => {
             Some("for one thing at a time")
         }
+        MenuEntry::MakeAlike if items.len() < 2 => Some("select several: they become as the first one is"),
         MenuEntry::Ungroup if !matches!(items[..], [item] if item.is_group) => Some("this is no group"),
         _ => None,
     }
@@ -88,6 +91,7 @@ fn act(entry: MenuEntry, ctx: &egui::Context, edited: &mut EditedLayout, in_plac
             ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
         }
         MenuEntry::Duplicate => edited.duplicate(),
+        MenuEntry::MakeAlike => edited.make_alike(),
         MenuEntry::Group => edited.group(),
         MenuEntry::Ungroup => edited.ungroup(),
         MenuEntry::ToFront => edited.reorder(false),

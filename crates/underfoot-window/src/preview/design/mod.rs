@@ -41,6 +41,7 @@ use crate::edit::{Document, LayoutFile};
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostics, Kinds};
+use underfoot::widget::WidgetId;
 
 pub(super) use threshold::{Threshold, set_threshold, undo_design};
 pub use underfoot::schema::usual_state;
@@ -74,6 +75,8 @@ pub(super) struct Designer {
     things: palette::ThingList,
     panes: Panes,
     delays: Delays,
+    /// The control that a foot had used last when Design mode was opened.
+    used: Option<WidgetId>,
 }
 
 /// The file of the layout, and the questions about it.
@@ -102,6 +105,10 @@ struct Panes {
     pane: Option<Pane>,
     /// The pane that gets the keyboard in this frame.
     focus: Option<Pane>,
+    /// Whether F6 led to the pane, and not a press on the floor away from it.
+    is_led: bool,
+    /// Whether the window shows one panel at a time, at the right.
+    is_narrow: bool,
 }
 
 impl Panes {
@@ -185,6 +192,7 @@ impl Designer {
             things: palette::ThingList::default(),
             panes: Panes::default(),
             delays: Delays::default(),
+            used: None,
         })
     }
 

@@ -13,6 +13,7 @@ use crate::preview::shown::ShownFloor;
 use crate::preview::stage::StageOfWindow;
 use crate::preview::zoom::Zoom;
 use underfoot::schema;
+use underfoot::widget::WidgetId;
 use underfoot_scene::egui_painter::Palette;
 use underfoot_scene::scene::Theme;
 
@@ -138,34 +139,30 @@ impl Designer {
     ) {
         // This frame shows the edits so far: records may have changed places.
         self.edited.refresh();
-        // A narrow window has room for one pane: the palette, or the fields of what is selected.
-        let (things, fields) = match stage.is_wide() {
-            true => (true, stage.has_side),
-            false => (self.edited.selected.is_empty(), !self.edited.selected.is_empty() && stage.has_side),
-        };
-        if things || self.panes.pane == Some(Pane::Things) {
-            self.things.panel(
-                ui,
-                theme,
-                palette,
-                &mut self.edited,
-                &mut self.canvas.placing,
-                &mut self.panes,
-            );
+        self.panes.is_narrow = !stage.is_wide();
+        let [things, fields, text] = self.panes_on_display(stage);
+        if things {
+            let canvas = &mut self.canvas;
+            self.things.panel(ui, theme, palette, &mut self.edited, canvas, &mut self.panes);
         }
-        if fields || self.panes.pane == Some(Pane::Fields) {
-            self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes);
+        if fields {
+            let widest = stage.widest();
+            self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes, widest);
         }
-        if stage.is_wide() && !self.text.is_open {
-            stage.widths.note(stage.window, ui.available_rect_before_wrap());
+        stage.note(ui.available_rect_before_wrap());
+        if text {
+            self.text.panel(ui, theme, &mut self.edited, &mut self.panes, stage.widest());
         }
-        self.text.panel(ui, theme, &mut self.edited, &mut self.panes);
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
             stage.canvas = ui.available_rect_before_wrap();
-            self.canvas.show(ui, theme, palette, &mut self.edited, stage.floor());
+            self.canvas.show(ui, theme, palette, &mut self.edited, stage.view_room());
         });
         self.panes.focus = None;
+        let pressed = ui.input(|i| i.pointer.interact_pos().filter(|_| i.pointer.any_pressed()));
+        if pressed.is_some_and(|at| stage.canvas.contains(at)) {
+            self.panes.is_led = false;
+        }
         // The floor of a server gets the edits only when the user tries them.
         if self.edited.document.revision() != before && shown.server.is_none() {
             self.try_layout(shown, LayoutCause::Designed);
@@ -174,6 +171,33 @@ impl Designer {
             shown.command(wish);
         }
         self.leave(ui.ctx(), shown);
+    }
+
+    /// Whether the palette, the fields and the text are on display. A narrow window has room for one panel: the one to
+    /// which F6 led, the text, the fields of the selection, or the palette.
+    fn panes_on_display(&self, stage: &StageOfWindow) -> [bool; 3] {
+        let (pane, text) = (self.panes.pane.filter(|_| self.panes.is_led), self.text.is_open);
+        if stage.is_wide() {
+            return [true, stage.has_side || pane == Some(Pane::Fields), text];
+        }
+        let is_selected = !self.edited.selected.is_empty();
+        match pane {
+            Some(Pane::Things | Pane::Floor) => [true, false, false],
+            Some(Pane::Fields) => [false, true, false],
+            _ if text => [false, false, true],
+            _ => [!is_selected, is_selected && stage.has_side, false],
+        }
+    }
+
+    /// Selects the control that a foot used last, if it has used another one since the last time.
+    pub(in crate::preview) fn select_used(&mut self, used: Option<&WidgetId>) {
+        let Some(id) = used.filter(|id| self.used.as_ref() != Some(*id)) else { return };
+        self.used = Some(id.clone());
+        self.edited.refresh();
+        let index = self.edited.layout().widget_index(id.as_str());
+        if let Some(record) = index.and_then(|index| self.edited.document.record_of(index)) {
+            self.edited.select_only(record);
+        }
     }
 
     /// The part of the floor on the screen.

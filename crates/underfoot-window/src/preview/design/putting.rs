@@ -5,7 +5,7 @@ use glam::Vec2;
 use super::canvas::Canvas;
 use super::edited::EditedLayout;
 use super::gestures::{PointerGesture, Pressing, SLACK};
-use super::palette::PaletteThing;
+use super::palette::InHand;
 use super::trial::{GestureResult, SnappedArea, Snapping, rect_between};
 use crate::edit::Edges;
 use underfoot::floor::Rect;
@@ -15,7 +15,7 @@ impl Canvas {
     pub(super) fn put_down(
         &mut self,
         edited: &mut EditedLayout,
-        thing: &PaletteThing,
+        hand: InHand,
         pressing: &Pressing,
         snapping: Snapping,
     ) -> GestureResult {
@@ -33,15 +33,22 @@ impl Canvas {
         let snapped = match from.filter(|from| from.distance(pressing.at) > far) {
             Some(from) => drawn(edited, from, pressing.at, snapping),
             None => {
-                let size = thing.size(&edited.document.floor().geometry);
+                let size = hand.thing.size(&edited.document.floor().geometry);
                 let area = Rect::from_centre_size(from.unwrap_or(pressing.at), size);
                 snapping.snap(edited, area, Edges::ALL, |_| true)
             }
         };
         if (from.is_some() && pressing.released) || pressing.dropped {
             self.gesture = PointerGesture::None;
-            // After a drag from the palette, the user must choose the thing again.
-            if edited.put(thing, snapped.area) || pressing.dropped {
+            edited.stroke += 1;
+            if edited.put(&hand.thing, snapped.area, hand.label()) {
+                self.placing = hand.next(pressing.stays);
+                let label = self.placing.as_ref().and_then(|next| next.label());
+                if let Some(label) = label.map(str::to_owned) {
+                    edited.say(format!("next: {label}"));
+                }
+            } else if pressing.dropped {
+                // After a drag from the palette, the user must choose the thing again.
                 self.placing = None;
             }
             return GestureResult::default();

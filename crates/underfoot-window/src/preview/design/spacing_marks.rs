@@ -1,27 +1,29 @@
 //! Marks of a gesture: gaps to the neighbours, and the floor's edge where it stops the pointer.
 
-use eframe::egui::{self, Align2, Stroke, vec2};
+use eframe::egui::{self, Rect, Stroke};
 
 use super::trial::GestureResult;
 use crate::edit::NeighbourGap;
-use crate::preview::labels::label;
-use underfoot::floor::Rect;
+use crate::preview::labels::Labels;
+use underfoot::floor;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
 use underfoot_scene::scene::Theme;
 
 /// Half the length of the line across the end of a gap, in points.
 const END: f32 = 4.0;
 
-/// Draws the gaps, equal ones in another colour, and the edges of the floor that stop the gesture.
+/// Draws the gaps, equal ones in another colour, and the edges of the floor that stop the gesture; `notes` has a place
+/// for each text.
 pub(super) fn spacing_marks(
     painter: &egui::Painter,
     map: ScreenFromFloor,
     theme: &Theme,
-    floor: Rect,
+    floor: floor::Rect,
     trial: &GestureResult,
+    notes: &mut Labels,
 ) {
     for gap in &trial.gaps {
-        draw_gap(painter, map, theme, gap);
+        draw_gap(painter, map, theme, gap, notes);
     }
     let shown = map.rect(floor);
     let stopped = trial.stopped;
@@ -36,12 +38,17 @@ pub(super) fn spacing_marks(
         painter.line_segment(*line, Stroke::new(3.0, colour));
     }
     if let Some(area) = trial.areas.first().filter(|_| stopped.is_any()) {
-        let at = map.rect(*area).center() - vec2(64.0, 8.0);
-        label(painter, at, "stops at the floor's edge", colour, theme);
+        notes.note(painter, map.rect(*area), "stops at the floor's edge", colour, theme);
     }
 }
 
-fn draw_gap(painter: &egui::Painter, map: ScreenFromFloor, theme: &Theme, gap: &NeighbourGap) {
+fn draw_gap(
+    painter: &egui::Painter,
+    map: ScreenFromFloor,
+    theme: &Theme,
+    gap: &NeighbourGap,
+    notes: &mut Labels,
+) {
     let (from, to) = (map.point(gap.from), map.point(gap.to));
     if from.distance(to) < 2.0 {
         return;
@@ -55,10 +62,5 @@ fn draw_gap(painter: &egui::Painter, map: ScreenFromFloor, theme: &Theme, gap: &
     }
     let centimetres = gap.length_m() * 100.0;
     let text = if gap.is_equal { format!("= {centimetres:.1} cm") } else { format!("{centimetres:.1} cm") };
-    // Above a level line, beside an upright one.
-    let is_level = (to.y - from.y).abs() < (to.x - from.x).abs();
-    let anchor = if is_level { Align2::CENTER_BOTTOM } else { Align2::LEFT_CENTER };
-    let size = vec2(6.0 * text.len() as f32 + 8.0, 16.0);
-    let at = anchor.anchor_size(from.lerp(to, 0.5) + vec2(4.0, -3.0), size).min;
-    label(painter, at, &text, colour, theme);
+    notes.note(painter, Rect::from_two_pos(from, to), &text, colour, theme);
 }

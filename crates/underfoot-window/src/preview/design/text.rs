@@ -33,14 +33,18 @@ pub(super) struct Editor {
 const TYPING: u64 = 1 << 32;
 
 impl Editor {
-    /// Shows the text, if it is open.
-    pub(super) fn panel(&mut self, ui: &mut Ui, theme: &Theme, edited: &mut EditedLayout, panes: &mut Panes) {
-        if !self.is_open {
-            return;
-        }
+    /// Shows the text, at most `widest` points wide.
+    pub(super) fn panel(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        edited: &mut EditedLayout,
+        panes: &mut Panes,
+        widest: f32,
+    ) {
         let frame = panel_frame(theme, Margin { left: 10, right: 4, top: 6, bottom: 6 });
         let panel = Panel::right("layout text").frame(frame).resizable(true);
-        panel.default_size(430.0).size_range(240.0..=900.0).show(ui, |ui| {
+        panel.default_size(430.0).size_range(240.0_f32.min(widest)..=widest).show(ui, |ui| {
             if let Some(problems) = self.problems.clone() {
                 let frame = egui::Frame::new().fill(color(theme.fault).gamma_multiply(0.08));
                 Panel::bottom("text problems").frame(frame.inner_margin(6)).show(ui, |ui| {

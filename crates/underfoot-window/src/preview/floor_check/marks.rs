@@ -1,10 +1,10 @@
 //! Marks on the floor during a check: a plate for each tile, over the controls.
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Align2, FontId, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use eframe::egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
 use super::{FloorCheck, TileMark, Walk};
-use underfoot::floor::{Corner, Floor};
+use underfoot::floor::Floor;
 use underfoot::serve::SensorVerdict;
 use underfoot_scene::egui_painter::{ScreenFromFloor, color};
 use underfoot_scene::scene::Theme;
@@ -29,6 +29,9 @@ impl FloorCheck {
         painter.rect_filled(map.rect(geometry.bounds()), 0.0, veil);
         for index in 0..geometry.tile_count() {
             let tile = geometry.tile_at_index(index);
+            if geometry.is_missing(tile) {
+                continue;
+            }
             let area = map.rect(geometry.plate(tile)).shrink(2.0);
             let mark = self.mark(floor, index);
             let (ink, weight, edge) = match mark {
@@ -68,7 +71,12 @@ impl FloorCheck {
             if let Some(Walk::Test(walk)) = &self.walk
                 && let Some(sensors) = walk.tile(index)
             {
-                show_sensors(&painter, theme, area, sensors);
+                let at = |corner| {
+                    let share = geometry.share_of_plate(tile, corner);
+                    area.lerp_inside(vec2(share.x, 1.0 - share.y))
+                };
+                let of = geometry.sensors(tile).iter().map(|&corner| (at(corner), sensors[corner.index()]));
+                show_sensors(&painter, theme, 0.05 * area.width(), of);
             }
             let node = ui.interact(area, ui.scope_id().with(("checked tile", index)), Sense::hover());
             node.widget_info(|| {
@@ -78,18 +86,15 @@ impl FloorCheck {
     }
 }
 
-/// Draws a dot in each corner: grey, green, or a red square.
-fn show_sensors(painter: &eframe::egui::Painter, theme: &Theme, area: Rect, sensors: [SensorVerdict; 4]) {
-    let inset = 0.14 * area.width();
-    let inner = area.shrink(inset);
-    for (corner, verdict) in Corner::ALL.into_iter().zip(sensors) {
-        let at = match corner {
-            Corner::SouthWest => inner.left_bottom(),
-            Corner::SouthEast => inner.right_bottom(),
-            Corner::NorthWest => inner.left_top(),
-            Corner::NorthEast => inner.right_top(),
-        };
-        let radius = (0.05 * area.width()).clamp(2.0, 6.0);
+/// Draws a dot at each sensor: grey, green, or a red square.
+fn show_sensors(
+    painter: &eframe::egui::Painter,
+    theme: &Theme,
+    radius: f32,
+    sensors: impl Iterator<Item = (Pos2, SensorVerdict)>,
+) {
+    let radius = radius.clamp(2.0, 6.0);
+    for (at, verdict) in sensors {
         match verdict {
             SensorVerdict::Untried => {
                 painter.circle_stroke(at, radius, Stroke::new(1.5, color(theme.quiet)));

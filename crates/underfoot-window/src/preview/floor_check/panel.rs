@@ -38,7 +38,8 @@ impl FloorCheck {
     pub(in crate::preview) fn panel(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, led: bool) {
         let mut wish = None;
         let frame = panel_frame(theme, Margin { left: 14, right: 10, top: 8, bottom: 8 });
-        Panel::right("check panel").frame(frame).resizable(true).default_size(330.0).show(ui, |ui| {
+        let panel = Panel::right("check panel").frame(frame).resizable(true).default_size(330.0);
+        panel.max_size(0.5 * ui.available_width()).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.label(RichText::new("Check the floor").size(17.0).strong().color(color(theme.ink)));
             });
@@ -152,7 +153,7 @@ fn outcome_words(ui: &mut Ui, theme: &Theme, walk: &WiringWalk, floor: &Floor) {
 
 /// Shows the walk over every tile.
 fn test_words(ui: &mut Ui, theme: &Theme, walk: &WalkTest, floor: &Floor) {
-    let count = floor.geometry.tile_count();
+    let count = walk.length();
     progress(ui, walk.passed(), count, "tiles");
     let faults: Vec<_> = walk.faults().collect();
     if !walk.is_rested() {
@@ -171,7 +172,8 @@ fn test_words(ui: &mut Ui, theme: &Theme, walk: &WalkTest, floor: &Floor) {
     for (sensor, verdict) in faults {
         say(ui, &format!("{sensor} {}", verdict.words()), 13.0, theme.fault);
     }
-    let begun = (0..count).filter_map(|index| Some((index, walk.tile(index)?))).filter(|(_, sensors)| {
+    let cells = 0..floor.geometry.tile_count();
+    let begun = cells.filter_map(|index| Some((index, walk.tile(index)?))).filter(|(_, sensors)| {
         let is = |wanted| sensors.contains(&wanted);
         is(SensorVerdict::Answers) && is(SensorVerdict::Untried)
     });
@@ -184,7 +186,7 @@ fn test_words(ui: &mut Ui, theme: &Theme, walk: &WalkTest, floor: &Floor) {
         let corners = underfoot::floor::Corner::ALL.into_iter().zip(sensors);
         let untried: Vec<&str> = corners
             .filter(|(_, verdict)| *verdict == SensorVerdict::Untried)
-            .map(|(corner, _)| corner.name())
+            .map(|(corner, _)| floor.geometry.sensor_name(corner))
             .collect();
         say(ui, &format!("{tile} {}", untried.join(", ")), 13.0, theme.quiet);
     }

@@ -96,12 +96,12 @@ impl FloorFeet {
         }
     }
 
-    /// A button that places the standing foot, or lifts it.
-    pub(in crate::preview) fn stance_button(&mut self, ui: &mut Ui, shown: &ShownFloor) {
+    /// A button that places the standing foot, or lifts it; a compact one has an icon alone.
+    pub(in crate::preview) fn stance_button(&mut self, ui: &mut Ui, shown: &ShownFloor, is_compact: bool) {
         let Some((feet, _)) = &mut self.mouse else { return };
         let stands = feet.standing().is_some();
         let hint = "A second foot that stays where it is left; Space puts it under the mouse";
-        if switch_button(ui, stands, Icon::Footprints, "Stance foot", false, hint) {
+        if switch_button(ui, stands, Icon::Footprints, "Stance foot", is_compact, hint) {
             if stands {
                 feet.lift_standing();
             } else {

@@ -21,9 +21,6 @@ const STAY_S: f64 = 2.0;
 /// Distance from the standing foot within which a contact counts as that foot, in metres: half a sole.
 const FOOT_M: f32 = 0.15;
 
-/// Size of the area around a press that may hold the report about it, in metres.
-const REPORT_M: Vec2 = Vec2::new(0.32, 0.16);
-
 /// One of the steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FirstStep {
@@ -119,7 +116,7 @@ impl FirstSteps {
         self.all_done_s.is_some()
     }
 
-    /// Draws the cards beside their controls, clear of all controls and of the report about a press at `missed`.
+    /// Draws the cards beside their controls, clear of all controls and of the texts at `written`.
     pub(super) fn show(
         &self,
         ui: &Ui,
@@ -127,12 +124,11 @@ impl FirstSteps {
         map: ScreenFromFloor,
         theme: &Theme,
         shown: &ShownFloor,
-        missed: Option<Vec2>,
+        written: impl Iterator<Item = Rect>,
     ) {
         let (layout, page, floor) = (shown.layout(), shown.snapshot().page, shown.floor.geometry.bounds());
         let controls = layout.widgets.iter().filter(|widget| widget.is_on(page));
-        let report = missed.map(|place| floor::Rect::from_centre_size(place, REPORT_M));
-        let taken = controls.map(|widget| widget.area).chain(report).map(|area| map.rect(area));
+        let taken = controls.map(|widget| map.rect(widget.area)).chain(written);
         let mut labels = Labels::within(rect, taken);
         let painter = ui.painter_at(rect);
         // The first step that is not done is the one to take now.

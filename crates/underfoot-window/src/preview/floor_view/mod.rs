@@ -22,8 +22,8 @@ use super::shown::ShownFloor;
 use super::trails::Trails;
 use super::walks::Walks;
 use super::watch::{Banner, Weight};
-use super::zoom::Zoom;
-use underfoot::floor::{Geometry, TileId};
+use super::zoom::{ViewRoom, Zoom};
+use underfoot::floor::{self, TileId};
 use underfoot::layout::Layout;
 use underfoot::widget::{Behaviour, Value};
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
@@ -55,42 +55,42 @@ pub(super) struct OnFloor<'a> {
     pub(super) has_steps: bool,
 }
 
-impl Default for FloorView {
-    fn default() -> Self {
+impl FloorView {
+    /// A view with these layers.
+    pub(super) fn new(show: Show) -> Self {
         Self {
             zoom: Zoom::default(),
             controls: Vec::new(),
             scene: Scene::new(),
             palette: Palette::default(),
-            show: Show::WINDOW,
+            show,
             trails: Trails::default(),
             misses: NearMissWatch::default(),
             steps: FirstSteps::default(),
         }
     }
-}
 
-impl FloorView {
     /// The controls of the last frame, in their order for the keyboard.
     pub(super) fn controls(&self) -> &[Id] {
         &self.controls
     }
 
-    /// Fills the remaining part of the window with the floor, fitted into `screen`.
+    /// Fills the remaining part of the window with the floor, fitted into `room`.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         theme: &Theme,
         shown: &ShownFloor,
         on_floor: OnFloor<'_>,
-        screen: Rect,
+        room: ViewRoom,
     ) {
         let OnFloor { feet, selection, mut walks, check, has_steps } = on_floor;
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::drag());
         canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Floor"));
-        self.zoom_by_wheel(ui, &canvas, &shown.floor.geometry, screen);
-        let map = self.zoom.map(scene::extent(&shown.floor.geometry, self.show), screen);
+        let extent = scene::extent(&shown.floor.geometry, self.show);
+        self.zoom_by_wheel(ui, &canvas, extent, room);
+        let map = self.zoom.map(extent, room.stage);
         look_at_tiles(ui, &canvas, map, shown, selection, feet.are_led());
         if let Some(walks) = &mut walks {
             walks.draw(ui, &canvas, map, shown);
@@ -107,12 +107,11 @@ impl FloorView {
         }
         feet.focus(name_controls(ui, map, shown, &mut self.controls));
         if has_steps && !draws_walks {
-            let missed = self.misses.latest();
-            let missed = missed.filter(|miss| shown.snapshot().at.since(miss.at) < scene::TOLD);
-            self.steps.show(ui, rect, map, theme, shown, missed.map(|miss| miss.place));
+            let written = self.scene.written().map(|area| map.rect(area));
+            self.steps.show(ui, rect, map, theme, shown, written);
         }
-        if self.zoom.is_closer() {
-            self.zoom_out_button(ui, rect);
+        if !self.zoom.is_fitted(extent, room) {
+            self.fit_button(ui, rect, extent, room);
         }
         feet.draw_handle(ui, rect, theme);
         if feet.are_led() && canvas.contains_pointer() {
@@ -152,7 +151,7 @@ impl FloorView {
     }
 
     /// Ctrl with the wheel, and a pinch, zoom about the pointer; the middle button pans.
-    fn zoom_by_wheel(&mut self, ui: &Ui, canvas: &Response, geometry: &Geometry, screen: Rect) {
+    fn zoom_by_wheel(&mut self, ui: &Ui, canvas: &Response, extent: floor::Rect, room: ViewRoom) {
         let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|_| canvas.contains_pointer()) else {
             return;
         };
@@ -161,20 +160,20 @@ impl FloorView {
             let zoomed = if i.any_touches() { 1.0 } else { i.zoom_delta() };
             (zoomed, way_while_down(i, PointerButton::Middle))
         });
-        let extent = scene::extent(geometry, self.show);
         if by != 1.0 {
-            self.zoom.about(pointer, by, extent, screen);
+            self.zoom.about(pointer, by, extent, room);
         }
         if panned != egui::Vec2::ZERO {
-            self.zoom.pan(panned, screen);
+            self.zoom.pan(panned, room);
         }
     }
 
-    fn zoom_out_button(&mut self, ui: &mut Ui, rect: Rect) {
+    /// A button that shows the whole floor in the part of the window that panels leave free.
+    fn fit_button(&mut self, ui: &mut Ui, rect: Rect, extent: floor::Rect, room: ViewRoom) {
         let area = Rect::from_min_size(rect.left_top() + vec2(10.0, 10.0), vec2(84.0, 26.0));
         let button = ui.put(area, egui::Button::new(format!("{:.0} % · fit", 100.0 * self.zoom.by())));
         if button.on_hover_text("Show the whole floor").clicked() {
-            self.zoom = Zoom::default();
+            self.zoom = Zoom::fitted(extent, room);
         }
     }
 }
@@ -231,9 +230,12 @@ fn look_at_tiles(
     }
 }
 
-/// Gives screen readers and tests the name and state of each control on the floor; returns the index of
-/// the control with the keyboard focus.
+/// Gives screen readers, tests and scripts the place of the floor, and the name and state of each control on it; returns
+/// the index of the control with the keyboard focus.
 fn name_controls(ui: &Ui, map: ScreenFromFloor, shown: &ShownFloor, controls: &mut Vec<Id>) -> Option<usize> {
+    let bounds = map.rect(shown.floor.geometry.bounds());
+    let floor = ui.interact(bounds, ui.scope_id().with("floor"), Sense::hover());
+    floor.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Whole floor"));
     let mut focused = None;
     controls.clear();
     let snapshot = shown.snapshot();
@@ -286,7 +288,7 @@ fn show_banner(ui: &Ui, rect: Rect, theme: &Theme, banner: &Banner) {
     let strip = strip.intersect(rect);
     let painter = ui.painter_at(rect);
     painter.rect_filled(strip, 0, color(colour).gamma_multiply(0.94));
-    let ink = color(if theme.is_dark() { theme.seam } else { theme.plate });
+    let ink = color(theme.readable(theme.plate, colour));
     let write = |at: Pos2, size: f32, text: &str| {
         painter.text(at, Align2::CENTER_CENTER, text, FontId::proportional(size), ink);
     };

@@ -36,7 +36,7 @@ pub(super) fn contacts_part(ui: &mut Ui, theme: &Theme, snapshot: &Snapshot) {
         let line = row(ui, 19.0, 13.0, &spoken);
         let ink = color(theme.ink);
         let name = color(if cursor { theme.cursor } else { theme.contact });
-        line.left(0.0, 0.3, &format!("{id}"), name);
+        line.left(0.0, 0.12, &format!("{id}"), name);
         line.left(0.13, 0.34, what, name);
         let figures =
             [format!("{:.3}", at.x), format!("{:.3}", at.y), format!("{force:.0}"), format!("{speed:.2}")];

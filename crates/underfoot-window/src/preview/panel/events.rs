@@ -9,7 +9,8 @@ use super::super::messages::{Happened, WindowMessages};
 use super::super::near_misses::NearMiss;
 use super::super::style::{TextRow, quiet, section};
 use underfoot::engine::IgnoredPress;
-use underfoot::outgoing::json::{IgnoredRecord, event_line};
+use underfoot::messages::MessageNews;
+use underfoot::outgoing::json::{event_line, ignored_line, sent_line};
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, Value, WidgetEvent};
 use underfoot_scene::egui_painter::color;
@@ -45,6 +46,7 @@ pub(super) fn events_part(
         for happened in lines.filter_map(|line| recent.get(line)) {
             match happened {
                 Happened::Event(event) => show(ui, theme, event),
+                Happened::Sent(news) => show_sent(ui, theme, news),
                 Happened::Ignored(press) => show_ignored(ui, theme, press),
                 Happened::NearMiss(miss) => show_near_miss(ui, theme, miss),
                 Happened::GroundEvent { material, count, at, .. } => {
@@ -74,8 +76,12 @@ fn search_events(ui: &mut Ui, messages: &WindowMessages, search: &mut String) {
 /// Whether a line contains all words of `wanted`, which is in lower case: in its control, its event, the reason for
 /// an ignored press, or its material.
 fn is_wanted(happened: &Happened, wanted: &str) -> bool {
+    if wanted.is_empty() {
+        return true;
+    }
     let words = match happened {
         Happened::Event(event) => format!("{} {} {}", event.id, event.kind.name(), value(event.kind)),
+        Happened::Sent(news) => format!("{} sent {news}", news.order.control),
         Happened::Ignored(press) => format!("{} ignored: {}", press.id, press.why),
         Happened::NearMiss(miss) => format!("{} missed: {}", miss.id, miss.text),
         Happened::GroundEvent { material, .. } => format!("{material} gave way"),
@@ -83,17 +89,15 @@ fn is_wanted(happened: &Happened, wanted: &str) -> bool {
     wanted.split_whitespace().all(|word| words.to_lowercase().contains(word))
 }
 
-/// The listed events in the format of `--json`, oldest first; ignored presses, which `--json` leaves out, have the
-/// same form plus the reason.
+/// The listed events in the format of `--json`, oldest first; presses beside a control, which `--json` leaves out, have
+/// a line `missed`.
 fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
     let wanted = wanted.to_lowercase();
     let listed = recent.iter().rev().filter(|happened| is_wanted(happened, &wanted));
     let lines = listed.filter_map(|happened| match happened {
         Happened::Event(event) => Some(event_line(event) + "\n"),
-        Happened::Ignored(press) => {
-            let line = serde_json::to_string(&IgnoredRecord::from(press)).ok()?;
-            Some(line + "\n")
-        }
+        Happened::Sent(news) => Some(sent_line(news) + "\n"),
+        Happened::Ignored(press) => Some(ignored_line(press) + "\n"),
         Happened::NearMiss(miss) => {
             let (t_s, id, why) = (miss.at.secs(), miss.id.as_str(), &miss.text);
             let line = serde_json::json!({
@@ -117,6 +121,19 @@ fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
     line.left(0.23, 0.56, press.id.as_str(), color(theme.ink));
     line.left(0.58, 0.86, &press.why.to_string(), color(theme.warning));
     line.right(1.0, &format!("{:.0} N", press.force.0), color(theme.ink));
+    response.on_hover_text(spoken);
+}
+
+/// Shows a message to another program: its target on the right, all of it on hover.
+fn show_sent(ui: &mut Ui, theme: &Theme, news: &MessageNews) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
+    let spoken = format!("{} sends {news}", news.order.control);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    let line = TextRow { ui, rect, size: 12.5 };
+    line.right(0.19, &format!("{:.3}", news.at.secs()), color(theme.quiet));
+    line.left(0.23, 0.42, news.order.control.as_str(), color(theme.ink));
+    line.left(0.44, 0.8, &news.order.act.to_string(), color(theme.haptic));
+    line.right(1.0, news.target(), color(theme.quiet));
     response.on_hover_text(spoken);
 }
 

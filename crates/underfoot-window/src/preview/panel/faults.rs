@@ -6,7 +6,8 @@ use eframe::egui::{CollapsingHeader, DragValue, RichText, Ui, WidgetInfo};
 
 use super::super::rehearsal::{PacketFaults, Rehearsal};
 use super::super::style::quiet;
-use underfoot::floor::{Corner, SensorId, TileId};
+use super::tile::rows_of_sensors;
+use underfoot::floor::{Geometry, SensorId, TileId};
 use underfoot::units::Newtons;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -25,7 +26,13 @@ const SENSOR_FAULTS: [(Option<SensorFault>, &str); 5] = [
 ];
 
 /// Shows the switches for faults of packets and of the sensors of `tile`.
-pub(super) fn faults_part(ui: &mut Ui, theme: &Theme, rehearsal: &mut Rehearsal, tile: TileId) {
+pub(super) fn faults_part(
+    ui: &mut Ui,
+    theme: &Theme,
+    rehearsal: &mut Rehearsal,
+    geometry: &Geometry,
+    tile: TileId,
+) {
     ui.add_space(2.0);
     let title = match rehearsal.count() {
         0 => RichText::new("Rehearse faults").color(color(theme.ink)),
@@ -34,7 +41,7 @@ pub(super) fn faults_part(ui: &mut Ui, theme: &Theme, rehearsal: &mut Rehearsal,
     };
     CollapsingHeader::new(title).id_salt("faults").show_unindented(ui, |ui| {
         packets(ui, theme, rehearsal);
-        sensors(ui, theme, rehearsal, tile);
+        sensors(ui, theme, rehearsal, geometry, tile);
         let some = rehearsal.count() > 0;
         if ui.add_enabled(some, egui::Button::new("Mend everything")).clicked() {
             rehearsal.mend();
@@ -81,22 +88,21 @@ fn packets(ui: &mut Ui, theme: &Theme, rehearsal: &mut Rehearsal) {
     }
 }
 
-fn sensors(ui: &mut Ui, theme: &Theme, rehearsal: &mut Rehearsal, tile: TileId) {
+fn sensors(ui: &mut Ui, theme: &Theme, rehearsal: &mut Rehearsal, geometry: &Geometry, tile: TileId) {
     ui.label(quiet(theme, format!("Sensors of tile {}, {}", tile.column, tile.row)));
     egui::Grid::new("broken sensors").num_columns(2).show(ui, |ui| {
-        for row in [[Corner::NorthWest, Corner::NorthEast], [Corner::SouthWest, Corner::SouthEast]] {
+        for row in rows_of_sensors(geometry, tile) {
             for corner in row {
-                sensor(ui, rehearsal, SensorId { tile, corner });
+                sensor(ui, rehearsal, SensorId { tile, corner }, geometry.sensor_name(corner));
             }
             ui.end_row();
         }
     });
 }
 
-fn sensor(ui: &mut Ui, rehearsal: &mut Rehearsal, sensor: SensorId) {
+fn sensor(ui: &mut Ui, rehearsal: &mut Rehearsal, sensor: SensorId, corner: &str) {
     let is = rehearsal.of_sensor(sensor);
     let name = |fault| SENSOR_FAULTS.iter().find(|(one, _)| *one == fault).map_or("broken", |(_, name)| name);
-    let corner = sensor.corner.to_string();
     let menu = egui::ComboBox::from_id_salt(("sensor", sensor))
         .selected_text(format!("{} {}", corner.to_uppercase(), name(is)))
         .width(122.0);

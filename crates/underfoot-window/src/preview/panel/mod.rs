@@ -21,6 +21,7 @@ use eframe::egui::{Margin, Panel, ScrollArea, Ui};
 
 use super::app::App;
 use super::icons::Icon;
+use super::stage::BESIDE;
 use super::style::{panel_frame, switch_button};
 
 /// Minimum height of the list of events, in points.
@@ -41,18 +42,18 @@ impl SidePanel {
     /// Whether a window of this width, in points, shows the panel at the right: in Try, a window too narrow for panel
     /// and floor shows it only on request.
     pub(super) fn is_shown(&self, width: f32, designs: bool) -> bool {
-        self.wanted.unwrap_or(designs || width >= 2.2 * 304.0)
+        self.wanted.unwrap_or(designs || width >= BESIDE)
     }
 
-    /// A button that opens or closes the panel at the right.
-    pub(super) fn button(&mut self, ui: &mut Ui, designs: bool) {
+    /// A button that opens or closes the panel at the right; a compact one has an icon alone.
+    pub(super) fn button(&mut self, ui: &mut Ui, designs: bool, is_compact: bool) {
         let shown = self.is_shown(ui.ctx().content_rect().width(), designs);
         let hint = if designs {
             "The fields of what is selected, at the side"
         } else {
             "Figures, events and actuators at the side"
         };
-        if switch_button(ui, shown, Icon::PanelRight, "Panel", designs, hint) {
+        if switch_button(ui, shown, Icon::PanelRight, "Panel", is_compact, hint) {
             self.wanted = Some(!shown);
         }
     }
@@ -116,7 +117,8 @@ impl App {
             controls::controls_part(ui, &theme, shown);
         }
         if let Some(rehearsal) = &mut self.rehearsal {
-            faults::faults_part(ui, &theme, rehearsal, self.selection.tile());
+            let geometry = &self.shown.floor.geometry;
+            faults::faults_part(ui, &theme, rehearsal, geometry, self.selection.tile());
         }
         let snapshot = shown.snapshot();
         grounds::grounds_part(ui, &theme, shown.layout(), snapshot);

@@ -10,7 +10,7 @@ use super::super::selection::Selection;
 use super::super::shown::ShownFloor;
 use super::super::style::{panel_colour, plot_button, quiet, section};
 use underfoot::engine::TileState;
-use underfoot::floor::{Corner, Floor, TileId};
+use underfoot::floor::{Corner, Floor, Geometry, TileId};
 use underfoot::layout::Colour;
 use underfoot::sense::Quality;
 use underfoot_scene::egui_painter::color;
@@ -19,7 +19,7 @@ use underfoot_scene::scene::Theme;
 /// Force of a full bar: the end of the nominal sensor's range, in newtons.
 const FULL: f32 = 400.0;
 
-/// Shows the four sensors of the selected tile in their corners.
+/// Shows the sensors of the selected tile, those of its corners in their places.
 pub(super) fn tile_part(
     ui: &mut Ui,
     theme: &Theme,
@@ -62,11 +62,16 @@ pub(super) fn tile_part(
         .and_then(|index| shown.snapshot().tiles.get(index).copied())
         .unwrap_or_default();
     let cell = vec2(0.5 * (ui.available_width() - 14.0), 38.0);
-    for row in [[Corner::NorthWest, Corner::NorthEast], [Corner::SouthWest, Corner::SouthEast]] {
+    let geometry = &shown.floor.geometry;
+    if geometry.is_missing(tile) {
+        ui.label(quiet(theme, "a hole in the floor"));
+        return;
+    }
+    for row in rows_of_sensors(geometry, tile) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 14.0;
             for corner in row {
-                sensor(ui, theme, cell, corner, &state);
+                sensor(ui, theme, cell, (corner, geometry.sensor_name(corner)), &state);
             }
         });
     }
@@ -74,7 +79,11 @@ pub(super) fn tile_part(
         || "too light to say where".to_owned(),
         |at| format!("acts at {:.3}, {:.3} m", at.x, at.y),
     );
-    ui.label(quiet(theme, format!("{:.1} N in all, {place}", clean(state.force.0))));
+    let age = match state.age.as_millis() {
+        0 => String::new(),
+        ms => format!(", {ms} ms ago"),
+    };
+    ui.label(quiet(theme, format!("{:.1} N in all, {place}{age}", clean(state.force.0))));
 }
 
 /// Whether an actuator moves this tile.
@@ -83,12 +92,18 @@ fn is_moved(floor: &Floor, tile: TileId) -> bool {
     index.and_then(|index| floor.actuators.get(index)).is_some_and(Option::is_some)
 }
 
-/// Shows one sensor: its corner, newtons, a bar, and a word if it is unreliable.
-fn sensor(ui: &mut Ui, theme: &Theme, size: egui::Vec2, corner: Corner, state: &TileState) {
+/// The sensors of `tile` in two rows: the northern corners above the southern ones, or numbered sensors in their order.
+pub(super) fn rows_of_sensors(geometry: &Geometry, tile: TileId) -> [Vec<Corner>; 2] {
+    let (first, second) = geometry.sensors(tile).split_at(geometry.sensors(tile).len().min(2));
+    let rows = [first.to_vec(), second.to_vec()];
+    if geometry.has_corners() { [rows[1].clone(), rows[0].clone()] } else { rows }
+}
+
+/// Shows one sensor: its name, newtons, a bar, and a word if it is unreliable.
+fn sensor(ui: &mut Ui, theme: &Theme, size: egui::Vec2, (corner, name): (Corner, &str), state: &TileState) {
     let (force, quality) = (state.forces[corner.index()], state.quality[corner.index()]);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let word = word(quality, theme);
-    let name = corner.name();
     let spoken =
         format!("{name} {:.1} newtons{}", force, word.map_or(String::new(), |(word, _)| format!(", {word}")));
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));

@@ -10,6 +10,7 @@ use eframe::egui::{
 
 use super::super::feed::PreviewCommand;
 use super::super::shown::ShownFloor;
+use super::super::stage::StageOfWindow;
 use super::super::style::{is_entered, panel_frame, quiet, section};
 use super::super::trace::Trace;
 use underfoot::feel::{Effect, EffectKind, Gesture, Knob};
@@ -265,14 +266,22 @@ fn short(value: f64) -> String {
 }
 
 impl Tuner {
-    /// The tuner at the window's left edge, if it is open; it plays effects on `tile`.
-    pub(in crate::preview) fn panel(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, tile: TileId) {
+    /// The tuner at the window's left edge, if it is open, or at the right of a narrow one; it plays effects on `tile`.
+    pub(in crate::preview) fn panel(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        shown: &ShownFloor,
+        tile: TileId,
+        stage: &StageOfWindow,
+    ) {
         if !self.is_open {
             return;
         }
         let now_s = shown.now_s;
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
-        let panel = Panel::left("tuner").frame(frame).resizable(true);
+        let panel = if stage.is_wide() { Panel::left("tuner") } else { Panel::right("tuner") };
+        let panel = panel.frame(frame).resizable(true);
         let index = shown.floor.geometry.index(tile).unwrap_or(0);
         let actuator = shown.floor.actuators.get(index).copied().flatten();
         let place = Place {
@@ -281,7 +290,7 @@ impl Tuner {
         };
         let wishes = panel
             .default_size(332.0)
-            .size_range(290.0..=520.0)
+            .size_range(290.0_f32.min(stage.widest())..=520.0_f32.min(stage.widest()))
             .show(ui, |ui| self.show(ui, theme, now_s, &place))
             .inner;
         if let Some(index) = wishes.choose {

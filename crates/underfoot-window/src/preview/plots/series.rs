@@ -164,8 +164,10 @@ impl Series {
         }
         for index in 0..floor.geometry.tile_count() {
             let tile = floor.geometry.tile_at_index(index);
-            all.push(Self::Tile(tile));
-            all.extend(Corner::ALL.map(|corner| Self::Sensor(tile, corner)));
+            if floor.geometry.has(tile) {
+                all.push(Self::Tile(tile));
+            }
+            all.extend(floor.geometry.sensors(tile).iter().map(|&corner| Self::Sensor(tile, corner)));
         }
         all
     }

@@ -1,89 +1,110 @@
-//! The floor for a projector: a separate window that holds only the controls, fitted to the real floor by its
-//! corners.
+//! The floor for projectors: for each of one or two projectors a separate window that holds only the controls, fitted
+//! to the real floor by its corners.
 //!
-//! This window is an output only. Feet use the controls on the floor itself; the corners move by mouse and keys of
+//! These windows are outputs only. Feet use the controls on the floor itself; the corners move by mouse and keys of
 //! this computer, and only in adjustment mode.
+//!
+//! This file has windows, file and thread; `view` and the modules that it uses have none of them.
 
 mod awake;
+mod brightness;
+mod check_page;
+mod corners;
 mod homography;
+mod marks;
+mod menu;
+mod pair;
+mod picture;
 mod placement;
+mod screens;
+mod store;
+mod view;
 
 use std::path::PathBuf;
 
 use eframe::egui;
-use eframe::egui::accesskit::Role;
-use eframe::egui::{
-    Align2, Color32, CursorIcon, Event, FontId, Key, PointerButton, Pos2, Rect, Sense, Stroke, Ui,
-    ViewportBuilder, ViewportCommand, ViewportId, WidgetInfo, pos2, vec2,
-};
-use glam::{DVec2, Vec2};
+use eframe::egui::{Key, Ui, ViewportBuilder, ViewportClass, ViewportCommand, ViewportId};
 
 use self::awake::Awake;
-use self::placement::{Placement, usual_file};
+use self::pair::{MOST, ProjectorName, ProjectorPair};
+pub(super) use self::screens::ConnectedScreens;
+use self::screens::next_screen;
+use self::view::{ProjectedFloor, ProjectorView, WindowKey};
 use super::appearance::Appearance;
 use super::messages::WindowMessages;
 use super::shown::ShownFloor;
-use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
-use underfoot_scene::scene::{self, Scene, Show, Theme, View};
-
-/// Radius of a corner's handle, in points.
-const HANDLE: f32 = 22.0;
-
-/// Distance that an arrow key moves a corner, in points; with Shift, and without.
-const NUDGE: (f32, f32) = (10.0, 1.0);
+use underfoot_scene::scene::{self, Scene, Show, View};
 
 /// The initial state of the projection.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ProjectionOptions {
-    /// Whether its window opens at once, as full screen.
+    /// Whether its windows open at once, as full screen.
     pub open: bool,
-    /// Whether the screen stays on while the window is open.
+    /// Whether the screens stay on while the windows are open.
     pub keeps_awake: bool,
-    /// The screen for full screen, numbered by the system from 0; `None` for the one on which it opens.
-    pub monitor: Option<usize>,
+    /// The screens of the first and the second projector for full screen, numbered by the system from 0; `None` for
+    /// the stored one. A screen for the second projector takes it into use.
+    pub monitors: [Option<usize>; 2],
     /// The file that stores the corners, in place of the usual one.
     pub corners: Option<PathBuf>,
 }
 
-/// The projector's window and its settings.
+/// The window of one projector.
+struct ProjectorWindow {
+    /// Whether it fills a screen.
+    is_full: bool,
+    view: ProjectorView,
+}
+
+/// The projectors' windows and their settings.
 pub(super) struct Projection {
     is_open: bool,
-    is_full: bool,
-    monitor: Option<usize>,
+    pair: ProjectorPair,
+    /// The setups in the file.
+    saved: ProjectorPair,
     file: Option<PathBuf>,
-    /// `None` until the picture's shape is known, if no file provides it.
-    placement: Option<Placement>,
-    /// Whether the user has set it; otherwise it follows the window, which gets its screen some frames after it
-    /// opens.
-    is_set: bool,
-    /// The corner that keys move, in adjustment mode.
-    adjusting: Option<usize>,
-    /// The corner that the mouse holds, and its offset from the pointer, in points.
-    held: Option<(usize, egui::Vec2)>,
-    scene: Scene,
-    palette: Palette,
+    windows: [ProjectorWindow; MOST],
+    /// The projector that the keys of this window address where its picture is not a window of the system.
+    addressed: usize,
+    /// The connected screens, if they are known.
+    screens: Option<ConnectedScreens>,
+    /// Whether nothing is stored yet, so that the windows open at the first step: another screen, and the corners.
+    is_new: bool,
+    /// The controls, for all projectors.
+    controls: Scene,
     keeps_awake: bool,
-    /// Present while the window is open and the screen must stay on.
+    /// Present while the windows are open and the screens must stay on.
     awake: Option<Awake>,
 }
 
 impl Projection {
     /// Uses `options`; also returns a message for the user if the file of corners cannot be used.
     pub(super) fn new(options: &ProjectionOptions) -> (Self, Option<String>) {
-        let file = options.corners.clone().or_else(usual_file);
-        let read = file.as_deref().map_or(Ok(None), Placement::load);
-        let (placement, wrong) = read.map_or_else(|wrong| (None, Some(wrong)), |placement| (placement, None));
+        let file = options.corners.clone().or_else(store::usual_file);
+        let read = file.as_deref().map_or(Ok(None), store::load);
+        let (stored, wrong) = read.map_or_else(|wrong| (None, Some(wrong)), |pair| (pair, None));
+        let is_new = stored.is_none() && wrong.is_none();
+        let mut pair = stored.unwrap_or_default();
+        for (setup, monitor) in pair.setups.iter_mut().zip(options.monitors) {
+            setup.screen = monitor.or(setup.screen);
+        }
+        if options.monitors[1].is_some() {
+            pair.add_second();
+        }
+        let mut windows = pair
+            .setups
+            .map(|setup| ProjectorWindow { is_full: setup.screen.is_some(), view: ProjectorView::default() });
+        windows[0].is_full |= options.open;
         let projection = Self {
             is_open: options.open,
-            is_full: options.open || options.monitor.is_some(),
-            monitor: options.monitor,
+            saved: pair,
+            pair,
             file,
-            is_set: placement.is_some(),
-            placement,
-            adjusting: None,
-            held: None,
-            scene: Scene::new(),
-            palette: Palette::default(),
+            windows,
+            addressed: 0,
+            screens: None,
+            is_new,
+            controls: Scene::new(),
             keeps_awake: options.keeps_awake,
             awake: None,
         };
@@ -94,175 +115,51 @@ impl Projection {
         self.is_open
     }
 
-    /// Opens or closes the window.
+    /// Opens or closes the windows.
     pub(super) fn toggle(&mut self) {
         self.is_open = !self.is_open;
-        self.adjusting = None;
+        self.windows.iter_mut().for_each(|window| window.view.close());
     }
 
-    fn window(&self) -> ViewportBuilder {
-        let window = ViewportBuilder::default()
-            .with_title("underfoot: the floor")
-            .with_app_id("underfoot")
-            .with_inner_size([960.0, 720.0])
-            .with_fullscreen(self.is_full);
-        match self.monitor.filter(|_| self.is_full) {
-            Some(monitor) => window.with_monitor(monitor),
-            None => window,
+    /// Takes the second projector into use; its window fills the screen that it had.
+    fn add_second(&mut self) {
+        self.pair.add_second();
+        self.addressed = 1;
+        self.windows[1].is_full = self.pair.setups[1].screen.is_some();
+    }
+
+    /// Takes the second projector out of use.
+    fn remove_second(&mut self) {
+        self.pair.remove_second();
+        self.addressed = 0;
+        self.windows[1].view.close();
+    }
+
+    /// Notes the connected screens; `None` if they are unknown.
+    pub(super) fn note_screens(&mut self, screens: Option<ConnectedScreens>) {
+        self.screens = screens.filter(|screens| screens.count > 0);
+    }
+
+    /// The first use: the picture fills the screen beside that of the main window, if there is one, and its corners
+    /// are adjusted.
+    fn begin(&mut self) {
+        self.is_new = false;
+        self.windows[0].view.corners.toggle();
+        let (setup, window) = (&mut self.pair.setups[0], &mut self.windows[0]);
+        if let Some(ConnectedScreens { count: count @ 2.., own: Some(own) }) = self.screens
+            && setup.screen.is_none()
+        {
+            (window.is_full, setup.screen) = (true, next_screen(Some(own), Some(own), count));
         }
     }
 
-    /// Handles the keys of this window; returns whether the placement has changed.
-    fn handle_keys(&mut self, ui: &Ui, size: Vec2, floor: f32) -> bool {
-        let pressed = |key: Key| ui.input(|i| i.key_pressed(key));
-        if pressed(Key::Escape) && self.adjusting.is_some() {
-            self.adjusting = None;
-        } else if pressed(Key::Escape) || pressed(Key::F11) {
-            self.toggle();
-        }
-        if pressed(Key::F) {
-            self.is_full = !self.is_full;
-        }
-        if pressed(Key::N) {
-            (self.is_full, self.monitor) = (true, Some(self.monitor.map_or(0, |monitor| (monitor + 1) % 8)));
-        }
-        if pressed(Key::C) {
-            self.adjusting = if self.adjusting.is_some() { None } else { Some(0) };
-        }
-        let (Some(placement), Some(selected)) = (&mut self.placement, &mut self.adjusting) else {
-            return false;
-        };
-        let before = *placement;
-        for (index, key) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4].into_iter().enumerate() {
-            if pressed(key) {
-                *selected = index;
-            }
-        }
-        placement.mirrored ^= pressed(Key::M);
-        placement.quarter_turns = (placement.quarter_turns + u8::from(pressed(Key::R))) % 4;
-        if pressed(Key::Home) {
-            *placement = Placement::fit(floor, size.x / size.y);
-        }
-        let by = if ui.input(|i| i.modifiers.shift) { NUDGE.0 } else { NUDGE.1 };
-        for (key, way) in [
-            (Key::ArrowLeft, Vec2::NEG_X),
-            (Key::ArrowRight, Vec2::X),
-            (Key::ArrowUp, Vec2::NEG_Y),
-            (Key::ArrowDown, Vec2::Y),
-        ] {
-            if pressed(key) {
-                *placement = placement.moved(*selected, placement.corners[*selected] + way * by / size);
-            }
-        }
-        *placement != before
+    /// Whether the keys of the main window adjust corners: on systems without several windows.
+    pub(super) fn takes_keys(&self, ctx: &egui::Context) -> bool {
+        let is_adjusting = |window: &ProjectorWindow| window.view.corners.selected().is_some();
+        self.is_open && ctx.embed_viewports() && self.windows.iter().any(is_adjusting)
     }
 
-    /// Shows handles at the corners; returns whether a corner was moved and released.
-    fn adjust(&mut self, ui: &mut Ui, theme: &Theme, picture: Rect, size: Vec2) -> bool {
-        if self.adjusting.is_none() || self.placement.is_none() {
-            self.held = None;
-            return false;
-        }
-        let let_go = self.drag_corners(&ui.input(|i| i.events.clone()), picture, size);
-        let (Some(placement), Some(selected)) = (&self.placement, &self.adjusting) else { return let_go };
-        let on_picture = |corner: Vec2| picture.min + vec2(corner.x, corner.y) * picture.size();
-        for (index, corner) in placement.corners.into_iter().enumerate() {
-            let area = handle_of(on_picture(corner), picture);
-            let handle = ui.interact(area, ui.scope_id().with(("corner", index)), Sense::drag());
-            handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Corner {}", index + 1)));
-        }
-        let painter = ui.painter();
-        let line = color(theme.cursor);
-        let corners = placement.corners.map(on_picture);
-        for (index, &corner) in corners.iter().enumerate() {
-            painter.line_segment([corner, corners[(index + 1) % 4]], Stroke::new(2.0, line));
-            let shown = handle_of(corner, picture).center();
-            let fill = if index == *selected { line } else { Color32::BLACK };
-            painter.circle(shown, HANDLE - 2.0, fill, Stroke::new(2.0, line));
-            let number = format!("{}", index + 1);
-            painter.text(shown, Align2::CENTER_CENTER, number, FontId::proportional(20.0), Color32::WHITE);
-        }
-        help(ui, picture);
-        let_go
-    }
-
-    /// Moves corners event by event: a window with slow frames gets press, drag and release at once. Returns whether
-    /// a corner was released.
-    fn drag_corners(&mut self, events: &[Event], picture: Rect, size: Vec2) -> bool {
-        let mut let_go = false;
-        for event in events {
-            let (to, is_release) = match event {
-                Event::PointerMoved(to) => (*to, false),
-                Event::PointerButton { pos, button: PointerButton::Primary, pressed, .. } => {
-                    if *pressed {
-                        self.take_corner(*pos, picture);
-                    }
-                    (*pos, !*pressed)
-                }
-                _ => continue,
-            };
-            let (Some(placement), Some((index, beside))) = (&mut self.placement, self.held) else { continue };
-            let corner = (to + beside - picture.min) / picture.size();
-            let before = placement.corners.get(index).copied();
-            let to = Vec2::new(corner.x, corner.y);
-            // A corner that is only clicked stays unchanged, bit for bit.
-            if before.is_some_and(|before| ((to - before) * size).length() > 1e-3) {
-                *placement = placement.moved(index, to);
-            }
-            if is_release {
-                (let_go, self.held) = (true, None);
-            }
-        }
-        let_go
-    }
-
-    /// Grabs the corner with its handle at `pointer`, the topmost one.
-    fn take_corner(&mut self, pointer: Pos2, picture: Rect) {
-        let Some(placement) = &self.placement else { return };
-        let corners = placement.corners.map(|corner| picture.min + vec2(corner.x, corner.y) * picture.size());
-        let touched = corners
-            .into_iter()
-            .enumerate()
-            .rev()
-            .find(|(_, corner)| handle_of(*corner, picture).contains(pointer));
-        if let Some((index, corner)) = touched {
-            self.held = Some((index, corner - pointer));
-            self.adjusting = Some(index);
-        }
-    }
-}
-
-/// The handle of a corner; for a corner beyond the picture, it is at the edge.
-fn handle_of(corner: Pos2, picture: Rect) -> Rect {
-    Rect::from_center_size(picture.shrink(HANDLE).clamp(corner), egui::Vec2::splat(2.0 * HANDLE))
-}
-
-/// Shows how to adjust the corners, in the middle of the picture.
-fn help(ui: &Ui, picture: Rect) {
-    let lines = [
-        "Drag each corner onto the floor’s own corner",
-        "1 to 4 and arrows: by a point, with Shift by ten",
-        "M mirror     R turn     Home start anew",
-        "F full screen     N next screen",
-        "C or Esc: done",
-    ];
-    let size = (picture.width() / 44.0).clamp(13.0, 30.0);
-    let height = 1.5 * size;
-    let middle = picture.center();
-    let half = vec2(15.0 * size, 0.5 * height * (lines.len() as f32 + 1.0));
-    ui.painter().rect_filled(
-        Rect::from_center_size(middle, 2.0 * half),
-        10.0,
-        Color32::from_black_alpha(220),
-    );
-    for (index, line) in lines.into_iter().enumerate() {
-        let at = pos2(middle.x, middle.y + (index as f32 - 2.0) * height);
-        ui.painter().text(at, Align2::CENTER_CENTER, line, FontId::proportional(size), Color32::WHITE);
-    }
-}
-
-impl Projection {
-    /// Shows the projector's window while it is open; F11 opens and closes it.
+    /// Shows the windows while they are open; F11 opens and closes them.
     pub(super) fn show(&mut self, ui: &Ui, shown: &mut ShownFloor, appearance: &Appearance) {
         if ui.input(|i| i.key_pressed(Key::F11)) {
             self.toggle();
@@ -271,81 +168,93 @@ impl Projection {
             return;
         }
         self.stay_awake(&mut shown.messages);
-        if !self.is_open {
-            return;
+        if self.is_open {
+            self.project(ui, shown, appearance);
         }
-        let ctx = ui.ctx().clone();
-        let window = self.window();
-        ctx.show_viewport_immediate(ViewportId::from_hash_of("projection"), window, |ui, _| {
-            self.project(ui, shown, &appearance.projected());
-        });
+        let is_held = ui.input(|i| i.pointer.any_down())
+            || self.windows.iter().any(|window| window.view.corners.is_holding());
+        if self.pair != self.saved && !is_held {
+            self.save(&mut shown.messages);
+        }
+    }
+
+    /// Draws the floor once, and shows it in the window of each projector.
+    fn project(&mut self, ui: &Ui, shown: &ShownFloor, appearance: &Appearance) {
+        if self.is_new {
+            self.begin();
+        }
+        let theme = appearance.projected();
+        let view = View {
+            show: Show::PROJECTOR,
+            ..View::new(&shown.floor.geometry, shown.layout(), shown.snapshot(), &theme)
+        };
+        scene::draw(&mut self.controls, &view);
+        let ctx = ui.ctx();
+        let mut keys = Vec::new();
+        for index in 0..self.pair.count().min(MOST) {
+            let name = ProjectorName { index };
+            let builder = self.builder(name);
+            let is_addressed = self.addressed == index;
+            let Self { pair, windows, controls, addressed, .. } = self;
+            let (Some(setup), Some(window)) = (pair.setups.get_mut(index), windows.get_mut(index)) else {
+                continue;
+            };
+            let floor = ProjectedFloor { shown, controls, theme: &theme, is_pair: pair.has_second };
+            let id = ViewportId::from_hash_of(("projection", index));
+            ctx.show_viewport_immediate(id, builder, |ui, class| {
+                let is_embedded = class == ViewportClass::EmbeddedWindow;
+                if ui.input(|i| i.viewport().close_requested()) {
+                    keys.push((index, WindowKey::Close));
+                    return;
+                }
+                if is_embedded && is_pressed(ui) {
+                    *addressed = index;
+                }
+                let has_keys = !is_embedded || is_addressed;
+                let key = window.view.show(ui, setup, &floor, (name, has_keys));
+                keys.extend(key.map(|key| (index, key)));
+            });
+        }
+        for (index, key) in keys {
+            self.handle_key(index, key);
+        }
         // On a computer with one screen, the projection covers the window that draws it.
         ctx.send_viewport_cmd_to(ViewportId::ROOT, ViewportCommand::RequestPaintWhileHidden);
     }
 
-    fn project(&mut self, ui: &mut Ui, shown: &mut ShownFloor, theme: &Theme) {
-        if ui.input(|i| i.viewport().close_requested()) {
-            self.toggle();
-            return;
-        }
-        let picture = ui.available_rect_before_wrap();
-        let node = ui.interact(picture, ui.scope_id().with("projected floor"), Sense::hover());
-        node.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Projected floor"));
-        let size = Vec2::new(picture.width(), picture.height()).max(Vec2::ONE);
-        let floor = shown.floor.geometry.bounds();
-        let shape = floor.size().x / floor.size().y;
-        let fit = Placement::fit(shape, size.x / size.y);
-        if !self.is_set {
-            self.placement = Some(fit);
-        }
-        let changed = self.handle_keys(ui, size, shape);
-        ui.painter().rect_filled(picture, 0.0, color(theme.canvas));
-        self.draw(ui, theme, shown, picture, size);
-        let moved = self.adjust(ui, theme, picture, size);
-        self.is_set = self.placement != Some(fit);
-        if self.adjusting.is_none() {
-            ui.ctx().set_cursor_icon(CursorIcon::None);
-        }
-        if changed || moved {
-            self.keep_placement(&mut shown.messages);
+    /// The window of the system for one projector.
+    fn builder(&self, name: ProjectorName) -> ViewportBuilder {
+        let title = if self.pair.has_second { name.title() } else { "the floor" };
+        let (is_full, screen) = (self.windows[name.index].is_full, self.pair.setups[name.index].screen);
+        // Without that screen, the projection would cover the main window.
+        let is_connected = screen.is_none_or(|screen| screens::has(self.screens, screen));
+        let window = ViewportBuilder::default()
+            .with_title(format!("underfoot: {title}"))
+            .with_app_id("underfoot")
+            .with_inner_size([960.0, 720.0])
+            .with_fullscreen(is_full && is_connected);
+        match screen.filter(|_| is_full && is_connected) {
+            Some(screen) => window.with_monitor(screen),
+            None => window,
         }
     }
 
-    fn draw(&mut self, ui: &Ui, theme: &Theme, shown: &ShownFloor, picture: Rect, size: Vec2) {
-        let floor = shown.floor.geometry.bounds();
-        let homography = self.placement.and_then(|placement| placement.floor_to_picture(floor, size));
-        let Some(homography) = homography else { return };
-        let view = View {
-            show: Show::PROJECTOR,
-            ..View::new(&shown.floor.geometry, shown.layout(), shown.snapshot(), theme)
+    /// Acts on the window of the projector numbered `index`.
+    fn handle_key(&mut self, index: usize, key: WindowKey) {
+        let screens = screens::count(self.screens);
+        let other = self.pair.setups.get(1 - index.min(1)).filter(|_| self.pair.has_second);
+        let taken = other.and_then(|setup| setup.screen);
+        let (Some(setup), Some(window)) = (self.pair.setups.get_mut(index), self.windows.get_mut(index))
+        else {
+            return;
         };
-        scene::draw(&mut self.scene, &view);
-        let map = ScreenFromFloor::fit(floor, picture);
-        let onto = |at: Pos2| {
-            let place = homography.map(map.floor(at).as_dvec2());
-            picture.min + vec2(place.x as f32, place.y as f32)
-        };
-        let Self { palette, scene, .. } = self;
-        egui_painter::paint_warped(&ui.painter_at(picture), palette, scene, map, onto);
-        // For tests and screen readers: the place of each control on the picture.
-        let snapshot = shown.snapshot();
-        for (index, widget) in shown.layout().widgets.iter().enumerate() {
-            if snapshot.widgets.get(index).is_some_and(|state| state.hidden) {
-                continue;
+        match key {
+            WindowKey::Close if self.is_open => self.toggle(),
+            WindowKey::Close => {}
+            WindowKey::FullScreen => (window.is_full, setup.screen) = (!window.is_full, None),
+            WindowKey::NextScreen => {
+                (window.is_full, setup.screen) = (true, next_screen(setup.screen, taken, screens));
             }
-            let corner = |at: Vec2| {
-                let at: DVec2 = homography.map(at.as_dvec2());
-                picture.min + vec2(at.x as f32, at.y as f32)
-            };
-            let area = widget.area;
-            let others = [Vec2::new(area.min.x, area.max.y), Vec2::new(area.max.x, area.min.y), area.max];
-            let around = others.into_iter().fold(Rect::from_pos(corner(area.min)), |mut around, at| {
-                around.extend_with(corner(at));
-                around
-            });
-            let node = ui.interact(around, ui.scope_id().with(("projected", index)), Sense::hover());
-            let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
-            node.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Projected {name}")));
         }
     }
 
@@ -363,10 +272,67 @@ impl Projection {
         }
     }
 
-    fn keep_placement(&self, messages: &mut WindowMessages) {
-        let (Some(placement), Some(file)) = (self.placement, &self.file) else { return };
-        if let Err(wrong) = placement.save(file) {
+    /// Saves the setups; a failure is reported once for each change.
+    fn save(&mut self, messages: &mut WindowMessages) {
+        self.saved = self.pair;
+        let Some(file) = &self.file else { return };
+        if let Err(wrong) = store::save(&self.pair, file) {
             messages.note(format!("The corners are not remembered: {wrong}"));
         }
+    }
+}
+
+/// Whether the pointer was pressed in this picture.
+fn is_pressed(ui: &Ui) -> bool {
+    let pressed = ui.input(|i| i.pointer.primary_pressed().then(|| i.pointer.interact_pos()).flatten());
+    pressed.is_some_and(|at| ui.ctx().layer_id_at(at) == Some(ui.layer_id()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn screens_of_options_count_before_stored_ones_and_bring_the_second_projector() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("projection.txt");
+        let mut stored = ProjectorPair::default();
+        stored.setups[0].screen = Some(3);
+        store::save(&stored, &file).unwrap();
+        let of = |monitors| {
+            let options =
+                ProjectionOptions { monitors, corners: Some(file.clone()), ..ProjectionOptions::default() };
+            let (projection, wrong) = Projection::new(&options);
+            assert_eq!(wrong, None);
+            (projection.pair.setups.map(|setup| setup.screen), projection.pair.has_second)
+        };
+        assert_eq!(of([None, None]), ([Some(3), None], false));
+        assert_eq!(of([Some(1), None]), ([Some(1), None], false));
+        assert_eq!(of([Some(1), Some(2)]), ([Some(1), Some(2)], true));
+    }
+
+    #[test]
+    fn the_first_use_takes_the_screen_beside_the_main_window_and_later_ones_take_the_stored_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let options = ProjectionOptions {
+            corners: Some(folder.path().join("projection.txt")),
+            ..ProjectionOptions::default()
+        };
+        for (own, count, expected) in [(0, 2, Some(1)), (1, 2, Some(0)), (0, 1, None), (1, 3, Some(2))] {
+            let (mut projection, _) = Projection::new(&options);
+            projection.note_screens(Some(ConnectedScreens { count, own: Some(own) }));
+            assert!(projection.is_new);
+            projection.begin();
+            assert_eq!(projection.pair.setups[0].screen, expected, "screen {own} of {count}");
+            assert_eq!(projection.windows[0].is_full, expected.is_some());
+            assert_eq!(projection.windows[0].view.corners.selected(), Some(0));
+            // A screen that is no longer connected leaves a window, which does not cover the main one.
+            projection.note_screens(Some(ConnectedScreens { count: 1, own: Some(0) }));
+            let window = projection.builder(ProjectorName { index: 0 });
+            let is_kept = expected.is_some_and(|screen| screen == 0);
+            assert_eq!(window.fullscreen, Some(is_kept), "screen {own} of {count}");
+        }
+        store::save(&ProjectorPair::default(), options.corners.as_deref().unwrap()).unwrap();
+        assert!(!Projection::new(&options).0.is_new);
     }
 }

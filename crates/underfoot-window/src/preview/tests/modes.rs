@@ -31,48 +31,6 @@ fn one_switch_leads_to_each_mode_and_back() {
 }
 
 #[test]
-fn the_floor_stays_where_it_is_when_the_mode_changes_or_a_message_appears() {
-    for (width, height) in [(1280.0, 800.0), (1600.0, 1000.0), (1100.0, 700.0)] {
-        let mut room = Room::of(true, width, height);
-        // The floor shows the layout of the editor.
-        let designed = room.window.state().designer.as_ref().map(|designer| designer.layout().clone());
-        room.layouts.send(loaded(Arc::new(designed.unwrap()), "map".into())).unwrap();
-        room.run(2);
-        // The widths of the panels are known once each of them was on the screen.
-        for _ in 0..2 {
-            room.window.key_press(Key::F2);
-            room.run(6);
-        }
-        let before = area(&room, "Home");
-        room.notices.send("Something happened.".into()).unwrap();
-        room.run(3);
-        assert_eq!(area(&room, "Home"), before, "a notice at {width}");
-        let (name, diagnostics) = ("map.ron".into(), "map.ron:3:5: unknown field".into());
-        room.layouts.send(LayoutNews::Refused { name, diagnostics }).unwrap();
-        room.run(3);
-        assert_eq!(area(&room, "Home"), before, "a file with problems at {width}");
-        room.window.key_press(Key::F2);
-        room.run(6);
-        let designed = area(&room, "On the floor: home");
-        assert!((designed.min - before.min).length() < 1.0, "{before} moved to {designed} at {width}");
-        assert!((designed.size() - before.size()).length() < 1.0, "{before} became {designed}");
-    }
-}
-
-#[test]
-fn the_floor_keeps_at_least_half_of_a_narrow_window_in_both_modes() {
-    let mut room = Room::of(true, 640.0, 800.0);
-    room.run(2);
-    assert!(area(&room, "Floor").width() >= 320.0);
-    room.window.get_by_label("Panel").click();
-    room.run(20);
-    assert!(room.says("Contacts") && area(&room, "Floor").width() >= 319.0, "{}", area(&room, "Floor"));
-    room.window.key_press(Key::F2);
-    room.run(6);
-    assert!(area(&room, "Drawing board").width() >= 320.0);
-}
-
-#[test]
 fn tab_goes_to_the_floor_first_and_then_from_left_to_right() {
     let mut room = Room::simulated();
     room.write(at_rest(&map()));

@@ -7,7 +7,8 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{self, Key, Margin, Modifiers, Panel, ProgressBar, RichText, Ui, WidgetInfo};
 
 use super::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState};
-use crate::preview::style::{panel_frame, quiet, selectable};
+use crate::preview::icons::{self, Icon};
+use crate::preview::style::{panel_frame, quiet, selected_ground, switch_button};
 use underfoot::engine::Snapshot;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -58,6 +59,11 @@ impl VisitBar {
         }
     }
 
+    /// Whether a recording is in progress, and whether one is kept: both change the buttons.
+    pub(in crate::preview) fn shows(&self) -> [bool; 2] {
+        [self.state.recording.is_some(), self.state.kept.is_some()]
+    }
+
     fn switch(&mut self, snapshot: &Snapshot) {
         self.desk.lead(match self.state.recording {
             Some(_) => VisitOrder::End,
@@ -65,21 +71,37 @@ impl VisitBar {
         });
     }
 
-    /// Shows the button that records; in front of it, the one that opens the bar, if there is a recording.
-    pub(in crate::preview) fn button(&mut self, ui: &mut Ui, theme: &Theme, snapshot: &Snapshot) {
+    /// Shows the button that records; in front of it, the one that opens the bar, if there is a recording. Compact ones
+    /// have icons, and the length of the recording.
+    pub(in crate::preview) fn button(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        snapshot: &Snapshot,
+        is_compact: bool,
+    ) {
         if self.state.kept.is_some() {
             let hint = "Save, play or export what was recorded";
-            if selectable(ui, self.is_open, "Visit", hint) {
+            if switch_button(ui, self.is_open, Icon::Film, "Visit", is_compact, hint) {
                 self.is_open = !self.is_open;
             }
         }
         let text = match &self.state.recording {
-            Some(size) => RichText::new(format!("Stop {}", written(size))).color(color(theme.fault)),
-            None => RichText::new("REC"),
+            Some(size) => format!("Stop {}", written(size)),
+            None => "REC".to_owned(),
         };
         let is_on = self.state.recording.is_some();
-        let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
+        let icon = if is_on { Icon::CircleStop } else { Icon::CircleDot };
+        let ink = theme.legible(theme.fault, selected_ground(theme));
+        let short = match &self.state.recording {
+            Some(size) if is_compact => icons::with(icon, &length(size)),
+            _ => icons::short(icon, &text, is_compact),
+        };
+        let shown = RichText::new(short);
+        let shown = if is_on { shown.color(color(ink)) } else { shown };
+        let button = egui::Button::selectable(is_on, shown).frame_when_inactive(true);
         let button = ui.add_enabled(self.state.off.is_none(), button);
+        button.widget_info(|| WidgetInfo::selected(Role::Button, button.enabled(), is_on, &text));
         let button = match &self.state.off {
             Some(why) => button.on_disabled_hover_text(why),
             None => button.on_hover_text("Record the floor; F9 does the same"),
@@ -162,7 +184,12 @@ impl VisitBar {
 
 /// Length and size: `0:12 · 3.1 MB`.
 fn written(size: &VisitSize) -> String {
+    format!("{} · {:.1} MB", length(size), size.bytes as f64 * 1e-6)
+}
+
+/// Minutes and seconds: `0:12`.
+fn length(size: &VisitSize) -> String {
     // The cast from float saturates at the range of the integer.
     let seconds = size.length_s.max(0.0) as u64;
-    format!("{}:{:02} · {:.1} MB", seconds / 60, seconds % 60, size.bytes as f64 * 1e-6)
+    format!("{}:{:02}", seconds / 60, seconds % 60)
 }

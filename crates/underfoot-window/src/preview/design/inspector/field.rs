@@ -19,6 +19,9 @@ const NAME_PX: f32 = 104.0;
 /// Width of the mark before it, in points.
 const MARK_PX: f32 = 8.0;
 
+/// Width of a row in a window with room for all panels, in points.
+const FULL_PX: f32 = 302.0;
+
 /// Width of the button that resets a field, in points.
 pub(super) const RESET_PX: f32 = 22.0;
 
@@ -83,7 +86,7 @@ impl ShownField<'_> {
 
 /// The unit of places of this document, in words.
 pub(in crate::preview::design) fn unit_name(document: &Document) -> &'static str {
-    if document.unit_m() == 1.0 { "m" } else { "tiles" }
+    if document.unit_m() == glam::DVec2::ONE { "m" } else { "tiles" }
 }
 
 /// The beginning of a row: the mark of the origin and the name, with the name in files on hover.
@@ -97,9 +100,12 @@ pub(super) fn name(ui: &mut Ui, field: &ShownField<'_>) {
     let is_written = property.origin == FieldOrigin::Written;
     let ink = color(if is_written { theme.ink } else { theme.quiet });
     let text = if is_written { RichText::new(text).strong() } else { RichText::new(text) };
-    let size = vec2(NAME_PX, ROW_PX);
+    // In a narrow window the names give up the width that the row lacks.
+    let width = NAME_PX - (FULL_PX - ui.max_rect().width()).clamp(0.0, 0.4 * NAME_PX);
+    let size = vec2(width, ROW_PX);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-        ui.set_min_width(NAME_PX);
+        ui.set_min_width(width);
+        ui.set_max_width(width);
         let shown = ui.add(egui::Label::new(text.color(ink)).truncate());
         shown.on_hover_ui(|ui| {
             ui.label(RichText::new(&property.name).monospace());

@@ -10,6 +10,8 @@ mod number;
 mod place;
 mod problems;
 mod sections;
+mod send_choices;
+mod sends;
 mod text;
 mod value;
 mod words;
@@ -20,7 +22,7 @@ use super::edited::EditedLayout;
 use super::findings::findings_list;
 use super::several::shared_place;
 use super::{Pane, Panes};
-use crate::edit::{Address, Edit, FieldSection};
+use crate::edit::{Address, Edit, FieldSection, RecordList};
 use crate::preview::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet, section};
 use effect::Waveforms;
@@ -78,7 +80,7 @@ type FrameEdits = Option<(String, FieldEdits)>;
 const INSPECTOR_PX: f32 = 330.0;
 
 impl Inspector {
-    /// Shows the inspector.
+    /// Shows the inspector, at most `widest` points wide.
     pub(super) fn panel(
         &mut self,
         ui: &mut Ui,
@@ -86,11 +88,12 @@ impl Inspector {
         palette: &mut Palette,
         edited: &mut EditedLayout,
         panes: &mut Panes,
+        widest: f32,
     ) {
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         // A fixed width, whatever the content: the floor beside the panel must not move under the pointer.
         let panel = Panel::right("inspector").frame(frame).resizable(false);
-        panel.exact_size(INSPECTOR_PX).show(ui, |ui| {
+        panel.exact_size(INSPECTOR_PX.min(widest)).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_width(ui.available_width() - 8.0);
                 // The cached fields belong to a revision, and so must the records of which they are made.
@@ -169,6 +172,12 @@ impl Inspector {
         let shown = std::mem::take(&mut self.own.sections);
         let wanted = self.sections(ui, theme, palette, edited, &record, &shown);
         self.own.sections = shown;
+        let widget = item.as_ref().filter(|item| !item.is_group && !item.widgets.is_empty());
+        let widget = widget.and_then(|item| edited.layout().widgets.get(item.widgets.start)).cloned();
+        let wanted = match widget.filter(|_| record.list() == Some(RecordList::Widgets)) {
+            Some(widget) => self.sends(ui, theme, edited, &record, &widget).or(wanted),
+            None => wanted,
+        };
         let is_edited = wanted.is_some();
         self.apply(edited, &record, wanted);
         if !is_edited && item.is_some_and(|item| item.is_group) {

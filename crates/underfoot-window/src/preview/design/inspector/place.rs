@@ -23,7 +23,7 @@ pub(super) fn place(ui: &mut Ui, field: &ShownField<'_>, before: [f64; 2]) -> Fi
         let drag = DragValue::new(&mut now[side])
             .speed(0.01)
             .max_decimals(4)
-            .custom_parser(move |text| length(text, unit))
+            .custom_parser(move |text| length(text, unit[side]))
             .update_while_editing(false);
         // Both numbers are as wide as one text.
         let width = 0.5 * (TYPED_PX - ui.spacing().item_spacing.x);
@@ -46,7 +46,7 @@ fn placing(field: &ShownField<'_>, now: [f64; 2], is_at: bool) -> Vec<Edit> {
     let item = field.edited.item(field.record);
     let Some(item) = item.filter(|_| field.property.origin != FieldOrigin::Written) else { return written() };
     let unit = field.edited.document.unit_m();
-    let metres = Vec2::new((now[0] * unit) as f32, (now[1] * unit) as f32);
+    let metres = Vec2::new((now[0] * unit.x) as f32, (now[1] * unit.y) as f32);
     let area = match is_at {
         true => Rect::from_min_size(metres, item.area.size()),
         false => Rect::from_min_size(item.area.min, metres),
@@ -63,8 +63,8 @@ pub(super) fn place_of(field: &ShownField<'_>) -> Option<[f64; 2]> {
     }
     let area = field.edited.item(field.record).filter(|item| !item.is_group)?.area;
     let metres = if field.property.name == "at" { area.min } else { area.size() };
-    let unit = field.edited.document.unit_m();
-    Some([metres.x, metres.y].map(|metres| (f64::from(metres) / unit * 1e4).round() / 1e4))
+    let units = metres.as_dvec2() / field.edited.document.unit_m();
+    Some(units.to_array().map(|length| (length * 1e4).round() / 1e4))
 }
 
 /// Parses a length in units of `unit_m` metres; also accepts `57 cm`, `570 mm` or `0.57 m`.

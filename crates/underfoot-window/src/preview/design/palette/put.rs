@@ -3,14 +3,21 @@
 use glam::Vec2;
 
 use super::super::edited::EditedLayout;
+use super::in_hand::InHand;
 use super::thing::PaletteThing;
-use crate::edit::{Address, Edit, RecordList};
+use crate::edit::{Address, Edit, RecordList, free_row};
 use underfoot::floor::Rect;
 use underfoot_format::text::Text;
 
 impl EditedLayout {
-    /// Puts `thing` on `area`, in floor metres; returns whether the layout accepts it.
-    pub(in crate::preview::design) fn put(&mut self, thing: &PaletteThing, area: Rect) -> bool {
+    /// Puts `thing` on `area`, in floor metres, with this `label` in place of the usual one; returns whether the layout
+    /// accepts it. Things of the same stroke are one step of undo.
+    pub(in crate::preview::design) fn put(
+        &mut self,
+        thing: &PaletteThing,
+        area: Rect,
+        label: Option<&str>,
+    ) -> bool {
         let on_page = |list| {
             let page = self.layout().pages.get(self.page).map(|_| Address::of(RecordList::Pages, self.page));
             page.unwrap_or(Address::LAYOUT).entry(list, usize::MAX)
@@ -18,14 +25,14 @@ impl EditedLayout {
         let place = self.document.placed(area);
         let (at, text) = match thing {
             PaletteThing::Control(kind) => {
-                (on_page(RecordList::Widgets), self.document.new_control(kind, area))
+                (on_page(RecordList::Widgets), self.document.new_control(kind, area, label))
             }
             PaletteThing::Ground(name) => {
                 (on_page(RecordList::Grounds), Text::Variant(name, place.into()).inline())
             }
             PaletteThing::Stance => {
                 let [at, size] = place;
-                let fields = vec![at, size, ("label", Text::quoted("Stand here"))];
+                let fields = vec![at, size, ("label", Text::quoted(label.unwrap_or("Stand here")))];
                 (
                     Address::LAYOUT.entry(RecordList::Stances, usize::MAX),
                     Text::Record("Stance", fields).inline(),
@@ -40,7 +47,7 @@ impl EditedLayout {
                 )
             }
         };
-        let done = self.edit(&[Edit::Insert { at: at.clone(), text }]);
+        let done = self.edit_in(&[Edit::Insert { at: at.clone(), text }], Some(self.stroke));
         if done {
             self.refresh();
             let list = at.split().map(|(parent, list, _)| (parent, list));
@@ -52,8 +59,37 @@ impl EditedLayout {
         done
     }
 
-    /// Puts `thing` at the first place of a grid of half tiles that the reader accepts.
-    pub(super) fn put_somewhere(&mut self, thing: &PaletteThing) {
+    /// Puts down all that the user asked for, where there is room, and selects it; stops at the first thing without
+    /// room, which the message names.
+    pub(super) fn put_all(&mut self, hands: Vec<InHand>) {
+        self.stroke += 1;
+        let mut selected = Vec::new();
+        for hand in hands {
+            let size = hand.thing.size(&self.document.floor().geometry);
+            let row = match hand.thing {
+                PaletteThing::Control(_) => free_row(&self.document, self.page, size, hand.left()),
+                _ => None,
+            };
+            let mut places = row.unwrap_or_default().into_iter();
+            let mut hand = Some(hand);
+            while let Some(next) = hand {
+                let is_put = match places.next() {
+                    Some(area) => self.put(&next.thing, area, next.label()),
+                    None => self.put_somewhere(&next.thing, next.label()),
+                };
+                if !is_put {
+                    self.selected.append(&mut selected);
+                    return;
+                }
+                selected.append(&mut self.selected);
+                hand = next.next(false);
+            }
+        }
+        self.selected = selected;
+    }
+
+    /// Puts `thing` at the first place of a grid of half tiles that the reader accepts; returns whether there is one.
+    fn put_somewhere(&mut self, thing: &PaletteThing, label: Option<&str>) -> bool {
         let geometry = self.document.floor().geometry;
         let size = thing.size(&geometry);
         let step = 0.5 * geometry.pitch_m();
@@ -66,7 +102,7 @@ impl EditedLayout {
         let steps = ((within.size() - size) / step).max(Vec2::ZERO).floor();
         for row in 0..=steps.y as u32 {
             for column in 0..=steps.x as u32 {
-                let at = within.min + Vec2::new(column as f32, row as f32) * step + Vec2::splat(0.2 * step);
+                let at = within.min + Vec2::new(column as f32, row as f32) * step + 0.2 * step;
                 let area = Rect::from_min_size(at.min(within.max - size), size);
                 // Half a shoe of room (rule U102), where possible.
                 let wide = area.grown(0.06);
@@ -78,14 +114,15 @@ impl EditedLayout {
                 if matches!(thing, PaletteThing::Control(_)) && self.items.iter().any(is_taken) {
                     continue;
                 }
-                if self.put(thing, area) {
-                    return;
+                if self.put(thing, area, label) {
+                    return true;
                 }
             }
         }
         if self.message.is_none() {
             self.complain("there is no room left");
         }
+        false
     }
 
     pub(super) fn add_page(&mut self) {

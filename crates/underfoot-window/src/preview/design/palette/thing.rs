@@ -68,7 +68,7 @@ impl PaletteThing {
                 let wide = ["slider", "fader", "stepper", "selector", "lean", "pad"];
                 if wide.iter().any(|name| kind.contains(name)) { WIDE_M } else { SMALL_M }
             }
-            Self::Region | Self::Ground(_) => Vec2::splat(2.0 * geometry.pitch_m()),
+            Self::Region | Self::Ground(_) => 2.0 * geometry.pitch_m(),
             Self::Stance => Vec2::new(2.0, 1.0) * geometry.pitch_m(),
         };
         (size / grid).round() * grid

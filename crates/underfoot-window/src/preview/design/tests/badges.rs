@@ -10,7 +10,7 @@ fn crowded() -> Desk {
     let corner = doc.layout().regions[0].area.max;
     let small = Rect::from_min_size(corner - glam::Vec2::splat(0.12), glam::Vec2::splat(0.05));
     let control = super::super::palette::PaletteThing::Control("button".into());
-    assert!(doc.edited.put(&control, small), "{:?}", doc.edited.message.as_ref().map(|it| &it.text));
+    assert!(doc.edited.put(&control, small, None), "{:?}", doc.edited.message.as_ref().map(|it| &it.text));
     doc.edited.selected.clear();
     desk.window.run_steps(3);
     desk

@@ -59,6 +59,18 @@ fn is_round(value: &str) -> bool {
 }
 
 #[test]
+fn a_row_of_the_list_has_the_menu_that_its_record_has_on_the_floor() {
+    let mut desk = Desk::map();
+    let row = desk.window.get_by_label("Control home").rect().center();
+    desk.open_menu(row);
+    assert_eq!(desk.selected_ids(), ["home"]);
+    desk.choose_entry("Rename");
+    desk.type_over("start");
+    assert!(desk.text().contains("id: \"start\"") && !desk.text().contains("id: \"home\""));
+    assert_eq!(desk.selected_ids(), ["start"]);
+}
+
+#[test]
 fn a_double_click_edits_the_label_where_the_foot_reads_it() {
     let mut desk = Desk::map();
     let first = desk.text();
@@ -219,7 +231,7 @@ fn several_are_moved_by_a_typed_amount() {
     desk.type_over("+0.1");
     let pitch = Floor::default().geometry.pitch_m();
     for (id, before) in [("pan_north", before.0), ("pan_west", before.1)] {
-        assert!((desk.area(id).min.y - before.min.y - 0.1 * pitch).abs() < 1e-4, "{id}");
+        assert!((desk.area(id).min.y - before.min.y - 0.1 * pitch.y).abs() < 1e-4, "{id}");
     }
     assert_eq!(desk.designer().edited.selected.len(), 4);
     desk.undo();
@@ -259,4 +271,47 @@ fn home_end_and_page_keys_move_through_the_list() {
     assert!(!has_focus(&desk, &format!("Control {last}")));
     desk.key(Key::PageDown);
     assert!(has_focus(&desk, &format!("Control {last}")));
+}
+
+#[test]
+fn design_begins_with_the_control_that_a_foot_used_and_turns_it_within_its_region() {
+    let mut desk = Desk::map();
+    let zoom = underfoot::widget::WidgetId::new("zoom");
+    desk.key(Key::F2);
+    desk.window.run_steps(4);
+    desk.window.state_mut().selection.pin_control(zoom);
+    desk.key(Key::F2);
+    assert_eq!(desk.selected_ids(), ["zoom"]);
+    let before = desk.area("zoom").size();
+    desk.key(Key::R);
+    let (after, layout) = (desk.area("zoom"), desk.designer().layout());
+    assert!((after.size() - glam::Vec2::new(before.y, before.x)).length() < 1e-3, "{after:?}");
+    let region = layout.regions[0].area.grown(1e-3);
+    assert!(region.contains(after.min) && region.contains(after.max), "{after:?} in {region:?}");
+    // The user's own selection stays until a foot uses another control.
+    desk.click("Control home");
+    for _ in 0..2 {
+        desk.key(Key::F2);
+        desk.window.run_steps(4);
+    }
+    assert_eq!(desk.selected_ids(), ["home"]);
+}
+
+#[test]
+fn several_become_as_the_first_one_is_by_a_key_or_from_the_menu() {
+    let mut desk = Desk::map();
+    let first = desk.text();
+    let (home, west) = (desk.place("home"), desk.place("pan_west"));
+    desk.drag(home, home);
+    desk.hold(Modifiers::SHIFT);
+    desk.drag(west, west);
+    desk.hold(Modifiers::NONE);
+    desk.command(Modifiers::COMMAND, Key::E);
+    assert!((desk.area("pan_west").size() - desk.area("home").size()).length() < 1e-4, "{}", desk.text());
+    assert!(desk.says("as home is"));
+    desk.undo();
+    assert_eq!(desk.text(), first);
+    desk.open_menu(home);
+    desk.choose_entry("Make alike");
+    assert!((desk.area("pan_west").size() - desk.area("home").size()).length() < 1e-4, "{}", desk.text());
 }

@@ -77,3 +77,67 @@ fn the_kinds_of_the_layout_come_first_and_what_was_used_is_offered_again() {
     desk.drag(board, board);
     assert_eq!(desk.designer().layout().widgets.len(), 2, "{}", desk.text());
 }
+
+#[test]
+fn several_with_labels_are_put_in_a_row_by_one_search_and_undone_at_once() {
+    let mut desk = Desk::on(&empty(), None);
+    let first = desk.text();
+    desk.search("button: Welcome, Map, Über uns");
+    assert!(desk.says("Put down: button"));
+    desk.key(Key::Enter);
+    let layout = desk.designer().layout();
+    let labels: Vec<&str> = layout.widgets.iter().map(|widget| widget.label.as_str()).collect();
+    assert_eq!(labels, ["Welcome", "Map", "Über uns"], "{}", desk.text());
+    assert!(layout.widgets.windows(2).all(|pair| pair[1].area.min.x > pair[0].area.max.x + 0.05));
+    assert!(desk.designer().edited.findings.is_empty(), "{:?}", desk.designer().edited.findings);
+    assert_eq!(desk.designer().edited.selected.len(), 3);
+    // In the field of the search, the keys of undo are the field's own.
+    desk.key(Key::Escape);
+    desk.command(Modifiers::COMMAND, Key::Z);
+    assert_eq!(desk.text(), first, "one step");
+}
+
+#[test]
+fn a_search_of_several_parts_puts_all_of_them_or_none() {
+    let mut desk = Desk::on(&empty(), None);
+    let first = desk.text();
+    for search in ["2 switch; nothing like it", "nothing like it; button"] {
+        desk.search(search);
+        desk.key(Key::Enter);
+        assert_eq!(desk.text(), first, "{search}");
+        desk.key(Key::Escape);
+    }
+    desk.search("2 switch; dial: Vol; switch: Light");
+    desk.key(Key::Enter);
+    let ids: Vec<_> = desk.designer().layout().widgets.iter().map(|widget| widget.id.to_string()).collect();
+    assert_eq!(ids, ["switch", "switch_2", "vol", "light"], "{}", desk.text());
+    assert!(desk.designer().edited.findings.is_empty(), "{:?}", desk.designer().edited.findings);
+    assert!(desk.says("Put down again: dial"));
+}
+
+#[test]
+fn a_thing_stays_in_hand_while_shift_is_held_or_labels_are_left() {
+    let mut desk = Desk::on(&empty(), None);
+    let board = desk.window.get_by_label("Drawing board").rect().center();
+    desk.click("Put down: button");
+    desk.window.event(Event::ModifiersChanged(Modifiers::SHIFT));
+    for east in [-150.0, 0.0] {
+        desk.drag(board + vec2(east, 0.0), board + vec2(east, 0.0));
+    }
+    desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
+    desk.drag(board + vec2(150.0, 0.0), board + vec2(150.0, 0.0));
+    assert_eq!(desk.designer().layout().widgets.len(), 3, "{}", desk.text());
+    // The last one has left the hand: this click selects.
+    desk.drag(board + vec2(0.0, -120.0), board + vec2(0.0, -120.0));
+    assert_eq!(desk.designer().layout().widgets.len(), 3);
+
+    let mut desk = Desk::on(&empty(), None);
+    desk.search("switch: Light, Sound");
+    desk.click("Put down: switch");
+    for east in [-120.0, 120.0] {
+        desk.drag(board + vec2(east, 0.0), board + vec2(east, 0.0));
+        assert_eq!(desk.says("next: Sound"), east < 0.0, "{east}");
+    }
+    let ids: Vec<_> = desk.designer().layout().widgets.iter().map(|widget| widget.id.to_string()).collect();
+    assert_eq!(ids, ["light", "sound"]);
+}
