@@ -328,7 +328,7 @@ def main():
     print("| task | before | now | share | steps now |\n|---|---|---|---|---|")
     for name in args.names or TASKS:
         task, layout, title, before, way = TASKS[name]
-        ways = [(False, before, way)] + [(True, *BY_KEYS[name])] * (name in BY_KEYS)
+        ways = [(False, before, way)] + ([(True, *BY_KEYS[name])] if name in BY_KEYS else [])
         for by_keys, before, way in ways:
             shots = args.shots and os.path.join(args.shots, name + "-keys" * by_keys)
             bench = Bench(program, shots, text_of(layout))
