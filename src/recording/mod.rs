@@ -43,7 +43,7 @@ pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
 pub use switch::RecordingSwitch;
 pub(crate) use tap::{Entries, EntrySink, tapped};
-pub use timeline::{Mark, MarkKind, Timeline};
+pub use timeline::{MarkKind, Timeline, TimelineMark};
 pub use transport::Transport;
 pub use trim::Trimmed;
 

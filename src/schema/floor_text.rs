@@ -59,7 +59,7 @@ const ON_ONE_LINE: [&str; 3] = ["sensors_m", "allow", "response_db"];
 /// (`save_floor` rejects them on writing).
 #[must_use]
 pub fn write_floor(floor: &Floor) -> String {
-    let record = FloorRecord::of(floor);
+    let record = FloorFileRecord::of(floor);
     let is_told = |name: &str| COMMENTS.iter().any(|(told, ..)| *told == name);
     let (told, measures): (Vec<_>, Vec<_>) =
         record.written().into_iter().partition(|(name, _)| is_told(name));

@@ -15,7 +15,7 @@ use underfoot_format::codec::Written;
 
 /// Reports messages without a target, messages that never go out or that nothing would end, and messages of two
 /// controls.
-pub(super) fn check(reader: &Reader<'_>, page: &Page) {
+pub(super) fn check(reader: &Reader<'_>, page: &WrittenPage) {
     let mut told: Vec<(usize, &'static str)> = Vec::new();
     let mut report = |at: &std::ops::Range<usize>, rule: &'static str, problem: Problem| {
         // All controls of a grid have the message of one place.
@@ -58,7 +58,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
 type SendFault = Option<(String, String, Option<String>)>;
 
 /// A problem of the target called `name`, which must be of the `sort` that receives the message `payload`.
-fn of_target(page: &Page, name: &str, payload: &str, sort: TargetSort) -> SendFault {
+fn of_target(page: &WrittenPage, name: &str, payload: &str, sort: TargetSort) -> SendFault {
     if !page.targets_known {
         return None;
     }
@@ -102,8 +102,8 @@ fn of_guard(sending: &Sending, behaviour: &Behaviour) -> SendFault {
 }
 
 /// Warns of two controls that send the same message and can be pressed at the same time.
-fn twice(reader: &Reader<'_>, page: &Page) {
-    let mut first: HashMap<String, Vec<(&Control, usize)>> = HashMap::new();
+fn twice(reader: &Reader<'_>, page: &WrittenPage) {
+    let mut first: HashMap<String, Vec<(&WrittenControl, usize)>> = HashMap::new();
     for control in &page.controls {
         for Written { value: sending, at } in &control.send {
             // A wheel and a pointer may well be moved from several places.
@@ -142,7 +142,7 @@ fn subject(payload: &Payload) -> String {
 }
 
 /// Warns of feet of two regions in one zone of MPE.
-fn twice_by_feet(reader: &Reader<'_>, page: &Page) {
+fn twice_by_feet(reader: &Reader<'_>, page: &WrittenPage) {
     let mut zones: HashMap<&str, std::ops::Range<usize>> = HashMap::new();
     for Written { value: sending, at } in page.regions.iter().flat_map(|region| &region.send) {
         if !matches!(sending.payload, ContactPayload::Mpe(_)) {

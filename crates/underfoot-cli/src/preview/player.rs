@@ -10,7 +10,7 @@ use std::time::Duration;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::recording::{Mark, MarkKind, Progress, Recording, Speed, Timeline, Transport};
+use underfoot::recording::{MarkKind, Progress, Recording, Speed, Timeline, TimelineMark, Transport};
 use underfoot::runtime::Session;
 use underfoot::sink::Since;
 use underfoot::units::Instant;
@@ -115,7 +115,7 @@ fn read_marks(path: &Path, first: Instant, shown: Arc<Shown>) -> Result<(), Fail
         .map_err(|error| Failure::Other(error.to_string()))
 }
 
-fn told(mark: &Mark, first: Instant) -> PlaybackMark {
+fn told(mark: &TimelineMark, first: Instant) -> PlaybackMark {
     let (what, weight) = match &mark.kind {
         MarkKind::Pressed(id) => (format!("{id} pressed"), MarkWeight::Usual),
         MarkKind::Cancelled(id) => (format!("{id} cancelled"), MarkWeight::Odd),

@@ -9,7 +9,7 @@ use super::closing::{Closing, Title, handle_quit_key};
 use super::design::Designer;
 use super::feed::PreviewInput;
 use super::floor_check::FloorCheck;
-use super::floor_view::{FloorFeet, FloorView, OnFloor};
+use super::floor_view::{FloorFeet, FloorPane, OnFloor};
 use super::focus::FocusRing;
 use super::messages::{Happened, WindowMessages};
 use super::mode::WindowMode;
@@ -34,7 +34,7 @@ use underfoot_scene::scene::{self, Theme};
 /// The window's contents and their state from one frame to the next.
 pub(super) struct App {
     pub(super) shown: ShownFloor,
-    pub(super) view: FloorView,
+    pub(super) view: FloorPane,
     pub(super) feet: FloorFeet,
     pub(super) selection: Selection,
     pub(super) presses: PressLog,
@@ -84,7 +84,7 @@ impl App {
         wrong.into_iter().chain(unread).for_each(|wrong| messages.note(wrong));
         let floor = input.floor;
         Self {
-            view: FloorView::new(options.layers),
+            view: FloorPane::new(options.layers),
             feet: FloorFeet::new(input.feet, input.shoes),
             selection: Selection::new(&floor.geometry),
             presses: if input.playback.is_some() { PressLog::recorded() } else { PressLog::default() },
@@ -118,7 +118,7 @@ impl App {
                 server: None,
                 snapshots: input.snapshots,
                 messages,
-                watch: FloorWatch::default(),
+                watch: LinkNotices::default(),
                 commands: channels.commands,
                 now_s: 0.0,
             },
