@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::area::{Placed, WrittenArea};
-use super::control::Control;
+use super::control::WrittenControl;
 use super::ground;
 use super::number::plain;
 use super::page::{WrittenPage, WrittenZone};

@@ -1,6 +1,6 @@
 //! Writing of floor files.
 
-use super::floor::FloorRecord;
+use super::floor::FloorFileRecord;
 use crate::floor::{Floor, LawKind};
 use underfoot_format::text::Text;
 

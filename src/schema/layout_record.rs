@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::area::{Place, Placed};
 use super::arrange::WIDGETS;
 use super::context::LayoutContext;
-use super::control::Control;
+use super::control::WrittenControl;
 use super::effect::OWN_EFFECTS;
 use super::fields::Fields;
 use super::ground::{GROUNDS, GroundDefinition};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::area::{Placed, WrittenArea};
 use super::checks;
-use super::control::Control;
+use super::control::WrittenControl;
 use super::diagnostic::Diagnostics;
 use super::ground::GroundDefinition;
 use super::kind::Kinds;

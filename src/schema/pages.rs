@@ -10,7 +10,7 @@
 
 use super::arrange::WIDGETS;
 use super::context::LayoutContext;
-use super::control::Control;
+use super::control::WrittenControl;
 use super::ground::{GROUNDS, GroundDefinition};
 use super::lists::MAX_WIDGETS;
 use super::problem::Problem;

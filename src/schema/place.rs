@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::area::Area;
+use super::area::WrittenArea;
 use super::fields::Fields;
 use super::node::Node;
 use super::problem::Problem;

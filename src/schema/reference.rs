@@ -88,7 +88,7 @@ pub fn reference() -> Vec<Chapter> {
         Chapter::new(
             "floors",
             "A real or simulated floor: a file for `--floor`.",
-            vec![super::floor::FloorRecord::describe()],
+            vec![super::floor::FloorFileRecord::describe()],
         ),
     ]
 }

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::control::Control;
-use super::page::Page;
+use super::control::WrittenControl;
+use super::page::WrittenPage;
 use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;

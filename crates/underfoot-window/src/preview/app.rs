@@ -28,7 +28,7 @@ use super::time_line::TimeLine;
 use super::turns::Turns;
 use super::visit::VisitBar;
 use super::walks::Walks;
-use super::watch::FloorWatch;
+use super::watch::LinkNotices;
 use underfoot_scene::scene::{self, Theme};
 
 /// The window's contents and their state from one frame to the next.
