@@ -34,7 +34,7 @@ try {
   const page = await browser.newPage();
   page.on("pageerror", (error) => { throw error; });
   page.on("request", (request) => assert.equal(new URL(request.url()).host, web, "no other host is asked"));
-  // What the policy of the page refuses is an error in the console; that the floor is gone is one as well.
+  // A refusal by the page's policy is an error in the console; so is a floor that is gone.
   const refused = [];
   page.on("console", (message) => { if (message.text().includes("Content Security Policy")) refused.push(message.text()); });
   const says = (id, text) =>

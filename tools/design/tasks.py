@@ -283,8 +283,8 @@ def project(bench, _):
     window.until(lambda: os.path.isdir(data) and os.listdir(data), "the saved corners")
 
 
-# Name, what it does, the layout that it begins with, before: each way with its number of actions. What both ways have in
-# common, such as the presses of a visit, is no action of the task.
+# Name, what it does, the layout that it begins with, before: each way with its number of actions. Actions that both
+# ways have in common, such as the presses of a visit, do not count.
 TASKS = {
     "six": (place_six, None, "place six controls", 14,
             "F2; six times: its kind at the left, the floor; Ctrl+S"),

@@ -67,7 +67,7 @@ class Window(Display):
         with open(os.path.join(self.folder, "messages")) as messages:
             sys.exit(f"{self.program.args[0]} has ended: {messages.read()}")
 
-    # What the program shows.
+    # Reading the screen.
 
     def report(self, window=None):
         """The last report of the main window, or of the one with this title; empty before the first."""
@@ -130,7 +130,7 @@ class Window(Display):
         with open(os.path.join(self.folder, "events")) as events:
             return events.read()
 
-    # What the user does.
+    # Actions of a user.
 
     def send(self, *arguments, window=None, **counts):
         """Input by xdotool; waits until the program has counted it and is calm."""

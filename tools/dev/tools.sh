@@ -64,7 +64,7 @@ is_left_out() { [[ " ${LEAVE_OUT:-} " == *" $1 "* ]]; }
 # Says of one tool that it is not there, and what is not tried for that; the run goes on.
 lacks() { say "NOT RUN: $*"; }
 
-# Runs an installation and says how long it took; a failed one is told and costs the run nothing but what it is for.
+# Runs an installation and says how long it took; a failed one is reported, and costs the run only its own checks.
 install_step() {
     local start=$SECONDS
     say "installing: $*"
@@ -111,7 +111,7 @@ make_python() {
     cp "$1" "$2"
 }
 
-# What leads the browser, in place; made anew when package.json changes.
+# The packages that lead the browser, in place; installed again when package.json changes.
 install_web() {
     local wanted=bindings/web/package.json made=bindings/web/node_modules/made_from.json
     cmp -s "$wanted" "$made" && return
