@@ -33,7 +33,7 @@ SLIDERS = """Layout(
 )
 """
 
-# Four controls too close to their neighbours, three too small, two out of reach, one at the feet of those who stand, and
+# Four controls too close to their neighbours, three too small, two out of reach, one at the feet of standing people, and
 # two that stick out of the region.
 TWELVE = """Layout(
     version: 1,

@@ -61,7 +61,7 @@ app_packages() {
 # Whether LEAVE_OUT, words with blanks between them, has this one.
 is_left_out() { [[ " ${LEAVE_OUT:-} " == *" $1 "* ]]; }
 
-# Says of one tool that it is not there, and what is not tried for that; the run goes on.
+# Reports a missing tool and the checks left out for it; the run goes on.
 lacks() { say "NOT RUN: $*"; }
 
 # Runs an installation and says how long it took; a failed one is reported, and costs the run only its own checks.
