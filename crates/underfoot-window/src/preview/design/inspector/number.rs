@@ -3,7 +3,7 @@
 use eframe::egui::accesskit::Role;
 use eframe::egui::{DragValue, Response, Slider, SliderClamping, Ui, WidgetInfo};
 
-use super::field::{FieldAnswer, FieldEdits, RESET_PX, ShownField};
+use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, RESET_PX, ShownField};
 use super::words::{label, start, usual_range};
 use crate::edit::{Edit, pressing};
 use underfoot::units::Newtons;
@@ -121,10 +121,22 @@ pub(super) fn optional(ui: &mut Ui, field: &ShownField<'_>, of: NumberField<'_>)
     match value {
         Some(value) => required(ui, field, of, value),
         None => {
-            ui.label("off");
+            let default = field.property.value.as_str();
+            // A default that follows from another field stands in words with that field's name in files.
+            let said = if is_absent(default) { "off" } else { "as usual" };
+            let shown = ui.label(said);
+            if !is_absent(default) {
+                shown.on_hover_text(plain_names(default));
+            }
             (None, tick)
         }
     }
+}
+
+/// `text` with the plain names of the fields that stand in it by their names in files, between backquotes.
+fn plain_names(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    parts.map(|(at, part)| if at % 2 == 1 { format!("“{}”", label(part)) } else { part.to_owned() }).collect()
 }
 
 fn is_absent(value: &str) -> bool {
@@ -145,7 +157,8 @@ pub(super) fn pair(
             .speed(((of.range.1 - of.range.0) * 2e-3).min(0.1))
             .max_decimals(4)
             .update_while_editing(false);
-        let drag = ui.add_sized([66.0, ui.spacing().interact_size.y], drag);
+        let width = 0.5 * (EDITOR_PX - ui.spacing().item_spacing.x);
+        let drag = ui.add_sized([width, ui.spacing().interact_size.y], drag);
         let spoken = format!("{name}: {}", ["first", "second"][side]);
         drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &spoken));
         drag
@@ -174,6 +187,12 @@ mod tests {
         assert_eq!(step(0.0, 400.0, false), 5.0);
         assert!((step(0.0, 1.0, false) - 0.01).abs() < 1e-9);
         assert_eq!(step(0.0, 9.0, true), 1.0);
+    }
+
+    #[test]
+    fn fields_in_a_default_are_called_by_their_plain_names() {
+        assert_eq!(plain_names("0.67 of `press_share`"), "0.67 of “Takes of weight”");
+        assert_eq!(plain_names("3"), "3");
     }
 
     #[test]

@@ -9,9 +9,6 @@ use super::field::{FieldAnswer, ShownField, TypedTexts};
 use super::words::label;
 use crate::edit::{FieldOrigin, quoted};
 
-/// Width of a text field, in points.
-pub(super) const TYPED_PX: f32 = 126.0;
-
 /// A text field of this width; asks for its text once the user has finished. Text in quotes is shown without them if
 /// `is_text`.
 pub(super) fn typed(

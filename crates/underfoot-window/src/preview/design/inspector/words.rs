@@ -160,7 +160,7 @@ pub(super) fn choice(name: &str) -> String {
 }
 
 /// `text` with a capital letter.
-pub(super) fn capital(text: &str) -> String {
+pub(in crate::preview::design) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(char::to_uppercase);
     first.into_iter().flatten().chain(letters).collect()

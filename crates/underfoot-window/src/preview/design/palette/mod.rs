@@ -131,6 +131,10 @@ impl ThingList {
         if field.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
             self.words.clear();
         }
+        if field.has_focus() || !self.words.is_empty() {
+            // The hint would cover the list of what is found.
+            return field;
+        }
         field.on_hover_text(
             "Enter puts the first one where there is room; several at once, with labels: 3 button: Map, Help, Home; switch",
         )
