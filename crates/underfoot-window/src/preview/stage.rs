@@ -121,7 +121,9 @@ mod tests {
     fn the_floor_has_the_same_place_whatever_panels_are_open() {
         for width in [640.0, 900.0, 1280.0, 2560.0] {
             let alone = seen(width, area(0.0, width));
-            for canvas in [area(204.0, width - INSPECTOR_PX), area(0.0, 0.5 * width), area(0.5 * width, width)] {
+            for canvas in
+                [area(204.0, width - INSPECTOR_PX), area(0.0, 0.5 * width), area(0.5 * width, width)]
+            {
                 assert_eq!(seen(width, canvas).stage, alone.stage, "{width}");
             }
             assert!(alone.stage.width() >= 0.5 * width - 2.0 * MARGIN, "{width}: {}", alone.stage.width());

@@ -48,11 +48,14 @@ pub(super) fn show(
     ui.label(quiet(theme, home));
     for part in Document::fields_of_kind(kind) {
         let title = RichText::new(capital(&part.title)).strong().color(color(theme.ink));
-        CollapsingHeader::new(title).id_salt(("kind", &part.title)).default_open(true).show_unindented(ui, |ui| {
-            for property in part.properties.iter().filter(|property| !property.value.is_empty()) {
-                value(ui, theme, property);
-            }
-        });
+        CollapsingHeader::new(title).id_salt(("kind", &part.title)).default_open(true).show_unindented(
+            ui,
+            |ui| {
+                for property in part.properties.iter().filter(|property| !property.value.is_empty()) {
+                    value(ui, theme, property);
+                }
+            },
+        );
     }
     let made = edited.items.iter().filter(|item| {
         let widget = edited.layout().widgets.get(item.widgets.start);

@@ -121,16 +121,15 @@ pub(super) fn optional(ui: &mut Ui, field: &ShownField<'_>, of: NumberField<'_>)
     match value {
         Some(value) => required(ui, field, of, value),
         None => {
-            let default = field.property.value.as_str();
-            // A default that follows from another field stands in words with that field's name in files.
-            let said = if is_absent(default) { "off" } else { "as usual" };
-            let shown = ui.label(said);
-            if !is_absent(default) {
-                shown.on_hover_text(plain_names(default));
-            }
+            ui.label("off");
             (None, tick)
         }
     }
+}
+
+/// A number that is absent and would follow from another field, which is absent too.
+pub(super) fn following(ui: &mut Ui, field: &ShownField<'_>) -> FieldAnswer {
+    (None, ui.label("off").on_hover_text(plain_names(&field.property.value)))
 }
 
 /// `text` with the plain names of the fields that stand in it by their names in files, between backquotes.

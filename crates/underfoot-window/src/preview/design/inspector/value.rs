@@ -8,7 +8,7 @@ use super::choice::{choices, chosen, variants};
 use super::colour::{colour, colour_of};
 use super::effect::effect_name;
 use super::field::{EDITOR_PX, FieldAnswer, ShownField, TypedTexts};
-use super::number::{NumberField, optional, pair, required, two_numbers};
+use super::number::{NumberField, following, optional, pair, required, two_numbers};
 use super::place::{place, place_of};
 use super::text::typed;
 use super::words::{choice, label};
@@ -60,8 +60,7 @@ pub(super) fn value(ui: &mut Ui, field: &ShownField<'_>, texts: &mut TypedTexts)
         }
         shape => match (NumberField::of(&property.name, shape), property.value.parse()) {
             (Some(of), Ok(now)) => required(ui, field, of, now),
-            // The default follows from another field.
-            (Some(of), Err(_)) if property.origin == FieldOrigin::Default => optional(ui, field, of),
+            (Some(_), Err(_)) if property.origin == FieldOrigin::Default => following(ui, field),
             _ => {
                 let is_text = matches!(shape, FieldType::Text(_)) && property.value != "None";
                 typed(ui, field, texts, is_text, EDITOR_PX)

@@ -136,7 +136,7 @@ const CHOICES: [(&str, &str); 20] = [
     ("Press", "the press"),
     ("Release", "the release"),
     ("Largest", "the heaviest foot"),
-    ("Working", "the heaviest on a control"),
+    ("Working", "the working foot"),
     ("Each", "every foot"),
     ("East", "east"),
     ("North", "north"),
