@@ -16,7 +16,7 @@ use super::edited::EditedLayout;
 use super::list::list;
 use super::list_keys::go_on;
 use super::{Pane, Panes};
-use crate::preview::style::{panel_frame, quiet, section, write_within};
+use crate::preview::style::{panel_frame, quiet, replace_by_typing, section, write_within};
 use in_hand::PutOrder;
 use thing::PaletteSection;
 use underfoot_scene::egui_painter::{Palette, color};
@@ -128,6 +128,7 @@ impl ThingList {
         if is_led {
             field.request_focus();
         }
+        replace_by_typing(ui, &field, &self.words);
         if field.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
             self.words.clear();
         }
