@@ -4,12 +4,26 @@ import shutil
 import subprocess
 
 PROGRAMS = ("Xvfb", "xdotool", "import")
+# Maximum number of servers that are started until one can be reached.
+STARTS = 5
 
 
 class Display:
     """A screen of `size` pixels without any window; programs with the environment `env` show themselves on it."""
 
     def __init__(self, size, env=None):
+        for _ in range(STARTS):
+            number = self.start(size)
+            probe = ["xdotool", "getdisplaygeometry"]
+            if subprocess.run(probe, env=dict(os.environ, DISPLAY=f":{number}"), capture_output=True).returncode == 0:
+                break
+            # The server that had this number before has removed the socket of this one at its end.
+            end(self.server)
+        self.env = dict(os.environ, DISPLAY=f":{number}", LIBGL_ALWAYS_SOFTWARE="1", **(env or {}))
+        self.env.pop("WAYLAND_DISPLAY", None)
+
+    def start(self, size):
+        """Starts the server; returns the number of its display."""
         read, write = os.pipe()
         # Without -r, a key that a busy machine releases late repeats itself.
         self.server = subprocess.Popen(
@@ -17,8 +31,8 @@ class Display:
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         number = os.read(read, 16).decode().strip()
-        self.env = dict(os.environ, DISPLAY=f":{number}", LIBGL_ALWAYS_SOFTWARE="1", **(env or {}))
-        self.env.pop("WAYLAND_DISPLAY", None)
+        os.close(read)
+        return number
 
     def x(self, *arguments, timeout=300):
         """One command of xdotool; returns what it prints."""

@@ -10,7 +10,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use eframe::egui::accesskit::{Node, Toggled};
-use eframe::egui::{self, Event, Key, Rect, ViewportId};
+use eframe::egui::{self, Event, Key, Rect, ViewportCommand, ViewportId};
 use serde_json::{Value, json};
 
 /// The environment variable with the folder of the reports.
@@ -29,6 +29,8 @@ struct ScreenReport {
     /// The windows whose frames have begun and not yet ended, the innermost last.
     drawn: Vec<ViewportId>,
     taken: HashMap<ViewportId, TakenInput>,
+    /// The titles of the windows; the system does not report them everywhere.
+    titles: HashMap<ViewportId, String>,
     /// Whether the last report could not be written.
     has_failed: bool,
 }
@@ -80,17 +82,26 @@ const fn is_modifier(key: Key) -> bool {
 
 impl ScreenReport {
     fn into_folder(folder: PathBuf) -> Self {
-        Self { folder, drawn: Vec::new(), taken: HashMap::new(), has_failed: false }
+        Self { folder, drawn: Vec::new(), taken: HashMap::new(), titles: HashMap::new(), has_failed: false }
+    }
+
+    /// Notes the title that the program gives a window.
+    fn note_title(&mut self, of: ViewportId, output: &egui::ViewportOutput) {
+        let given = output.commands.iter().rev().find_map(|command| match command {
+            ViewportCommand::Title(title) => Some(title),
+            _ => None,
+        });
+        if let Some(title) = given.or(output.builder.title.as_ref()) {
+            self.titles.insert(of, title.clone());
+        }
     }
 
     /// The report of a frame of the window `of`.
     fn report(&self, ctx: &egui::Context, of: ViewportId, output: &egui::FullOutput) -> Option<Value> {
         let tree = output.platform_output.accesskit_update.as_ref()?;
         let taken = self.taken.get(&of)?;
-        let (scale, title, held, size) = ctx.input_for(of, |i| {
-            let title = i.viewport().title.clone().unwrap_or_default();
-            (i.pixels_per_point(), title, i.keys_down.len(), i.content_rect().size())
-        });
+        let (scale, held, size) =
+            ctx.input_for(of, |i| (i.pixels_per_point(), i.keys_down.len(), i.content_rect().size()));
         // The parts of widgets that scrolling and other clipping leave.
         let seen: HashMap<u64, Rect> = ctx.viewport_for(of, |state| {
             let all = state.prev_pass.widgets.layers().flat_map(|(_, widgets)| widgets.iter());
@@ -109,7 +120,7 @@ impl ScreenReport {
         Some(json!({
             "frame": taken.frames,
             "next_s": next_s,
-            "title": title,
+            "title": self.titles.get(&of),
             "size": size,
             "keys": taken.keys,
             "keys_down": held,
@@ -159,6 +170,7 @@ impl egui::Plugin for ScreenReport {
 
     fn output_hook(&mut self, ctx: &egui::Context, output: &mut egui::FullOutput) {
         let Some(of) = self.drawn.pop() else { return };
+        output.viewport_output.iter().for_each(|(of, shown)| self.note_title(*of, shown));
         let Some(report) = self.report(ctx, of, output) else { return };
         let written = write_whole(&report, &file_of(&self.folder, of));
         // Once: the next frame fails alike.
@@ -208,6 +220,7 @@ mod tests {
             let screen = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 300.0));
             let input = egui::RawInput { screen_rect: Some(screen), events, ..Default::default() };
             let mut drawn = ctx.run_ui(input, |ui| {
+                ui.ctx().send_viewport_cmd(ViewportCommand::Title("A floor".into()));
                 let _ = ui.button("Stand here");
                 ui.text_edit_singleline(&mut text).request_focus();
                 egui::ScrollArea::vertical().max_height(50.0).show(ui, |ui| {
@@ -240,6 +253,6 @@ mod tests {
         let counts = ["keys", "letters", "buttons", "keys_down"].map(|name| after[name].as_u64());
         assert_eq!(counts, [1, 2, 2, 1].map(Some), "{after}");
         assert!(after["frame"].as_u64() >= before["frame"].as_u64().map(|frame| frame + 2), "{after}");
-        assert_eq!(after["pointer"], json!([5.0, 6.0]));
+        assert_eq!((&after["pointer"], &after["title"]), (&json!([5.0, 6.0]), &json!("A floor")));
     }
 }

@@ -15,7 +15,8 @@ const UNSAVED: &str = "•";
 const DRAFT_S: f64 = 2.0;
 
 impl Designer {
-    pub(super) fn save(&mut self) {
+    /// Saves, or asks for a path.
+    pub(in crate::preview) fn save(&mut self) {
         let Some(path) = self.storage.file.path().map(Path::to_path_buf) else {
             return self.ask_for(Ask::SaveAs);
         };
@@ -188,11 +189,6 @@ impl Designer {
     pub(in crate::preview) fn title(&self) -> String {
         let name = self.name();
         if self.is_saved() { name } else { format!("{UNSAVED} {name}") }
-    }
-
-    /// Saves, or asks for a path.
-    pub(in crate::preview) fn save_or_ask(&mut self) {
-        if self.storage.file.path().is_some() { self.save() } else { self.ask_for(Ask::SaveAs) }
     }
 
     /// Whether a question to the user blocks saving.
