@@ -6,24 +6,26 @@ import { init as initLoader, wadouri } from "@cornerstonejs/dicom-image-loader";
 await init();
 initLoader({ maxWebWorkers: 1, decodeConfig: { wasmBasePath: "./" } });
 const engine = new RenderingEngine("engine");
-const element = document.getElementById("image");
-engine.enableElement({ viewportId: "image", type: Enums.ViewportType.STACK, element });
+engine.enableElement({ viewportId: "image", type: Enums.ViewportType.STACK, element: document.getElementById("image") });
 const viewport = engine.getViewport("image");
 const say = (id, text) => { document.getElementById(id).textContent = text; };
 const floor = connect(new URLSearchParams(location.search).get("floor") ?? undefined);
-const files = document.getElementById("files");
+onunhandledrejection = (event) => {
+  event.preventDefault();
+  say("note", `Not shown: ${event.reason.error?.message ?? event.reason.message}`);
+};
 
 async function show(index) {
   const last = viewport.getImageIds().length - 1;
   if (last < 0) return say("note", "Open a series first");
-  const shown = Math.min(Math.max(index, 0), last);
+  const shown = Math.min(Math.max(index, 0), last), slices = floor.controls.get("slices");
   await viewport.setImageIdIndex(shown);
   say("place", `Image ${shown + 1} of ${last + 1}`);
-  floor.setRange("slices", 1, last + 1);
-  floor.set("slices", shown + 1);
+  if (slices?.range[1] !== last + 1) floor.setRange("slices", 1, last + 1);
+  if (slices?.value !== shown + 1) floor.set("slices", shown + 1);
 }
-files.onchange = async () => {
-  const series = [...files.files].sort((one, other) => one.name.localeCompare(other.name));
+document.getElementById("files").onchange = async ({ target }) => {
+  const series = [...target.files].sort((one, other) => one.name.localeCompare(other.name));
   await viewport.setStack(series.map((file) => wadouri.fileManager.add(file)));
   await show(0);
 };

@@ -2,8 +2,10 @@
 //
 // SERIES has the images of tools/apps/series.py, each with a white bar as long as its number, and compressed ones in `compressed`.
 import assert from "node:assert/strict";
-import { readdir } from "node:fs/promises";
+import { mkdtemp, readdir, readFile, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { until } from "../harness.mjs";
 import { visit } from "./visit.mjs";
 
@@ -38,14 +40,20 @@ async function open(page, files, says) {
   await says("place", `Image 1 of ${files.length}`);
 }
 
+const taken = await mkdtemp(join(tmpdir(), "taken-"));
 await visit({ name: "cornerstone", layout: "surgical", executablePath, underfoot, built, shots },
   async ({ page, says, shown }) => {
-    const wasm = await images(join(series, "compressed"));
-    await open(page, wasm, says);
+    const unreadable = fileURLToPath(import.meta.url);
+    await (await page.$("#files")).uploadFile(unreadable);
+    await says("note", "Not shown");
+    await shown("a file that is no image");
+    await open(page, await images(join(series, "compressed")), says);
     await until("a compressed image is shown", async () => (await look(page)).middle > 20);
     await shown("a compressed image");
     await open(page, await images(series), says);
     await shown("a series is open");
+    const wire = await page.browser().target().createCDPSession();
+    await wire.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: taken });
   },
   async ({ page, says, shown }) => {
     const is = (number) => until(`image ${number} is shown`, async () => {
@@ -64,4 +72,11 @@ await visit({ name: "cornerstone", layout: "surgical", executablePath, underfoot
     await shown("previous: image 2");
     await is(11);
     await shown("the slider: image 11");
+    const { middle } = await look(page);
+    await until("the image is inverted", async () => Math.abs((await look(page)).middle - (255 - middle)) < 3);
+    await shown("light");
+    const picture = await until("a picture is taken", () => readFile(join(taken, "image.png")).catch(() => null));
+    assert.equal(picture.subarray(1, 4).toString(), "PNG");
+    await shown("a picture is taken");
   });
+await rm(taken, { recursive: true });
