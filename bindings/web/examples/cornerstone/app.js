@@ -1,12 +1,12 @@
 // Images that feet leaf through: `underfoot run surgical --web 127.0.0.1:9002`.
 import { connect } from "underfoot";
-import { Enums, RenderingEngine, init } from "@cornerstonejs/core";
+import { RenderingEngine, init } from "@cornerstonejs/core";
 import { init as initLoader, wadouri } from "@cornerstonejs/dicom-image-loader";
 
 await init();
 initLoader({ maxWebWorkers: 1, decodeConfig: { wasmBasePath: "./" } });
 const engine = new RenderingEngine("engine");
-engine.enableElement({ viewportId: "image", type: Enums.ViewportType.STACK, element: document.getElementById("image") });
+engine.enableElement({ viewportId: "image", type: "stack", element: document.getElementById("image") });
 const viewport = engine.getViewport("image");
 const say = (id, text) => { document.getElementById(id).textContent = text; };
 const floor = connect(new URLSearchParams(location.search).get("floor") ?? undefined);
