@@ -16,6 +16,9 @@ export const QUIET = [
   "--disable-sync", "--enable-unsafe-swiftshader",
 ];
 
+/** The parts of the simulated floor. */
+const SEED = "3";
+
 /** An address of this machine whose port was free just before. */
 export async function freeAddress() {
   const probe = createServer();
@@ -42,8 +45,7 @@ export async function until(what, check, seconds = 30) {
 }
 
 /**
- * `underfoot run` with a web server at `web`, and boards at `boards`. The simulated floor is always the same one, and the floor
- * file fits it.
+ * `underfoot run` with a web server at `web`, and boards at `boards`. The floor file fits the simulated floor.
  */
 export class Site {
   #underfoot;
@@ -55,8 +57,9 @@ export class Site {
     site.layout = layout;
     site.folder = await mkdtemp(join(tmpdir(), "floor-"));
     [site.web, site.boards] = [await freeAddress(), await freeAddress()];
-    const measure = site.#start("simulate", "--seed", "3", "--write-floor", "floor.ron", "--seconds", "0.1", "--send", site.boards);
-    await once(measure, "exit");
+    // One that sends for a moment to a port that nobody reads.
+    const measure = ["--seed", SEED, "--write-floor", "floor.ron", "--seconds", "0.1", "--send", site.boards];
+    await once(site.#start("simulate", ...measure), "exit");
     return site;
   }
 
@@ -66,14 +69,15 @@ export class Site {
     return process;
   }
 
-  /** Serves the floor. */
-  serve() {
-    return this.#start("run", this.layout, "--floor", "floor.ron", "--listen", this.boards, "--web", this.web, "--no-osc", "--sound", "off");
+  /** Serves the floor, with further options. */
+  serve(...options) {
+    const usual = ["--floor", "floor.ron", "--listen", this.boards, "--web", this.web, "--no-osc", "--sound", "off"];
+    return this.#start("run", this.layout, ...usual, ...options);
   }
 
   /** Plays a scenario; the file is named from the root of the repository. */
   play(scenario) {
-    return this.#start("simulate", this.layout, "--seed", "3", "--scenario", join(root, scenario), "--send", this.boards);
+    return this.#start("simulate", this.layout, "--seed", SEED, "--scenario", join(root, scenario), "--send", this.boards);
   }
 
   async end() {

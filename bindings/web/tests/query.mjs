@@ -2,34 +2,16 @@
 //
 //     node query.mjs UNDERFOOT
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
-import { once } from "node:events";
-import { mkdtemp, rm } from "node:fs/promises";
-import { createServer } from "node:net";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
 import oscquery from "oscquery";
+import { freeAddress, Site, until } from "./harness.mjs";
 
-const probe = createServer().listen(0, "127.0.0.1");
-await once(probe, "listening");
-const { port } = probe.address();
-probe.close();
-
-const folder = await mkdtemp(join(tmpdir(), "floor-"));
-const options = ["run", "map", "--listen", "127.0.0.1:0", `--discover=127.0.0.1:${port}`, "--no-osc", "--wav", "out.wav"];
-const floor = spawn(resolve(process.argv[2]), options, { cwd: folder, stdio: "ignore" });
+const site = await Site.make(process.argv[2], "map");
+const address = await freeAddress();
+site.serve(`--discover=${address}`);
 try {
-  const service = new oscquery.DiscoveredService("127.0.0.1", port);
-  for (let tries = 0; ; tries++) {
-    try {
-      await service.update();
-      break;
-    } catch (error) {
-      // The floor may still be starting.
-      if (tries === 100) throw error;
-      await new Promise((done) => setTimeout(done, 100));
-    }
-  }
+  const service = new oscquery.DiscoveredService("127.0.0.1", Number(address.split(":")[1]));
+  // The floor may still be starting.
+  await until("a list of addresses", () => service.update().then(() => true, () => false));
   assert.match(service.hostInfo.name, /^underfoot/);
   assert.equal(service.hostInfo.oscTransport, "UDP");
   assert.equal(service.hostInfo.extensions.LISTEN, true);
@@ -40,7 +22,5 @@ try {
   assert.equal(service.resolvePath("/underfoot/widget/nobody"), null);
   console.log(`oscquery reads ${methods.size} addresses`);
 } finally {
-  floor.kill();
-  await once(floor, "exit");
-  await rm(folder, { recursive: true, force: true });
+  await site.end();
 }
