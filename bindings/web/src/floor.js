@@ -14,8 +14,8 @@ const AFTER = {
 };
 
 /**
- * A floor over WebSocket: its controls, holds and feet as they are now, events, and requests. `index.d.ts` describes its
- * members.
+ * A floor over WebSocket: its controls, holds and feet as they are now, events, and requests. `index.d.ts` describes
+ * its members.
  */
 export class Floor {
   #link;
@@ -150,10 +150,15 @@ export class Floor {
   }
 }
 
+/** The lists that lines of these events have. */
+const LISTS = { floor: "controls", contacts: "contacts" };
+
+/** Returns the line in `text`; null for one that no floor sends. */
 function parsed(text) {
   try {
     const line = JSON.parse(text);
-    return typeof line === "object" ? line : null;
+    const isLine = typeof line === "object" && line !== null;
+    return isLine && (!(line.event in LISTS) || Array.isArray(line[LISTS[line.event]])) ? line : null;
   } catch {
     return null;
   }

@@ -63,7 +63,7 @@ export class Holds {
     return new Set([...this.#watchers].map((watcher) => watcher.id));
   }
 
-  // A page that drew for long first reads the reports that have come meanwhile. In a hidden page timers are late without that.
+  // A page that was busy first reads the reports that have come meanwhile. In a hidden page timers are late anyway.
   #expire() {
     const isBusy = performance.now() - this.#reportedAt > BELIEVED_FOR + BUSY;
     if (isBusy && !isHidden()) this.#timer = setTimeout(() => this.end("silence"), READING);

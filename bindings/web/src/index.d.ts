@@ -34,7 +34,7 @@ export interface Floor {
   readonly contacts: readonly Contact[];
   /** The ids of the controls that feet hold; none while the last report is older than `BELIEVED_FOR`. */
   readonly held: readonly string[];
-  /** Number of messages that were no lines of JSON. */
+  /** Number of messages that no floor sends. */
   readonly unreadable: number;
 
   /** Whether a foot holds this control. Right at any time, also where a busy page runs timers late. */
@@ -81,8 +81,8 @@ export interface Floor {
 export type LinkState = "no_connection" | "closed" | "waiting" | "live" | "partial" | "lost";
 
 /**
- * Why a hold has ended: the floor reports it no more; no report for `BELIEVED_FOR`; the connection is lost, or closed by
- * this page; the function that `whileHeld` returns was called.
+ * Why a hold has ended: the floor reports it no more; no report for `BELIEVED_FOR`; the connection is lost, or closed
+ * by this page; the function that `whileHeld` returns was called.
  */
 export type EndOfHold = "released" | "silence" | "no_connection" | "closed" | "unwatched";
 

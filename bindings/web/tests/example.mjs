@@ -1,5 +1,5 @@
-// The page of controls in headless Chromium: it says why controls are off and that they are on, and continues after its floor
-// was gone for a moment.
+// The page of controls in headless Chromium: it says why controls are off and that they are on, and continues after
+// its floor was gone for a moment.
 //
 //     node example.mjs CHROMIUM UNDERFOOT
 import { fileURLToPath } from "node:url";

@@ -59,9 +59,9 @@ globalThis.WebSocket = class {
   }
 };
 
-export const CONTROL = { id: "beam", kind: "dead_man", label: "Beam", value: null, off: null, off_text: null, pressed: false };
-export const GREETING = { event: "floor", title: "Test", page: null, width_m: 2, depth_m: 2, tile_m: 0.3, link: "live", controls: [CONTROL] };
-export const press = (event, id = "beam") => ({ t_s: 1, event, id, value: null, force_n: 150, x_m: 1, y_m: 1, contact: 4 });
+export const CONTROL = { id: "beam", kind: "dead_man", label: "Beam", value: null, off: null, pressed: false };
+export const GREETING = { event: "floor", title: "Test", page: null, link: "live", controls: [CONTROL] };
+export const press = (event, id = "beam") => ({ event, id, value: null, force_n: 150, x_m: 1, y_m: 1, contact: 4 });
 export const holds = (...held) => ({ t_s: 1, held, sequence: 1 });
 
 /** A floor that has greeted, its socket, and what happens to it. */

@@ -77,7 +77,8 @@ export class Site {
 
   /** Plays a scenario; the file is named from the root of the repository. */
   play(scenario) {
-    return this.#start("simulate", this.layout, "--seed", SEED, "--scenario", join(root, scenario), "--send", this.boards);
+    const visit = ["--seed", SEED, "--scenario", join(root, scenario), "--send", this.boards];
+    return this.#start("simulate", this.layout, ...visit);
   }
 
   async end() {
@@ -91,7 +92,11 @@ export class Site {
 }
 
 const TYPES = {
-  ".css": "text/css", ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".wasm": "application/wasm",
+  ".css": "text/css",
+  ".html": "text/html",
+  ".js": "text/javascript",
+  ".mjs": "text/javascript",
+  ".wasm": "application/wasm",
 };
 
 /** Serves the files of a folder; returns the server and its address. */

@@ -1,4 +1,5 @@
-// The floor through the package, without a browser: prints its events, and the beginning and end of each hold of a control.
+// The floor through the package, without a browser: prints its events, and the beginning and end of each hold of a
+// control.
 //
 //     node --import ./socket.mjs lines.mjs 127.0.0.1:9002 beam
 //

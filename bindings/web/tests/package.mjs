@@ -1,5 +1,5 @@
-// The package as its users get it: packed, installed into an empty folder, its types checked, and the examples of README.md run
-// there while feet walk.
+// The package as its users get it: packed, installed into an empty folder, its types checked, and the examples of
+// README.md run there while feet walk.
 //
 //     node package.mjs UNDERFOOT
 import assert from "node:assert/strict";
@@ -56,7 +56,8 @@ async function start({ code }, number, web) {
   const file = join(empty, `example_${number}.mjs`);
   await writeFile(file, code.replaceAll("127.0.0.1:9002", web));
   const printed = [];
-  const process = spawn("node", ["--import", join(here, "socket.mjs"), file], { cwd: empty, stdio: ["ignore", "pipe", "inherit"] });
+  const command = ["--import", join(here, "socket.mjs"), file];
+  const process = spawn("node", command, { cwd: empty, stdio: ["ignore", "pipe", "inherit"] });
   process.stdout.setEncoding("utf8").on("data", (text) => printed.push(...text.trim().split("\n")));
   return { process, printed };
 }
@@ -85,8 +86,9 @@ try {
   await writeFile(join(empty, "package.json"), '{ "private": true, "type": "module" }');
   run("npm", "install", "--offline", "--silent", "--no-audit", "--no-fund", `./${archive}`);
   await writeFile(join(empty, "typed.ts"), await readFile(join(here, "typed.ts")));
-  const strict = ["--strict", "--noEmit", "--exactOptionalPropertyTypes", "--noUncheckedIndexedAccess", "--types", ""];
-  run(join(source, "node_modules/.bin/tsc"), ...strict, "--module", "nodenext", "--target", "es2022", "--lib", "es2022,dom", "typed.ts");
+  const strict = ["--strict", "--exactOptionalPropertyTypes", "--noUncheckedIndexedAccess", "--noEmit"];
+  const target = ["--module", "nodenext", "--target", "es2022", "--lib", "es2022,dom", "--types", ""];
+  run(join(source, "node_modules/.bin/tsc"), ...strict, ...target, "typed.ts");
   await members();
 
   site.serve();

@@ -1,6 +1,7 @@
 // The images with Cornerstone3D, leafed through by feet: node cornerstone.mjs CHROMIUM UNDERFOOT BUILT SERIES [SHOTS]
 //
-// SERIES has the images of tools/apps/series.py, each with a white bar as long as its number, and compressed ones in `compressed`.
+// SERIES has the images of tools/apps/series.py, each with a white bar as long as its number, and compressed ones in
+// `compressed`.
 import assert from "node:assert/strict";
 import { mkdtemp, readdir, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";

@@ -9,13 +9,14 @@ import { files, QUIET, Site } from "../harness.mjs";
 const LINES = 40;
 
 /**
- * Opens the page `name` of the folder `built` in `executablePath`, checks its script, calls `prepare` with it, plays the scenario and
- * calls `steps`; each step ends with a screenshot in the folder `shots`, if there is one.
+ * Checks the script of the example `name`, opens its page of the folder `built` in `executablePath`, and calls `prepare`;
+ * then plays the scenario and calls `steps`. Each step ends with a screenshot in the folder `shots`, if there is one.
  */
 export async function visit({ name, layout, executablePath, underfoot, built, shots }, prepare, steps) {
   const script = await readFile(new URL(`../../examples/${name}/app.js`, import.meta.url), "utf8");
   const lines = script.trimEnd().split("\n");
-  assert.ok(lines.length <= LINES && lines.every((line) => line.length <= 120), `${lines.length} lines in ${name}/app.js`);
+  const isShort = lines.length <= LINES && lines.every((line) => line.length <= 120);
+  assert.ok(isShort, `${name}/app.js has ${lines.length} lines, or long ones`);
   console.log(`${name}: ${lines.length} lines of script`);
 
   const site = await Site.make(underfoot, layout);
@@ -32,8 +33,8 @@ export async function visit({ name, layout, executablePath, underfoot, built, sh
     wire.on("Network.requestWillBeSent", ({ request }) => hosts.add(new URL(request.url).host));
     wire.on("Network.webSocketCreated", ({ url }) => hosts.add(new URL(url).host));
     await page.goto(`http://${served.address}/${name}/?floor=${site.web}`);
-    const says = (id, text) =>
-      page.waitForFunction((id, text) => document.getElementById(id).textContent.includes(text), { timeout: 60000 }, id, text);
+    const includes = (id, text) => document.getElementById(id).textContent.includes(text);
+    const says = (id, text) => page.waitForFunction(includes, { timeout: 60000 }, id, text);
     let step = 0;
     const shown = async (what) => {
       console.log(`${name}: ${++step}. ${what}`);

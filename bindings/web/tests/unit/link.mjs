@@ -94,9 +94,9 @@ test("controls follow lines, and what is not understood is counted or handed on"
   const lines = [];
   floor.on("line", ({ event }) => lines.push(event));
   const off = { event: "state", ...CONTROL, off: "disabled", off_text: "an app has switched it off" };
-  socket.say(off, "{", "7", "null", { event: "tomorrow" }, { event: "changed", ...press("changed"), id: "nobody" });
+  socket.say(off, "{", "7", "null", { event: "floor" }, { event: "contacts", contacts: 4 }, { event: "tomorrow" }, { event: "changed", ...press("changed"), id: "nobody" });
   assert.deepEqual([floor.controls.get("beam").off, floor.controls.get("beam").kind], ["disabled", "dead_man"]);
-  assert.deepEqual([floor.unreadable, lines], [3, ["state", "tomorrow", "changed"]]);
+  assert.deepEqual([floor.unreadable, lines], [5, ["state", "tomorrow", "changed"]]);
   assert.equal(floor.controls.size, 1);
 });
 
