@@ -19,7 +19,6 @@ export class Link {
   #heardAt = 0;
   #retry = null;
   #watch = null;
-  #isClosed = false;
 
   /** Calls `take` with the text of each line, and `lost` with a sentence at the end of each connection or attempt. */
   constructor(url, take, lost) {
@@ -38,7 +37,6 @@ export class Link {
 
   /** Ends the connection for good. */
   close() {
-    this.#isClosed = true;
     clearTimeout(this.#retry);
     this.#leave();
   }
@@ -67,7 +65,7 @@ export class Link {
 
   #end(why) {
     this.#leave();
-    if (!this.#isClosed) this.#retry = setTimeout(() => this.#open(), this.#wait());
+    this.#retry = setTimeout(() => this.#open(), this.#wait());
     this.#lost(why);
   }
 

@@ -79,9 +79,19 @@ test("a closed floor ends holds and comes back no more", () => {
   socket.say(press("pressed"), holds("beam"));
   floor.close();
   assert.deepEqual([told, floor.link, socket.isLeft], [["down", "closed"], "closed", true]);
+  pass(20000);
   socket.drop();
   pass(20000);
   assert.equal(sockets.length, before);
+});
+
+test("an app that closes a lost floor is left alone", () => {
+  const { floor, socket } = made();
+  floor.on("link", () => floor.close());
+  const before = sockets.length;
+  socket.drop();
+  pass(20000);
+  assert.deepEqual([sockets.length, floor.link], [before, "closed"]);
 });
 
 test("an exception of the app neither stops the end of a hold nor other functions", () => {

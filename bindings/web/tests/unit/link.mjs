@@ -51,8 +51,9 @@ test("a floor that says nothing for three seconds is lost, and its late lines co
   assert.equal(links[0][0], "no_connection");
   assert.match(links[0][1], /nothing has come .* for 3 s/);
   assert.deepEqual([floor.contacts, socket.isLeft], [[], true]);
-  socket.say(press("clicked"));
-  assert.equal(floor.controls.get("beam").pressed, false);
+  socket.say(press("pressed"));
+  socket.drop();
+  assert.deepEqual([floor.controls.get("beam").pressed, links.length], [false, 1]);
 });
 
 test("requests go out while there is a connection, and are never kept for later", () => {
