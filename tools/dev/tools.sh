@@ -111,17 +111,25 @@ make_python() {
     cp "$1" "$2"
 }
 
-# The packages that lead the browser, in place; installed again when package.json changes.
+# Packages of npm in place, in each folder of `npm_folders`; made anew when its package.json changes.
 install_web() {
-    local wanted=bindings/web/package.json made=bindings/web/node_modules/made_from.json
-    cmp -s "$wanted" "$made" && return
-    command -v npm >/dev/null || { lacks "there is no npm, so nothing opens the floor's page"; return; }
-    install_step make_web "$wanted" "$made"
+    local folder
+    for folder in $(npm_folders); do
+        cmp -s "$folder/package.json" "$folder/node_modules/made_from.json" && continue
+        command -v npm >/dev/null || { lacks "there is no npm, so nothing opens the floor's page"; return; }
+        install_step make_web "$folder"
+    done
+}
+
+# The packages that lead the browser and read the floor; and the libraries of the example pages.
+npm_folders() {
+    echo bindings/web
+    is_left_out apps || echo bindings/web/examples
 }
 
 make_web() {
-    npm install --silent --no-audit --no-fund --no-package-lock --prefix bindings/web || return
-    cp "$1" "$2"
+    npm install --silent --no-audit --no-fund --no-package-lock --prefix "$1" || return
+    cp "$1/package.json" "$1/node_modules/made_from.json"
 }
 
 # Whether a program of cargo's works, such as `nextest`.

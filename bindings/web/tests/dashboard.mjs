@@ -4,50 +4,26 @@
 //
 // With FOLDER, screenshots of a desk and of a phone, light and dark, go there.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
-import { once } from "node:events";
-import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
-import { createServer } from "node:net";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { join } from "node:path";
 import puppeteer from "puppeteer-core";
+import { QUIET, Site, until } from "./harness.mjs";
 
 const [executablePath, underfoot, pictures] = process.argv.slice(2);
 
-async function freePort() {
-  const probe = createServer().listen(0, "127.0.0.1");
-  await once(probe, "listening");
-  const { port } = probe.address();
-  probe.close();
-  return port;
-}
-
-const folder = await mkdtemp(join(tmpdir(), "floor-"));
-const [web, boards] = [`127.0.0.1:${await freePort()}`, `127.0.0.1:${await freePort()}`];
-const scenario = new URL("../../crates/underfoot-cli/tests/program/visit.ron", import.meta.url);
-await writeFile(join(folder, "visit.ron"), await readFile(scenario));
-const start = (...options) => spawn(resolve(underfoot), options, { cwd: folder, stdio: "ignore" });
-const floor = start("run", "map", "--listen", boards, "--web", web, "--no-osc", "--wav", "out.wav");
-const browser = await puppeteer.launch({ executablePath, args: ["--no-sandbox"], headless: true });
+const site = await Site.make(underfoot, "map");
+const floor = site.serve();
+const browser = await puppeteer.launch({ executablePath, args: QUIET, headless: true });
 let status = 1;
 try {
   const page = await browser.newPage();
   page.on("pageerror", (error) => { throw error; });
-  page.on("request", (request) => assert.equal(new URL(request.url()).host, web, "no other host is asked"));
+  page.on("request", (request) => assert.equal(new URL(request.url()).host, site.web, "no other host is asked"));
   // A refusal by the page's policy is an error in the console; so is a floor that is gone.
   const refused = [];
   page.on("console", (message) => { if (message.text().includes("Content Security Policy")) refused.push(message.text()); });
   const says = (id, text) =>
     page.waitForFunction((id, text) => document.getElementById(id)?.textContent.includes(text), {}, id, text);
-  for (let tries = 0; ; tries++) {
-    try {
-      await page.goto(`http://${web}/dashboard`);
-      break;
-    } catch (error) {
-      if (tries === 100) throw error;
-      await new Promise((done) => setTimeout(done, 100));
-    }
-  }
+  await until("the dashboard", () => page.goto(`http://${site.web}/dashboard`).catch(() => null));
   await says("status", "failed");
   await says("reasons", "waits for boards");
   await says("off", "has not been sensed yet");
@@ -55,8 +31,8 @@ try {
   await page.evaluate((web) => new Promise((done) => {
     const socket = new WebSocket(`ws://${web}/`);
     socket.onopen = () => { socket.send(JSON.stringify({ request: "widget/home/disable", args: [] })); setTimeout(done, 200); };
-  }), web);
-  const feet = start("simulate", "--scenario", "visit.ron", "--send", boards);
+  }), site.web);
+  const feet = site.play("crates/underfoot-cli/tests/program/visit.ron");
   await says("boards", "live");
   await says("ignored", "an app has switched it off");
   await says("counts", "disabled 1");
@@ -79,7 +55,6 @@ try {
   status = 0;
 } finally {
   await browser.close();
-  floor.kill();
-  await rm(folder, { recursive: true, force: true });
+  await site.end();
 }
 process.exit(status);
