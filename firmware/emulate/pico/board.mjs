@@ -31,6 +31,9 @@ const GET_DESCRIPTOR = 6;
 const TEXT = 3;
 const SERIAL_NUMBER = 3;
 
+/** The control of the endpoint with the bytes of the serial port, in the memory of the USB device. */
+const DATA_TO_COMPUTER = 0x90;
+
 const NANOS_PER_CYCLE = 8;
 const MS = 1_000_000;
 
@@ -111,6 +114,20 @@ export class Board {
     core.SP = this.chip.readUint32(PROGRAM);
     core.PC = this.chip.readUint32(PROGRAM + 4) & ~1;
     this.begunMs = this.ms;
+  }
+
+  /** Makes the computer take nothing that is sent to it between these two times. */
+  deafen(fromMs, toMs) {
+    const { usbCtrl } = this.chip;
+    const update = usbCtrl.DPRAMUpdated.bind(usbCtrl);
+    const held = [];
+    usbCtrl.DPRAMUpdated = (offset, value) => {
+      const isHeld = offset === DATA_TO_COMPUTER && this.ms >= fromMs && this.ms < toMs;
+      if (isHeld) held.push(value);
+      else update(offset, value);
+    };
+    const again = this.clock.createAlarm(() => held.splice(0).forEach((value) => update(DATA_TO_COMPUTER, value)));
+    again.schedule((toMs - this.ms) * MS);
   }
 
   /** Asks the USB device for its serial number: a text of two bytes a letter, behind its length and its sort. */

@@ -1,6 +1,7 @@
 // Runs the firmware of a Pico with scripted voltages at its 32 inputs:
 //
 //     node main.mjs MODULES FIRMWARE.uf2 SCRIPT [--out FILE --until MS] [--noise MV] [--without CONVERTER] [--stall MS]
+//         [--deaf FROM-TO]
 //
 // MODULES is the folder of npm's modules. Each line of the script is `ms input millivolts`, in order of time; input -1
 // is a mark, which prints `mark MS SECONDS`, by the clock of the system.
@@ -8,7 +9,7 @@
 // Without --out, the program runs in real time, and file descriptor 3 is the master of a pseudo terminal: terminal.py
 // opens it. The script begins when a program opens the terminal. With --out, the bytes of the port go to a file as fast as
 // the machine runs the program, up to --until. --noise adds up to so many millivolts to each input; --without takes a
-// converter away; --stall stops both SPI buses at a time.
+// converter away; --stall stops both SPI buses at a time; with --deaf, the computer takes nothing between two times.
 //
 // At the end, the last line says how many bytes nobody took, and by how much the emulator was late at most.
 
@@ -22,7 +23,7 @@ import { Terminal } from "./terminal.mjs";
 const text = { type: "string" };
 const { values, positionals } = parseArgs({
   allowPositionals: true,
-  options: { out: text, until: text, noise: text, without: text, stall: text },
+  options: { out: text, until: text, noise: text, without: text, stall: text, deaf: text },
 });
 const [modules, uf2, path] = positionals;
 const number = (given) => (given === undefined ? undefined : Number(given));
@@ -31,6 +32,7 @@ const say = (line) => writeSync(1, `${line}\n`);
 const script = new Script(path, (ms) => say(`mark ${ms.toFixed(3)} ${(Date.now() / 1000).toFixed(6)}`));
 const board = new Board(modules, uf2, script, { without: number(values.without), stallMs: number(values.stall) });
 board.noise = number(values.noise) ?? 0;
+if (values.deaf) board.deafen(...values.deaf.split("-").map(Number));
 let isStopped = false;
 board.onWatchdog = () => {
   say(`watchdog at ${board.ms.toFixed(1)} ms`);
