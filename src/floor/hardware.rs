@@ -2,6 +2,8 @@
 
 use std::net::SocketAddr;
 
+use underfoot_packet::BoardAddress;
+
 use super::{
     Area, Calibration, CalibrationRecord, Corner, CountRange, Day, Drive, FloorFile, Geometry, Loudspeaker,
     MapRecord, Network, PositionMap, Response, SensorId, SerialWire, TileId,
@@ -216,7 +218,7 @@ fn boards_by_row(geometry: &Geometry) -> Vec<Board> {
                     geometry.sensors(tile).iter().map(move |&corner| Some(SensorId { tile, corner }))
                 })
                 .collect();
-            let board = Board::new(format!("/underfoot/board/{}", boards.len()), channels);
+            let board = Board::new(BoardAddress(boards.len()).to_string(), channels);
             boards.extend(Some(board).filter(|board| !board.channels.is_empty()));
         }
     }

@@ -127,6 +127,21 @@ npm_folders() {
     is_left_out apps || echo bindings/web/examples
 }
 
+# What runs the firmware of the Pico; made anew when package.json changes.
+install_pico() {
+    local wanted=firmware/emulate/package.json made=$tools/pico/made_from.json
+    ! is_left_out emulators || return 0
+    cmp -s "$wanted" "$made" && return
+    command -v npm >/dev/null || { lacks "there is no npm, so no firmware of a Pico runs"; return; }
+    install_step make_pico "$wanted" "$made"
+}
+
+make_pico() {
+    mkdir -p "$tools/pico" && cp "$1" "$tools/pico/package.json" || return
+    npm install --silent --no-audit --no-fund --no-package-lock --prefix "$tools/pico" || return
+    cp "$1" "$2"
+}
+
 make_web() {
     npm install --silent --no-audit --no-fund --no-package-lock --prefix "$1" || return
     cp "$1/package.json" "$1/node_modules/made_from.json"
@@ -186,6 +201,7 @@ install_tools() {
     [ "$(uname)" != Linux ] || install_tool_packages
     install_python
     install_web
+    install_pico
     install_cargo_tools
     # The shell forgets where it has found a python3 before.
     hash -r

@@ -104,7 +104,7 @@ enum Command {
     Render(render::Args),
     /// Check the actuators and their sound device: a walk from tile to tile, the devices, the channel map.
     Rack(rack::Args),
-    /// Find which board reads which tiles, by stepping from board to board.
+    /// Find which board reads which tiles, by stepping from board to board; or draw the wiring.
     Wiring(wiring::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
     Sense(sense::SenseArgs),

@@ -56,3 +56,36 @@ fn a_walk_finds_boards_that_have_changed_places_and_keeps_the_floor_as_it_is() {
         |floor: &Floor| floor.boards.iter().map(|board| board.address.clone()).collect::<Vec<_>>();
     assert_eq!(addresses(&found), addresses(&swapped));
 }
+
+/// The pictures of the manual are those of the floor files that it names. After a change run this with
+/// `UPDATE_EXPECTED=1`, and look at them.
+#[test]
+fn the_pictures_of_the_manual_show_the_wiring_of_its_floors() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    for (floor, name) in [("arduino/pad", "pad-wiring"), ("pico/floor", "pico-wiring")] {
+        let folder = tempfile::tempdir().unwrap();
+        let output = underfoot()
+            .args(["wiring", "--picture", &format!("{root}/firmware/{floor}.ron"), "--out"])
+            .arg(folder.path().join(format!("{name}.svg")))
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        for file in [format!("{name}.svg"), format!("{name}-circuit.svg"), format!("{name}.csv")] {
+            let drawn = std::fs::read_to_string(folder.path().join(&file)).unwrap();
+            let page = format!("{root}/docs/{file}");
+            if std::env::var_os("UPDATE_EXPECTED").is_some() {
+                std::fs::write(&page, &drawn).unwrap();
+            }
+            let held = std::fs::read_to_string(&page).unwrap_or_default();
+            assert!(held == drawn, "docs/{file} shows other wires: write it anew with UPDATE_EXPECTED=1");
+        }
+    }
+}
+
+#[test]
+fn a_board_with_more_channels_than_the_inputs_of_its_sort_is_refused() {
+    let output = underfoot().args(["wiring", "--picture", "paper", "--pins", "arduino"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("/underfoot/board/0 has 24 channels, and each Arduino has 16 inputs"), "{said}");
+    assert!(!output.status.success());
+}

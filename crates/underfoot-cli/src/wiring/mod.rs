@@ -1,4 +1,10 @@
-//! `underfoot wiring`: a walk from board to board that finds which board reads which tiles.
+//! `underfoot wiring`: a walk from board to board that finds which board reads which tiles; the wiring as pictures.
+
+mod picture;
+mod pins;
+mod plan;
+mod schematic;
+mod sheet;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -14,6 +20,7 @@ use super::floor_args::{FloorArgs, FloorOut};
 use super::number::patience;
 use super::senders::BoardArgs;
 use super::stop::stop_flag;
+use picture::PictureArgs;
 
 /// Options of `underfoot wiring`.
 ///
@@ -32,13 +39,19 @@ pub(crate) struct Args {
     /// How long to wait for a step on each tile.
     #[arg(long, value_name = "S", default_value = "60", value_parser = patience)]
     wait: Duration,
-    /// Output file for the floor with the wiring that was found.
-    #[arg(long, value_name = "FLOOR.ron")]
+    /// Output file for the floor with the wiring that was found; with --picture, for the plan: PNG, or SVG if the name
+    /// ends in .svg. Table and circuit stand beside it.
+    #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArgs,
 }
 
-/// Walks from board to board.
+/// Walks from board to board, or draws the wiring.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(floor) = &args.picture.picture {
+        return args.picture.write(floor, args.out.as_deref());
+    }
     let out = args.out.as_deref().map(FloorOut::new);
     let floor = args.boards.load(&args.floor)?;
     let source = args.boards.bind(args.listen, &floor)?;
