@@ -13,10 +13,10 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource};
 use underfoot::outgoing::json::{JsonValue, Message, RefusalRecord};
-use underfoot::recording::{PacketTap, TappedPackets};
 use underfoot::runtime::Session;
 use underfoot::schema;
 use underfoot::serve::Command;
+use underfoot::source::{PacketTap, TappedPackets};
 use underfoot_window::preview::{
     EventNews, LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink,
     ServerState,
@@ -150,7 +150,7 @@ impl Run {
     ) -> Result<Self, Failure> {
         let (clock, left_out) = (source.clock(), Box::new(source.left_out()));
         let input = announced(source, window.layouts.clone(), LayoutCause::Served);
-        let input = tap.wrap(input, greeting.floor.geometry);
+        let input = tap.wrap(input);
         let session = Session::source(input, clock)
             .floor(greeting.floor.clone())
             .layout(greeting.layout.clone())

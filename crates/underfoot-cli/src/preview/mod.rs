@@ -22,12 +22,12 @@ use clap::Args as _;
 use underfoot::feel::Renderer;
 use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
-use underfoot::recording::{Recording, RecordingSwitch, TappedPackets};
+use underfoot::recording::{Recording, RecordingSwitch};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
-use underfoot::source::{FloorInput, LinkFaults};
+use underfoot::source::{FloorInput, LinkFaults, TappedPackets};
 use underfoot::units::HostClock;
 use underfoot_scene::scene::Show;
 use underfoot_sim::{
@@ -189,7 +189,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let notice = move |text| drop(told.try_send(Notice::Sound(text)));
     let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
     let (tap, packets) = TappedPackets::new();
-    let input = tap.wrap(stage.input, floor.geometry);
+    let input = tap.wrap(stage.input);
     let mut session = Session::source(input, stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())
