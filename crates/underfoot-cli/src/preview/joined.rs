@@ -19,7 +19,7 @@ use underfoot::serve::Command;
 use underfoot::source::{PacketTap, TappedPackets};
 use underfoot_window::preview::{
     EventNews, LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink,
-    ServerState,
+    ServerState, ToWindow,
 };
 
 use super::super::failure::Failure;
@@ -28,7 +28,7 @@ use super::super::watch::FileWatch;
 use super::LOOK;
 use super::announced::announced;
 use super::commands::keep_floor;
-use super::feeds::{ToWindow, stop_and_wait};
+use super::stop_and_wait;
 
 /// Interval between comparisons of the controls with the server's.
 const COMPARE_EVERY: Duration = Duration::from_millis(100);
@@ -155,7 +155,7 @@ impl Run {
             .floor(greeting.floor.clone())
             .layout(greeting.layout.clone())
             .method(greeting.method)
-            .sink(ToWindow { events: window.events.clone(), missed: 0 })
+            .sink(ToWindow::new(window.events.clone()))
             .start()?;
         let snapshots = session.take_snapshots();
         Ok(Self { session, snapshots, left_out })

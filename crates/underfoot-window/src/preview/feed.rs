@@ -8,6 +8,7 @@ use glam::Vec2;
 use super::channels::WindowChannels;
 use super::design::DesignInput;
 use super::playback::Playback;
+use super::share::ShareDesk;
 use super::visit::VisitDesk;
 use underfoot::engine::Snapshot;
 use underfoot::feel::{Effect, Gesture};
@@ -68,6 +69,8 @@ pub struct PreviewInput {
     pub packets: Option<TappedPackets>,
     /// The layout as text for Design mode; `None` where it cannot be edited.
     pub design: Option<DesignInput>,
+    /// Makes links of the layout of Design mode; `None` where no page could open them.
+    pub share: Option<Box<dyn ShareDesk>>,
 }
 
 impl PreviewInput {
@@ -100,6 +103,7 @@ impl PreviewInput {
             choices: Vec::new(),
             effects: Vec::new(),
             design: None,
+            share: None,
         }
     }
 }
