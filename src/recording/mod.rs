@@ -11,7 +11,6 @@ mod events;
 mod messages;
 mod order;
 mod pack;
-mod packets;
 mod parts;
 mod reader;
 mod recorder;
@@ -35,7 +34,6 @@ use thiserror::Error;
 use crate::schema::Diagnostics;
 
 pub(crate) use entry::{Entry, decoder};
-pub use packets::{PacketTap, TappedPackets};
 pub use reader::Recording;
 pub(crate) use recorder::read_layout;
 pub use recorder::{Recorded, Recorder, WhenBehind};

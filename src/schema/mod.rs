@@ -54,6 +54,7 @@ mod reference;
 mod repeat;
 #[cfg(feature = "save")]
 mod save;
+mod saved;
 mod send;
 mod send_checks;
 mod send_codecs;
@@ -86,7 +87,8 @@ pub use page::{Loaded, folder_beside, kinds_beside, load_layout, load_layout_and
 pub use places::Places;
 pub use reference::{Chapter, reference, write_reference};
 #[cfg(feature = "save")]
-pub use save::{SaveError, Saved, save_floor, save_text, write_over};
+pub use save::{save_floor, save_text, write_over};
+pub use saved::{SaveError, Saved};
 pub use send::written_messages;
 #[cfg(feature = "save")]
 pub use state::usual_state;

@@ -48,6 +48,7 @@ mod send_args;
 mod senders;
 mod sense;
 mod session;
+mod share;
 mod simulate;
 mod stop;
 mod table;
@@ -100,6 +101,8 @@ enum Command {
     /// Render an effect: sound, picture, figures; read and write Apple's haptic patterns.
     #[cfg(feature = "lab")]
     Feel(feel::Args),
+    /// Print a link that opens the layout in a browser, or in `underfoot preview`: the layout is in the link itself.
+    Share(share::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
     /// Check the actuators and their sound device: a walk from tile to tile, the devices, the channel map.
@@ -170,6 +173,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Reference(args)) => reference::run(&args),
         #[cfg(feature = "lab")]
         Some(Command::Feel(args)) => feel::run(&args),
+        Some(Command::Share(args)) => share::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Rack(args)) => rack::run(&args),
         Some(Command::Wiring(args)) => wiring::run(&args),

@@ -15,13 +15,14 @@ use underfoot::runtime::Session;
 use underfoot::sink::Since;
 use underfoot::units::Instant;
 use underfoot_window::preview::{
-    EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels,
+    EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState,
+    ProgramChannels, ToWindow,
 };
 
 use super::super::failure::Failure;
 use super::LOOK;
 use super::announced::announced;
-use super::feeds::{ToWindow, stop_and_wait};
+use super::stop_and_wait;
 
 /// A recording that is shown; ends when this is dropped.
 pub(super) struct ShownRecording {
@@ -152,7 +153,7 @@ impl Run {
             .floor(floor.clone())
             .layout(layout.clone())
             .method(method)
-            .sink(Since::new(ToWindow { events: window.events.clone(), missed: 0 }, first))
+            .sink(Since::new(ToWindow::new(window.events.clone()), first))
             .start()?;
         let snapshots = session.take_snapshots();
         Ok(Self { session, floor, layout: Arc::new(layout), transport, progress, snapshots, first })

@@ -1,22 +1,30 @@
 //! Data between the window and its floor: events, feet, signals of the actuators.
 
 use std::sync::mpsc::{SyncSender, TrySendError};
-use std::thread;
-use std::time::Duration;
 
+use glam::Vec2;
+use triple_buffer::Output;
+
+use super::feed::{EventNews, FootSink, PreviewFoot, ScopeFeed, ShoeFeed};
 use underfoot::feel::ScopeReader;
-use underfoot::glam::Vec2;
 use underfoot::messages::MessageNews;
-use underfoot::runtime::Session;
 use underfoot::sink::{EventSink, Report};
 use underfoot::widget::WidgetEvent;
 use underfoot_sim::{Foot, FootHandle};
-use underfoot_window::preview::{EventNews, FootSink, PreviewFoot, ScopeFeed};
 
 /// Passes events on to the window.
-pub(super) struct ToWindow {
-    pub(super) events: SyncSender<EventNews>,
-    pub(super) missed: u64,
+#[derive(Debug)]
+pub struct ToWindow {
+    events: SyncSender<EventNews>,
+    missed: u64,
+}
+
+impl ToWindow {
+    /// Passes events on to the window with the other end of this channel.
+    #[must_use]
+    pub fn new(events: SyncSender<EventNews>) -> Self {
+        Self { events, missed: 0 }
+    }
 }
 
 impl EventSink for ToWindow {
@@ -36,16 +44,9 @@ impl EventSink for ToWindow {
     }
 }
 
-/// Stops a floor and waits until it has ended, so that no more reports come from it.
-pub(super) fn stop_and_wait(session: &Session) {
-    session.stop();
-    while !session.has_ended() {
-        thread::sleep(Duration::from_millis(1));
-    }
-}
-
-/// The mouse's feet on the simulated floor.
-pub(super) struct Mouse(pub(super) FootHandle);
+/// The mouse's feet on a simulated floor.
+#[derive(Debug)]
+pub struct Mouse(pub FootHandle);
 
 impl FootSink for Mouse {
     fn lead(&mut self, over_s: f32, paths: &[Vec<PreviewFoot>]) {
@@ -72,18 +73,36 @@ fn foot(shoe: &PreviewFoot) -> Foot {
 }
 
 /// The shoe around a foot.
-pub(super) fn shoe(foot: &Foot) -> PreviewFoot {
-    PreviewFoot { length_m: foot.length_m + SHOE_M, ..PreviewFoot::from(foot) }
+fn shoe(foot: &Foot) -> PreviewFoot {
+    PreviewFoot {
+        position: foot.position,
+        heading_rad: foot.heading,
+        length_m: foot.length_m + SHOE_M,
+        force: foot.force,
+        roll: foot.roll,
+        left: foot.left,
+    }
+}
+
+/// The shoes around all feet of a simulated floor.
+#[must_use]
+pub fn shoes(mut seen: Output<Vec<Foot>>) -> ShoeFeed {
+    Box::new(move |shoes| {
+        shoes.clear();
+        shoes.extend(seen.read().iter().map(shoe));
+    })
 }
 
 /// Signals of the actuators, as the window draws them.
-pub(super) struct SignalScopes {
+pub struct SignalScopes {
     reader: ScopeReader,
     points: Vec<(f32, f32)>,
 }
 
 impl SignalScopes {
-    pub(super) fn new(reader: ScopeReader) -> Self {
+    /// The signals that `reader` reads.
+    #[must_use]
+    pub fn new(reader: ScopeReader) -> Self {
         Self { reader, points: Vec::new() }
     }
 }
