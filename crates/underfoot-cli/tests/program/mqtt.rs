@@ -68,7 +68,9 @@ impl Broker {
 
     fn hear(&mut self) {
         for line in self.heard.iter().flat_map(Receiver::try_iter) {
-            let (topic, text) = line.split_once(' ').unwrap_or((&line, ""));
+            let (topic, text) = line.split_once(' ').unwrap_or((line.as_str(), ""));
+            // The client's word for a topic that is no longer retained.
+            let text = if text == "(null)" { "" } else { text };
             self.clicks += usize::from(topic == "floor/go");
             self.texts.insert(topic.to_owned(), text.to_owned());
         }
@@ -173,10 +175,11 @@ fn a_broker_retains_what_the_floor_is_and_hears_of_its_end() {
         serde_json::from_str(&text).unwrap()
     };
     let held = description(&mut broker, "homeassistant/binary_sensor/floor/floor_drive_held/config");
-    assert_eq!((&held["state_topic"], &held["payload_on"]), (&DRIVE.into(), &"ON".into()));
-    assert_eq!(held["availability_topic"], "floor/status");
+    let parts = ["state_topic", "payload_on", "availability_topic"];
+    assert_eq!(parts.map(|part| held[part].clone()), [DRIVE, "ON", "floor/status"]);
     let event = description(&mut broker, "homeassistant/event/floor/floor_drive_pressed/config");
-    assert_eq!((&event["event_types"][0], &event["state_topic"]), (&"pressed".into(), &"floor/go".into()));
+    assert_eq!(event["event_types"][0], "pressed");
+    assert_eq!(event["state_topic"], "floor/go");
     let zoom = description(&mut broker, "homeassistant/sensor/floor/floor_zoom_value/config");
     assert_eq!(zoom["unique_id"], "floor_zoom_value");
     // The guardian dies: the broker says that the floor is gone, until the next one is there.

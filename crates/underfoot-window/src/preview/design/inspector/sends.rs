@@ -11,8 +11,7 @@ use crate::edit::{Address, Edit};
 use crate::preview::style::quiet;
 use underfoot::layout::Widget;
 use underfoot::messages::{
-    DMX_CHANNELS, KeyStroke, MAX_ARGUMENTS, MAX_MESSAGES, MidiNote, MouseButton, MqttTarget, Payload,
-    SendTarget, Sending, TargetSort,
+    KeyStroke, MAX_MESSAGES, MidiNote, MouseButton, Payload, SendTarget, Sending, TargetSort,
 };
 use underfoot::schema::{version_with, written_messages};
 use underfoot_format::Named;
