@@ -59,9 +59,11 @@ mod send;
 mod send_checks;
 mod send_codecs;
 mod send_contacts;
+mod send_devices;
 mod send_midi;
 #[cfg(feature = "save")]
 mod state;
+mod target_devices;
 mod targets;
 #[cfg(test)]
 mod tests;
@@ -93,7 +95,7 @@ pub use send::written_messages;
 #[cfg(feature = "save")]
 pub use state::usual_state;
 pub use underfoot_format::describe::{Description, FieldDescription, FieldType};
-pub use version::FORMAT_VERSION;
+pub use version::{FORMAT_VERSION, version_with};
 pub use write::write_layout;
 
 pub use effect::{is_effect_name, write_named_effect};

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::ground;
 use super::send_codecs;
 use super::suggest::did_you_mean;
+use super::targets;
 use crate::feel::{EffectKind, Feel, Manner};
 use crate::layout::Look;
 use crate::widget::Behaviour;
@@ -79,6 +80,11 @@ pub fn reference() -> Vec<Chapter> {
             "messages",
             "Messages to other programs: in `send` of a kind or widget; their targets are in `targets` of the layout.",
             send_codecs::describe(),
+        ),
+        Chapter::new(
+            "targets",
+            "Programs and devices that messages go to: `to` of an entry in `targets` of the layout.",
+            targets::describe(),
         ),
         Chapter::new(
             "grounds",

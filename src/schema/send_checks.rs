@@ -8,7 +8,7 @@ use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
-use super::version::{self, WITH_MESSAGES};
+use super::version::{self, WITH_MESSAGES, version_with};
 use crate::messages::{ContactPayload, Payload, Sending, TargetSort, When};
 use crate::widget::{Behaviour, Guard};
 use underfoot_format::codec::Written;
@@ -29,6 +29,13 @@ pub(super) fn check(reader: &Reader<'_>, page: &WrittenPage) {
     let written = of_controls.or(of_feet);
     if let Some(at) = page.targets.first().map(|target| &target.name.at).or(written) {
         version::require(reader, at.clone(), ("messages", WITH_MESSAGES), ("layout", page.version));
+    }
+    for target in &page.targets {
+        let first = version_with(target.to().sort());
+        if first > WITH_MESSAGES {
+            let things = "targets of DMX or MQTT and programs";
+            version::require(reader, target.name.at.clone(), (things, first), ("layout", page.version));
+        }
     }
     for control in &page.controls {
         let Some(kind) = &control.kind else { continue };
@@ -129,9 +136,15 @@ fn twice(reader: &Reader<'_>, page: &WrittenPage) {
 /// The thing that a message acts on: two controls that act on one are in each other's way.
 fn subject(payload: &Payload) -> String {
     match payload {
-        Payload::Key(_) | Payload::Button(_) | Payload::Wheel(_) | Payload::Pointer(_) | Payload::Osc(..) => {
-            format!("{payload:?}")
-        }
+        Payload::Key(_)
+        | Payload::Button(_)
+        | Payload::Wheel(_)
+        | Payload::Pointer(_)
+        | Payload::Osc(..)
+        | Payload::Mqtt(..)
+        | Payload::Run(_) => format!("{payload:?}"),
+        // Several controls may well set one channel to levels of their own.
+        Payload::Dmx(settings) => format!("{payload} to {}", settings.top()),
         // Settings of a note, or the ends of a range, make no other message of it.
         Payload::Note(..)
         | Payload::Controller(_)

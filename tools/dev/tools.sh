@@ -35,6 +35,9 @@ tool_packages() {
     has npm || echo npm
     # It scrapes the floor's metrics.
     has prometheus || echo prometheus
+    # A broker of MQTT, and its client.
+    has mosquitto || echo mosquitto
+    has mosquitto_sub || echo mosquitto-clients
     has python3 || echo python3
     python3 -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
 }
@@ -181,6 +184,8 @@ tools_note() {
     python3 -c 'import pythonosc, pythontuio' 2>/dev/null \
         || lacks "python-osc and python-tuio are missing, so they read nothing that we send"
     python3 -c 'import zeroconf' 2>/dev/null || lacks "zeroconf is missing, so no other program looks for a floor by mDNS"
+    python3 -c 'import sacn, stupidArtnet' 2>/dev/null \
+        || lacks "sacn and stupidArtnet are missing, so no program of others receives our DMX"
     unshare --net true 2>/dev/null || unshare --user --map-root-user --net true 2>/dev/null \
         || lacks "no network namespace can be made here, so no network card comes late"
     as_root_quietly unshare --mount --pid --fork --cgroup true 2>/dev/null \

@@ -11,6 +11,7 @@ mod place;
 mod problems;
 mod sections;
 mod send_choices;
+mod send_devices;
 mod sends;
 mod text;
 mod value;
