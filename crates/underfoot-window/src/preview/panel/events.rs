@@ -119,14 +119,14 @@ fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
     let line = TextRow { ui, rect, size: 12.5 };
     line.right(0.19, &format!("{:.3}", press.at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, press.id.as_str(), color(theme.ink));
-    line.left(0.58, 0.86, in_short(press.why), color(theme.warning));
+    line.left(0.58, 0.86, &in_short(press.why), color(theme.warning));
     line.right(1.0, &format!("{:.0} N", press.force.0), color(theme.ink));
     response.on_hover_text(spoken);
 }
 
 /// The reason for which a press was ignored, in a word or two that fit their column.
-const fn in_short(why: Ignored) -> &'static str {
-    match why {
+fn in_short(why: Ignored) -> String {
+    let words = match why {
         Ignored::Off(_) => "it is off",
         Ignored::Step => "a step, a rest",
         Ignored::Object => "an object",
@@ -139,7 +139,9 @@ const fn in_short(why: Ignored) -> &'static str {
         Ignored::Guard => "not settled",
         Ignored::TooLight => "too light",
         Ignored::TooShort => "too short",
-    }
+        other => return other.to_string(),
+    };
+    words.to_owned()
 }
 
 /// Shows a message to another program: its target on the right, all of it on hover.
