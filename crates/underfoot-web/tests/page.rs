@@ -1,4 +1,5 @@
 //! The floor of the page without a browser: feet of the window press controls, and layouts come and go.
+#![allow(clippy::unwrap_used)]
 
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -1,5 +1,5 @@
 //! Lights by real packets, received as the standards of Art-Net and E1.31 describe them.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
 
 use std::io::BufReader;
 use std::net::UdpSocket;
