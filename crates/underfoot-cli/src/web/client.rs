@@ -42,7 +42,8 @@ fn talk(
             off.greeted(&seen);
         }
         // Windows compute it from the packets.
-        for line in if joins { Vec::new() } else { off.lines(&seen) } {
+        let lines_of_off = if joins { Vec::new() } else { off.lines(&seen) };
+        for line in lines_of_off {
             socket.send(Message::text(line))?;
         }
         let next_look = Instant::now() + LAYOUT_EVERY;
