@@ -125,7 +125,7 @@ impl Outlet for DmxOutlet {
         let rest = if self.due > 0 { PACE } else { ALIVE };
         let waits = self.sent.map_or(Duration::ZERO, |sent| rest.saturating_sub(sent.elapsed()));
         if !waits.is_zero() {
-            return Ok(Some(waits));
+            return self.standing().map(|()| Some(waits));
         }
         self.send()?;
         Ok(Some(if self.due > 0 { PACE } else { ALIVE }))
