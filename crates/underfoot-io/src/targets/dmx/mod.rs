@@ -47,6 +47,8 @@ pub(super) struct DmxOutlet {
     /// The number of packets that must go out at the pace of values; more than [`REPEATS`] for a change that has not gone
     /// out yet.
     due: u8,
+    /// The failure of the last packet.
+    failed: Option<String>,
 }
 
 impl DmxOutlet {
@@ -61,19 +63,27 @@ impl DmxOutlet {
         };
         let socket = socket(via).map_err(gone)?;
         let universe = Universe::default();
-        Ok(Self { socket, packets, universe, begins: true, sent: None, due: REPEATS + 1 })
+        Ok(Self { socket, packets, universe, begins: true, sent: None, due: REPEATS + 1, failed: None })
     }
 
     /// Sends the levels at once; a failure leaves them for the next time.
     fn send(&mut self) -> Result<(), OutletError> {
+        let receiver = self.packets.receiver();
         for packet in self.packets.of(&self.universe, self.sent.is_none())? {
-            self.socket
-                .send_to(&packet, self.packets.receiver())
-                .map_err(|error| OutletError::Refused(format!("{}: {error}", self.packets.receiver())))?;
+            if let Err(error) = self.socket.send_to(&packet, receiver) {
+                self.failed = Some(format!("{receiver}: {error}"));
+                return self.standing();
+            }
         }
+        self.failed = None;
         (self.sent, self.begins) = (Some(Instant::now()), false);
         self.due = self.due.saturating_sub(1);
         Ok(())
+    }
+
+    /// The failure of the last packet, since which nothing has gone out.
+    fn standing(&self) -> Result<(), OutletError> {
+        self.failed.clone().map_or(Ok(()), |problem| Err(OutletError::Refused(problem)))
     }
 
     /// Sends the levels after a change that must not wait.
@@ -90,7 +100,7 @@ impl Outlet for DmxOutlet {
                 if self.universe.set(*level) {
                     self.due = REPEATS + 1;
                 }
-                Ok(())
+                self.standing()
             }
             Act::Down(Holdable::Dmx(settings), _) => {
                 self.universe.set(settings.with(settings.top()));
@@ -108,14 +118,14 @@ impl Outlet for DmxOutlet {
         let Holdable::Dmx(settings) = what else { return Ok(()) };
         let was_down = self.universe.set(settings.with(settings.from));
         let is_unsent = was_down || self.due > REPEATS;
-        if is_unsent && !self.begins { self.send_now() } else { Ok(()) }
+        if is_unsent && !self.begins { self.send_now() } else { self.standing() }
     }
 
     fn work(&mut self) -> Result<Option<Duration>, OutletError> {
         let rest = if self.due > 0 { PACE } else { ALIVE };
         let waits = self.sent.map_or(Duration::ZERO, |sent| rest.saturating_sub(sent.elapsed()));
         if !waits.is_zero() {
-            return Ok(Some(waits));
+            return self.standing().map(|()| Some(waits));
         }
         self.send()?;
         Ok(Some(if self.due > 0 { PACE } else { ALIVE }))

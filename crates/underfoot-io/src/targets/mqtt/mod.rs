@@ -133,8 +133,9 @@ impl Outlet for MqttOutlet {
     fn carry_out(&mut self, act: &Act) -> Result<(), OutletError> {
         match act {
             Act::Mqtt(message) if message.retained => {
+                // Without a broker it waits, and a later state replaces it.
                 self.states.set(message);
-                Ok(())
+                self.connected().map(drop)
             }
             Act::Mqtt(message) => self.publish(message),
             Act::Down(Holdable::Mqtt(switch), _) => {
