@@ -172,6 +172,13 @@ await edition.click("New");
 await edition.click("Empty floor");
 await edition.wait(300);
 for (const [thing, dx, dy] of [["button", -120, 90], ["slider", 30, 0], ["switch", 130, -110]]) {
+  // The list is longer than the window: it is found by its name.
+  await edition.click("Search things");
+  await edition.page.keyboard.down("Control");
+  await edition.page.keyboard.press("a");
+  await edition.page.keyboard.up("Control");
+  await edition.page.keyboard.type(thing);
+  await edition.wait(200);
   const [from, board] = [await edition.middle(`Put down: ${thing}`), await edition.middle("Drawing board")];
   await edition.page.mouse.move(from.x, from.y);
   await edition.page.mouse.down();

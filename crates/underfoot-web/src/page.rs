@@ -24,6 +24,7 @@ use super::kinds::OwnTexts;
 /// # Errors
 /// A sentence for the user if there is no window: no WebGL, for example.
 #[wasm_bindgen]
+#[allow(clippy::needless_pass_by_value, reason = "JavaScript passes values")]
 pub async fn start(
     canvas: HtmlCanvasElement,
     sound: String,
@@ -66,7 +67,7 @@ fn opened(fragment: &str, play: &Function) -> Result<(PageFloor, PreviewInput), 
         Ok(opened) => Ok(opened),
         Err(wrong) => {
             let (floor, input) = first()?;
-            floor.tell(format!("The layout of the link cannot be shown: {wrong}"));
+            floor.tell(format!("The layout of the link cannot be shown; {wrong}"));
             Ok((floor, input))
         }
     }
