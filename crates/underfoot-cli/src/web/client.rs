@@ -42,9 +42,9 @@ fn talk(
             off.greeted(&seen);
         }
         // Windows compute it from the packets.
-        let lines_of_off = if joins { Vec::new() } else { off.lines(&seen) };
-        for line in lines_of_off {
-            socket.send(Message::text(line))?;
+        let states = if joins { Vec::new() } else { off.lines(&seen) };
+        for state in states {
+            socket.send(Message::text(state))?;
         }
         let next_look = Instant::now() + LAYOUT_EVERY;
         while Instant::now() < next_look {
