@@ -29,7 +29,7 @@ impl MessageList<'_> {
                 let written = arguments.join(" ");
                 // One line has blanks between arguments.
                 if arguments.iter().any(|argument| argument.is_empty() || argument.contains(' ')) {
-                    ui.label(quiet(self.theme, &format!("{written} (edit it as text)")));
+                    ui.label(quiet(self.theme, format!("{written} (edit it as text)")));
                     return None;
                 }
                 let typed = self.typed(ui, &name("Arguments"), &written)?;
