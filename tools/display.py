@@ -30,9 +30,8 @@ class Display:
             ["Xvfb", "-displayfd", str(write), "-r", "-nolisten", "tcp", "-screen", "0", f"{size[0]}x{size[1]}x24"],
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
-        number = os.read(read, 16).decode().strip()
-        os.close(read)
-        return number
+        # The reading end stays open: the server may still write the end of its line.
+        return os.read(read, 16).decode().strip()
 
     def x(self, *arguments, timeout=300):
         """One command of xdotool; returns what it prints."""

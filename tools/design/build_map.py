@@ -209,10 +209,13 @@ def region(window, fields):
 
 
 def fill(fields, control):
-    """The fields of the control that was put down; its size first: on the way, nothing overlaps or leaves the floor."""
+    """The fields of the control that was put down, at the end of a row by keys.
+
+    Its size first, then north: on the way, nothing overlaps or leaves the floor.
+    """
     _, identity, label, at, size = control
     values = [("Name for apps", identity), ("Text on it", label), ("Size: width", size[0]), ("Size: depth", size[1]),
-              ("Place: east", at[0]), ("Place: north", at[1])]
+              ("Place: north", at[1]), ("Place: east", at[0])]
     for name, value in values:
         fields.fill(name, str(value))
 

@@ -37,6 +37,8 @@ const RECENT: usize = 3;
 pub(super) struct ThingList {
     /// The words of the search.
     words: String,
+    /// Whether the search was used since the pointer came to it.
+    is_searched: bool,
     /// The things that were taken last, the latest first.
     recent: Vec<PaletteThing>,
 }
@@ -133,6 +135,11 @@ impl ThingList {
             self.words.clear();
         }
         if field.has_focus() || !self.words.is_empty() {
+            self.is_searched = true;
+        } else if !field.hovered() {
+            self.is_searched = false;
+        }
+        if self.is_searched {
             // The hint would cover the list of what is found.
             return field;
         }
