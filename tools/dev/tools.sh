@@ -130,7 +130,7 @@ npm_folders() {
     is_left_out apps || echo bindings/web/examples
 }
 
-# What runs the firmware of the Pico; made anew when package.json changes.
+# The emulator of the Pico; installed again when package.json changes.
 install_pico() {
     local wanted=firmware/emulate/package.json made=$tools/pico/made_from.json
     ! is_left_out emulators || return 0

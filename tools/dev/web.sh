@@ -6,7 +6,7 @@ wasm_features=(bulk-memory mutable-globals multivalue nontrapping-float-to-int r
 # The version of wasm-bindgen in Cargo.lock; its program must be of the very same one.
 bindgen_version() { sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p}' Cargo.lock; }
 
-# What the build of the web edition needs beyond that of the program.
+# Needs of the web edition's build beyond the program's.
 install_web_tools() {
     local version; version=$(bindgen_version)
     rustup target add wasm32-unknown-unknown 2>/dev/null \

@@ -251,7 +251,7 @@ fn another_process_goes_on_with_a_stream_wherever_it_stood() {
         let mark = 1 + u16::try_from(round % 200).unwrap();
         assert!(outlets.carry_out(0, &level(mark), &mut |text| panic!("{text}")));
         outlets.work(&mut |text| panic!("{text}"));
-        // Whatever the first process had sent last.
+        // As if the first process had sent this number last.
         fixture.last = fixture.last.map(|(of, _)| (of, last));
         assert_eq!(u16::from(fixture.levels()[0]), mark, "after {last}");
         let of = fixture.last.map(|(of, _)| of);

@@ -103,7 +103,7 @@ impl BrokerLink {
         self.client.as_ref().is_some_and(|client| publish(client).is_ok())
     }
 
-    /// Closes the connection after what has been published, so that the broker does not execute the last will.
+    /// Closes the connection after all published messages, so that the broker does not execute the last will.
     pub(super) fn end(&self) {
         self.disconnect();
         let begun = Instant::now();
@@ -142,7 +142,7 @@ fn converse(options: MqttOptions, tell: &Sender<LinkNews>, ends: &AtomicBool) {
     for event in connection.iter() {
         let told = match event {
             Ok(Event::Incoming(Packet::ConnAck(_))) => tell.send(LinkNews::Connected),
-            // What went before it has gone out.
+            // All earlier messages have gone out.
             Ok(Event::Outgoing(Outgoing::Disconnect)) => return,
             Ok(_) => Ok(()),
             Err(error) => {

@@ -64,7 +64,7 @@ impl RetainedStates {
         self.repeat();
     }
 
-    /// Passes what waits to `publish`, as long as that takes it.
+    /// Passes waiting messages to `publish`, until it refuses one.
     fn pass_on(&mut self, mut publish: impl FnMut(MqttMessage) -> bool) {
         while let Some(topic) = self.waiting.pop_first() {
             let Some(payload) = self.texts.get(&topic).cloned() else { continue };
