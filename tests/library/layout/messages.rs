@@ -219,7 +219,7 @@ fn a_layout_says_what_its_controls_send_to_lights_brokers_and_programs() {
     assert!(matches!(&topic.payload, Payload::Mqtt(topic, _) if topic == "flash"));
     let [scene, note] = of("scene_2") else { panic!() };
     let Payload::Mqtt(topic, settings) = &scene.payload else { panic!("{scene:?}") };
-    assert_eq!((topic.as_str(), settings.payload.as_deref()), ("scene/2", Some("S2")));
+    assert_eq!((topic.as_str(), settings.payload.as_deref()), ("scene/2", Some("s2")));
     assert_eq!(note.payload, Payload::Run(vec!["Scene 2".into()]));
     let text = write_layout(&layout);
     assert!(text.contains("version: 4,"), "{text}");

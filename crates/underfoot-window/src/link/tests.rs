@@ -1,3 +1,5 @@
+//! Links back and forth, damaged ones too.
+
 use proptest::prelude::*;
 
 use super::*;
