@@ -171,6 +171,7 @@ fn kinds_and_effects_of_a_link_work_and_a_kept_effect_goes_into_the_next_link() 
     };
     let mut page = Page::new(&shared);
     let big = middle_of(&page.input.layout, "big");
+    page.stand(big, 0.0, 400);
     page.stand(big, 150.0, 400);
     assert!(page.events().iter().any(|event| event == "big pressed"));
 

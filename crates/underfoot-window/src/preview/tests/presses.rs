@@ -102,7 +102,7 @@ fn this_press_is_used_and_saved_at_once_or_saved_later() {
     room.write(pressed_home());
     room.window.get_by_label("Use and save").click();
     room.run(3);
-    assert_eq!(tried(&room), Some((Newtons(35.0), Newtons(35.0 * 40.0 / 60.0))));
+    assert_eq!(tried(&room), Some((Newtons(35.0), Newtons(23.0))));
     assert!(room.says("Save as"), "a layout without a file asks for its path");
     room.window.key_press(Key::Escape);
     room.run(3);
