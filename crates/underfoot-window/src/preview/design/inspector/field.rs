@@ -167,11 +167,13 @@ pub(super) fn value_ink(field: &ShownField<'_>) -> Option<Color32> {
     (field.property.origin != FieldOrigin::Written).then(|| color(field.theme.quiet))
 }
 
-/// The end of a row: a button that resets a written field, or a word for values that differ.
+/// The end of a row: a button that resets a written field, or a sign for values that differ.
 pub(super) fn reset(ui: &mut Ui, field: &ShownField<'_>) -> Option<Edit> {
     let property = field.property;
     if property.origin == FieldOrigin::Several {
-        ui.label(RichText::new("differs").size(11.5).color(color(field.theme.quiet)));
+        let differs = ui.label(RichText::new("≠").color(color(field.theme.quiet)));
+        differs.widget_info(|| WidgetInfo::labeled(Role::Label, true, "differs"));
+        differs.on_hover_text(origin(&property.origin));
         return None;
     }
     if property.origin != FieldOrigin::Written || KEPT.contains(&property.name.as_str()) {
