@@ -28,7 +28,7 @@ fn every_shipped_layout_comes_back_to_the_byte_from_the_whole_address_and_from_i
     for shared in shipped().chain([with_own(), SharedLayout::default()]) {
         let fragment = shared.fragment().unwrap();
         assert!(fragment.chars().all(|letter| letter.is_ascii_alphanumeric() || "#.-_".contains(letter)));
-        // Short texts grow by what surrounds them.
+        // Short texts grow by their frame.
         assert!(shared.len() < 1000 || fragment.len() < shared.len(), "{}: it is packed", shared.name);
         assert_eq!(SharedLayout::of_link(&fragment), Ok(shared.clone()));
         assert_eq!(SharedLayout::of_link(&format!("https://example.org/floor/{fragment}")), Ok(shared));
