@@ -71,7 +71,7 @@ fn beyond_apple(name: &str) -> Option<Key> {
         #[cfg(windows)]
         "Menu" => Key::Apps,
         #[cfg(windows)]
-        "Print" => Key::Snapshot,
+        "Print" => Key::PrintScr,
         // Windows tells the two keys for Enter apart by a flag only.
         #[cfg(windows)]
         "KP_Enter" => Key::Return,
