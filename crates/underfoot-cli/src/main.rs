@@ -27,6 +27,7 @@ mod fonts;
 mod guardian;
 mod latency;
 mod layout_args;
+mod man;
 mod measure;
 #[cfg(feature = "lab")]
 mod meter;
@@ -127,6 +128,8 @@ enum Command {
     /// Hold what a server holds down, and release it when the server fails; the server starts it.
     #[command(hide = true)]
     Guardian,
+    /// Print the page for `man`, or write one of each command.
+    Man(man::Args),
     /// Print completions for a shell.
     Completions {
         /// The shell.
@@ -187,6 +190,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         #[cfg(feature = "lab")]
         Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Guardian) => guardian::run(),
+        Some(Command::Man(args)) => man::run(&args, Cli::command()),
         Some(Command::Completions { shell }) => {
             // A direct write to standard output would panic after the reader has gone.
             let mut script = Vec::new();

@@ -100,3 +100,8 @@ pub use simulated::{Pace, SimulatedSource};
 pub use slide::Slide;
 pub use visit::{Visit, visit};
 pub use watched::{WatchedFeet, watched};
+
+/// Tests the Rust code in the page of this crate.
+#[cfg(all(doctest, feature = "net"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -318,6 +318,28 @@ fn completions_know_every_command() {
 }
 
 #[test]
+fn each_command_has_a_page_for_man() {
+    let folder = tempfile::tempdir().unwrap();
+    let pages = folder.path().join("made/man");
+    let output = underfoot().args(["man", "--out"]).arg(&pages).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let page = |name: &str| std::fs::read_to_string(pages.join(name)).unwrap();
+    assert!(page("underfoot-run.1").contains("web"));
+    // The page of the program leads to those of all commands.
+    let whole = page("underfoot.1");
+    for command in ["run", "simulate", "session", "check", "render", "sense"] {
+        let name = format!("underfoot-{command}.1");
+        assert!(
+            pages.join(&name).exists()
+                && whole.replace('\\', "").contains(&format!("underfoot-{command}(1)"))
+        );
+    }
+    // A command that only the server starts has none.
+    assert!(!pages.join("underfoot-guardian.1").exists());
+    assert_eq!(said(&underfoot().arg("man").output().unwrap()).trim_end(), whole.trim_end());
+}
+
+#[test]
 fn sense_goes_by_the_floor_file_s_geometry_and_maps() {
     let folder = tempfile::tempdir().unwrap();
     let (table, floor) = (folder.path().join("table.csv"), folder.path().join("floor.ron"));

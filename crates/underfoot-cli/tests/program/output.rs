@@ -32,10 +32,11 @@ fn status(arguments: &[&str], folder: &Path, out: Stdio, err: Option<Stdio>) -> 
 }
 
 /// Commands that print, on standard output or standard error.
-const PRINTERS: [&[&str]; 9] = [
+const PRINTERS: [&[&str]; 10] = [
     &["--help"],
     &["--version"],
     &["completions", "bash"],
+    &["man"],
     &["reference"],
     &["addresses", "map"],
     &["check", "map.ron"],
