@@ -13,7 +13,7 @@ use underfoot::schema::{self, Kinds, parse_layout};
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
 use underfoot_scene::scene::{self, Scene, Show, Theme, View, in_drawn_order};
 
-/// Width of a card that is wide enough for a sentence in three lines, in points.
+/// Width of a card that is wide enough for a sentence in four lines, in points.
 const CARD: f32 = 204.0;
 
 /// Gap between two cards, in points.
@@ -22,22 +22,20 @@ const GAP: f32 = 10.0;
 /// Room around the picture in a card, in points.
 const INSET: f32 = 8.0;
 
-/// Height of title and sentence below the picture, in points.
-const TEXT: f32 = 78.0;
-
-/// Largest number of lines of a sentence; the rest of it appears under the pointer.
-const LINES: usize = 3;
+/// Height of the title below the picture and of each line of the sentence, in points.
+const TITLE: f32 = 32.0;
+const LINE: f32 = 15.0;
 
 /// Room between the gallery and the edges of the window, in points.
 const MARGIN: egui::Vec2 = vec2(36.0, 48.0);
 
 /// The layouts that the window can open.
 #[derive(Default)]
-pub(super) struct Gallery {
+pub(super) struct LayoutGallery {
     /// Their names: of shipped ones, or of files.
     names: Vec<String>,
     /// One card for each name, drawn at the first opening and in the colours of `theme`.
-    cards: Vec<Card>,
+    cards: Vec<LayoutCard>,
     theme: Option<Theme>,
     is_open: bool,
     /// Whether the keyboard goes to the first card in the next frame.
@@ -45,7 +43,7 @@ pub(super) struct Gallery {
 }
 
 /// A layout in the gallery.
-struct Card {
+struct LayoutCard {
     title: String,
     about: String,
     /// `None` for a layout without a picture.
@@ -55,7 +53,7 @@ struct Card {
     palette: Palette,
 }
 
-impl Gallery {
+impl LayoutGallery {
     pub(super) fn new(names: Vec<String>) -> Self {
         Self { names, ..Self::default() }
     }
@@ -93,7 +91,8 @@ impl Gallery {
         }
         if self.theme != Some(*theme) {
             let kinds = Kinds::builtin();
-            self.cards = self.names.iter().map(|name| Card::new(name, &kinds, geometry, theme)).collect();
+            self.cards =
+                self.names.iter().map(|name| LayoutCard::new(name, &kinds, geometry, theme)).collect();
             self.theme = Some(*theme);
         }
         let ctx = ui.ctx();
@@ -150,6 +149,8 @@ struct CardGrid {
     card: egui::Vec2,
     /// Size of its picture, in points.
     picture: egui::Vec2,
+    /// Largest number of lines of a sentence; the rest of it appears under the pointer.
+    lines: usize,
 }
 
 impl CardGrid {
@@ -159,7 +160,9 @@ impl CardGrid {
         let width = ((room + GAP) / columns - GAP).clamp(80.0, CARD);
         let (side, floor) = (width - 2.0 * INSET, geometry.bounds().size());
         let picture = vec2(side, (side * floor.y / floor.x).clamp(0.3 * side, 1.2 * side));
-        Self { columns: columns as usize, card: vec2(width, picture.y + INSET + TEXT), picture }
+        let lines = if width < CARD - 24.0 { 6 } else { 4 };
+        let card = vec2(width, picture.y + INSET + TITLE + LINE * lines as f32);
+        Self { columns: columns as usize, card, picture, lines }
     }
 
     fn width(&self) -> f32 {
@@ -167,7 +170,7 @@ impl CardGrid {
     }
 }
 
-impl Card {
+impl LayoutCard {
     fn new(name: &str, kinds: &Kinds, geometry: &Geometry, theme: &Theme) -> Self {
         let card = |title: &str, about: String, picture, fits| Self {
             title: in_drawn_order(title).into_owned(),
@@ -229,7 +232,8 @@ impl Card {
         }
         let mut at = place.left_bottom() + vec2(0.0, 6.0);
         let [ink, faint] = [theme.ink, theme.quiet].map(|ink| color(theme.legible(ink, fill)));
-        for (text, size, ink, lines) in [(&self.title, 13.5, ink, 1), (&self.about, 11.5, faint, LINES)] {
+        for (text, size, ink, lines) in [(&self.title, 13.5, ink, 1), (&self.about, 11.5, faint, grid.lines)]
+        {
             let mut job = LayoutJob::simple(text.clone(), FontId::proportional(size), ink, grid.picture.x);
             job.wrap.max_rows = lines;
             let galley = ui.painter().layout_job(job);
@@ -238,5 +242,35 @@ impl Card {
             at.y += height + 2.0;
         }
         response.on_hover_text(&self.about)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layout_for_a_larger_floor_is_off_and_says_why() {
+        let (kinds, small) = (Kinds::builtin(), Geometry::of_paper_tiles(4, 4).unwrap());
+        let card = |name, floor: &Geometry| LayoutCard::new(name, &kinds, floor, &Theme::LIGHT);
+        let map = card("map", &small);
+        assert!(!map.fits && map.picture.is_none());
+        assert!(
+            map.about.starts_with("Not for this floor: ") && map.about.contains("floor"),
+            "{}",
+            map.about
+        );
+        let map = card("map", &Geometry::default());
+        assert!(map.fits && map.picture.is_some() && map.title == "Map navigation");
+        assert!(card("mine.ron", &small).fits, "a file is read when it is opened");
+    }
+
+    #[test]
+    fn the_cards_of_a_phone_stand_in_two_columns_within_its_screen() {
+        for (room, columns) in [(290.0, 2), (600.0, 2), (1200.0, 5), (2400.0, 5)] {
+            let grid = CardGrid::of(room, &Geometry::default());
+            assert_eq!(grid.columns, columns, "{room}");
+            assert!(grid.columns as f32 * (grid.card.x + GAP) - GAP <= room + 0.1, "{room}");
+        }
     }
 }

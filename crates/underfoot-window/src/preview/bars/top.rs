@@ -8,7 +8,7 @@ use super::pills::{link_state, mutes};
 use crate::preview::app::App;
 use crate::preview::closing::file_name;
 use crate::preview::feed::PreviewCommand;
-use crate::preview::gallery::Gallery;
+use crate::preview::gallery::LayoutGallery;
 use crate::preview::style::{panel_frame, quiet};
 use crate::preview::visit::VisitBar;
 use underfoot_scene::egui_painter::color;
@@ -32,7 +32,7 @@ const FILE: f32 = 88.0;
 /// The gallery of layouts, whether the warnings are listed, and the width of the bar's right end.
 #[derive(Default)]
 pub(in crate::preview) struct TopBar {
-    pub(in crate::preview) gallery: Gallery,
+    pub(in crate::preview) gallery: LayoutGallery,
     /// Whether the warnings about the layout are listed over the floor.
     pub(in crate::preview) lists_warnings: bool,
     /// Width of the part at the right in the last frame, in points.
@@ -62,7 +62,7 @@ impl ToolsWidth {
 impl TopBar {
     /// A bar with these names of layouts to open; `begins_with_gallery` opens the gallery at once.
     pub(in crate::preview) fn new(choices: Vec<String>, begins_with_gallery: bool) -> Self {
-        let mut gallery = Gallery::new(choices);
+        let mut gallery = LayoutGallery::new(choices);
         if begins_with_gallery {
             gallery.open();
         }

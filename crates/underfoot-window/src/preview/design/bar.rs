@@ -11,7 +11,7 @@ use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
 use crate::platform;
 use crate::preview::bars::{MessageStack, message_frame};
-use crate::preview::gallery::Gallery;
+use crate::preview::gallery::LayoutGallery;
 use crate::preview::icons::{self, Icon, icon_button};
 use crate::preview::style::{is_entered, quiet, toggle};
 use underfoot::floor::Rect;
@@ -23,7 +23,7 @@ type Action = fn(&mut EditedLayout);
 
 impl Designer {
     /// Shows files, undo, arrangement and the number of problems, in the top bar.
-    pub(in crate::preview) fn tools(&mut self, ui: &mut Ui, theme: &Theme, gallery: &mut Gallery) {
+    pub(in crate::preview) fn tools(&mut self, ui: &mut Ui, theme: &Theme, gallery: &mut LayoutGallery) {
         self.files(ui, gallery);
         let (can_undo, can_redo) = (self.edited.document.can_undo(), self.edited.document.can_redo());
         let any = !self.edited.selected.is_empty();
@@ -55,7 +55,7 @@ impl Designer {
         self.count(ui, theme);
     }
 
-    fn files(&mut self, ui: &mut Ui, gallery: &mut Gallery) {
+    fn files(&mut self, ui: &mut Ui, gallery: &mut LayoutGallery) {
         ui.menu_button("File", |ui| {
             ui.menu_button("New", |ui| {
                 let geometry = self.edited.document.floor().geometry;
