@@ -77,7 +77,7 @@ use underfoot_format::{diagnostic, fields, file, node, number, pairs, problem, r
 
 pub use crate::feel::{Effects, NamedEffect};
 pub use ahap::{AhapError, read_ahap, write_ahap};
-pub use builtin::{builtin_floor, builtin_floors, builtin_layout, builtin_layouts};
+pub use builtin::{builtin_floor, builtin_floors, builtin_layout, builtin_layouts, head_comment};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use effect::parse_effect;
 pub use floor::{load_floor, load_floor_with_ports, parse_floor, parse_floor_with_ports};
