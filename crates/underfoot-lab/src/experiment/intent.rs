@@ -173,7 +173,7 @@ impl IntentTable {
         let layout = shipped(number, &geometry)?;
         let layouts = Guarded::ALL.map(|guard| guard.put_on(&layout));
         let mut stage = IntentStage::new(self.floor, seed)?;
-        let mut body = Somebody::of(seed, number / layouts_with_controls().count(), geometry.bounds())
+        let mut body = Somebody::of(seed, number / layouts_with_controls().len(), geometry.bounds())
             .rolling(self.floor.is_real());
         let area =
             layout.regions.iter().map(|region| region.area).reduce(joined).unwrap_or(geometry.bounds());
@@ -496,16 +496,17 @@ impl IntentStage {
     }
 }
 
-/// The shipped layouts with controls to press.
-fn layouts_with_controls() -> impl Iterator<Item = &'static str> {
+/// The shipped layouts with controls to press, by name: the order of the gallery changes no result.
+fn layouts_with_controls() -> Vec<&'static str> {
     let has_controls = |name: &&str| builtin_layout(name).is_some_and(|text| text.contains("widgets:"));
-    builtin_layouts().filter(has_controls)
+    let mut names: Vec<&str> = builtin_layouts().filter(has_controls).collect();
+    names.sort_unstable();
+    names
 }
 
 /// Returns one of them, in a cycle.
 fn shipped(number: usize, geometry: &Geometry) -> Result<Layout, ExperimentError> {
-    let count = layouts_with_controls().count().max(1);
-    let name = layouts_with_controls().nth(number % count).unwrap_or_default();
+    let name = layouts_with_controls().into_iter().cycle().nth(number).unwrap_or_default();
     let text = builtin_layout(name).unwrap_or_default();
     let loaded = parse_layout(text, name, &Kinds::builtin(), geometry);
     loaded.map(|loaded| loaded.layout).map_err(|problems| ExperimentError::Layout(problems.to_string()))
