@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use underfoot_format::codec::Scalar;
 use underfoot_format::number::Number;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// A force along the floor's normal, in newtons; positive presses the floor down.
 ///
@@ -50,7 +50,7 @@ impl Scalar for Newtons {
         Self(f32::of(written, scale))
     }
 
-    fn to_ron(self, scale: f64) -> Text {
+    fn to_ron(self, scale: f64) -> RonText {
         self.0.to_ron(scale)
     }
 

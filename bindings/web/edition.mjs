@@ -108,7 +108,8 @@ class Edition {
   }
 
   async choose(layout) {
-    await this.click("Layout", "ComboBox");
+    const isOpen = (await this.report()).widgets.some((widget) => widget.name === layout && widget.role === "Button");
+    if (!isOpen) await this.click("Layout", "ComboBox");
     await this.click(layout, "Button");
     await this.wait(300);
   }

@@ -14,7 +14,7 @@
 use thiserror::Error;
 
 use super::VERSION;
-use crate::recording::{END, Entries, Entry, GAPS, LAYOUTS, PACKETS, REQUESTS, SILENCE};
+use crate::recording::{END, Entries, GAPS, LAYOUTS, LogEntry, PACKETS, REQUESTS, SILENCE};
 use crate::units::Instant;
 use crate::wire::Decoder;
 
@@ -72,7 +72,7 @@ fn read_all(bytes: &[u8], decoder: &Decoder) -> Option<Entries> {
         bytes = rest;
         let taken = first.checked_add(u32::from_le_bytes(*after).into())?;
         let came = Instant::from_micros(taken.saturating_add_signed(i32::from_le_bytes(*came).into()));
-        let entry = Entry::read(TOPICS.get(usize::from(kind))?, message, came, decoder)?;
+        let entry = LogEntry::read(TOPICS.get(usize::from(kind))?, message, came, decoder)?;
         entries.push((Instant::from_micros(taken), entry));
         if entries.len() > MOST_ENTRIES {
             return None;

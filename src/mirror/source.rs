@@ -10,7 +10,7 @@ use std::time::{Duration, Instant as HostInstant};
 use super::Greeting;
 use super::frame::{self, BadFrame};
 use crate::floor::Geometry;
-use crate::recording::{Entries, Entry, decoder, read_layout};
+use crate::recording::{Entries, LogEntry, decoder, read_layout};
 use crate::source::{FloorInput, Incoming, Replay, SensorSource, Shared, SourceError};
 use crate::units::{HostClock, Instant};
 use crate::wire::{Decoder, LinkCounters, Request, SensorPacket};
@@ -21,7 +21,7 @@ const WAITING: usize = 1024;
 const MOST_WAITING_BYTES: usize = 64 << 20;
 
 /// Size of an entry without a layout's text.
-const ENTRY_BYTES: usize = size_of::<(Instant, Entry)>();
+const ENTRY_BYTES: usize = size_of::<(Instant, LogEntry)>();
 
 /// Interval between two checks for room.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
@@ -99,7 +99,8 @@ impl Waiting {
 
 /// Size of these entries in memory.
 fn size_of_all(entries: &Entries) -> usize {
-    let text = |(_, entry): &(Instant, Entry)| if let Entry::Layout(text) = entry { text.len() } else { 0 };
+    let text =
+        |(_, entry): &(Instant, LogEntry)| if let LogEntry::Layout(text) = entry { text.len() } else { 0 };
     entries.iter().map(|entry| ENTRY_BYTES + text(entry)).sum()
 }
 
@@ -108,7 +109,7 @@ impl MirrorInput {
     /// Sets the layout of the server; the same one again changes nothing.
     pub(super) fn put_layout(&self, text: String) {
         let at = Instant::from_micros(self.counters.now_us.load(Ordering::Relaxed));
-        self.hand(vec![(at, Entry::Layout(text))]);
+        self.hand(vec![(at, LogEntry::Layout(text))]);
     }
 }
 
@@ -120,7 +121,7 @@ impl MirrorInput {
 pub struct MirrorSource {
     frames: Receiver<Entries>,
     waiting: Waiting,
-    ahead: VecDeque<(Instant, Entry)>,
+    ahead: VecDeque<(Instant, LogEntry)>,
     now: Instant,
     /// The server's time at the end of the last frame, and the time of its arrival here.
     arrived: (Instant, HostInstant),
@@ -171,12 +172,12 @@ impl MirrorSource {
         }
         loop {
             match self.advance() {
-                Some(Entry::Packet(packet)) => return Some(packet),
-                Some(Entry::Silence | Entry::End) | None => return None,
-                Some(Entry::Gap(entries)) => {
+                Some(LogEntry::Packet(packet)) => return Some(packet),
+                Some(LogEntry::Silence | LogEntry::End) | None => return None,
+                Some(LogEntry::Gap(entries)) => {
                     self.counters.left_out.fetch_add(entries, Ordering::Relaxed);
                 }
-                Some(entry @ (Entry::Request(_) | Entry::Layout(_))) => {
+                Some(entry @ (LogEntry::Request(_) | LogEntry::Layout(_))) => {
                     // The server takes these before the next packet.
                     self.ahead.push_front((self.now, entry));
                     return None;
@@ -201,7 +202,7 @@ impl MirrorSource {
     }
 
     /// The next entry.
-    fn advance(&mut self) -> Option<Entry> {
+    fn advance(&mut self) -> Option<LogEntry> {
         let (taken, entry) = self.ahead.pop_front()?;
         self.set_now(taken);
         Some(entry)
@@ -260,11 +261,13 @@ impl SensorSource for Shared<MirrorSource> {
 
 impl Replay for MirrorSource {
     fn take(&mut self) -> Option<Incoming> {
-        self.ahead.front().filter(|(_, entry)| matches!(entry, Entry::Request(_) | Entry::Layout(_)))?;
+        self.ahead
+            .front()
+            .filter(|(_, entry)| matches!(entry, LogEntry::Request(_) | LogEntry::Layout(_)))?;
         match self.advance()? {
             // The server has answered the sender of the request.
-            Entry::Request(request) => Some(Incoming::Request(Request { sender: None, ..request })),
-            Entry::Layout(text) if text != self.layout => {
+            LogEntry::Request(request) => Some(Incoming::Request(Request { sender: None, ..request })),
+            LogEntry::Layout(text) if text != self.layout => {
                 let layout = read_layout(&text, &self.geometry)
                     .inspect_err(|problems| tracing::warn!("the server's layout can't be read: {problems}"))
                     .ok()?;

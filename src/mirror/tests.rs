@@ -12,7 +12,7 @@ use crate::engine::{Engine, Snapshot};
 use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::outgoing::json::{Head, Line, Message};
-use crate::recording::{Entries, Entry, decoder};
+use crate::recording::{Entries, LogEntry, decoder};
 use crate::schema::{Kinds, builtin_layout, parse_layout};
 use crate::sense::Method;
 use crate::source::{Incoming, Replay};
@@ -49,14 +49,14 @@ fn everything() -> Entries {
     let at = Instant::from_micros;
     let request = read_json("widget/zoom/set", &[json!(0.5)]).unwrap();
     vec![
-        (at(9_000_100), Entry::Packet(packet(2, u32::MAX, 9_000_040))),
-        (at(9_000_100), Entry::Request(Request { message: request, sender: None })),
-        (at(9_002_000), Entry::Silence),
-        (at(9_002_500), Entry::Layout("Layout()".into())),
-        (at(9_003_000), Entry::Gap(7)),
+        (at(9_000_100), LogEntry::Packet(packet(2, u32::MAX, 9_000_040))),
+        (at(9_000_100), LogEntry::Request(Request { message: request, sender: None })),
+        (at(9_002_000), LogEntry::Silence),
+        (at(9_002_500), LogEntry::Layout("Layout()".into())),
+        (at(9_003_000), LogEntry::Gap(7)),
         // The system's stamp is later than the time at which the server took it.
-        (at(9_003_500), Entry::Packet(packet(0, 0, 9_003_600))),
-        (at(9_004_000), Entry::End),
+        (at(9_003_500), LogEntry::Packet(packet(0, 0, 9_003_600))),
+        (at(9_004_000), LogEntry::End),
     ]
 }
 
@@ -129,7 +129,7 @@ fn the_source_gives_what_the_server_took_in_its_order() {
 fn a_frame_that_is_a_little_late_does_not_let_time_pass_and_silence_does() {
     let layout = layout("map");
     let (input, mut source) = MirrorSource::new(&greeting_of(&engine(&layout), &layout));
-    input.put(&framed(&vec![(Instant::from_millis(5000), Entry::Silence)])).unwrap();
+    input.put(&framed(&vec![(Instant::from_millis(5000), LogEntry::Silence)])).unwrap();
     assert_eq!(source.next(Duration::ZERO), None);
     assert_eq!(source.next(Duration::ZERO), None);
     // Time starts to advance only after the frame is late, on a machine of any speed.
@@ -140,7 +140,7 @@ fn a_frame_that_is_a_little_late_does_not_let_time_pass_and_silence_does() {
     }
     assert!(source.now() > Instant::from_millis(5040), "{:?}", source.now());
     let before = source.now();
-    input.put(&framed(&vec![(Instant::from_millis(5004), Entry::Silence)])).unwrap();
+    input.put(&framed(&vec![(Instant::from_millis(5004), LogEntry::Silence)])).unwrap();
     assert_eq!(source.next(Duration::from_millis(1)), None);
     assert!(source.now() >= before, "it never goes back");
 }
@@ -210,7 +210,7 @@ fn nothing_is_kept_of_controls_and_pages_that_the_layout_lacks() {
 
 #[test]
 fn a_frame_of_more_entries_than_boards_send_is_refused() {
-    let silence = (Instant::from_millis(1), Entry::Silence);
+    let silence = (Instant::from_millis(1), LogEntry::Silence);
     let frame = |count: usize| frame::read(&framed(&vec![silence.clone(); count]), &decoder());
     assert!(frame(8192).is_ok());
     assert_eq!(frame(8193), Err(BadFrame));
@@ -222,7 +222,7 @@ fn frames_beyond_what_may_wait_are_held_up() {
     let layout = layout("map");
     let (input, mut source) = MirrorSource::new(&greeting_of(&engine(&layout), &layout));
     let text = "x".repeat(8 << 20);
-    let large = framed(&vec![(Instant::from_millis(1), Entry::Layout(text))]);
+    let large = framed(&vec![(Instant::from_millis(1), LogEntry::Layout(text))]);
     let taken = std::sync::Arc::new(std::sync::atomic::AtomicUsize::new(0));
     let count = std::sync::Arc::clone(&taken);
     let sender = std::thread::spawn(move || {

@@ -16,7 +16,7 @@ use crate::wire::{Batch, Decoder, MAX_CHANNELS, Prefix, Readings, Request, Senso
     clippy::large_enum_variant,
     reason = "nearly all are packets, and packets are not allocated one by one"
 )]
-pub(crate) enum Entry {
+pub(crate) enum LogEntry {
     /// A packet arrived.
     Packet(SensorPacket),
     /// No packet arrived while the server waited.
@@ -44,7 +44,7 @@ const SPLIT_NEWTONS: u8 = 3;
 const SCALED: u8 = 4;
 const SPLIT_SCALED: u8 = 5;
 
-impl Entry {
+impl LogEntry {
     pub(crate) const fn topic(&self) -> &'static str {
         match self {
             Self::Packet(_) => PACKETS,

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use mcap::records::op;
 
 use super::chunk::Chunk;
-use super::entry::{self, Entry};
+use super::entry::{self, LogEntry};
 use super::parts::{Attachment, McapMessage, channel, metadata, statistics};
 use super::records::{RawRecord, ReadState, Records};
 use super::{EVENTS, FLOOR, LAYOUT, METADATA, TOPICS};
@@ -22,7 +22,7 @@ use crate::wire::{Decoder, Readings};
 )]
 pub(super) enum LogPart {
     /// An entry, with the time at which the server took it.
-    Entry(Instant, Entry),
+    Entry(Instant, LogEntry),
     /// A line of an event.
     Event(Vec<u8>),
     /// The end of the recording.
@@ -33,7 +33,7 @@ pub(super) enum LogPart {
 
 /// An entry with its number among those of the same time.
 pub(super) enum Numbered {
-    Entry(Instant, u32, Entry),
+    Entry(Instant, u32, LogEntry),
     Part(LogPart),
 }
 
@@ -97,7 +97,7 @@ impl MessageReader {
     pub(super) fn begin_with_newtons(&mut self) -> bool {
         loop {
             match self.next() {
-                Numbered::Entry(_, _, Entry::Packet(packet)) => {
+                Numbered::Entry(_, _, LogEntry::Packet(packet)) => {
                     return matches!(packet.readings, Readings::Newtons(_));
                 }
                 Numbered::Part(LogPart::Whole | LogPart::Broken(_)) => return false,
@@ -304,7 +304,7 @@ fn ours(topic: &'static str, message: &McapMessage<'_>, decoder: &Decoder) -> Re
         return Ok(Numbered::Part(LogPart::Event(message.data.to_vec())));
     }
     let [taken, came] = [message.log_ns, message.publish_ns].map(|ns| Instant::from_micros(ns / 1000));
-    let entry = Entry::read(topic, message.data, came, decoder)
+    let entry = LogEntry::read(topic, message.data, came, decoder)
         .ok_or_else(|| format!("a message of {topic}, at {:.3} s, that makes no sense", taken.secs()))?;
     Ok(Numbered::Entry(taken, message.sequence, entry))
 }

@@ -33,7 +33,7 @@ use thiserror::Error;
 
 use crate::schema::Diagnostics;
 
-pub(crate) use entry::{Entry, decoder};
+pub(crate) use entry::{LogEntry, decoder};
 pub use reader::Recording;
 pub(crate) use recorder::read_layout;
 pub use recorder::{Recorded, Recorder, WhenBehind};

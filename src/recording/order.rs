@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::path::Path;
 
-use super::entry::Entry;
+use super::entry::LogEntry;
 use super::messages::{LogPart, MessageReader, Numbered};
 use crate::units::Instant;
 
@@ -17,7 +17,7 @@ const MOST_AT_ONCE: usize = 1 << 16;
 pub(super) struct Ordered {
     messages: MessageReader,
     /// Entries of one time, and whether they are complete and sorted.
-    waiting: VecDeque<(Instant, u32, Entry)>,
+    waiting: VecDeque<(Instant, u32, LogEntry)>,
     is_sorted: bool,
     /// The part after them.
     ahead: Option<Numbered>,

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
-use super::entry::Entry;
+use super::entry::LogEntry;
 use super::messages::LogPart;
 use super::order::Ordered;
 use super::recorder::read_layout;
@@ -84,7 +84,7 @@ impl Progress {
 pub struct ReplaySource {
     parts: Ordered,
     geometry: Geometry,
-    ahead: Option<(Instant, Entry)>,
+    ahead: Option<(Instant, LogEntry)>,
     now: Instant,
     transport: Arc<Transport>,
     /// The transport's change count, and the recording's time and the host's time since then.
@@ -132,14 +132,14 @@ impl ReplaySource {
                 return Ok(None);
             }
             match self.advance() {
-                Some((_, Entry::Packet(packet))) => {
+                Some((_, LogEntry::Packet(packet))) => {
                     self.progress.packets.fetch_add(1, Ordering::Relaxed);
                     return Ok(Some(packet));
                 }
-                Some((_, Entry::Silence)) => return Ok(None),
-                Some((_, Entry::End)) | None => return Err(SourceError::Ended),
+                Some((_, LogEntry::Silence)) => return Ok(None),
+                Some((_, LogEntry::End)) | None => return Err(SourceError::Ended),
                 // Entries that the server did not take.
-                Some((_, Entry::Request(_) | Entry::Layout(_) | Entry::Gap(_))) => {}
+                Some((_, LogEntry::Request(_) | LogEntry::Layout(_) | LogEntry::Gap(_))) => {}
             }
         }
     }
@@ -151,7 +151,7 @@ impl ReplaySource {
     }
 
     /// Returns the next entry and reads the one after it.
-    fn advance(&mut self) -> Option<(Instant, Entry)> {
+    fn advance(&mut self) -> Option<(Instant, LogEntry)> {
         let next = self.ahead.take();
         if let Some((taken, _)) = &next {
             self.now = self.now.max(*taken);
@@ -159,7 +159,7 @@ impl ReplaySource {
         }
         while self.ahead.is_none() && !self.progress.is_over() {
             match self.parts.next_part() {
-                LogPart::Entry(_, Entry::Gap(entries)) => {
+                LogPart::Entry(_, LogEntry::Gap(entries)) => {
                     self.progress.gaps.fetch_add(entries, Ordering::Relaxed);
                 }
                 LogPart::Entry(taken, entry) => self.ahead = Some((taken, entry)),
@@ -180,7 +180,7 @@ impl ReplaySource {
     fn wait(&mut self) -> bool {
         let Some((taken, entry)) = &self.ahead else { return !self.rests_at_the_end() };
         let taken = *taken;
-        if matches!(entry, Entry::End) && self.rests_at_the_end() {
+        if matches!(entry, LogEntry::End) && self.rests_at_the_end() {
             return false;
         }
         if self.transport.hurries(taken) {
@@ -244,10 +244,12 @@ impl SensorSource for Shared<ReplaySource> {
 
 impl Replay for ReplaySource {
     fn take(&mut self) -> Option<Incoming> {
-        self.ahead.as_ref().filter(|(_, entry)| matches!(entry, Entry::Request(_) | Entry::Layout(_)))?;
+        self.ahead
+            .as_ref()
+            .filter(|(_, entry)| matches!(entry, LogEntry::Request(_) | LogEntry::Layout(_)))?;
         match self.advance()? {
-            (_, Entry::Request(request)) => Some(Incoming::Request(Request { sender: None, ..request })),
-            (_, Entry::Layout(text)) => read_layout(&text, &self.geometry)
+            (_, LogEntry::Request(request)) => Some(Incoming::Request(Request { sender: None, ..request })),
+            (_, LogEntry::Layout(text)) => read_layout(&text, &self.geometry)
                 .inspect_err(|problems| tracing::warn!("a recorded layout can't be read: {problems}"))
                 .map(|layout| Incoming::Layout(Box::new(layout)))
                 .ok(),

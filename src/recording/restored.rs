@@ -1,6 +1,6 @@
 //! Requests that bring a floor into the state of another one.
 
-use super::entry::Entry;
+use super::entry::LogEntry;
 use super::tap::Entries;
 use crate::engine::Snapshot;
 use crate::layout::Layout;
@@ -11,7 +11,7 @@ use crate::wire::ControlMessage;
 pub(super) fn entries(snapshot: &Snapshot, layout: &Layout) -> Entries {
     requests(snapshot, layout)
         .into_iter()
-        .map(|message| (snapshot.at, Entry::Request(message.into())))
+        .map(|message| (snapshot.at, LogEntry::Request(message.into())))
         .collect()
 }
 

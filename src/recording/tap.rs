@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::entry::Entry;
+use super::entry::LogEntry;
 use super::recorder::as_kept;
 use crate::floor::Geometry;
 use crate::layout::Layout;
@@ -11,7 +11,7 @@ use crate::units::Instant;
 use crate::wire::{LinkCounters, Request, SensorPacket};
 
 /// Entries, each with the time at which the server took it.
-pub(crate) type Entries = Vec<(Instant, Entry)>;
+pub(crate) type Entries = Vec<(Instant, LogEntry)>;
 
 /// Receives the results of a source: a recording, or remote windows that show the same floor.
 pub(crate) trait EntrySink: Send {
@@ -64,7 +64,7 @@ pub(crate) fn tapped(
 }
 
 impl Tap {
-    fn put(&mut self, entry: impl FnOnce() -> Entry) {
+    fn put(&mut self, entry: impl FnOnce() -> LogEntry) {
         if !self.entries_to.is_wanted() {
             self.batch.clear();
             self.left_out = 0;
@@ -79,13 +79,13 @@ impl Tap {
     fn hand_on(&mut self) {
         let mut entries = std::mem::take(&mut self.batch);
         if let Some((at, _)) = entries.first().filter(|_| self.left_out > 0) {
-            entries.insert(0, (*at, Entry::Gap(self.left_out)));
+            entries.insert(0, (*at, LogEntry::Gap(self.left_out)));
         }
         let room = entries.len();
         match self.entries_to.hand(entries) {
             None => self.left_out = 0,
             Some(entries) => {
-                let kept_out = entries.iter().filter(|(_, entry)| !matches!(entry, Entry::Gap(_))).count();
+                let kept_out = entries.iter().filter(|(_, entry)| !matches!(entry, LogEntry::Gap(_))).count();
                 self.left_out += kept_out as u64;
                 self.entries_to.count_lost(kept_out as u64);
             }
@@ -100,9 +100,9 @@ impl SensorSource for TappedSource {
         let mut tap = self.tap.lock();
         tap.now = tap.now.max(self.inner.now());
         match &given {
-            Ok(Some(packet)) => tap.put(|| Entry::Packet(packet.clone())),
-            Ok(None) => tap.put(|| Entry::Silence),
-            Err(SourceError::Ended) => tap.put(|| Entry::End),
+            Ok(Some(packet)) => tap.put(|| LogEntry::Packet(packet.clone())),
+            Ok(None) => tap.put(|| LogEntry::Silence),
+            Err(SourceError::Ended) => tap.put(|| LogEntry::End),
             Err(_) => {}
         }
         given
@@ -122,7 +122,7 @@ impl SensorSource for TappedSource {
 
 impl Journal for Tap {
     fn note_request(&mut self, request: &Request) {
-        self.put(|| Entry::Request(request.clone()));
+        self.put(|| LogEntry::Request(request.clone()));
     }
 
     fn note_layout(&mut self, layout: &mut Layout) {
@@ -134,7 +134,7 @@ impl Journal for Tap {
                 if self.entries_to.is_exact() {
                     *layout = kept;
                 }
-                self.put(|| Entry::Layout(text));
+                self.put(|| LogEntry::Layout(text));
             }
             Err(problems) => {
                 self.entries_to.count_lost(1);

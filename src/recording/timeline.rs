@@ -1,6 +1,6 @@
 //! An overview of a recording: its span and its important events.
 
-use super::entry::Entry;
+use super::entry::LogEntry;
 use super::messages::LogPart;
 use super::reader::Recording;
 use crate::outgoing::json::{Line, Message};
@@ -48,7 +48,7 @@ impl Recording {
         let (mut parts, mut timeline) = (self.into_parts(), Timeline::default());
         for round in 1_usize.. {
             match parts.next_part() {
-                LogPart::Entry(_, Entry::Gap(_)) => {}
+                LogPart::Entry(_, LogEntry::Gap(_)) => {}
                 LogPart::Entry(taken, _) => {
                     let begins = timeline.span.map_or(taken.max(from), |(begins, _)| begins);
                     timeline.span = Some((begins, taken.max(begins)));

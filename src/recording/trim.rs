@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::RecordingError;
-use super::entry::Entry;
+use super::entry::LogEntry;
 use super::events::time_of;
 use super::messages::LogPart;
 use super::reader::Recording;
@@ -105,7 +105,7 @@ impl Recording {
                 return Ok(None);
             }
         }
-        file.entry(trimmed.ends, &Entry::End).map_err(failed)?;
+        file.entry(trimmed.ends, &LogEntry::End).map_err(failed)?;
         file.finish().map_err(failed)?;
         Ok(Some(trimmed))
     }

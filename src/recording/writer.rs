@@ -10,7 +10,7 @@ use std::time::{Duration, Instant as HostInstant};
 
 use mcap::records::MessageHeader;
 
-use super::entry::Entry;
+use super::entry::LogEntry;
 use super::pack::PackedFile;
 use super::reader::known_as;
 use super::{
@@ -31,7 +31,7 @@ const EVENT_SCHEMA: &str = r#"{"title":"underfoot.Event","type":"object","proper
 #[derive(Debug)]
 pub(super) enum Job {
     /// Entries, each with the time at which the server took it.
-    Entries(Vec<(Instant, Entry)>),
+    Entries(Vec<(Instant, LogEntry)>),
     /// One line of JSON without its line end, and the time of its event.
     Event(Instant, Vec<u8>),
 }
@@ -104,7 +104,7 @@ impl RecordingFile {
     }
 
     /// Adds an entry that the server took at `taken`, with the next number.
-    pub(super) fn entry(&mut self, taken: Instant, entry: &Entry) -> io::Result<()> {
+    pub(super) fn entry(&mut self, taken: Instant, entry: &LogEntry) -> io::Result<()> {
         self.bytes.clear();
         entry.write_split(&mut self.bytes);
         self.put(entry.topic(), self.number, taken, entry.came(taken))?;

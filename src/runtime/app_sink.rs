@@ -10,7 +10,7 @@ use triple_buffer::Input;
 
 use super::event::Event;
 use super::queue::QueueInput;
-use crate::serve::Command;
+use crate::serve::FloorCommand;
 use crate::sink::{CrackRateLimiter, EventSink, Report, Worker};
 use crate::units::Instant;
 use crate::widget::WidgetId;
@@ -37,7 +37,7 @@ impl Waker {
     /// `commands`.
     pub(super) fn start(
         mut wake: Box<dyn FnMut() + Send>,
-        commands: SyncSender<Command>,
+        commands: SyncSender<FloorCommand>,
     ) -> std::io::Result<Self> {
         let due = Arc::new(AtomicBool::new(false));
         let begun = Arc::clone(&due);
@@ -49,7 +49,7 @@ impl Waker {
                         "the app's wake callback panicked: what is held is cancelled, sensing goes on"
                     );
                     // This fails only after the session has ended, and then nothing is held.
-                    let _ = commands.send(Command::Control(ControlMessage::CancelAll));
+                    let _ = commands.send(FloorCommand::Control(ControlMessage::CancelAll));
                 }
             }
         })?;

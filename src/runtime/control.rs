@@ -13,12 +13,12 @@ use crate::wire::ControlMessage;
 /// Each call waits for the sensing thread's answer: less than a millisecond while packets arrive, 5 ms without. A
 /// call from the sensing thread itself (in a sink) fails after 200 ms.
 #[derive(Clone, Debug)]
-pub struct Control<'a> {
+pub struct ControlHandle<'a> {
     session: &'a Session,
     id: WidgetId,
 }
 
-impl<'a> Control<'a> {
+impl<'a> ControlHandle<'a> {
     pub(super) fn new(session: &'a Session, id: WidgetId) -> Self {
         Self { session, id }
     }

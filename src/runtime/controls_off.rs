@@ -1,7 +1,7 @@
 //! A floor whose controls are off for a while.
 
 use super::session::Session;
-use crate::serve::Command;
+use crate::serve::FloorCommand;
 use crate::widget::WidgetId;
 use crate::wire::ControlMessage;
 
@@ -21,7 +21,7 @@ impl Session {
         let on = seen.layout.widgets.iter().zip(&seen.floor.widgets).filter(|(_, state)| !state.disabled);
         let ids: Vec<WidgetId> = on.map(|(widget, _)| widget.id.clone()).collect();
         for id in &ids {
-            self.insist(Command::Control(ControlMessage::Disable { id: id.clone() }));
+            self.insist(FloorCommand::Control(ControlMessage::Disable { id: id.clone() }));
         }
         ControlsOff { session: self.clone(), ids }
     }
@@ -30,7 +30,7 @@ impl Session {
 impl Drop for ControlsOff {
     fn drop(&mut self) {
         for id in self.ids.drain(..) {
-            self.session.insist(Command::Control(ControlMessage::Enable { id }));
+            self.session.insist(FloorCommand::Control(ControlMessage::Enable { id }));
         }
     }
 }

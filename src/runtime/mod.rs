@@ -44,11 +44,11 @@ mod thread;
 
 pub use crate::serve::Refusal;
 pub use builder::{SessionBuilder, StartError};
-pub use control::Control;
+pub use control::ControlHandle;
 pub use controls_off::ControlsOff;
 pub use event::{EndReason, Event, Kind};
 pub use events::Events;
 pub use held::Held;
 pub use session::Session;
-pub use snapshot::Snapshot;
+pub use snapshot::SessionSnapshot;
 pub use thread::Actuators;

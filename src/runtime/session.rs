@@ -9,15 +9,15 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::builder::SessionBuilder;
-use super::control::Control;
+use super::control::ControlHandle;
 use super::event::Event;
 use super::events::Events;
 use super::held::{Held, HeldWatch};
 use super::queue::EventQueue;
-use super::snapshot::{Shown, Snapshot};
+use super::snapshot::{SessionSnapshot, Shown};
 use crate::floor::Geometry;
 use crate::layout::Layout;
-use crate::serve::{Command, Refusal};
+use crate::serve::{FloorCommand, Refusal};
 use crate::source::FloorInput;
 use crate::units::HostClock;
 use crate::widget::WidgetId;
@@ -36,7 +36,7 @@ pub(super) struct Inner {
     pub(super) queue: Arc<EventQueue>,
     pub(super) held: Arc<HeldWatch>,
     pub(super) shown: Arc<Shown>,
-    pub(super) commands: SyncSender<Command>,
+    pub(super) commands: SyncSender<FloorCommand>,
     /// Address on which the source listens.
     pub(super) local_addr: Option<SocketAddr>,
     pub(super) geometry: Geometry,
@@ -158,7 +158,7 @@ impl Session {
 
     /// The state of the floor: at first as in the layout, later at most 5 ms old.
     #[must_use]
-    pub fn snapshot(&self) -> Snapshot {
+    pub fn snapshot(&self) -> SessionSnapshot {
         self.0.shown.read()
     }
 
@@ -173,15 +173,15 @@ impl Session {
     ///
     /// # Errors
     /// [`Refusal::UnknownControl`] if the layout has no such control.
-    pub fn control(&self, id: &str) -> Result<Control<'_>, Refusal> {
-        Ok(Control::new(self, self.known(id)?))
+    pub fn control(&self, id: &str) -> Result<ControlHandle<'_>, Refusal> {
+        Ok(ControlHandle::new(self, self.known(id)?))
     }
 
     /// All controls, in the order of the layout.
     #[must_use]
-    pub fn controls(&self) -> Vec<Control<'_>> {
+    pub fn controls(&self) -> Vec<ControlHandle<'_>> {
         let layout = self.0.shown.layout();
-        layout.widgets.iter().map(|widget| Control::new(self, widget.id.clone())).collect()
+        layout.widgets.iter().map(|widget| ControlHandle::new(self, widget.id.clone())).collect()
     }
 
     fn known(&self, id: &str) -> Result<WidgetId, Refusal> {
@@ -204,18 +204,18 @@ impl Session {
     /// [`crate::engine::Snapshot::layout_revision`] of the first snapshot with this layout.
     pub fn set_layout(&self, layout: Layout) -> u64 {
         self.0.shown.give(layout, |layout| {
-            self.insist(Command::SetLayout(Box::new(layout)));
+            self.insist(FloorCommand::SetLayout(Box::new(layout)));
         })
     }
 
     /// Sends any other command, without an answer; never waits. Returns false and does nothing if the floor has
     /// ended, or if 256 commands already wait.
-    pub fn send(&self, command: Command) -> bool {
+    pub fn send(&self, command: FloorCommand) -> bool {
         self.0.commands.try_send(command).is_ok()
     }
 
     /// Sends a command that must be executed, and waits for room: the sensing thread takes commands every 5 ms.
-    pub(super) fn insist(&self, command: Command) {
+    pub(super) fn insist(&self, command: FloorCommand) {
         // A floor that has ended executes nothing.
         let _ = self.0.commands.send(command);
     }
@@ -238,7 +238,7 @@ impl Session {
     /// [`Refusal`] says why nothing has changed.
     pub fn ask(&self, message: ControlMessage) -> Result<(), Refusal> {
         let (answer, answered) = sync_channel(1);
-        if !self.send(Command::Ask(message, answer)) {
+        if !self.send(FloorCommand::Ask(message, answer)) {
             return Err(if self.has_ended() { Refusal::Ended } else { Refusal::NoAnswer });
         }
         match answered.recv_timeout(PATIENCE) {

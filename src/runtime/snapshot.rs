@@ -12,14 +12,14 @@ use crate::widget::Value;
 /// State of a floor at one instant, by the names of its controls; updated every 5 ms.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Snapshot {
+pub struct SessionSnapshot {
     /// The layout that is on the floor.
     pub layout: Arc<Layout>,
     /// State of the floor, in the order of the layout.
     pub floor: engine::Snapshot,
 }
 
-impl Snapshot {
+impl SessionSnapshot {
     /// State of the control named `id`; `None` for an unknown name.
     #[must_use]
     pub fn control(&self, id: &str) -> Option<ControlState> {
@@ -82,10 +82,10 @@ impl Shown {
         std::mem::replace(&mut state.latest, last)
     }
 
-    pub(super) fn read(&self) -> Snapshot {
+    pub(super) fn read(&self) -> SessionSnapshot {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let layout = state.layout();
-        Snapshot { layout, floor: state.latest.read().clone() }
+        SessionSnapshot { layout, floor: state.latest.read().clone() }
     }
 
     /// The layout that is on the floor.

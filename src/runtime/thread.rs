@@ -18,7 +18,7 @@ use crate::layout::Layout;
 #[cfg(feature = "threads")]
 use crate::parallel::ThreadPool;
 use crate::sense::Method;
-use crate::serve::{Command, Neighbours, Server};
+use crate::serve::{FloorCommand, Neighbours, Server};
 use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, SinkError, claim_priority};
 use crate::source::FloorInput;
 use crate::units::{HostClock, Instant};
@@ -53,7 +53,7 @@ pub(super) struct SensingThread {
     /// Distributes the feet of a crowd; `None` if the sensing thread works alone.
     #[cfg(feature = "threads")]
     pub(super) pool: Option<ThreadPool>,
-    pub(super) commands: Receiver<Command>,
+    pub(super) commands: Receiver<FloorCommand>,
     pub(super) snapshots: triple_buffer::Input<engine::Snapshot>,
     pub(super) stop: Arc<AtomicBool>,
 }

@@ -12,7 +12,7 @@ use super::units::Units;
 use crate::floor::{Geometry, Rect, TileBlock};
 use underfoot_format::Codec;
 use underfoot_format::describe::{FieldDescription, FieldType};
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// Tolerance within which edges count as touching, in tiles: far below any foot, far above rounding errors.
 const TOUCH: f64 = 1e-6;
@@ -168,8 +168,8 @@ impl Codec<Option<Placed>> for Place {
         base.cloned()
     }
 
-    fn write(&self, _: &Option<Placed>) -> Text {
-        Text::List(Vec::new())
+    fn write(&self, _: &Option<Placed>) -> RonText {
+        RonText::List(Vec::new())
     }
 
     fn shape(&self) -> FieldType {

@@ -17,7 +17,7 @@ use super::problem::Problem;
 use super::suggest::{did_you_mean, nearest};
 use underfoot_format::codec::By;
 use underfoot_format::describe::FieldType;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// Reads the entries of `widgets` into controls.
 pub(super) const WIDGETS: By<Vec<WrittenControl>, LayoutContext> = By {
@@ -26,7 +26,7 @@ pub(super) const WIDGETS: By<Vec<WrittenControl>, LayoutContext> = By {
         let mut room = context.room;
         Some(read(node, context, &mut room))
     },
-    write: |_| Text::List(Vec::new()),
+    write: |_| RonText::List(Vec::new()),
     stand_in: Vec::new,
 };
 

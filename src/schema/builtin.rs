@@ -51,16 +51,22 @@ pub(super) const EFFECTS: [(&str, &str); 22] = [
     ("effects/wood.ron", include_str!("../../effects/wood.ron")),
 ];
 
-/// The shipped layouts: name and text.
-const LAYOUTS: [(&str, &str); 8] = [
+/// The shipped layouts in the order of the gallery: name and text.
+const LAYOUTS: [(&str, &str); 14] = [
+    ("map", include_str!("../../layouts/map.ron")),
+    ("museum_room", include_str!("../../layouts/museum_room.ron")),
+    ("radiology_reading", include_str!("../../layouts/radiology_reading.ron")),
+    ("fluoroscopy", include_str!("../../layouts/fluoroscopy.ron")),
+    ("stage_cues", include_str!("../../layouts/stage_cues.ron")),
+    ("rehab_steps", include_str!("../../layouts/rehab_steps.ron")),
+    ("ice_piano", include_str!("../../layouts/ice_piano.ron")),
+    ("surgical", include_str!("../../layouts/surgical.ron")),
+    ("pond", include_str!("../../layouts/pond.ron")),
+    ("winter_walk", include_str!("../../layouts/winter_walk.ron")),
+    ("first_steps", include_str!("../../layouts/first_steps.ron")),
     ("all_controls", include_str!("../../layouts/all_controls.ron")),
     ("dicom_viewer", include_str!("../../layouts/dicom_viewer.ron")),
-    ("first_steps", include_str!("../../layouts/first_steps.ron")),
     ("globe", include_str!("../../layouts/globe.ron")),
-    ("map", include_str!("../../layouts/map.ron")),
-    ("pond", include_str!("../../layouts/pond.ron")),
-    ("surgical", include_str!("../../layouts/surgical.ron")),
-    ("winter_walk", include_str!("../../layouts/winter_walk.ron")),
 ];
 
 /// The shipped floors: name and text.
@@ -85,7 +91,7 @@ pub fn builtin_floor(name: &str) -> Option<&'static str> {
     FLOORS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// Returns the names of the layouts that come with underfoot, for [`builtin_layout`].
+/// Returns the names of the layouts that come with underfoot, for [`builtin_layout`]; those to start from come first.
 pub fn builtin_layouts() -> impl Iterator<Item = &'static str> {
     LAYOUTS.iter().map(|(name, _)| *name)
 }
@@ -97,4 +103,18 @@ pub fn builtin_layouts() -> impl Iterator<Item = &'static str> {
 #[must_use]
 pub fn builtin_layout(name: &str) -> Option<&'static str> {
     LAYOUTS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// Returns the sentence at the head of a file: its first paragraph of comments, in one line; empty without one.
+///
+/// ```
+/// let map = underfoot::schema::builtin_layout("map").unwrap_or_default();
+/// assert_eq!(underfoot::schema::head_comment(map), "Map navigation on the 6 x 6 floor.");
+/// ```
+#[must_use]
+pub fn head_comment(text: &str) -> String {
+    let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
+    let comments = lines.skip_while(|line| line.is_empty()).map_while(|line| line.strip_prefix("//"));
+    let paragraph: Vec<&str> = comments.map(str::trim).take_while(|line| !line.is_empty()).collect();
+    paragraph.join(" ")
 }

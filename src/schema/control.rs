@@ -6,7 +6,7 @@ use super::area::Placed;
 use super::behaviour;
 use super::context::LayoutContext;
 use super::fields::Fields;
-use super::kind::Kind;
+use super::kind::ControlKind;
 use super::node::{Node, is_id};
 use super::place::Placing;
 use super::problem::Problem;
@@ -30,7 +30,7 @@ pub(super) struct WrittenControl {
     /// The id of the page that it switches to.
     pub(super) goto: Option<Written<String>>,
     /// Its kind, with all overridden fields.
-    pub(super) kind: Option<Kind>,
+    pub(super) kind: Option<ControlKind>,
     /// Its messages, with their places.
     pub(super) send: Vec<Written<Sending>>,
     pub(super) written: ControlSpans,
@@ -263,7 +263,7 @@ fn is_fit(node: Node<'_>, id: &str) -> bool {
 }
 
 /// Reads the fields that this widget overrides, over `base`; its feel may name `effects`.
-fn overridden(fields: &mut Fields<'_>, base: &Kind, effects: &Effects) -> Option<Kind> {
+fn overridden(fields: &mut Fields<'_>, base: &ControlKind, effects: &Effects) -> Option<ControlKind> {
     let behaviour = behaviour::read_over(fields, &base.behaviour);
     let look = fields.read("look", Some(base.look), |node| node.record(Some(&base.look), &()));
     if let (Some(behaviour), Some(look), Some(span)) = (&behaviour, &look, fields.value_span("look"))
@@ -278,5 +278,5 @@ fn overridden(fields: &mut Fields<'_>, base: &Kind, effects: &Effects) -> Option
     }
     let feel = fields.read("feel", Some(base.feel.clone()), |node| node.record(Some(&base.feel), effects));
     let (name, send) = (base.name.clone(), base.send.clone());
-    Some(Kind { name, behaviour: behaviour?, look: look?, feel: feel?, send })
+    Some(ControlKind { name, behaviour: behaviour?, look: look?, feel: feel?, send })
 }

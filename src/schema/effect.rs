@@ -17,7 +17,7 @@ use super::version::{self, FORMAT_VERSION, VERSION};
 use crate::feel::{Effects, NamedEffect};
 use underfoot_format::codec::By;
 use underfoot_format::describe::FieldType;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Flat, Record, record};
 
 /// The shipped effects, read once, since normalising each takes a while.
@@ -151,7 +151,7 @@ pub(super) const OWN_EFFECTS: By<Vec<NamedEffect>, Effects> = By {
         }
         Some(own)
     },
-    write: |_| Text::List(Vec::new()),
+    write: |_| RonText::List(Vec::new()),
     stand_in: Vec::new,
 };
 

@@ -7,7 +7,7 @@ use super::problem::Problem;
 use crate::floor::{Corner, Geometry, Response, SensorId, TileId};
 use underfoot_format::codec::By;
 use underfoot_format::describe::FieldType;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Includes, Name};
 
 /// The tiles that are valid in a file: those on the floor, or all if its geometry could not be read.
@@ -65,8 +65,8 @@ impl SensorName {
         Self { sensor, numbered: !geometry.has_corners() }
     }
 
-    fn text(&self) -> Text {
-        if self.numbered { Text::Whole(self.sensor.index() as i64) } else { Name.write(&self.sensor) }
+    fn text(&self) -> RonText {
+        if self.numbered { RonText::Whole(self.sensor.index() as i64) } else { Name.write(&self.sensor) }
     }
 }
 
@@ -94,7 +94,7 @@ pub(super) const TILE: By<TileId, ValidTiles> = By {
         let [column, row] = node.tuple("(column, row)")?;
         valid.tile(column, row)
     },
-    write: |tile| Text::Tuple(whole([tile.column, tile.row])),
+    write: |tile| RonText::Tuple(whole([tile.column, tile.row])),
     stand_in: TileId::default,
 };
 
@@ -107,8 +107,8 @@ pub(super) const CELL: By<TileId, ValidTiles> = By {
     ..TILE
 };
 
-pub(super) fn whole(numbers: [u16; 2]) -> Vec<Text> {
-    numbers.into_iter().map(|number| Text::Whole(number.into())).collect()
+pub(super) fn whole(numbers: [u16; 2]) -> Vec<RonText> {
+    numbers.into_iter().map(|number| RonText::Whole(number.into())).collect()
 }
 
 /// Width and depth in tiles, as `(columns, rows)`.
@@ -119,7 +119,7 @@ pub(super) const TILES: By<[u16; 2]> = By {
         let [columns, rows] = sides.map(|side| side.whole(1..=Geometry::MAX_SIDE.into()));
         Some([columns? as u16, rows? as u16])
     },
-    write: |sides| Text::Tuple(whole(*sides)),
+    write: |sides| RonText::Tuple(whole(*sides)),
     stand_in: || [1, 1],
 };
 
@@ -154,10 +154,10 @@ pub(super) const CHANNEL: By<Option<ChannelSensor>, ValidTiles> = By {
         Some(Some(ChannelSensor { tile: tile?, name: name? }))
     },
     write: |sensor| {
-        sensor.map_or(Text::Nothing, |ChannelSensor { tile, name }| {
+        sensor.map_or(RonText::Nothing, |ChannelSensor { tile, name }| {
             let mut values = whole([tile.column, tile.row]);
             values.push(name.text());
-            Text::Tuple(values)
+            RonText::Tuple(values)
         })
     },
     stand_in: || None,
@@ -180,9 +180,9 @@ impl<const ROWS: usize, const COLUMNS: usize> Codec<[[f32; COLUMNS]; ROWS]> for 
         exactly(node, |row| exactly(row, number))
     }
 
-    fn write(&self, table: &[[f32; COLUMNS]; ROWS]) -> Text {
-        let row = |row: &[f32; COLUMNS]| Text::List(row.iter().copied().map(Text::Single).collect());
-        Text::List(table.iter().map(row).collect())
+    fn write(&self, table: &[[f32; COLUMNS]; ROWS]) -> RonText {
+        let row = |row: &[f32; COLUMNS]| RonText::List(row.iter().copied().map(RonText::Single).collect());
+        RonText::List(table.iter().map(row).collect())
     }
 
     fn shape(&self) -> FieldType {
@@ -243,9 +243,10 @@ impl Codec<Vec<(f32, f32)>> for Points {
         points.into_iter().collect()
     }
 
-    fn write(&self, points: &Vec<(f32, f32)>) -> Text {
-        let point = |&(hz, gain): &(f32, f32)| Text::Tuple(vec![Text::Single(hz), Text::Single(gain)]);
-        Text::List(points.iter().map(point).collect())
+    fn write(&self, points: &Vec<(f32, f32)>) -> RonText {
+        let point =
+            |&(hz, gain): &(f32, f32)| RonText::Tuple(vec![RonText::Single(hz), RonText::Single(gain)]);
+        RonText::List(points.iter().map(point).collect())
     }
 
     fn shape(&self) -> FieldType {

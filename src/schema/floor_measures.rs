@@ -12,7 +12,7 @@ use super::problem::Problem;
 use crate::floor::{Geometry, GeometryError, SensorPlaces, SensorPlacesError, TileId};
 use underfoot_format::codec::By;
 use underfoot_format::describe::{FieldDescription, FieldType};
-use underfoot_format::text::{Entry, Text};
+use underfoot_format::text::{Entry, RonText};
 use underfoot_format::{Codec, Follow, Num, Opt, Record, num, record};
 
 record! {
@@ -47,7 +47,7 @@ const FIRST: By<TileId> = By {
     read: |node, ()| {
         node.tuple("(column, row)").and_then(|[column, row]| tile(column, row, [0..FIRST_END, 0..FIRST_END]))
     },
-    write: |tile| Text::Tuple(whole([tile.column, tile.row])),
+    write: |tile| RonText::Tuple(whole([tile.column, tile.row])),
     stand_in: TileId::default,
 };
 
@@ -99,9 +99,9 @@ impl Codec<Vec2> for Sides {
         Some(Vec2::new(width?, depth?))
     }
 
-    fn write(&self, sides: &Vec2) -> Text {
+    fn write(&self, sides: &Vec2) -> RonText {
         let [width, depth] = sides.to_array().map(|side| self.each.write(&side));
-        if sides.x == sides.y { width } else { Text::Tuple(vec![width, depth]) }
+        if sides.x == sides.y { width } else { RonText::Tuple(vec![width, depth]) }
     }
 
     fn shape(&self) -> FieldType {
@@ -127,8 +127,8 @@ impl Codec<Option<f32>> for Inset {
         Codec::<f32>::read(&self.0, node, None, context).map(Some)
     }
 
-    fn write(&self, value: &Option<f32>) -> Text {
-        value.map_or(Text::Nothing, |value| self.0.write(&value))
+    fn write(&self, value: &Option<f32>) -> RonText {
+        value.map_or(RonText::Nothing, |value| self.0.write(&value))
     }
 
     fn shape(&self) -> FieldType {
@@ -187,10 +187,10 @@ impl Codec<Geometry> for Measures {
         Some(record.built().unwrap_or_default())
     }
 
-    fn write(&self, geometry: &Geometry) -> Text {
+    fn write(&self, geometry: &Geometry) -> RonText {
         let mut entries = Vec::new();
         self.write_field(geometry, "", None, &mut entries);
-        Text::Record(MeasuresRecord::NAME, entries)
+        RonText::Record(MeasuresRecord::NAME, entries)
     }
 
     fn shape(&self) -> FieldType {

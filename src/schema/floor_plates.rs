@@ -7,7 +7,7 @@ use super::floor_measures::Misfit;
 use crate::floor::{Geometry, GeometryError, OwnPlate, SensorPlaces, TileBlock, TileId};
 use underfoot_format::codec::{At, By, Distinct, List, Written};
 use underfoot_format::describe::FieldType;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Opt, Pair, list, num, record};
 
 record! {
@@ -37,7 +37,7 @@ const ANY_CELL: By<TileId> = By {
         let any = 0..Geometry::FARTHEST + 1 + Geometry::MAX_SIDE;
         node.tuple("(column, row)").and_then(|[column, row]| tile(column, row, [any.clone(), any.clone()]))
     },
-    write: |tile| Text::Tuple(whole([tile.column, tile.row])),
+    write: |tile| RonText::Tuple(whole([tile.column, tile.row])),
     stand_in: TileId::default,
 };
 

@@ -2,7 +2,7 @@
 
 use super::floor::FloorFileRecord;
 use crate::floor::{Floor, LawKind};
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// Comments above each field, and the comment in place of a field that is not written.
 const COMMENTS: [(&str, &[&str], Option<&str>); 16] = [
@@ -81,7 +81,7 @@ pub fn write_floor(floor: &Floor) -> String {
             text.push_str(meaning(kind));
         }
         let value = match value {
-            Text::List(values) if !ON_ONE_LINE.contains(&name) => {
+            RonText::List(values) if !ON_ONE_LINE.contains(&name) => {
                 let lines = values.iter().map(|value| format!("        {},\n", value.inline()));
                 format!("[\n{}    ]", lines.collect::<String>())
             }

@@ -19,7 +19,7 @@ use crate::ground::{GrainSpec, GroundMaterial, GroundSpec, IceSpec, WoodSpec};
 use crate::layout::{Colour, Ground, HEX};
 use underfoot_format::codec::By;
 use underfoot_format::describe::{Description, FieldDescription, FieldType};
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Record};
 
 /// Maximum number of grounds of one layout: each has state for every tile.
@@ -43,7 +43,7 @@ pub(super) struct GroundDefinition {
 pub(super) const GROUNDS: By<Vec<GroundDefinition>, Units> = By {
     shape: || FieldType::Variants(describe),
     read: |node, units| Some(read(node, *units)),
-    write: |_| Text::List(Vec::new()),
+    write: |_| RonText::List(Vec::new()),
     stand_in: Vec::new,
 };
 

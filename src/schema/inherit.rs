@@ -10,7 +10,7 @@ use std::path::Path;
 
 use super::chain::Chains;
 use super::diagnostic::Diagnostics;
-use super::kind::{self, Kind, KindFile, Kinds};
+use super::kind::{self, ControlKind, KindFile, Kinds};
 use super::lists::MAX_WIDGETS;
 use super::node::Node;
 use super::pairs::Limits;
@@ -23,7 +23,7 @@ use crate::feel::Effects;
 use underfoot_format::Record;
 use underfoot_format::codec::By;
 use underfoot_format::describe::FieldType;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// The parent of a kind.
 #[derive(Clone, Copy)]
@@ -31,7 +31,7 @@ enum Parent<'k> {
     /// No parent.
     None,
     /// A kind of a layer below.
-    Below(&'k Kind),
+    Below(&'k ControlKind),
     /// Another kind of this layer.
     Here(usize),
     /// An unusable kind, which has been reported.
@@ -39,7 +39,7 @@ enum Parent<'k> {
 }
 
 /// Reads the kinds at `nodes`, on top of those `below`; `None` for each unusable kind, which has been reported.
-pub(super) fn layer(nodes: &[Node<'_>], below: &Kinds) -> Vec<Option<Kind>> {
+pub(super) fn layer(nodes: &[Node<'_>], below: &Kinds) -> Vec<Option<ControlKind>> {
     let mut here: HashMap<&str, usize> = HashMap::new();
     for (index, node) in nodes.iter().enumerate() {
         let Some(name) = node.peek("Kind", "name") else { continue };
@@ -61,7 +61,7 @@ pub(super) fn layer(nodes: &[Node<'_>], below: &Kinds) -> Vec<Option<Kind>> {
     for circle in &chains.circles {
         report_circle(circle, nodes);
     }
-    let mut kinds: Vec<Option<Kind>> = vec![None; nodes.len()];
+    let mut kinds: Vec<Option<ControlKind>> = vec![None; nodes.len()];
     for &index in &chains.order {
         let parent = match parents[index] {
             _ if chains.is_circular(index) => continue,
@@ -142,7 +142,7 @@ fn report_circle(circle: &[usize], nodes: &[Node<'_>]) {
 pub(super) fn read_files<P: AsRef<Path>>(
     paths: &[P],
     below: &Kinds,
-) -> Result<(Vec<Kind>, Diagnostics), Diagnostics> {
+) -> Result<(Vec<ControlKind>, Diagnostics), Diagnostics> {
     let mut problems = Diagnostics::default();
     let mut texts = Vec::new();
     for path in paths {
@@ -169,7 +169,11 @@ pub(super) fn read_files<P: AsRef<Path>>(
 ///
 /// # Errors
 /// Every problem of the text.
-pub(super) fn read_one(text: &str, name: &str, below: &Kinds) -> Result<(Kind, Diagnostics), Diagnostics> {
+pub(super) fn read_one(
+    text: &str,
+    name: &str,
+    below: &Kinds,
+) -> Result<(ControlKind, Diagnostics), Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = reader_of(&source)?;
     let kind = reader.root("kind").and_then(|node| layer(&[node], below).pop().flatten());
@@ -181,8 +185,8 @@ pub(super) fn read_one(text: &str, name: &str, below: &Kinds) -> Result<(Kind, D
 /// # Errors
 /// The kind is of a newer version.
 fn reader_of<'t>(source: &'t Source<'t>) -> Result<Reader<'t>, Diagnostics> {
-    let reader = Reader::new(source, Kind::NAME, Limits::LAYOUT);
-    version::newer(&reader, Kind::NAME).map_or(Ok(reader), Err)
+    let reader = Reader::new(source, ControlKind::NAME, Limits::LAYOUT);
+    version::newer(&reader, ControlKind::NAME).map_or(Ok(reader), Err)
 }
 
 /// Reads the kinds in `texts`, which come with their names in diagnostics, on top of those `below`, and returns
@@ -193,7 +197,7 @@ fn reader_of<'t>(source: &'t Source<'t>) -> Result<Reader<'t>, Diagnostics> {
 pub(super) fn read_texts(
     texts: &[(&str, &str)],
     below: &Kinds,
-) -> Result<(Vec<Kind>, Diagnostics), Diagnostics> {
+) -> Result<(Vec<ControlKind>, Diagnostics), Diagnostics> {
     let mut problems = Diagnostics::default();
     let mut sources = Vec::new();
     for (name, text) in texts {
@@ -212,7 +216,7 @@ pub(super) fn read_texts(
     let roots: Vec<Option<Node<'_>>> = readers.iter().map(|reader| reader.root("kind")).collect();
     let nodes: Vec<Node<'_>> = roots.iter().flatten().copied().collect();
     let mut read = layer(&nodes, below).into_iter();
-    let kinds: Vec<Option<Kind>> =
+    let kinds: Vec<Option<ControlKind>> =
         roots.iter().map(|root| root.and_then(|_| read.next().flatten())).collect();
     // A kind without other errors fails because of its parent; the parent's text has the report.
     let several = texts.len() > 1;
@@ -245,7 +249,7 @@ pub(super) struct Choice {
 /// A layout's own kinds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct OwnKinds {
-    kinds: Vec<Kind>,
+    kinds: Vec<ControlKind>,
     /// Names of unusable kinds, which have been reported.
     unusable: HashSet<String>,
 }
@@ -269,7 +273,7 @@ pub(super) const OWN_KINDS: By<OwnKinds, Kinds> = By {
         }
         Some(own)
     },
-    write: |_| Text::List(Vec::new()),
+    write: |_| RonText::List(Vec::new()),
     stand_in: OwnKinds::default,
 };
 
@@ -292,7 +296,7 @@ impl Choice {
     }
 
     /// Returns the kind that `node` names; `None` if it is unusable, which has been reported.
-    pub(super) fn named(&self, node: Node<'_>) -> Option<&Kind> {
+    pub(super) fn named(&self, node: Node<'_>) -> Option<&ControlKind> {
         let name = node.text(64)?;
         if self.unusable.contains(name) {
             return None;

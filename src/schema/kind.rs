@@ -21,7 +21,7 @@ use underfoot_format::{Flat, Id, Includes, Opt, Rec, Record, Text, record};
 
 record! {
     /// One kind of control: behaviour, feel and look of its widgets, which they may override.
-    pub struct Kind = "Kind" with Effects;
+    pub struct ControlKind = "Kind" with Effects;
     /// Its name in layouts.
     pub name: String = "name", Id;
     /// Its behaviour, with all settings.
@@ -42,13 +42,13 @@ record! {
     /// The kind that it is made from; all fields that are not written come from that one.
     from: Option<String> = "from", Opt(Text(64)) => None;
     /// The kind.
-    kind: Kind = "", Flat;
+    kind: ControlKind = "", Flat;
 }
 
 /// The kinds available to a layout, by name, and the effects available to both.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Kinds {
-    kinds: BTreeMap<String, Kind>,
+    kinds: BTreeMap<String, ControlKind>,
     effects: Arc<Effects>,
 }
 
@@ -136,18 +136,18 @@ impl Kinds {
     }
 
     /// Adds `kind`, replacing any other of the same name.
-    pub(super) fn insert(&mut self, kind: Kind) {
+    pub(super) fn insert(&mut self, kind: ControlKind) {
         self.kinds.insert(kind.name.clone(), kind);
     }
 
     /// Returns the kind called `name`.
     #[must_use]
-    pub fn get(&self, name: &str) -> Option<&Kind> {
+    pub fn get(&self, name: &str) -> Option<&ControlKind> {
         self.kinds.get(name)
     }
 
     /// Returns all kinds, by name.
-    pub fn iter(&self) -> impl Iterator<Item = &Kind> {
+    pub fn iter(&self) -> impl Iterator<Item = &ControlKind> {
         self.kinds.values()
     }
 
@@ -164,7 +164,7 @@ impl Includes<Self> for Kinds {
 }
 
 /// Reads the kind at `node`, which may name `effects`; with a `parent`, fields that are not written come from the parent.
-pub(super) fn read(node: Node<'_>, parent: Option<&Kind>, effects: &Effects) -> Option<Kind> {
+pub(super) fn read(node: Node<'_>, parent: Option<&ControlKind>, effects: &Effects) -> Option<ControlKind> {
     let mut fields = node.fields(KindFile::NAME)?;
     let base = parent.map(|kind| KindFile { version: FORMAT_VERSION, from: None, kind: kind.clone() });
     if let (Some(parent), Some(span)) = (parent, fields.value_span("behaviour")) {

@@ -5,20 +5,20 @@
 //!
 //! ```text
 //! bytes -format-> tree with spans, fields in range
-//!   -layout_record, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
+//!   -layout_record, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, ControlKind, Effect, Floor
 //! ```
 //!
 //! Apps may also read values that can be read alone, and write all of them, by the crate `ron`; what such a value
 //! names comes from the kinds and effects that come with underfoot:
 //!
 //! ```
-//! use underfoot::schema::Kind;
+//! use underfoot::schema::ControlKind;
 //!
 //! let text = r#"Kind(name: "bell", from: "button", press_n: 80, feel: (press: "soft_click"))"#;
-//! let kind: Kind = ron::from_str(text)?;
+//! let kind: ControlKind = ron::from_str(text)?;
 //! assert_eq!(kind.look.face.to_string(), "#d8e4f0");
 //! let written = ron::ser::to_string_pretty(&kind, ron::ser::PrettyConfig::new())?;
-//! assert_eq!(ron::from_str::<Kind>(&written)?, kind);
+//! assert_eq!(ron::from_str::<ControlKind>(&written)?, kind);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -77,13 +77,13 @@ use underfoot_format::{diagnostic, fields, file, node, number, pairs, problem, r
 
 pub use crate::feel::{Effects, NamedEffect};
 pub use ahap::{AhapError, read_ahap, write_ahap};
-pub use builtin::{builtin_floor, builtin_floors, builtin_layout, builtin_layouts};
+pub use builtin::{builtin_floor, builtin_floors, builtin_layout, builtin_layouts, head_comment};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use effect::parse_effect;
 pub use floor::{load_floor, load_floor_with_ports, parse_floor, parse_floor_with_ports};
 pub use floor_text::write_floor;
 pub use ground::ground_fields;
-pub use kind::{Kind, Kinds};
+pub use kind::{ControlKind, Kinds};
 pub use locate::{ControlPart, Remark};
 pub use page::{Loaded, folder_beside, kinds_beside, load_layout, load_layout_and_kinds, parse_layout};
 pub use places::Places;

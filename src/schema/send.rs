@@ -11,7 +11,7 @@ use super::{send_devices, send_midi};
 use crate::messages::{KeyStroke, MAX_MESSAGES, MouseButton, OscArgument, Payload, Sending, Trigger, When};
 use underfoot_format::codec::{By, List, Written};
 use underfoot_format::describe::FieldType;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Name, Named, list};
 
 /// The messages of a kind of control.
@@ -186,31 +186,31 @@ pub(super) fn address(node: Node<'_>, fill: &Fill<'_>) -> Option<String> {
 }
 
 /// Returns the text of one message.
-fn write(sending: &Sending) -> Text {
-    let target = Text::quoted(&*sending.target);
+fn write(sending: &Sending) -> RonText {
+    let target = RonText::quoted(&*sending.target);
     let payload = match &sending.payload {
-        Payload::Key(key) => Text::Call("Key", vec![target, Text::quoted(key.to_string())]),
-        Payload::Button(button) => Text::Call("Button", vec![target, Name.write(button)]),
+        Payload::Key(key) => RonText::Call("Key", vec![target, RonText::quoted(key.to_string())]),
+        Payload::Button(button) => RonText::Call("Button", vec![target, Name.write(button)]),
         Payload::Wheel(steps) => {
-            let settings = Text::Record("Wheel", vec![("steps", Text::Whole((*steps).into()))]);
-            Text::Call("Wheel", vec![target, settings])
+            let settings = RonText::Record("Wheel", vec![("steps", RonText::Whole((*steps).into()))]);
+            RonText::Call("Wheel", vec![target, settings])
         }
         Payload::Pointer(speed) => {
-            let settings = Text::Record("Pointer", vec![("speed_px_s", Text::single(*speed))]);
-            Text::Call("Pointer", vec![target, settings])
+            let settings = RonText::Record("Pointer", vec![("speed_px_s", RonText::single(*speed))]);
+            RonText::Call("Pointer", vec![target, settings])
         }
         Payload::Osc(address, settings) => {
-            let values = [target, Text::quoted(&**address)];
-            Text::Call("Osc", values.into_iter().chain(write_osc(settings)).collect())
+            let values = [target, RonText::quoted(&**address)];
+            RonText::Call("Osc", values.into_iter().chain(write_osc(settings)).collect())
         }
         other => send_midi::write(other, target.clone())
             .or_else(|| send_devices::write(other, target))
-            .unwrap_or(Text::Name("")),
+            .unwrap_or(RonText::Name("")),
     };
     match sending.when {
-        When::On(trigger) => Text::Call("On", vec![Text::Name(trigger.name()), payload]),
-        When::While => Text::Call("While", vec![Text::Name("pressed"), payload]),
-        When::Value => Text::Call("Value", vec![payload]),
+        When::On(trigger) => RonText::Call("On", vec![RonText::Name(trigger.name()), payload]),
+        When::While => RonText::Call("While", vec![RonText::Name("pressed"), payload]),
+        When::Value => RonText::Call("Value", vec![payload]),
     }
 }
 
@@ -231,6 +231,6 @@ pub fn written_messages(sendings: &[Sending]) -> String {
 }
 
 /// Writes the messages of a control.
-pub(super) fn write_all(sendings: &Vec<Sending>) -> Text {
+pub(super) fn write_all(sendings: &Vec<Sending>) -> RonText {
     SENDS.write(sendings)
 }

@@ -7,7 +7,7 @@ use crate::messages::{MAX_ARGUMENTS, OscArgument, OscSettings};
 use underfoot_format::codec::{By, List};
 use underfoot_format::describe::{Description, FieldType};
 use underfoot_format::ron2::ast::Expr;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Num, Opt, Record, list, num, record};
 
 /// Ends of a range of OSC numbers.
@@ -68,7 +68,7 @@ impl OscSettingsRecord {
 }
 
 /// Returns the text of the settings of an OSC message, if it has any.
-pub(super) fn write_osc(settings: &OscSettings) -> Option<Text> {
+pub(super) fn write_osc(settings: &OscSettings) -> Option<RonText> {
     let record = OscSettingsRecord {
         from: settings.range.map(|[from, _]| from),
         to: settings.range.map(|[_, to]| to),
@@ -76,7 +76,7 @@ pub(super) fn write_osc(settings: &OscSettings) -> Option<Text> {
     };
     let mut entries = Vec::new();
     record.write_fields(&mut entries);
-    (!entries.is_empty()).then_some(Text::Record(OscSettingsRecord::NAME, entries))
+    (!entries.is_empty()).then_some(RonText::Record(OscSettingsRecord::NAME, entries))
 }
 
 /// Steps of a wheel: a whole number.
@@ -89,7 +89,7 @@ const STEPS: By<i32> = By {
         }
         number.whole.then_some(number.value as i32)
     },
-    write: |steps| Text::Whole((*steps).into()),
+    write: |steps| RonText::Whole((*steps).into()),
     stand_in: || 1,
 };
 
@@ -99,14 +99,14 @@ const ARGUMENT: By<OscArgument> = By {
     shape: || FieldType::Words("a number, a text, value, force, x, y or foot"),
     read: |node, ()| argument(node),
     write: |argument| match argument {
-        OscArgument::Int(number) => Text::Whole((*number).into()),
-        OscArgument::Float(number) => Text::Single(*number),
-        OscArgument::Text(text) => Text::quoted(&**text),
-        OscArgument::Value => Text::Name("value"),
-        OscArgument::Force => Text::Name("force"),
-        OscArgument::X => Text::Name("x"),
-        OscArgument::Y => Text::Name("y"),
-        OscArgument::Foot => Text::Name("foot"),
+        OscArgument::Int(number) => RonText::Whole((*number).into()),
+        OscArgument::Float(number) => RonText::Single(*number),
+        OscArgument::Text(text) => RonText::quoted(&**text),
+        OscArgument::Value => RonText::Name("value"),
+        OscArgument::Force => RonText::Name("force"),
+        OscArgument::X => RonText::Name("x"),
+        OscArgument::Y => RonText::Name("y"),
+        OscArgument::Foot => RonText::Name("foot"),
     },
     stand_in: || OscArgument::Value,
 };

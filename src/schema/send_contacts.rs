@@ -7,7 +7,7 @@ use super::send_codecs::{OscSettingsRecord, write_osc};
 use crate::messages::{ARRIVAL_N, ContactPayload, ContactSending, MAX_MESSAGES, MpeSettings, OscArgument};
 use underfoot_format::codec::{At, By, List};
 use underfoot_format::describe::{Description, FieldType};
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Rec, Record, list, num, record};
 
 record! {
@@ -80,26 +80,26 @@ fn payload(node: Node<'_>) -> Option<(String, ContactPayload)> {
 }
 
 /// Returns the text of one message.
-fn write(sending: &ContactSending) -> Text {
-    let target = Text::quoted(&*sending.target);
+fn write(sending: &ContactSending) -> RonText {
+    let target = RonText::quoted(&*sending.target);
     let payload = match &sending.payload {
         ContactPayload::Osc(address, settings) => {
-            let values = [target, Text::quoted(&**address)];
-            Text::Call("Osc", values.into_iter().chain(write_osc(settings)).collect())
+            let values = [target, RonText::quoted(&**address)];
+            RonText::Call("Osc", values.into_iter().chain(write_osc(settings)).collect())
         }
-        ContactPayload::Mpe(settings) if *settings == USUAL_MPE => Text::Call("Mpe", vec![target]),
-        ContactPayload::Mpe(settings) => Text::Call("Mpe", vec![target, Rec.write(settings)]),
-        ContactPayload::Pointer => Text::Call("Pointer", vec![target]),
+        ContactPayload::Mpe(settings) if *settings == USUAL_MPE => RonText::Call("Mpe", vec![target]),
+        ContactPayload::Mpe(settings) => RonText::Call("Mpe", vec![target, Rec.write(settings)]),
+        ContactPayload::Pointer => RonText::Call("Pointer", vec![target]),
     };
     let arrival = ArrivalRecord { press_n: sending.press_n };
     let usual = sending.press_n == ARRIVAL_N;
     let values = [payload].into_iter().chain((!usual).then(|| Rec.write(&arrival)));
-    Text::Call("Contacts", values.collect())
+    RonText::Call("Contacts", values.collect())
 }
 
 /// Writes the messages of a region.
-pub(super) fn write_all(sendings: &[ContactSending]) -> Text {
-    Text::List(sendings.iter().map(write).collect())
+pub(super) fn write_all(sendings: &[ContactSending]) -> RonText {
+    RonText::List(sendings.iter().map(write).collect())
 }
 
 /// Describes the forms of messages of feet for the reference.

@@ -7,7 +7,7 @@ use super::send::Fill;
 use crate::messages::{DmxSettings, MAX_ARGUMENTS, MqttSettings, MqttTarget, OscArgument, Payload};
 use underfoot_format::call::Call;
 use underfoot_format::describe::Description;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Rec, Record};
 
 /// The names of these messages.
@@ -89,17 +89,17 @@ pub(super) fn fill_in(payload: &mut Payload, fill: &dyn Fn(&str) -> Option<Strin
 }
 
 /// Returns the text of such a message to `target`; `None` for another one.
-pub(super) fn write(payload: &Payload, target: Text) -> Option<Text> {
+pub(super) fn write(payload: &Payload, target: RonText) -> Option<RonText> {
     Some(match payload {
-        Payload::Dmx(settings) => Text::Call("Dmx", vec![target, Rec.write(settings)]),
+        Payload::Dmx(settings) => RonText::Call("Dmx", vec![target, Rec.write(settings)]),
         Payload::Mqtt(topic, settings) => {
             let settings = (*settings != MqttSettings::PLAIN).then(|| Rec.write(settings));
-            Text::Call("Mqtt", [target, Text::quoted(&**topic)].into_iter().chain(settings).collect())
+            RonText::Call("Mqtt", [target, RonText::quoted(&**topic)].into_iter().chain(settings).collect())
         }
         Payload::Run(arguments) => {
-            let texts = arguments.iter().map(|argument| Text::quoted(&**argument)).collect();
-            let list = (!arguments.is_empty()).then_some(Text::List(texts));
-            Text::Call("Run", [target].into_iter().chain(list).collect())
+            let texts = arguments.iter().map(|argument| RonText::quoted(&**argument)).collect();
+            let list = (!arguments.is_empty()).then_some(RonText::List(texts));
+            RonText::Call("Run", [target].into_iter().chain(list).collect())
         }
         _ => return None,
     })

@@ -10,7 +10,7 @@ use crate::messages::{
 use underfoot_format::call::Call;
 use underfoot_format::describe::Description;
 use underfoot_format::ron2::ast::Expr;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Rec, Record};
 
 /// The names of MIDI messages.
@@ -103,11 +103,11 @@ fn whole(node: Node<'_>) -> Option<u8> {
 }
 
 /// Returns the text of a MIDI message to `target`; `None` for another one.
-pub(super) fn write(payload: &Payload, target: Text) -> Option<Text> {
-    let number = |number: u8| Text::Whole(number.into());
+pub(super) fn write(payload: &Payload, target: RonText) -> Option<RonText> {
+    let number = |number: u8| RonText::Whole(number.into());
     Some(match payload {
         Payload::Note(key, settings) => with("Note", vec![target, number(*key)], settings),
-        Payload::Controller(settings) => Text::Call("Cc", vec![target, Rec.write(settings)]),
+        Payload::Controller(settings) => RonText::Call("Cc", vec![target, Rec.write(settings)]),
         Payload::Program(program, settings) => with("Program", vec![target, number(*program)], settings),
         Payload::Bend(settings) => with("Bend", vec![target], settings),
         Payload::Pressure(settings) => with("Pressure", vec![target], settings),
@@ -116,13 +116,13 @@ pub(super) fn write(payload: &Payload, target: Text) -> Option<Text> {
 }
 
 /// A message with its settings, if they are not the usual ones.
-fn with<T: Record>(name: &'static str, mut values: Vec<Text>, settings: &T) -> Text {
+fn with<T: Record>(name: &'static str, mut values: Vec<RonText>, settings: &T) -> RonText {
     let mut entries = Vec::new();
     settings.write_fields(&mut entries);
     if !entries.is_empty() {
-        values.push(Text::Record(T::NAME, entries));
+        values.push(RonText::Record(T::NAME, entries));
     }
-    Text::Call(name, values)
+    RonText::Call(name, values)
 }
 
 /// Describes the forms of MIDI messages for the reference.

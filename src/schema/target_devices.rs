@@ -6,7 +6,7 @@ use super::problem::Problem;
 use crate::messages::{ArtNetTarget, Destination, MqttTarget, OscTarget, ProgramTarget, SacnTarget};
 use underfoot_format::call::Call;
 use underfoot_format::describe::Description;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Flag, Opt, Rec, Record, num, record};
 
 record! {
@@ -88,20 +88,22 @@ fn checked(node: Node<'_>, is: fn(&str) -> bool, (message, help): (&str, &str)) 
 }
 
 /// Returns the text of such a target; `None` for another one.
-pub(super) fn write(to: &Destination) -> Option<Text> {
+pub(super) fn write(to: &Destination) -> Option<RonText> {
     Some(match to {
         Destination::ArtNet(ArtNetTarget { address, universe }) => {
             let settings = (*universe != 0).then(|| Rec.write(&UniverseRecord { universe: *universe }));
-            Text::Call("ArtNet", [Text::quoted(&**address)].into_iter().chain(settings).collect())
+            RonText::Call("ArtNet", [RonText::quoted(&**address)].into_iter().chain(settings).collect())
         }
-        Destination::Sacn(settings) if *settings == SacnTarget::USUAL => Text::Name("Sacn"),
-        Destination::Sacn(settings) => Text::Call("Sacn", vec![Rec.write(settings)]),
+        Destination::Sacn(settings) if *settings == SacnTarget::USUAL => RonText::Name("Sacn"),
+        Destination::Sacn(settings) => RonText::Call("Sacn", vec![Rec.write(settings)]),
         Destination::Mqtt(MqttTarget { address, base, discovery, user }) => {
             let settings = BrokerRecord { base: base.clone(), discovery: *discovery, user: user.clone() };
             let settings = (settings != PLAIN).then(|| Rec.write(&settings));
-            Text::Call("Mqtt", [Text::quoted(&**address)].into_iter().chain(settings).collect())
+            RonText::Call("Mqtt", [RonText::quoted(&**address)].into_iter().chain(settings).collect())
         }
-        Destination::Run(ProgramTarget { program, .. }) => Text::Call("Run", vec![Text::quoted(&**program)]),
+        Destination::Run(ProgramTarget { program, .. }) => {
+            RonText::Call("Run", vec![RonText::quoted(&**program)])
+        }
         _ => return None,
     })
 }

@@ -8,7 +8,7 @@ use crate::messages::{
 };
 use underfoot_format::codec::{At, By, Distinct, Written};
 use underfoot_format::describe::{Description, FieldType};
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Id, Name, Opt, Rec, Record, record};
 
 record! {
@@ -54,11 +54,11 @@ const DESTINATION: By<Destination> = By {
     },
     read: |node, ()| destination(node),
     write: |to| match to {
-        Destination::Keyboard(keyboard) if *keyboard == ANY_WINDOW => Text::Name("Keyboard"),
-        Destination::Keyboard(keyboard) => Text::Call("Keyboard", vec![Rec.write(keyboard)]),
+        Destination::Keyboard(keyboard) if *keyboard == ANY_WINDOW => RonText::Name("Keyboard"),
+        Destination::Keyboard(keyboard) => RonText::Call("Keyboard", vec![Rec.write(keyboard)]),
         Destination::Osc(OscTarget { address, over }) => {
-            let address = Text::quoted(&**address);
-            Text::Call(
+            let address = RonText::quoted(&**address);
+            RonText::Call(
                 "Osc",
                 match over {
                     OscTransport::Udp => vec![address],
@@ -68,9 +68,9 @@ const DESTINATION: By<Destination> = By {
         }
         Destination::Midi(MidiTarget { port, into }) => {
             let settings = into.is_some().then(|| Rec.write(&IntoRecord { into: into.clone() }));
-            Text::Call("Midi", [Text::quoted(&**port)].into_iter().chain(settings).collect())
+            RonText::Call("Midi", [RonText::quoted(&**port)].into_iter().chain(settings).collect())
         }
-        device => target_devices::write(device).unwrap_or(Text::Name("")),
+        device => target_devices::write(device).unwrap_or(RonText::Name("")),
     },
     stand_in: || Destination::Keyboard(ANY_WINDOW),
 };
@@ -136,12 +136,12 @@ impl TargetRecord {
 }
 
 /// Writes the targets of a layout.
-pub(super) fn write_all(targets: &[SendTarget]) -> Text {
+pub(super) fn write_all(targets: &[SendTarget]) -> RonText {
     let write = |target: &SendTarget| {
-        let entries = vec![("name", Text::quoted(&*target.name)), ("to", DESTINATION.write(&target.to))];
-        Text::Record(TargetRecord::NAME, entries)
+        let entries = vec![("name", RonText::quoted(&*target.name)), ("to", DESTINATION.write(&target.to))];
+        RonText::Record(TargetRecord::NAME, entries)
     };
-    Text::List(targets.iter().map(write).collect())
+    RonText::List(targets.iter().map(write).collect())
 }
 
 /// Describes the forms of targets for the reference.

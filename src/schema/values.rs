@@ -8,7 +8,7 @@ use super::diagnostic::Diagnostics;
 use super::effect::{EffectFile, parse_effect};
 use super::floor::{FloorFileRecord, parse_floor};
 use super::inherit;
-use super::kind::{Kind, Kinds};
+use super::kind::{ControlKind, Kinds};
 use super::layout_record::LayoutRecord;
 use super::pairs::Limits;
 use super::reader::Reader;
@@ -18,14 +18,14 @@ use crate::feel::{Effect, Effects, Feel, NamedEffect};
 use crate::floor::{Floor, FloorFile};
 use crate::layout::{Layout, Look};
 use underfoot_format::filed::{Filed, read_record};
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Rec, Record, filed};
 
-filed!(Effect, NamedEffect, Feel, Look, Kind, Floor);
+filed!(Effect, NamedEffect, Feel, Look, ControlKind, Floor);
 
 /// An effect that is written out; it may be made `from` one that comes with underfoot.
 impl Filed for Effect {
-    fn written(&self) -> Text {
+    fn written(&self) -> RonText {
         self.to_ron()
     }
 
@@ -39,7 +39,7 @@ impl Filed for Effect {
 
 /// A file of `effects/`.
 impl Filed for NamedEffect {
-    fn written(&self) -> Text {
+    fn written(&self) -> RonText {
         Rec.write(self)
     }
 
@@ -50,7 +50,7 @@ impl Filed for NamedEffect {
 
 /// The field `feel` of a kind; it may name effects that come with underfoot.
 impl Filed for Feel {
-    fn written(&self) -> Text {
+    fn written(&self) -> RonText {
         Rec.write(self)
     }
 
@@ -61,7 +61,7 @@ impl Filed for Feel {
 
 /// The field `look` of a kind.
 impl Filed for Look {
-    fn written(&self) -> Text {
+    fn written(&self) -> RonText {
         Rec.write(self)
     }
 
@@ -71,8 +71,8 @@ impl Filed for Look {
 }
 
 /// A file of `widgets/`; it may be made `from` a kind that comes with underfoot, and name effects that do.
-impl Filed for Kind {
-    fn written(&self) -> Text {
+impl Filed for ControlKind {
+    fn written(&self) -> RonText {
         Rec.write(self)
     }
 
@@ -83,8 +83,8 @@ impl Filed for Kind {
 
 /// A floor file. A floor that an app has read has no file ([`FloorFile::NONE`]).
 impl Filed for Floor {
-    fn written(&self) -> Text {
-        Text::Record(FloorFileRecord::NAME, FloorFileRecord::of(self).written())
+    fn written(&self) -> RonText {
+        RonText::Record(FloorFileRecord::NAME, FloorFileRecord::of(self).written())
     }
 
     fn read(text: &str) -> Result<Self, Diagnostics> {
@@ -95,6 +95,6 @@ impl Filed for Floor {
 /// As [`super::write_layout`] writes it.
 impl Serialize for Layout {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Text::Record(LayoutRecord::NAME, write::written(self)).serialize(serializer)
+        RonText::Record(LayoutRecord::NAME, write::written(self)).serialize(serializer)
     }
 }

@@ -9,7 +9,7 @@ use super::version::{FIRST_VERSION, WITH_MESSAGES, version_with};
 use crate::floor::Rect;
 use crate::ground::GroundMaterial;
 use crate::layout::{Ground, HEX, Layout, Widget};
-use underfoot_format::text::{Entry, Text};
+use underfoot_format::text::{Entry, RonText};
 use underfoot_format::{Codec, Name, Rec, Record, Variants};
 
 /// Writes the file that describes `layout`, in metres; [`super::parse_layout`] reads it.
@@ -19,7 +19,7 @@ use underfoot_format::{Codec, Name, Rec, Record, Variants};
 /// group in its order here.
 #[must_use]
 pub fn write_layout(layout: &Layout) -> String {
-    format!("{}\n", Text::Variant(LayoutRecord::NAME, written(layout)).lay_out(0, 0))
+    format!("{}\n", RonText::Variant(LayoutRecord::NAME, written(layout)).lay_out(0, 0))
 }
 
 /// Returns the fields of the file that describes `layout`.
@@ -27,11 +27,12 @@ pub(super) fn written(layout: &Layout) -> Vec<Entry> {
     let mut kinds: Vec<(String, &Widget)> = Vec::new();
     let names: Vec<String> = layout.widgets.iter().map(|widget| kind_of(widget, &mut kinds)).collect();
     let kinds = kinds.iter().map(|(name, widget)| {
-        let mut entries = vec![("name", quoted(name)), ("behaviour", Text::Name(widget.behaviour.variant()))];
+        let mut entries =
+            vec![("name", quoted(name)), ("behaviour", RonText::Name(widget.behaviour.variant()))];
         widget.behaviour.write_fields(&mut entries);
         entries.push(("feel", Rec.write(&widget.feel)));
         entries.push(("look", Rec.write(&widget.look)));
-        Text::Record("Kind", entries)
+        RonText::Record("Kind", entries)
     });
     let regions = layout.regions.iter().map(|region| {
         let mut entries = vec![("id", quoted(&region.id))];
@@ -40,34 +41,34 @@ pub(super) fn written(layout: &Layout) -> Vec<Entry> {
         if !region.send.is_empty() {
             entries.push(("send", send_contacts::write_all(&region.send)));
         }
-        Text::Record("Region", entries)
+        RonText::Record("Region", entries)
     });
     let stances = layout.stances.iter().map(|stance| {
         let mut entries = vec![("label", quoted(&stance.label))];
         place(stance.area, &mut entries);
-        Text::Record("Stance", entries)
+        RonText::Record("Stance", entries)
     });
     let sends = !layout.targets.is_empty() || layout.sends();
     let least = if sends { WITH_MESSAGES } else { FIRST_VERSION };
     let of_targets = layout.targets.iter().map(|target| version_with(target.to.sort()));
     let version = of_targets.max().map_or(least, |newest| newest.max(least));
     let mut entries = vec![
-        ("version", Text::Whole(version.into())),
+        ("version", RonText::Whole(version.into())),
         ("units", Name.write(&Units::Metres)),
         ("title", quoted(&layout.title)),
-        ("regions", Text::List(regions.collect())),
-        ("stances", Text::List(stances.collect())),
+        ("regions", RonText::List(regions.collect())),
+        ("stances", RonText::List(stances.collect())),
         ("targets", targets::write_all(&layout.targets)),
-        ("kinds", Text::List(kinds.collect())),
+        ("kinds", RonText::List(kinds.collect())),
     ];
     of_page(layout, &names, None, &mut entries);
     let pages = layout.pages.iter().enumerate().map(|(number, page)| {
         let mut entries = vec![("id", quoted(page.id.as_str())), ("title", quoted(&page.title))];
         of_page(layout, &names, Some(number), &mut entries);
-        Text::Record("Page", entries)
+        RonText::Record("Page", entries)
     });
-    entries.push(("pages", Text::List(pages.collect())));
-    entries.retain(|(_, value)| *value != Text::List(Vec::new()));
+    entries.push(("pages", RonText::List(pages.collect())));
+    entries.retain(|(_, value)| *value != RonText::List(Vec::new()));
     entries
 }
 
@@ -101,17 +102,17 @@ fn of_page(layout: &Layout, kinds: &[String], page: Option<usize>, entries: &mut
         if !widget.send.is_empty() {
             entries.push(("send", send::write_all(&widget.send)));
         }
-        Text::Record("Widget", entries)
+        RonText::Record("Widget", entries)
     });
-    entries.push(("widgets", Text::List(widgets.collect())));
+    entries.push(("widgets", RonText::List(widgets.collect())));
     let grounds = layout.grounds.iter().filter(|ground| ground.spec.page == page).map(ground);
-    entries.push(("grounds", Text::List(grounds.collect())));
+    entries.push(("grounds", RonText::List(grounds.collect())));
 }
 
-fn ground(ground: &Ground) -> Text {
+fn ground(ground: &Ground) -> RonText {
     let mut entries = Vec::new();
     place(ground.spec.area, &mut entries);
-    entries.push(("seed", Text::Whole(ground.spec.seed.into())));
+    entries.push(("seed", RonText::Whole(ground.spec.seed.into())));
     entries.push(("surface", HEX.write(&ground.surface)));
     entries.push(("deep", HEX.write(&ground.deep)));
     match &ground.spec.material {
@@ -119,19 +120,19 @@ fn ground(ground: &Ground) -> Text {
         GroundMaterial::Grain(spec) => spec.write_fields(&mut entries),
         GroundMaterial::Wood(spec) => spec.write_fields(&mut entries),
     }
-    Text::Variant(ground.spec.material.name(), entries)
+    RonText::Variant(ground.spec.material.name(), entries)
 }
 
 fn place(area: Rect, entries: &mut Vec<Entry>) {
     let rounded = |metres: f64| (metres * 1e7).round() / 1e7;
     let [min, max] = [area.min, area.max].map(|corner| corner.as_dvec2());
-    let pair = |x: f64, y: f64| Text::pair([rounded(x), rounded(y)]);
+    let pair = |x: f64, y: f64| RonText::pair([rounded(x), rounded(y)]);
     entries.push(("at", pair(min.x, min.y)));
     entries.push(("size", pair(max.x - min.x, max.y - min.y)));
 }
 
-fn quoted(text: &str) -> Text {
-    Text::quoted(text)
+fn quoted(text: &str) -> RonText {
+    RonText::quoted(text)
 }
 
 #[cfg(test)]

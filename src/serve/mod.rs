@@ -22,7 +22,7 @@ pub use measure::{ForceRange, ForceWatch, TileRange};
 pub use neighbours::Neighbours;
 pub use reference::{AddressEntry, Argument, ArgumentLimits, MessageDirection, Reference};
 pub use refusal::Refusal;
-pub use server::{Command, Ended, Server};
+pub use server::{Ended, FloorCommand, Server};
 pub use tare::{TareFailure, take_tare};
 pub use walk_test::{SensorVerdict, WalkTest};
 pub use wiring::{FeltLoad, FeltTwice, STEP_N, Wiring, WiringStep, WiringTask, WiringWalk};

@@ -56,7 +56,7 @@ pub use slider::{Mapping, Rate, Relative, SliderSpec};
 pub use stepper::{Repeat, StepperSpec};
 pub use switch::SwitchSpec;
 pub use thresholds::{Thresholds, WeightShare};
-pub use track::Track;
+pub use track::SliderTrack;
 
 pub use control::Control;
 pub use event::Emitted;

@@ -30,7 +30,7 @@ pub(super) fn behaviours(at: Thresholds) -> Vec<Behaviour> {
     };
     let button = ButtonSpec::new(at);
     let slider = SliderSpec { initial: 1.0, ..SliderSpec::new(at, Scale::new(-1.0, 3.0)) };
-    let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
+    let arc = SliderTrack::Arc { from_degrees: 180.0, to_degrees: 0.0 };
     let repeat = Repeat {
         after: Some(Duration::from_millis(100)),
         every: Duration::from_millis(40),
@@ -49,7 +49,7 @@ pub(super) fn behaviours(at: Thresholds) -> Vec<Behaviour> {
             initial: 1,
         }),
         Behaviour::Slider(slider),
-        Behaviour::Slider(SliderSpec { scale, track: Track::Line { degrees: 30.0 }, ..slider }),
+        Behaviour::Slider(SliderSpec { scale, track: SliderTrack::Line { degrees: 30.0 }, ..slider }),
         Behaviour::Slider(SliderSpec { scale: Scale { detent: 1.0, ..slider.scale }, track: arc, ..slider }),
         Behaviour::Slider(SliderSpec { mapping: Mapping::Relative(Relative { gain: 2.0 }), ..slider }),
         Behaviour::Slider(SliderSpec { mapping: Mapping::Rate(Rate { full_per_s: 8.0 }), scale, ..slider }),

@@ -24,7 +24,7 @@ use super::press::PressOutcome;
 use super::scale::INITIAL;
 use super::scale::QUANTUM;
 use super::track::TrackFields;
-use super::{Emitted, Scale, SetError, Thresholds, Track, Value};
+use super::{Emitted, Scale, SetError, SliderTrack, Thresholds, Value};
 use underfoot_format::{Flat, OneOf, choices, num, record};
 
 record! {
@@ -33,7 +33,7 @@ record! {
     /// The thresholds of its press.
     pub thresholds: Thresholds = "", Flat;
     /// The direction in which its value grows.
-    pub track: Track = "axis", TrackFields => Track::EAST;
+    pub track: SliderTrack = "axis", TrackFields => SliderTrack::EAST;
     /// The effect of the foot's place on its value.
     pub mapping: Mapping = "mapping", OneOf => Mapping::Absolute;
     /// Its values.
@@ -46,7 +46,7 @@ impl SliderSpec {
     /// An absolute slider that grows eastwards and begins at its low end.
     #[must_use]
     pub const fn new(thresholds: Thresholds, scale: Scale) -> Self {
-        let (track, mapping) = (Track::EAST, Mapping::Absolute);
+        let (track, mapping) = (SliderTrack::EAST, Mapping::Absolute);
         Self { thresholds, track, mapping, scale, initial: scale.min }
     }
 }

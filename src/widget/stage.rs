@@ -4,7 +4,7 @@ use underfoot_format::describe::{FieldDescription, FieldType, first_paragraph};
 use underfoot_format::fields::Fields;
 use underfoot_format::node::Node;
 use underfoot_format::problem::Problem;
-use underfoot_format::text::{Entry, Text};
+use underfoot_format::text::{Entry, RonText};
 use underfoot_format::{Codec, Num};
 
 /// A pair of thresholds in two fields, which may be absent; the second is derived from the first unless it is
@@ -33,8 +33,8 @@ impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for
         Some(Some([press, press * self.follows].into()))
     }
 
-    fn write(&self, value: &Option<T>) -> Text {
-        value.map_or(Text::Nothing, |value| self.press.write(&value.into()[0]))
+    fn write(&self, value: &Option<T>) -> RonText {
+        value.map_or(RonText::Nothing, |value| self.press.write(&value.into()[0]))
     }
 
     fn shape(&self) -> FieldType {

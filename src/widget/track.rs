@@ -8,14 +8,14 @@ use underfoot_format::describe::{FieldDescription, FieldType};
 use underfoot_format::fields::Fields;
 use underfoot_format::node::Node;
 use underfoot_format::problem::Problem;
-use underfoot_format::text::{Entry, Text};
+use underfoot_format::text::{Entry, RonText};
 use underfoot_format::{Codec, Num, Pair, num};
 
 /// The track of a slider, through the middle of its area.
 ///
 /// Angles count in degrees from east, counter-clockwise: 90 is north.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Track {
+pub enum SliderTrack {
     /// Straight from edge to edge; the value grows in this direction.
     Line {
         /// Direction in which the value grows.
@@ -47,16 +47,16 @@ const FIELDS: [(&str, &str); 3] = [
     ("arc_deg", "Part of a circle: where it begins and ends, counter-clockwise from east."),
 ];
 
-impl Codec<Track> for TrackFields {
+impl Codec<SliderTrack> for TrackFields {
     type Context = ();
 
-    fn read(&self, node: Node<'_>, _: Option<&Track>, context: &()) -> Option<Track> {
+    fn read(&self, node: Node<'_>, _: Option<&SliderTrack>, context: &()) -> Option<SliderTrack> {
         match node.name {
-            "angle_deg" => ANGLE.read(node, None, context).map(|degrees| Track::Line { degrees }),
+            "angle_deg" => ANGLE.read(node, None, context).map(|degrees| SliderTrack::Line { degrees }),
             "arc_deg" => {
                 let [from_degrees, to_degrees]: [f32; 2] = ARC.read(node, None, context)?;
                 if (20.0..=340.0).contains(&(to_degrees - from_degrees).abs()) {
-                    return Some(Track::Arc { from_degrees, to_degrees });
+                    return Some(SliderTrack::Arc { from_degrees, to_degrees });
                 }
                 let problem = Problem::error(node.span(), "an arc is 20 to 340 degrees long");
                 let help = "angles count from east, counter-clockwise: \
@@ -64,14 +64,14 @@ impl Codec<Track> for TrackFields {
                 node.report(problem.expected("from where to where, in degrees").help(help));
                 None
             }
-            _ => node.choice(&[("East", Track::EAST), ("North", Track::NORTH)]),
+            _ => node.choice(&[("East", SliderTrack::EAST), ("North", SliderTrack::NORTH)]),
         }
     }
 
-    fn write(&self, track: &Track) -> Text {
+    fn write(&self, track: &SliderTrack) -> RonText {
         match track {
-            Track::Line { degrees } => ANGLE.write(degrees),
-            Track::Arc { from_degrees, to_degrees } => ARC.write(&[*from_degrees, *to_degrees]),
+            SliderTrack::Line { degrees } => ANGLE.write(degrees),
+            SliderTrack::Arc { from_degrees, to_degrees } => ARC.write(&[*from_degrees, *to_degrees]),
         }
     }
 
@@ -79,19 +79,19 @@ impl Codec<Track> for TrackFields {
         FieldType::Names(vec!["East", "North"])
     }
 
-    fn stand_in(&self) -> Track {
-        Track::EAST
+    fn stand_in(&self) -> SliderTrack {
+        SliderTrack::EAST
     }
 
     fn read_field(
         &self,
         fields: &mut Fields<'_>,
         _: &'static str,
-        base: Option<&Track>,
-        default: Option<Track>,
+        base: Option<&SliderTrack>,
+        default: Option<SliderTrack>,
         context: &(),
-    ) -> Track {
-        let mut written: Vec<(Node<'_>, Option<Track>)> = Vec::new();
+    ) -> SliderTrack {
+        let mut written: Vec<(Node<'_>, Option<SliderTrack>)> = Vec::new();
         for (name, _) in FIELDS {
             let Some(node) = fields.take(name) else { continue };
             let track = self.read(node, None, context);
@@ -104,14 +104,20 @@ impl Codec<Track> for TrackFields {
             let message = format!("`{}` contradicts `{}`", second.name, first.name);
             fields.report(Problem::error(second.span(), message).expected("a slider has one track"));
         }
-        let known = || base.copied().or(default).unwrap_or(Track::EAST);
+        let known = || base.copied().or(default).unwrap_or(SliderTrack::EAST);
         written.pop().and_then(|(_, track)| track).unwrap_or_else(known)
     }
 
-    fn write_field(&self, track: &Track, _: &'static str, _: Option<Track>, entries: &mut Vec<Entry>) {
+    fn write_field(
+        &self,
+        track: &SliderTrack,
+        _: &'static str,
+        _: Option<SliderTrack>,
+        entries: &mut Vec<Entry>,
+    ) {
         let name = match track {
-            Track::Line { .. } => "angle_deg",
-            Track::Arc { .. } => "arc_deg",
+            SliderTrack::Line { .. } => "angle_deg",
+            SliderTrack::Arc { .. } => "arc_deg",
         };
         entries.push((name, self.write(track)));
     }
@@ -120,11 +126,11 @@ impl Codec<Track> for TrackFields {
         &self,
         _: &'static str,
         _: &[&str],
-        _: Option<Track>,
+        _: Option<SliderTrack>,
         fields: &mut Vec<FieldDescription>,
     ) {
         let shapes =
-            [Codec::<Track>::shape(self), Codec::<f32>::shape(&ANGLE), Codec::<[f32; 2]>::shape(&ARC)];
+            [Codec::<SliderTrack>::shape(self), Codec::<f32>::shape(&ANGLE), Codec::<[f32; 2]>::shape(&ARC)];
         let defaults = ["East", "none", "none"].map(|default| Some(default.to_owned()));
         for (((name, about), shape), default) in FIELDS.into_iter().zip(shapes).zip(defaults) {
             fields.push(FieldDescription { name, about: about.to_owned(), shape, default });
@@ -138,7 +144,7 @@ const HUB: f32 = 0.25;
 /// Part of an area's smaller side that stays free around an arc.
 const AROUND: f32 = 0.18;
 
-impl Track {
+impl SliderTrack {
     /// Eastwards.
     pub const EAST: Self = Self::Line { degrees: 0.0 };
 
@@ -244,13 +250,13 @@ mod tests {
     #[test]
     fn a_place_on_the_track_is_found_again() {
         let tracks = [
-            Track::EAST,
-            Track::NORTH,
-            Track::Line { degrees: 30.0 },
-            Track::Line { degrees: -135.0 },
-            Track::Arc { from_degrees: 180.0, to_degrees: 0.0 },
-            Track::Arc { from_degrees: -30.0, to_degrees: 120.0 },
-            Track::Arc { from_degrees: 225.0, to_degrees: -45.0 },
+            SliderTrack::EAST,
+            SliderTrack::NORTH,
+            SliderTrack::Line { degrees: 30.0 },
+            SliderTrack::Line { degrees: -135.0 },
+            SliderTrack::Arc { from_degrees: 180.0, to_degrees: 0.0 },
+            SliderTrack::Arc { from_degrees: -30.0, to_degrees: 120.0 },
+            SliderTrack::Arc { from_degrees: 225.0, to_degrees: -45.0 },
         ];
         for track in tracks {
             for size in [Vec2::new(0.6, 0.2), Vec2::new(0.3, 0.3), Vec2::new(0.2, 0.9)] {
@@ -268,7 +274,7 @@ mod tests {
 
     #[test]
     fn a_half_circle_fills_an_area_twice_as_wide_as_deep() {
-        let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
+        let arc = SliderTrack::Arc { from_degrees: 180.0, to_degrees: 0.0 };
         let (centre, radius) = arc.circle(Vec2::new(0.6, 0.3)).unwrap();
         // A margin of 18 % of 30 cm stays free on all sides.
         assert!((radius - 0.192).abs() < 1e-5);
@@ -278,7 +284,7 @@ mod tests {
 
     #[test]
     fn what_lies_beyond_an_arcs_end_is_at_that_end() {
-        let arc = Track::Arc { from_degrees: 135.0, to_degrees: 45.0 };
+        let arc = SliderTrack::Arc { from_degrees: 135.0, to_degrees: 45.0 };
         let size = Vec2::splat(0.4);
         let (centre, radius) = arc.circle(size).unwrap();
         let at = |degrees: f32| 0.5 + (centre + radius * direction(degrees)) / size;

@@ -235,7 +235,7 @@ fn controls_are_listed_in_the_order_of_the_layout_with_their_states() {
     let page = layout("map");
     let expected: Vec<&str> = page.widgets.iter().map(|widget| widget.id.as_str()).collect();
     let controls = session.controls();
-    assert_eq!(controls.iter().map(underfoot::runtime::Control::id).collect::<Vec<_>>(), expected);
+    assert_eq!(controls.iter().map(underfoot::runtime::ControlHandle::id).collect::<Vec<_>>(), expected);
     let states: Vec<String> = session.snapshot().controls().map(|state| state.id.to_string()).collect();
     assert_eq!(states, expected);
     assert!(controls.iter().all(|control| control.state().unwrap().id == control.id()));

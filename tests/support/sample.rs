@@ -14,13 +14,13 @@ use underfoot::sense::{Contact, ContactId, Covariance, Cursor, Quality, TileLoad
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{
     Axis, Behaviour, ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Repeat, Scale,
-    SelectorSpec, SliderSpec, StepperSpec, SwitchSpec, Thresholds, Track, WidgetId,
+    SelectorSpec, SliderSpec, SliderTrack, StepperSpec, SwitchSpec, Thresholds, WidgetId,
 };
 use underfoot::wire::LinkState;
 
 pub(crate) const THRESHOLDS: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
-pub(crate) fn slider(track: Track, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
+pub(crate) fn slider(track: SliderTrack, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
     let scale = Scale { step, ..Scale::new(min, max) };
     Behaviour::Slider(SliderSpec { track, initial, ..SliderSpec::new(THRESHOLDS, scale) })
 }
@@ -41,13 +41,13 @@ pub(crate) fn others() -> Vec<Behaviour> {
     let slider = SliderSpec::new(thresholds, Scale::UNIT);
     let repeat =
         Repeat { after: None, every: Duration::from_millis(250), fastest: Duration::from_millis(60) };
-    let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
+    let arc = SliderTrack::Arc { from_degrees: 180.0, to_degrees: 0.0 };
     vec![
         Behaviour::Hold(HoldSpec { thresholds }),
         Behaviour::Selector(SelectorSpec { thresholds, axis: Axis::East, options, initial: 1 }),
         Behaviour::Slider(SliderSpec { track: arc, ..slider }),
-        Behaviour::Slider(SliderSpec { track: Track::Line { degrees: 30.0 }, ..slider }),
-        Behaviour::Slider(SliderSpec { track: Track::Line { degrees: 120.0 }, ..slider }),
+        Behaviour::Slider(SliderSpec { track: SliderTrack::Line { degrees: 30.0 }, ..slider }),
+        Behaviour::Slider(SliderSpec { track: SliderTrack::Line { degrees: 120.0 }, ..slider }),
         Behaviour::Pedal(PedalSpec {
             thresholds,
             scale: Scale::new(0.0, 10.0),
@@ -147,7 +147,7 @@ pub(crate) fn map() -> Layout {
                 "Time of day",
                 [0.25, 2.1],
                 [3.2, 0.6],
-                slider(Track::EAST, 0.0, 24.0, 0.0, 12.0),
+                slider(SliderTrack::EAST, 0.0, 24.0, 0.0, 12.0),
                 sand(),
             ),
             widget(
@@ -155,7 +155,7 @@ pub(crate) fn map() -> Layout {
                 "Tilt",
                 [4.95, 2.1],
                 [0.6, 1.65],
-                slider(Track::NORTH, 0.0, 90.0, 5.0, 30.0),
+                slider(SliderTrack::NORTH, 0.0, 90.0, 5.0, 30.0),
                 sand(),
             ),
         ],

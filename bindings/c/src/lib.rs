@@ -13,7 +13,7 @@ use std::ptr;
 use std::time::Duration;
 
 use underfoot::glam::Vec2;
-use underfoot::runtime::{Control, Refusal};
+use underfoot::runtime::{ControlHandle, Refusal};
 use underfoot::widget::{Indicator, Value};
 
 pub use session::UfSession;
@@ -51,7 +51,7 @@ unsafe fn text<'a>(text: *const c_char) -> Option<&'a str> {
 unsafe fn with_control(
     session: *const UfSession,
     id: *const c_char,
-    what: impl FnOnce(Control<'_>) -> Result<(), Refusal>,
+    what: impl FnOnce(ControlHandle<'_>) -> Result<(), Refusal>,
 ) -> c_int {
     contained(PANIC, || {
         // SAFETY: as the caller promises.

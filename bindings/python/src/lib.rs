@@ -16,7 +16,7 @@ use pyo3::types::{PyBytes, PyDict, PyTuple};
 use underfoot::engine::{ControlState, ValueRange};
 use underfoot::glam::Vec2;
 use underfoot::recording::Speed;
-use underfoot::runtime::{Control, Kind, Refusal, Session, SessionBuilder, Snapshot};
+use underfoot::runtime::{ControlHandle, Kind, Refusal, Session, SessionBuilder, SessionSnapshot};
 use underfoot::widget::{Indicator, SetError, Value};
 
 use event::{fields, to_python};
@@ -50,7 +50,7 @@ impl PySession {
         self.handle().ok_or_else(|| Refused::new_err("the session is closed"))
     }
 
-    fn snapshot(&self) -> PyResult<Snapshot> {
+    fn snapshot(&self) -> PyResult<SessionSnapshot> {
         Ok(self.open()?.snapshot())
     }
 
@@ -64,7 +64,7 @@ impl PySession {
         &self,
         py: Python<'_>,
         id: &str,
-        what: impl FnOnce(Control<'_>) -> Result<(), Refusal> + Send,
+        what: impl FnOnce(ControlHandle<'_>) -> Result<(), Refusal> + Send,
     ) -> PyResult<()> {
         let floor = self.open()?;
         py.detach(move || floor.control(id).and_then(what)).map_err(|refusal| refused(&refusal))

@@ -9,15 +9,17 @@ use underfoot_scene::ergonomics::{self, RULES};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::fonts::fonts;
-use super::layout_args::{LayoutArgs, MisplacedLayout};
+use super::layout_args::{LayoutArgs, MisplacedLayout, builtin_names};
 use super::output::{colours, print_json};
 
 /// Options of `underfoot check`.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Layout files, or names of built-in layouts (map, surgical, first_steps, all_controls, pond,
-    /// winter_walk, dicom_viewer, globe).
-    #[arg(required_unless_present_any = ["explain", "rules"], value_name = "LAYOUT")]
+    #[arg(
+        required_unless_present_any = ["explain", "rules"],
+        value_name = "LAYOUT",
+        help = format!("Layout files, or names of built-in layouts ({})", builtin_names()),
+    )]
     layouts: Vec<PathBuf>,
     #[command(flatten)]
     misplaced: MisplacedLayout,

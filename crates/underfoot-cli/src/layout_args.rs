@@ -19,9 +19,7 @@ use super::fonts::fonts;
 /// Options that choose the layout.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LayoutArgs {
-    /// Layout file, or the name of a built-in one (map, surgical, first_steps, all_controls, pond,
-    /// winter_walk, dicom_viewer, globe).
-    #[arg(value_name = "LAYOUT")]
+    #[arg(value_name = "LAYOUT", help = format!("Layout file, or the name of a built-in one ({})", builtin_names()))]
     pub(crate) layout: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) misplaced: MisplacedLayout,
@@ -31,6 +29,11 @@ pub(crate) struct LayoutArgs {
     /// Folder of effects to add; without it, an `effects` folder beside the layout or beside its folder.
     #[arg(long, value_name = "DIR")]
     pub(crate) effects: Option<PathBuf>,
+}
+
+/// The names of all built-in layouts, for help.
+pub(crate) fn builtin_names() -> String {
+    schema::builtin_layouts().collect::<Vec<_>>().join(", ")
 }
 
 /// The option that other programs have for their files: accepted only to report where the layout belongs here.

@@ -14,7 +14,7 @@ use underfoot::floor::read_address;
 use underfoot::ground::{GroundCounters, GroundMaterial, GroundState};
 use underfoot::layout::Layout;
 use underfoot::recording::{Recorded, Recorder, WhenBehind};
-use underfoot::runtime::{EndReason, Event, Kind, Session, Snapshot};
+use underfoot::runtime::{EndReason, Event, Kind, Session, SessionSnapshot};
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
 #[cfg(unix)]
@@ -189,7 +189,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .map_err(|error| Failure::Other(format!("the console can't be started: {error}")))?;
     let end = end(&session);
     drop((watch, console, web, query));
-    let Snapshot { layout, floor, .. } = session.snapshot();
+    let SessionSnapshot { layout, floor, .. } = session.snapshot();
     report(&floor.counters, floor.unsent_events);
     report_felt(&floor.feel);
     grounds(&layout, &floor.grounds).iter().for_each(|ground| errln!("{ground}"));

@@ -2,7 +2,7 @@
 
 use egui::{Color32, Context, ViewportBuilder, ViewportId};
 use underfoot::floor::Geometry;
-use underfoot::runtime::Snapshot;
+use underfoot::runtime::SessionSnapshot;
 use underfoot_scene::scene::{Show, Theme};
 
 use crate::FloorView;
@@ -27,7 +27,7 @@ impl Projector {
     }
 
     /// Draws the window while it is on; closing the window turns it off. Call it with each frame of the app.
-    pub fn show(&mut self, context: &Context, geometry: &Geometry, snapshot: &Snapshot) {
+    pub fn show(&mut self, context: &Context, geometry: &Geometry, snapshot: &SessionSnapshot) {
         if !self.is_on {
             return;
         }

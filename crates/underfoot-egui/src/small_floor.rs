@@ -3,7 +3,7 @@
 use egui::{Context, RawInput, Sense, Ui, ViewportId};
 use underfoot::floor::Geometry;
 use underfoot::glam::Vec2;
-use underfoot::runtime::{Session, Snapshot};
+use underfoot::runtime::{Session, SessionSnapshot};
 use underfoot::units::Newtons;
 use underfoot::wire::LinkState;
 use underfoot_scene::scene::{Show, Theme};
@@ -42,7 +42,7 @@ impl SmallFloor {
 
     /// Advice for a user of a floor without feet; `None` while there are contacts on a working floor.
     #[must_use]
-    pub fn advice(&self, session: &Session, snapshot: &Snapshot) -> Option<&'static str> {
+    pub fn advice(&self, session: &Session, snapshot: &SessionSnapshot) -> Option<&'static str> {
         Some(match (snapshot.floor.link, snapshot.floor.contacts.is_empty()) {
             _ if session.has_ended() => "The floor is gone",
             (LinkState::Lost, _) => "The floor is silent",
@@ -54,7 +54,7 @@ impl SmallFloor {
     }
 
     /// Fills the remaining room in `ui` with the floor, upright and as large as possible, and moves the mouse's foot.
-    pub fn ui(&mut self, ui: &mut Ui, geometry: &Geometry, snapshot: &Snapshot) {
+    pub fn ui(&mut self, ui: &mut Ui, geometry: &Geometry, snapshot: &SessionSnapshot) {
         let (response, map) = self.view.ui(ui, geometry, &snapshot.layout, &snapshot.floor);
         let Some(hand) = &mut self.hand else { return };
         let pressed = ui.interact(response.rect, response.id.with("mouse"), Sense::drag());

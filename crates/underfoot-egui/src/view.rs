@@ -28,7 +28,7 @@ impl FloorView {
 
     /// Fills the remaining room in `ui` with the floor, upright and as large as possible.
     ///
-    /// `snapshot` belongs to `layout`, like those of [`underfoot::runtime::Snapshot`]. The returned map converts
+    /// `snapshot` belongs to `layout`, like those of [`underfoot::runtime::SessionSnapshot`]. The returned map converts
     /// between floor and screen positions.
     pub fn ui(
         &mut self,

@@ -8,7 +8,7 @@ use super::pairs::Limits;
 use super::reader::Reader;
 use super::record::Record;
 use super::source::Source;
-use super::text::Text;
+use super::text::RonText;
 
 /// A value that files hold and that can be read alone.
 ///
@@ -19,7 +19,7 @@ use super::text::Text;
 /// another format has no text with places to report.
 pub trait Filed: Sized {
     /// Returns the value as files hold it.
-    fn written(&self) -> Text;
+    fn written(&self) -> RonText;
 
     /// Reads the value from `text`.
     ///
@@ -72,14 +72,14 @@ mod tests {
     use ron::ser::PrettyConfig;
 
     use super::*;
-    use crate::codec::{Codec, Name, Named, Opt, Rec, Text as Words, list, num};
+    use crate::codec::{Codec, Name, Named, Opt, Rec, Text, list, num};
     use crate::record;
 
     record! {
         /// A shelf.
         struct Shelf = "Shelf";
         /// Its title.
-        title: String = "title", Words(20);
+        title: String = "title", Text(20);
         /// Its width.
         width_s: f32 = "width_ms", num(1.0..=100.0).milli() => 0.01;
         /// Its side.
@@ -106,7 +106,7 @@ mod tests {
     }
 
     impl Filed for Shelf {
-        fn written(&self) -> Text {
+        fn written(&self) -> RonText {
             Rec.write(self)
         }
 

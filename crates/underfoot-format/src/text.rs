@@ -7,11 +7,11 @@ use serde::ser::{
 use serde::{Serialize, Serializer};
 
 /// A named field of a record.
-pub type Entry = (&'static str, Text);
+pub type Entry = (&'static str, RonText);
 
 /// A value in its written form.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Text {
+pub enum RonText {
     /// `None`.
     Nothing,
     /// `true` or `false`.
@@ -24,18 +24,18 @@ pub enum Text {
     Double(f64),
     /// One of a few names.
     Name(&'static str),
-    /// Text in quotes.
+    /// RonText in quotes.
     Quoted(String),
     /// Values in round brackets.
-    Tuple(Vec<Text>),
+    Tuple(Vec<RonText>),
     /// Values in square brackets.
-    List(Vec<Text>),
+    List(Vec<RonText>),
     /// Named fields in round brackets. RON leaves the record's name out unless a caller of `ron` asks for it.
     Record(&'static str, Vec<Entry>),
     /// Named fields in round brackets behind a name, which tells them from other variants.
     Variant(&'static str, Vec<Entry>),
     /// Values in round brackets behind a name.
-    Call(&'static str, Vec<Text>),
+    Call(&'static str, Vec<RonText>),
 }
 
 /// Maximum length of a line that holds a whole record, in characters.
@@ -47,7 +47,7 @@ const LARGE: f64 = 1e16;
 /// Name of the enum that serde gets for names and variants; RON never writes it.
 const ENUM: &str = "Choice";
 
-impl Text {
+impl RonText {
     /// `value`, without a decimal point where none is needed.
     pub fn single(value: f32) -> Self {
         let whole = value.fract() == 0.0 && f64::from(value).abs() < LARGE;
@@ -135,7 +135,7 @@ impl Text {
 }
 
 /// Passes on the value as files hold it: names, units and texts as in the file format.
-impl Serialize for Text {
+impl Serialize for RonText {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Nothing => serializer.serialize_none(),
@@ -176,18 +176,20 @@ impl Serialize for Text {
 
 /// Returns the shortest number that reads back as `value` after division by `scale`, without a decimal point where
 /// none is needed.
-pub fn number(value: f32, scale: f64) -> Text {
+pub fn number(value: f32, scale: f64) -> RonText {
     if !value.is_finite() {
-        return Text::Whole(0);
+        return RonText::Whole(0);
     }
     if scale == 1.0 {
-        return Text::single(value);
+        return RonText::single(value);
     }
     // Most values are whole hundredths; the others need all digits, found by trial.
     let written = f64::from(value) * scale;
     let reads_back = |text: &String| text.parse::<f32>().is_ok_and(|read| read / scale as f32 == value);
     let shortest = (2..=9).map(|digits| format!("{written:.digits$}")).find(reads_back);
-    shortest.and_then(|text| text.parse().ok()).map_or_else(|| Text::single(written as f32), Text::double)
+    shortest
+        .and_then(|text| text.parse().ok())
+        .map_or_else(|| RonText::single(written as f32), RonText::double)
 }
 
 #[cfg(test)]
@@ -207,14 +209,14 @@ mod tests {
 
     #[test]
     fn values_stand_on_one_line_or_on_many() {
-        let modes = Text::List(vec![Text::Record("Mode", vec![("hz", Text::Whole(180))])]);
+        let modes = RonText::List(vec![RonText::Record("Mode", vec![("hz", RonText::Whole(180))])]);
         let click = |title: &str| {
             let entries = vec![
                 ("modes", modes.clone()),
-                ("title", Text::quoted(title)),
-                ("at", Text::pair([0.5, 1.0])),
+                ("title", RonText::quoted(title)),
+                ("at", RonText::pair([0.5, 1.0])),
             ];
-            Text::Variant("Click", entries)
+            RonText::Variant("Click", entries)
         };
         let text = click("it's");
         assert_eq!(text.inline(), r#"Click(modes: [(hz: 180)], title: "it's", at: (0.5, 1))"#);
@@ -223,8 +225,8 @@ mod tests {
         let laid_out =
             format!("Click(\n    modes: [(hz: 180)],\n    title: \"{long}\",\n    at: (0.5, 1),\n)");
         assert_eq!(click(&long).lay_out(0, 0), laid_out);
-        assert_eq!(Text::List(Vec::new()).inline(), "[]");
-        assert_eq!(Text::Record("Mode", Vec::new()).inline(), "()");
+        assert_eq!(RonText::List(Vec::new()).inline(), "[]");
+        assert_eq!(RonText::Record("Mode", Vec::new()).inline(), "()");
     }
 
     #[test]
@@ -234,7 +236,7 @@ mod tests {
             ("a \"b\" \\ c", r#""a \"b\" \\ c""#),
             ("\n\t\u{7}", r#""\n\t\u{7}""#),
         ] {
-            assert_eq!(Text::quoted(text).inline(), written);
+            assert_eq!(RonText::quoted(text).inline(), written);
         }
     }
 }

@@ -8,7 +8,7 @@ use underfoot_format::pairs::Limits;
 use underfoot_format::problem::Problem;
 use underfoot_format::reader::Reader;
 use underfoot_format::source::Source;
-use underfoot_format::text::Text as RonText;
+use underfoot_format::text::RonText;
 use underfoot_format::{Flat, Follow, Includes, Num, OneOf, Opt, Rec, choices, list, num, record};
 
 /// The names of places on a floor.

@@ -90,7 +90,7 @@ pub use reference::reference;
 pub use rehearsal::{FaultSwitch, RehearsalSource};
 pub use rolling::{Rolling, RollingHabit};
 pub use scenario::Scenario;
-pub use scene::{RandomPerson, Scene, SceneKind};
+pub use scene::{PlayedScene, RandomPerson, SceneKind};
 pub use script::Script;
 pub use seam::SeamConfig;
 pub use sensor::{PartConfig, SensorFault};

@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use underfoot::floor::Rect;
-use underfoot::widget::{DialSpec, Track};
+use underfoot::widget::{DialSpec, SliderTrack};
 
 /// Radius of a drag around a dial, relative to half of the dial's shorter side: well off the hub, well inside the
 /// rim.
@@ -32,11 +32,11 @@ pub enum Slide {
 
 impl Slide {
     /// Path along the track of a slider on `area`, from one share (0 to 1) of it to another.
-    pub(super) fn along(track: Track, area: Rect, from: f32, to: f32) -> Self {
+    pub(super) fn along(track: SliderTrack, area: Rect, from: f32, to: f32) -> Self {
         let size = area.size();
         let at = |share: f32| area.min + track.place_at(share, size) * size;
         match (track, track.circle(size)) {
-            (Track::Arc { from_degrees, to_degrees }, Some((centre, _))) => {
+            (SliderTrack::Arc { from_degrees, to_degrees }, Some((centre, _))) => {
                 let sweep = (to_degrees - from_degrees).to_radians() * (to - from);
                 Self::Arc { from: at(from), centre: area.centre() + centre, sweep }
             }

@@ -1,4 +1,4 @@
-//! Clicks under the feet, for the motor of a phone.
+//! ClickWatch under the feet, for the motor of a phone.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,16 +8,16 @@ use underfoot::widget::EventKind;
 
 /// Whether a control clicked since the last look.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Clicks(Arc<AtomicBool>);
+pub(crate) struct ClickWatch(Arc<AtomicBool>);
 
-impl Clicks {
+impl ClickWatch {
     /// Returns whether a control clicked since the last call.
     pub(crate) fn take(&self) -> bool {
         self.0.swap(false, Ordering::Relaxed)
     }
 }
 
-impl EventSink for Clicks {
+impl EventSink for ClickWatch {
     fn report(&mut self, report: &Report<'_>) {
         use EventKind::{Armed, Clicked, HardPressed, Pressed, Ticked};
         if let Report::Event(event) = report

@@ -7,7 +7,7 @@ use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema;
-use underfoot::serve::{Command, Server};
+use underfoot::serve::{FloorCommand, Server};
 use underfoot::widget::WidgetId;
 use underfoot::wire::ControlMessage;
 use underfoot_window::edit::{self, Document};
@@ -22,11 +22,11 @@ pub(crate) struct PageDesk {
     pub(crate) choices: Vec<String>,
     pub(crate) own: OwnTexts,
     pub(crate) asked: Receiver<PreviewCommand>,
-    pub(crate) to_floor: SyncSender<Command>,
+    pub(crate) to_floor: SyncSender<FloorCommand>,
     pub(crate) layouts: SyncSender<LayoutNews>,
     pub(crate) notices: SyncSender<Notice>,
     /// Commands for which the floor had no room.
-    pub(crate) late: Vec<Command>,
+    pub(crate) late: Vec<FloorCommand>,
     /// The number of layouts that the floor got.
     pub(crate) revision: u64,
     /// The controls that a check of the floor has switched off.
@@ -50,7 +50,7 @@ impl PageDesk {
         }
     }
 
-    fn give(&mut self, command: Command) {
+    fn give(&mut self, command: FloorCommand) {
         match self.to_floor.try_send(command) {
             Ok(()) => {}
             Err(TrySendError::Full(command)) => self.late.push(command),
@@ -70,7 +70,7 @@ impl PageDesk {
             PreviewCommand::TurnControlsOff(true) => self.turn_off(server),
             PreviewCommand::TurnControlsOff(false) => {
                 for id in std::mem::take(&mut self.off) {
-                    self.give(Command::Control(ControlMessage::Enable { id }));
+                    self.give(FloorCommand::Control(ControlMessage::Enable { id }));
                 }
             }
             PreviewCommand::SaveEffect { name, text } => self.save_effect(&name, &text),
@@ -107,7 +107,7 @@ impl PageDesk {
 
     fn put(&mut self, layout: &Layout, name: String, warnings: Warnings, cause: LayoutCause) {
         self.revision += 1;
-        self.give(Command::SetLayout(Box::new(layout.clone())));
+        self.give(FloorCommand::SetLayout(Box::new(layout.clone())));
         let (layout, revision) = (Arc::new(layout.clone()), self.revision);
         let _ = self.layouts.try_send(LayoutNews::Loaded { layout, revision, name, cause, warnings });
     }
@@ -124,7 +124,7 @@ impl PageDesk {
             .filter(|(_, state)| !state.disabled);
         self.off = on.map(|(widget, _)| widget.id.clone()).collect();
         for id in self.off.clone() {
-            self.give(Command::Control(ControlMessage::Disable { id }));
+            self.give(FloorCommand::Control(ControlMessage::Disable { id }));
         }
     }
 

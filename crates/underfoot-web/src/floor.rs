@@ -25,7 +25,7 @@ use underfoot_window::preview::{
     channels, shoes, usual_state,
 };
 
-use super::clicks::Clicks;
+use super::clicks::ClickWatch;
 use super::clock::PageClock;
 use super::desk::PageDesk;
 use super::kinds::OwnTexts;
@@ -72,7 +72,7 @@ pub struct PageFloor {
     server: Server,
     clock: Arc<PageClock>,
     desk: PageDesk,
-    clicks: Clicks,
+    clicks: ClickWatch,
     /// Whether the floor has ended, which happens only through a fault.
     is_over: bool,
 }
@@ -127,7 +127,7 @@ impl PageFloor {
         let scopes = renderer.scope().map(|scope| Box::new(SignalScopes::new(scope)) as Box<dyn ScopeFeed>);
         let (written, shown) = triple_buffer(&Snapshot::default());
         let (to_floor, received) = sync_channel(COMMANDS_WAITING);
-        let (layout, clicks) = (document.layout().clone(), Clicks::default());
+        let (layout, clicks) = (document.layout().clone(), ClickWatch::default());
         let mut server = Server::new(&floor, layout.clone(), Method::default(), tap.wrap(source))
             .with_events(Box::new(Fanout::new().with(ToWindow::new(events)).with(clicks.clone())))
             .with_feel(feel, Box::new(StereoSink::new(renderer, &floor, start, play)))

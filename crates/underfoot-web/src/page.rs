@@ -44,6 +44,8 @@ pub async fn start(
             corners: Some(usual_state().join("projection.txt")),
             ..ProjectionOptions::default()
         },
+        // A link has its layout already.
+        begins_with_gallery: fragment.len() < 2,
         ..PreviewOptions::default()
     };
     run_in_frames(&window, floor, click);

@@ -7,7 +7,7 @@ use eframe::egui::{
     RichText, Sense, Shadow, Ui, Vec2, ViewportCommand, pos2, vec2,
 };
 use underfoot::floor::{self, Geometry};
-use underfoot::runtime::Snapshot;
+use underfoot::runtime::SessionSnapshot;
 use underfoot::wire::LinkState;
 use underfoot_egui::{FootInput, Projector, SmallFloor};
 use underfoot_scene::scene::Theme;
@@ -93,7 +93,7 @@ impl App {
     }
 
     /// The card in a corner with the map's position; returns the area that it covers.
-    fn title(&self, ui: &mut Ui, rect: Rect, snapshot: &Snapshot) -> Rect {
+    fn title(&self, ui: &mut Ui, rect: Rect, snapshot: &SessionSnapshot) -> Rect {
         let camera = &self.guide.state.camera;
         let side = |degrees: f64, [plus, minus]: [&str; 2]| {
             format!("{:.1}° {}", degrees.abs(), if degrees < 0.0 { minus } else { plus })
@@ -116,7 +116,7 @@ impl App {
     }
 
     /// The small floor, with the mouse as a foot on it; returns the area that it covers.
-    fn floor(&mut self, ui: &mut Ui, rect: Rect, snapshot: &Snapshot) -> Rect {
+    fn floor(&mut self, ui: &mut Ui, rect: Rect, snapshot: &SessionSnapshot) -> Rect {
         let size = self.part.size(rect.size());
         let outer = size + 2.0 * EDGE;
         let at = Rect::from_min_size(rect.max - outer - vec2(24.0, 24.0), outer);

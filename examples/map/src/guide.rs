@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui::{Vec2, vec2};
-use underfoot::runtime::{Kind, Refusal, Session, Snapshot};
+use underfoot::runtime::{Kind, Refusal, Session, SessionSnapshot};
 use underfoot::widget::Value;
 
 use crate::mercator::Camera;
@@ -39,7 +39,7 @@ impl Guide {
     }
 
     /// Advances to the present; returns a snapshot of the floor.
-    pub fn turn(&mut self, drag: Vec2, levels: f64) -> Snapshot {
+    pub fn turn(&mut self, drag: Vec2, levels: f64) -> SessionSnapshot {
         while let Some(event) = self.floor.next_event() {
             self.has_ended |= matches!(event.kind, Kind::Ended(_));
             self.state.hear(&event);
@@ -71,7 +71,7 @@ impl Guide {
     }
 
     /// A pair of numbers while a foot certainly holds it; otherwise zero.
-    fn held(&self, snapshot: &Snapshot, id: &str) -> Vec2 {
+    fn held(&self, snapshot: &SessionSnapshot, id: &str) -> Vec2 {
         match snapshot.value(id) {
             Some(Value::Pair(pair)) if self.floor.held(id).is_ok_and(|held| held.is_fresh()) => {
                 vec2(pair.x, pair.y)
@@ -81,7 +81,7 @@ impl Guide {
     }
 
     /// Updates labels and values on the floor from the map. A control in use refuses, and the next turn tries again.
-    fn tell(&mut self, snapshot: &Snapshot, now: Instant) -> Result<(), Refusal> {
+    fn tell(&mut self, snapshot: &SessionSnapshot, now: Instant) -> Result<(), Refusal> {
         if self.state.was_reset {
             self.floor.control("names")?.set(self.state.names)?;
             self.floor.control("grid")?.set(self.state.grid)?;

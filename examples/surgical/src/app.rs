@@ -8,7 +8,7 @@ use eframe::egui::{
     RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, ViewportCommand, pos2, vec2,
 };
 use underfoot::floor::{self, Geometry};
-use underfoot::runtime::Snapshot;
+use underfoot::runtime::SessionSnapshot;
 use underfoot_egui::{FootInput, Projector, SmallFloor};
 use underfoot_scene::scene::Theme;
 use underfoot_sim::FootHandle;
@@ -99,7 +99,7 @@ impl App {
     }
 
     /// The panel beside the picture.
-    fn panel(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
+    fn panel(&mut self, ui: &mut Ui, snapshot: &SessionSnapshot) {
         let state = &self.guide.state;
         let (sheet, view) = (state.sheet(), state.view());
         ui.label(RichText::new(&sheet.title).size(23.0).strong().color(INK));
@@ -217,7 +217,7 @@ impl App {
     }
 
     /// The small floor, with the mouse as a foot on it.
-    fn floor(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
+    fn floor(&mut self, ui: &mut Ui, snapshot: &SessionSnapshot) {
         let side = ui.available_width().min(ui.available_height() - 26.0).max(120.0);
         let words = self.small.advice(&self.guide.floor, snapshot);
         let words = words.unwrap_or("Key P: the floor for a projector");

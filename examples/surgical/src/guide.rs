@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use underfoot::engine::ValueRange;
-use underfoot::runtime::{Kind, Refusal, Session, Snapshot};
+use underfoot::runtime::{Kind, Refusal, Session, SessionSnapshot};
 use underfoot::widget::Value;
 
 use crate::state::{Hold, OFFERED, State};
@@ -34,7 +34,7 @@ impl Guide {
 
     /// Advances to the present; `drag` is the distance that feet dragged the picture, in units of the series. Returns
     /// a snapshot of the floor.
-    pub fn turn(&mut self, drag: [f64; 2]) -> Snapshot {
+    pub fn turn(&mut self, drag: [f64; 2]) -> SessionSnapshot {
         let before = self.state.report(None);
         while let Some(event) = self.floor.next_event() {
             self.has_ended |= matches!(event.kind, Kind::Ended(_));
@@ -66,7 +66,7 @@ impl Guide {
     }
 
     /// Updates the floor from the viewer. A control in use refuses, and the next turn tries again.
-    fn tell(&mut self, snapshot: &Snapshot, now: Instant) -> Result<(), Refusal> {
+    fn tell(&mut self, snapshot: &SessionSnapshot, now: Instant) -> Result<(), Refusal> {
         let (sheet, view) = (self.state.sheet(), self.state.view());
         if self.ranged != Some(self.state.current) {
             let slice = self.floor.control("slice")?;
@@ -97,7 +97,7 @@ impl Guide {
     }
 
     /// Writes the labels on the floor.
-    fn label(&self, snapshot: &Snapshot) -> Result<(), Refusal> {
+    fn label(&self, snapshot: &SessionSnapshot) -> Result<(), Refusal> {
         let state = &self.state;
         let (sheet, view) = (state.sheet(), state.view());
         let mut labels = vec![
@@ -121,7 +121,7 @@ impl Guide {
         self.enable(snapshot, "more", state.sheets.len() > OFFERED)
     }
 
-    fn enable(&self, snapshot: &Snapshot, id: &str, wanted: bool) -> Result<(), Refusal> {
+    fn enable(&self, snapshot: &SessionSnapshot, id: &str, wanted: bool) -> Result<(), Refusal> {
         let control = self.floor.control(id)?;
         let is_so = snapshot.control(id).is_some_and(|state| state.enabled == wanted);
         if is_so { Ok(()) } else { control.set_enabled(wanted) }
@@ -133,7 +133,7 @@ impl Guide {
     }
 
     /// Prints one line of JSON.
-    fn print(&self, snapshot: &Snapshot) {
+    fn print(&self, snapshot: &SessionSnapshot) {
         let range = snapshot.control("slice").and_then(|slice| match slice.range {
             Some(ValueRange::Number(scale)) => Some([scale.min, scale.max].map(f64::from)),
             _ => None,

@@ -8,7 +8,7 @@ use crate::units::Newtons;
 use underfoot_format::describe::FieldType;
 use underfoot_format::hand::Hand;
 use underfoot_format::node::Node;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Flat, List, Num, Own, Rec, list, num, record};
 
 /// Range of slip speeds in files, in metres per second.
@@ -133,7 +133,7 @@ impl Codec<[Resonance; 2]> for Resonances {
         Some(both)
     }
 
-    fn write(&self, both: &[Resonance; 2]) -> Text {
+    fn write(&self, both: &[Resonance; 2]) -> RonText {
         let mut written = ArrayVec::from(*both);
         written.truncate(if both[1].amplitude > 0.0 { 2 } else { 1 });
         RESONANCES.write(&written)

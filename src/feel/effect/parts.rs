@@ -9,7 +9,7 @@ use underfoot_format::describe::FieldType;
 use underfoot_format::hand::Hand;
 use underfoot_format::node::{Node, Within};
 use underfoot_format::problem::Problem;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, List, Rec, list, num, record};
 
 record! {
@@ -47,7 +47,7 @@ impl Codec<Arc<[Part]>> for Parts {
         Some(parts.into())
     }
 
-    fn write(&self, parts: &Arc<[Part]>) -> Text {
+    fn write(&self, parts: &Arc<[Part]>) -> RonText {
         let written = parts.iter().map(|part| {
             let kind = match part.kind.clone() {
                 PartKind::Click(press) => EffectKind::Click(Clicks { press, release: None }),

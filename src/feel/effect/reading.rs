@@ -7,13 +7,13 @@ use underfoot_format::ron2::ast::Expr;
 
 use super::{Band, Clicks, Effect, EffectKind, Manner, Use};
 use crate::feel::Click;
-use underfoot_format::codec::{By, Text as Words};
+use underfoot_format::codec::{By, Text};
 use underfoot_format::describe::FieldType;
 use underfoot_format::node::{Node, Within};
 use underfoot_format::number::plain;
 use underfoot_format::problem::Problem;
 use underfoot_format::suggest::{did_you_mean, listed, nearest};
-use underfoot_format::text::{Entry, Text};
+use underfoot_format::text::{Entry, RonText};
 use underfoot_format::{Codec, Id, Includes, Num, Pair, Record, Variants, num, record};
 
 record! {
@@ -22,7 +22,7 @@ record! {
     /// Its name in layouts and kinds.
     pub name: String = "name", Id;
     /// Its purpose, in a sentence; may be empty.
-    pub about: String = "about", Words(200) => String::new();
+    pub about: String = "about", Text(200) => String::new();
     /// The effect itself.
     pub effect: Arc<Effect> = "plays", WRITTEN_OUT;
 }
@@ -96,7 +96,7 @@ impl Codec<Arc<Effect>> for Played {
         None
     }
 
-    fn write(&self, effect: &Arc<Effect>) -> Text {
+    fn write(&self, effect: &Arc<Effect>) -> RonText {
         effect.to_ron()
     }
 
@@ -197,11 +197,11 @@ impl Effect {
     }
 
     /// Its text at the place of use.
-    pub(crate) fn to_ron(&self) -> Text {
+    pub(crate) fn to_ron(&self) -> RonText {
         let mut entries: Vec<Entry> = Vec::new();
         self.kind.write_fields(&mut entries);
         self.manner.write_fields(&mut entries);
-        Text::Variant(self.kind.name(), entries)
+        RonText::Variant(self.kind.name(), entries)
     }
 }
 
@@ -226,7 +226,7 @@ impl Codec<Band> for BandFields {
         Some(Band { low_hz, high_hz })
     }
 
-    fn write(&self, band: &Band) -> Text {
+    fn write(&self, band: &Band) -> RonText {
         BAND.write(&[band.low_hz, band.high_hz])
     }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use mcap::records::op;
 
-use super::super::entry::Entry;
+use super::super::entry::LogEntry;
 use super::super::messages::LogPart;
 use super::super::reader::Opening;
 use super::super::{EVENTS, FLOOR, LAYOUT, METADATA, RecordingError, TOPICS, VERSION};
@@ -15,7 +15,7 @@ use crate::units::Instant;
 use crate::wire::{Readings, SensorPacket};
 
 /// Entries with their times, and their numbers in the file.
-pub(super) type Taken = Vec<(Instant, u32, Entry)>;
+pub(super) type Taken = Vec<(Instant, u32, LogEntry)>;
 
 /// The way in which a tool writes a file.
 #[derive(Clone, Copy, Debug)]
@@ -68,15 +68,15 @@ pub(super) fn entries(packets: u32) -> Taken {
         let counts = [number, 7 * number, 65_535, 0].map(|count| Some(count as u16)).into_iter().collect();
         let packet =
             SensorPacket { board: 0, sequence: number, received: at, readings: Readings::Counts(counts) };
-        entries.push((at, Entry::Packet(packet)));
+        entries.push((at, LogEntry::Packet(packet)));
         match number % 50 {
-            10 => entries.push((at, Entry::Silence)),
-            20 => entries.push((at, Entry::Layout(PAGE.to_owned()))),
-            30 => entries.push((at, Entry::Gap(3))),
+            10 => entries.push((at, LogEntry::Silence)),
+            20 => entries.push((at, LogEntry::Layout(PAGE.to_owned()))),
+            30 => entries.push((at, LogEntry::Gap(3))),
             _ => {}
         }
     }
-    entries.push((Instant::from_millis(1000 + u64::from(packets)), Entry::End));
+    entries.push((Instant::from_millis(1000 + u64::from(packets)), LogEntry::End));
     (0..).zip(entries).map(|(number, (at, entry))| (at, number, entry)).collect()
 }
 
@@ -232,7 +232,7 @@ impl Tool {
 /// The content of a file as read.
 #[derive(Debug, PartialEq)]
 pub(super) struct Given {
-    pub(super) entries: Vec<(Instant, Entry)>,
+    pub(super) entries: Vec<(Instant, LogEntry)>,
     pub(super) events: usize,
     pub(super) foreign: u64,
     /// Place and reason of a truncation or damage.
@@ -259,6 +259,6 @@ pub(super) fn read(file: Vec<u8>) -> Result<Given, RecordingError> {
 }
 
 /// Entries without their numbers in the file.
-pub(super) fn plain(entries: &Taken) -> Vec<(Instant, Entry)> {
+pub(super) fn plain(entries: &Taken) -> Vec<(Instant, LogEntry)> {
     entries.iter().map(|(at, _, entry)| (*at, entry.clone())).collect()
 }

@@ -92,7 +92,7 @@ fn a_file_out_of_order_is_named_and_not_played_on() {
 }
 
 /// The entries of a truncated or damaged file are a prefix of the original ones.
-fn check_beginning(given: &[(crate::units::Instant, super::Entry)], taken: &Taken, case: &str) {
+fn check_beginning(given: &[(crate::units::Instant, super::LogEntry)], taken: &Taken, case: &str) {
     let whole = plain(taken);
     assert!(given.len() <= whole.len() && *given == whole[..given.len()], "{case}: other entries");
 }

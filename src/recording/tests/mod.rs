@@ -6,16 +6,16 @@ mod packed;
 
 use arrayvec::ArrayVec;
 
-use super::entry::{Entry, decoder};
+use super::entry::{LogEntry, decoder};
 use crate::floor::TileId;
 use crate::units::Instant;
 use crate::widget::{Indicator, Value, WidgetId};
 use crate::wire::{ControlMessage, Readings, Request, SensorPacket};
 
-fn again(entry: &Entry) -> Option<Entry> {
+fn again(entry: &LogEntry) -> Option<LogEntry> {
     let mut bytes = Vec::new();
     entry.write(&mut bytes);
-    let read = |bytes: &[u8]| Entry::read(entry.topic(), bytes, Instant::from_micros(7), &decoder());
+    let read = |bytes: &[u8]| LogEntry::read(entry.topic(), bytes, Instant::from_micros(7), &decoder());
     let mut split = Vec::new();
     entry.write_split(&mut split);
     assert_eq!(read(&split), read(&bytes), "both forms");
@@ -30,7 +30,7 @@ fn a_reading_that_is_missing_is_not_one_that_is_saturated() {
     for readings in [Readings::Counts(counts), Readings::Counts(full), Readings::Newtons(newtons)] {
         let packet =
             SensorPacket { board: 3, sequence: u32::MAX, received: Instant::from_micros(7), readings };
-        assert_eq!(again(&Entry::Packet(packet.clone())), Some(Entry::Packet(packet)));
+        assert_eq!(again(&LogEntry::Packet(packet.clone())), Some(LogEntry::Packet(packet)));
     }
 }
 
@@ -60,7 +60,7 @@ fn every_request_is_read_as_it_was_asked() {
         ControlMessage::GetMute,
     ] {
         for sender in [sender, None] {
-            let entry = Entry::Request(Request { message: message.clone(), sender });
+            let entry = LogEntry::Request(Request { message: message.clone(), sender });
             assert_eq!(again(&entry), Some(entry));
         }
     }
@@ -68,7 +68,7 @@ fn every_request_is_read_as_it_was_asked() {
 
 #[test]
 fn the_rest_of_what_a_source_gives_comes_again_too() {
-    for entry in [Entry::Silence, Entry::End, Entry::Gap(17), Entry::Layout("Layout()".into())] {
+    for entry in [LogEntry::Silence, LogEntry::End, LogEntry::Gap(17), LogEntry::Layout("Layout()".into())] {
         assert_eq!(again(&entry), Some(entry));
     }
 }
@@ -77,7 +77,7 @@ proptest::proptest! {
     #[test]
     fn no_bytes_make_it_panic(bytes in proptest::collection::vec(0_u8.., 0..200)) {
         for topic in [super::PACKETS, super::REQUESTS, super::LAYOUTS, super::GAPS] {
-            let _ = Entry::read(topic, &bytes, Instant::START, &decoder());
+            let _ = LogEntry::read(topic, &bytes, Instant::START, &decoder());
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicU64;
 use std::sync::mpsc::channel;
 
 use super::super::Recording;
-use super::super::entry::Entry;
+use super::super::entry::LogEntry;
 use super::super::recorder::as_kept;
 use super::super::writer::{Job, RecordingFile, RecordingHead};
 use super::build::{OURS, PAGE, Taken, entries, floor, plain, read};
@@ -86,7 +86,7 @@ fn a_trimmed_recording_has_all_up_to_its_end_and_says_where_it_begins() {
     let trimmed = Recording::open(&path).unwrap().trim(&part, (from, to), |_| true).unwrap().unwrap();
     assert_eq!(trimmed.broken, None);
     let mut wanted: Vec<_> = plain(&taken).into_iter().filter(|(at, _)| *at <= to).collect();
-    wanted.push((trimmed.ends, Entry::End));
+    wanted.push((trimmed.ends, LogEntry::End));
     let given = read(fs::read(&part).unwrap()).unwrap();
     assert_eq!((given.entries, given.broken, given.events), (wanted.clone(), None, wanted.len() - 1));
     let recording = Recording::open(&part).unwrap();

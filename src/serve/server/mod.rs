@@ -62,7 +62,7 @@ const TAIL: Duration = Duration::from_millis(300);
 
 /// A command from an app or a window to a running floor.
 #[derive(Clone, Debug)]
-pub enum Command {
+pub enum FloorCommand {
     /// Replaces the layout (delayed while a foot is on a control that both layouts have).
     SetLayout(Box<Layout>),
     /// A request that an app may also send over OSC.
@@ -100,7 +100,7 @@ pub struct Server {
     inbox: Inbox,
     assembler: Assembler,
     engine: Engine,
-    commands: Option<Receiver<Command>>,
+    commands: Option<Receiver<FloorCommand>>,
     /// Time at which commands were last polled.
     commands_looked: Instant,
     haptics: Haptics,
@@ -197,7 +197,7 @@ impl Server {
 
     /// Receives commands from `commands`.
     #[must_use]
-    pub fn with_commands(mut self, commands: Receiver<Command>) -> Self {
+    pub fn with_commands(mut self, commands: Receiver<FloorCommand>) -> Self {
         self.commands = Some(commands);
         self
     }
@@ -436,30 +436,30 @@ impl Server {
                 break;
             };
             match command {
-                Command::SetLayout(mut layout) => {
+                FloorCommand::SetLayout(mut layout) => {
                     self.inbox.note_layout(&mut layout);
                     self.set_layout(*layout);
                 }
-                Command::Control(message) => {
+                FloorCommand::Control(message) => {
                     let request = message.into();
                     self.inbox.note_request(&request);
                     self.process_request(request);
                 }
-                Command::Ask(message, answer) => {
+                FloorCommand::Ask(message, answer) => {
                     self.inbox.note_request(&message.clone().into());
                     self.answer(message, &answer);
                 }
-                Command::GiveTare(to) => {
+                FloorCommand::GiveTare(to) => {
                     let is_measured = self.assembler.tare_outcome() == TareOutcome::Taken;
                     // A caller that has stopped waiting needs no answer.
                     let _ = to.try_send(is_measured.then(|| self.assembler.tare()));
                 }
-                Command::GiveBoards(to) => {
+                FloorCommand::GiveBoards(to) => {
                     let boards = (0..).map_while(|number| self.assembler.board(number));
                     // As above.
                     let _ = to.try_send(boards.collect());
                 }
-                Command::Audition { effect, gesture, tile } => {
+                FloorCommand::Audition { effect, gesture, tile } => {
                     self.haptics.trial = Some(EffectTrial::new(effect, *gesture, tile));
                 }
             }

@@ -2,7 +2,7 @@
 
 use underfoot::glam::Vec2;
 use underfoot::units::Newtons;
-use underfoot::widget::{SetError, Track, Value};
+use underfoot::widget::{SetError, SliderTrack, Value};
 
 use super::bench::{Bench, Cancelled, Changed, Pressed, Released, clicks};
 
@@ -29,11 +29,11 @@ fn slider_lines_1_2_6_and_8_the_place_is_the_value() {
 #[test]
 fn slider_line_2_along_any_track() {
     let tracks = [
-        ("axis: North", Track::NORTH),
-        ("angle_deg: 30", Track::Line { degrees: 30.0 }),
-        ("angle_deg: 200", Track::Line { degrees: 200.0 }),
-        ("arc_deg: (180, 0)", Track::Arc { from_degrees: 180.0, to_degrees: 0.0 }),
-        ("arc_deg: (-45, 225)", Track::Arc { from_degrees: -45.0, to_degrees: 225.0 }),
+        ("axis: North", SliderTrack::NORTH),
+        ("angle_deg: 30", SliderTrack::Line { degrees: 30.0 }),
+        ("angle_deg: 200", SliderTrack::Line { degrees: 200.0 }),
+        ("arc_deg: (180, 0)", SliderTrack::Arc { from_degrees: 180.0, to_degrees: 0.0 }),
+        ("arc_deg: (-45, 225)", SliderTrack::Arc { from_degrees: -45.0, to_degrees: 225.0 }),
     ];
     for (fields, track) in tracks {
         let mut bench = Bench::with(&format!("{PLAIN}, {fields}"));

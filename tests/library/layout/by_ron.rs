@@ -9,7 +9,7 @@ use underfoot::feel::{Effect, Feel};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Look;
 use underfoot::schema::{
-    Effects, Kind, Kinds, NamedEffect, builtin_layout, builtin_layouts, parse_floor, parse_layout,
+    ControlKind, Effects, Kinds, NamedEffect, builtin_layout, builtin_layouts, parse_floor, parse_layout,
     write_floor, write_layout,
 };
 
@@ -59,7 +59,7 @@ fn every_kind_is_the_same_by_ron() {
     let files = ron_files("widgets");
     assert_eq!(files.len(), kinds.iter().count());
     for path in files {
-        let read: Kind = by_ron(&fs::read_to_string(&path).unwrap());
+        let read: ControlKind = by_ron(&fs::read_to_string(&path).unwrap());
         assert_eq!(Some(&read), kinds.get(&read.name), "{}", path.display());
         comes_back(&read);
         comes_back::<Feel>(&read.feel);
@@ -119,7 +119,7 @@ fn an_app_s_own_record_may_hold_them() {
     #[derive(serde::Deserialize)]
     struct Settings {
         look: Look,
-        kinds: Vec<Kind>,
+        kinds: Vec<ControlKind>,
         click: Option<Effect>,
     }
     let text = r##"(

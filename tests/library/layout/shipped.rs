@@ -14,7 +14,7 @@ use underfoot::schema::{
     parse_layout, write_floor, write_layout,
 };
 use underfoot::units::Newtons;
-use underfoot::widget::{Behaviour, Track};
+use underfoot::widget::{Behaviour, SliderTrack};
 use underfoot_scene::ergonomics;
 
 use super::ron_files;
@@ -330,7 +330,7 @@ fn a_widget_overrides_any_field_of_its_kind() {
     else {
         panic!("both are sliders")
     };
-    assert_eq!((a.scale.min, a.scale.max, a.track), (10.0, 20.0, Track::NORTH));
+    assert_eq!((a.scale.min, a.scale.max, a.track), (10.0, 20.0, SliderTrack::NORTH));
     // The kind's initial value 0 follows the new range.
     assert_eq!(a.initial, 10.0);
     assert_eq!(a.thresholds.press, Newtons(50.0));

@@ -12,7 +12,7 @@ use underfoot::feel::{Gesture, RendererConfig, renderer};
 use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::schema::Effects;
 use underfoot::sense::{Method, Quality};
-use underfoot::serve::{Command, Ended, Server};
+use underfoot::serve::{Ended, FloorCommand, Server};
 use underfoot::sink::{ActuatorSink, EventSink, ManualSink, Report, SinkError};
 use underfoot::source::{FloorInput, Port, SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
@@ -182,7 +182,7 @@ fn apps_set_disable_and_enable_controls_over_the_wire_and_over_the_channel() {
     let (commands, received) = mpsc::channel();
     let mut server = server.with_commands(received);
     commands
-        .send(Command::Control(ControlMessage::Set { id: id("zoom"), value: Value::Number(0.5) }))
+        .send(FloorCommand::Control(ControlMessage::Set { id: id("zoom"), value: Value::Number(0.5) }))
         .unwrap();
     play(&mut server);
     assert_eq!(server.engine().value("zoom"), Some(Value::Number(0.5)), "the channel came last");
@@ -197,7 +197,7 @@ fn a_new_layout_is_on_the_floor_at_once_and_shown_with_its_revision() {
     let (commands, received) = mpsc::channel();
     let (input, mut snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
     let mut server = server.with_commands(received).with_snapshots(input);
-    commands.send(Command::SetLayout(Box::new(layout("surgical")))).unwrap();
+    commands.send(FloorCommand::SetLayout(Box::new(layout("surgical")))).unwrap();
     play(&mut server);
     assert_eq!(server.engine().layout().title, layout("surgical").title);
     let snapshot = snapshots.read();
@@ -268,7 +268,7 @@ fn an_effect_can_be_tried_while_the_floor_works() {
     let mut server = server.with_feel(feel, Box::new(sink)).with_commands(received);
     let effect = Arc::clone(&Effects::builtin().get("double_click").unwrap().effect);
     let gesture = Box::new(Gesture::usual(&effect));
-    commands.send(Command::Audition { effect, gesture, tile: 30 }).unwrap();
+    commands.send(FloorCommand::Audition { effect, gesture, tile: 30 }).unwrap();
     play(&mut server);
     drop(server);
     assert!(told.iter().any(|(_, what)| what == "home clicked"));

@@ -15,7 +15,7 @@ use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource
 use underfoot::outgoing::json::{JsonValue, Message, RefusalRecord};
 use underfoot::runtime::Session;
 use underfoot::schema;
-use underfoot::serve::Command;
+use underfoot::serve::FloorCommand;
 use underfoot::source::{PacketTap, TappedPackets};
 use underfoot_window::preview::{
     EventNews, LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink,
@@ -278,7 +278,7 @@ impl ServedFloor {
         // Between two layouts, names and places may not match.
         if here.widgets.len() == layout.widgets.len() {
             for message in self.follower.corrections(&layout, here, self.begun.elapsed()) {
-                self.run.session.send(Command::Control(message));
+                self.run.session.send(FloorCommand::Control(message));
             }
         }
     }

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant as HostInstant};
 use underfoot::engine::Snapshot;
 use underfoot::recording::RecordingSwitch;
 use underfoot::runtime::Session;
-use underfoot::serve::Command;
+use underfoot::serve::FloorCommand;
 use underfoot_window::preview::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
 
 use super::super::export::{ExportForm, Exported, FILM_WIDTH, RecordedPart, export};
@@ -145,7 +145,7 @@ impl Clerk {
             return Err(Failure::Other("save or discard the last visit first".into()));
         }
         let (to, tare) = sync_channel(1);
-        let tare = session.send(Command::GiveTare(to)).then(|| tare.recv_timeout(PATIENCE).ok());
+        let tare = session.send(FloorCommand::GiveTare(to)).then(|| tare.recv_timeout(PATIENCE).ok());
         switch.begin(&self.file, snapshot, tare.flatten().flatten())?;
         *self.shared.recording() = Some((self.file.clone(), HostInstant::now()));
         let mut state = self.shared.state();

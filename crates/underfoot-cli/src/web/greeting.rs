@@ -6,8 +6,8 @@ use std::time::Duration;
 use serde_json::{Map, Value};
 use underfoot::mirror::Greeting;
 use underfoot::outgoing::json::{FloorRecord, PlacedControl, Sentence, StateRecord, json_value};
-use underfoot::runtime::Snapshot;
-use underfoot::serve::Command;
+use underfoot::runtime::SessionSnapshot;
+use underfoot::serve::FloorCommand;
 
 use super::Shared;
 
@@ -15,10 +15,10 @@ use super::Shared;
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// The greeting of a joined window: the floor with its current tare, the layout, and the states of its controls.
-pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
+pub(super) fn mirror_greeting(seen: &SessionSnapshot, shared: &Shared) -> String {
     let mut floor = shared.floor.clone();
     let (answer, answered) = sync_channel(1);
-    if shared.session.send(Command::GiveTare(answer))
+    if shared.session.send(FloorCommand::GiveTare(answer))
         && let Ok(Some(tare)) = answered.recv_timeout(PATIENCE)
     {
         floor.tare = tare;
@@ -27,7 +27,7 @@ pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
 }
 
 /// The floor and its controls as a line: for each control its place, and all fields of a line about its state.
-pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
+pub(super) fn greeting(seen: &SessionSnapshot, shared: &Shared) -> String {
     let geometry = &shared.floor.geometry;
     let controls = seen.layout.widgets.iter().map(|widget| {
         let (at, size) = (widget.area.min, widget.area.max - widget.area.min);

@@ -1,7 +1,7 @@
 //! States of controls that have gone off or on, for one client.
 
 use underfoot::outgoing::json::{Line, Message, StateRecord};
-use underfoot::runtime::Snapshot;
+use underfoot::runtime::SessionSnapshot;
 use underfoot::widget::OffReason;
 
 /// For each control of the layout, the reason for which it is off, as the client knows it.
@@ -10,12 +10,12 @@ pub(super) struct OffNews(Vec<Option<OffReason>>);
 
 impl OffNews {
     /// Notes what the greeting in `seen` says.
-    pub(super) fn greeted(&mut self, seen: &Snapshot) {
+    pub(super) fn greeted(&mut self, seen: &SessionSnapshot) {
         self.0 = reasons(seen).collect();
     }
 
     /// Returns a line for each control whose reason has changed, and notes that.
-    pub(super) fn lines(&mut self, seen: &Snapshot) -> Vec<String> {
+    pub(super) fn lines(&mut self, seen: &SessionSnapshot) -> Vec<String> {
         let changed = |(index, now): (usize, Option<OffReason>)| {
             let told = self.0.get_mut(index)?;
             (std::mem::replace(told, now) != now).then_some(index)
@@ -29,6 +29,6 @@ impl OffNews {
     }
 }
 
-fn reasons(seen: &Snapshot) -> impl Iterator<Item = Option<OffReason>> + '_ {
+fn reasons(seen: &SessionSnapshot) -> impl Iterator<Item = Option<OffReason>> + '_ {
     seen.floor.widgets.iter().map(|widget| widget.off)
 }

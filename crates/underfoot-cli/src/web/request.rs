@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use underfoot::outgoing::json::{Line, Message, RefusalRecord, RequestRecord, Sentence};
 use underfoot::runtime::{ControlsOff, Session};
-use underfoot::serve::Command;
+use underfoot::serve::FloorCommand;
 use underfoot::wire::{ControlMessage, read_json};
 
 use super::layout::{self, ClientLayouts};
@@ -91,10 +91,10 @@ fn ask(session: &Session, message: ControlMessage) -> Result<(), String> {
         Err(why.to_owned())
     };
     if matches!(message, ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. }) {
-        return if session.send(Command::Control(message)) { Ok(()) } else { refused() };
+        return if session.send(FloorCommand::Control(message)) { Ok(()) } else { refused() };
     }
     let (answer, answered) = sync_channel(1);
-    if !session.send(Command::Ask(message, answer)) {
+    if !session.send(FloorCommand::Ask(message, answer)) {
         return refused();
     }
     match answered.recv_timeout(PATIENCE) {

@@ -6,7 +6,7 @@ use underfoot::floor::{Board, Floor};
 use underfoot_scene::picture;
 
 use super::pins::Pins;
-use super::plan::Plan;
+use super::plan::WiringPlan;
 use super::schematic;
 use crate::failure::Failure;
 use crate::floor_args::load_floor;
@@ -39,7 +39,7 @@ impl PictureArgs {
             (0..floor.boards.len()).map(|board| self.pins.unwrap_or_else(|| Pins::guessed(&floor, board)));
         let pins: Vec<Pins> = pins.collect();
         check(&floor, &pins)?;
-        let plan = Plan::new(&floor, pins.clone());
+        let plan = WiringPlan::new(&floor, pins.clone());
         let out = out.map_or_else(|| format!("{name}-wiring.svg").into(), Path::to_path_buf);
         picture::write(&plan.draw(&name), fonts(), &out, WIDTH_PX)?;
         outln!("{}", out.display());

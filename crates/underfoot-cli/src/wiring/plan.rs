@@ -8,7 +8,7 @@ use underfoot::layout::Colour;
 use underfoot_scene::scene::{Anchor, Scene};
 
 use super::pins::Pins;
-use super::sheet::{COLOURS, Sheet, THEME};
+use super::sheet::{COLOURS, THEME, WiringSheet};
 
 /// Maximum number of boards that the head of the plan lists.
 const LISTED: usize = 12;
@@ -26,13 +26,13 @@ struct Wire {
 
 /// The wires of a floor.
 #[derive(Clone, Debug)]
-pub(super) struct Plan<'f> {
+pub(super) struct WiringPlan<'f> {
     floor: &'f Floor,
     pins: Vec<Pins>,
     wires: Vec<Wire>,
 }
 
-impl<'f> Plan<'f> {
+impl<'f> WiringPlan<'f> {
     /// The wires of `floor`, whose boards have these pins.
     pub(super) fn new(floor: &'f Floor, pins: Vec<Pins>) -> Self {
         let mut wires = Vec::new();
@@ -84,7 +84,7 @@ impl<'f> Plan<'f> {
         let width = bounds.size().x.max(34.0 * em_m);
         let high = bounds.size().y + (1.8 * head.len() as f32 + 1.0) * em_m;
         let page = Rect::from_min_size(bounds.min, Vec2::new(width, high)).grown(2.0 * em_m);
-        let mut sheet = Sheet::new(page, em_m);
+        let mut sheet = WiringSheet::new(page, em_m);
         let mut at = Vec2::new(bounds.min.x, page.max.y - 3.0 * em_m);
         for (line, board) in head {
             if let Some(board) = board {
@@ -122,10 +122,10 @@ impl<'f> Plan<'f> {
     /// Draws a label beside a sensor, towards the middle of its plate.
     fn label(
         &self,
-        sheet: &mut Sheet,
+        sheet: &mut WiringSheet,
         SensorId { tile, corner }: SensorId,
         em_m: f32,
-        draw: impl FnOnce(&mut Sheet, Vec2, Anchor),
+        draw: impl FnOnce(&mut WiringSheet, Vec2, Anchor),
     ) {
         let geometry = &self.floor.geometry;
         let at = geometry.sensor(tile, corner);
@@ -171,7 +171,7 @@ mod tests {
         let mut floor = Floor::default();
         let plan = |floor: &Floor| {
             let pins = vec![Pins::Channels; floor.boards.len()];
-            let plan = Plan::new(floor, pins);
+            let plan = WiringPlan::new(floor, pins);
             (plan.table(), plan.loose())
         };
         let (table, loose) = plan(&floor);

@@ -6,7 +6,7 @@ use underfoot::layout::Colour;
 use underfoot_scene::scene::{Anchor, Scene};
 
 use super::pins::{CHANNELS, CONVERTERS, Converter, PicoPin, Pins};
-use super::sheet::{COLOURS, Sheet, THEME};
+use super::sheet::{COLOURS, THEME, WiringSheet};
 
 /// Size of the sheet, in metres: A4.
 const SIZE: Vec2 = Vec2::new(0.297, 0.21);
@@ -25,7 +25,7 @@ const GROUND_INK: Colour = Colour::rgb(0x20, 0x20, 0x20);
 
 /// Draws the circuit around a board with these pins and these inputs in use; `None` if its circuit is unknown.
 pub(super) fn draw(pins: Pins, inputs: &[String]) -> Option<Scene> {
-    let mut sheet = Sheet::new(Rect::from_min_size(Vec2::ZERO, SIZE), LETTERS_M);
+    let mut sheet = WiringSheet::new(Rect::from_min_size(Vec2::ZERO, SIZE), LETTERS_M);
     let title = match pins {
         Pins::Channels => return None,
         Pins::Pico => {
@@ -45,7 +45,7 @@ pub(super) fn draw(pins: Pins, inputs: &[String]) -> Option<Scene> {
 }
 
 /// A sensor from the rail at `top` to a resistor, which goes to the rail at `bottom`; returns the point between them.
-fn divider(sheet: &mut Sheet, x: f32, top: f32, bottom: f32) -> Vec2 {
+fn divider(sheet: &mut WiringSheet, x: f32, top: f32, bottom: f32) -> Vec2 {
     let half = 0.0045;
     let at = |y: f32| Vec2::new(x, y);
     let sensor = Rect::from_centre_size(at(top - 0.022), Vec2::new(2.0 * half, 0.02));
@@ -63,13 +63,13 @@ fn divider(sheet: &mut Sheet, x: f32, top: f32, bottom: f32) -> Vec2 {
 }
 
 /// A horizontal rail with its name at the left.
-fn rail(sheet: &mut Sheet, from: f32, to: f32, y: f32, ink: Colour, name: &str) {
+fn rail(sheet: &mut WiringSheet, from: f32, to: f32, y: f32, ink: Colour, name: &str) {
     sheet.line(Vec2::new(from, y), Vec2::new(to, y), ink);
     sheet.text(Vec2::new(from, y + 0.0035), Anchor::Start, ink, name);
 }
 
 /// A divider for each input, side by side.
-fn dividers(sheet: &mut Sheet, inputs: &[String]) {
+fn dividers(sheet: &mut WiringSheet, inputs: &[String]) {
     let (left, right, top, bottom) = (0.02, SIZE.x - 0.02, 0.165, 0.05);
     rail(sheet, left, right, top, SUPPLY_INK, ARDUINO_SUPPLY);
     rail(sheet, left, right, bottom, GROUND_INK, GROUND);
@@ -87,7 +87,7 @@ fn dividers(sheet: &mut Sheet, inputs: &[String]) {
 }
 
 /// A module for each input, side by side.
-fn amplifiers(sheet: &mut Sheet, inputs: &[String]) {
+fn amplifiers(sheet: &mut WiringSheet, inputs: &[String]) {
     let (left, right) = (0.02, SIZE.x - 0.02);
     let step = (right - left) / inputs.len().clamp(4, 16) as f32;
     let width = 0.8 * step;
@@ -129,7 +129,7 @@ impl PicoPin {
     }
 }
 
-fn pico(sheet: &mut Sheet) {
+fn pico(sheet: &mut WiringSheet) {
     let (top, bottom) = (0.165, 0.055);
     rail(sheet, 0.012, 0.07, top, SUPPLY_INK, PICO_SUPPLY);
     rail(sheet, 0.012, 0.07, bottom, GROUND_INK, PICO_GROUND);
@@ -146,7 +146,7 @@ fn pico(sheet: &mut Sheet) {
 }
 
 /// A converter with the numbers of its pins, and the Pico's pins that they go to.
-fn chip(sheet: &mut Sheet, corner: Vec2, converter: &Converter) {
+fn chip(sheet: &mut WiringSheet, corner: Vec2, converter: &Converter) {
     let pitch = 0.0085;
     let body = Rect::from_min_size(corner, Vec2::new(0.034, pitch * CHANNELS as f32));
     sheet.boxed(body, THEME.plate);

@@ -18,13 +18,13 @@ pub(super) const COLOURS: [Colour; 6] = [
 ];
 
 /// A sheet with letters and lines of one size.
-pub(super) struct Sheet {
+pub(super) struct WiringSheet {
     pub(super) scene: Scene,
     /// Height of the letters, in metres.
     em_m: f32,
 }
 
-impl Sheet {
+impl WiringSheet {
     /// An empty sheet over `area`.
     pub(super) fn new(area: Rect, em_m: f32) -> Self {
         let mut scene = Scene::new();

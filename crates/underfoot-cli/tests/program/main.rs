@@ -20,6 +20,7 @@ mod desktop;
 mod earlier_files;
 mod end_to_end;
 mod faults;
+mod gallery;
 mod holds;
 mod hostile_pages;
 mod input;

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant as HostInstant};
 
 use underfoot::runtime::Session;
-use underfoot::serve::Command;
+use underfoot::serve::FloorCommand;
 use underfoot::units::{HostClock, Instant};
 use underfoot::wire::ControlMessage;
 use underfoot_cluster::auth::{AuthSession, MessageKind};
@@ -56,7 +56,7 @@ impl Commander {
         };
         self.notices.say(notice);
         // A floor whose session has ended holds nothing.
-        commands.iter().for_each(|command| _ = self.session.send(Command::Control(command.clone())));
+        commands.iter().for_each(|command| _ = self.session.send(FloorCommand::Control(command.clone())));
     }
 }
 

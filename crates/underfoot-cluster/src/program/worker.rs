@@ -7,7 +7,7 @@ use std::thread;
 use underfoot::floor::{Area, Geometry};
 use underfoot::layout::Layout;
 use underfoot::runtime::Session;
-use underfoot::serve::Command;
+use underfoot::serve::FloorCommand;
 use underfoot::units::Instant;
 use underfoot::wire::ControlMessage;
 use underfoot_cluster::message::{
@@ -149,7 +149,7 @@ fn apply(session: &Session, message: ControlMessage) -> Result<Vec<NodeState>, S
     match &message {
         // The answer to these is empty; the gateway has checked that they are possible.
         ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. } => {
-            return match session.send(Command::Control(message)) {
+            return match session.send(FloorCommand::Control(message)) {
                 true => Ok(Vec::new()),
                 false => Err("the floor has ended".to_owned()),
             };

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use underfoot::floor::{Floor, TileId};
 use underfoot::layout::Layout;
-use underfoot::runtime::{Session, Snapshot};
+use underfoot::runtime::{Session, SessionSnapshot};
 use underfoot::sense::Quality;
 use underfoot::source::{ForwardCounters, UdpSource};
 use underfoot::wire::LinkState;
@@ -26,7 +26,7 @@ fn serve(floor: &Floor, id: &str) -> (Session, Arc<ForwardCounters>) {
 }
 
 /// Waits until `wanted` holds for the state of `session`.
-fn await_state(session: &Session, what: &str, wanted: impl Fn(&Snapshot) -> bool) -> Snapshot {
+fn await_state(session: &Session, what: &str, wanted: impl Fn(&SessionSnapshot) -> bool) -> SessionSnapshot {
     let end = Instant::now() + Duration::from_secs(10);
     loop {
         let snapshot = session.snapshot();
@@ -39,7 +39,7 @@ fn await_state(session: &Session, what: &str, wanted: impl Fn(&Snapshot) -> bool
 }
 
 /// The quality of `tile`.
-fn quality(floor: &Floor, id: &str, snapshot: &Snapshot, tile: (u16, u16)) -> Quality {
+fn quality(floor: &Floor, id: &str, snapshot: &SessionSnapshot, tile: (u16, u16)) -> Quality {
     let part = floor.part(floor.area(id).unwrap()).unwrap();
     let index = part.geometry.index(TileId::new(tile.0, tile.1)).unwrap();
     snapshot.floor.tiles[index].quality[0]
@@ -56,14 +56,14 @@ fn what_a_neighbour_forwards_is_sensed_and_its_death_marks_those_tiles_alone() {
     let targets: Vec<_> = floor.boards.iter().map(homes).collect();
     let _boards = Boards::start(&floor, script(EMPTY, &floor, &layout(&floor)), targets);
     // (4, 2) is the south-west's, near the border, on a board that only its home forwards to the south-east.
-    let live = |snapshot: &Snapshot| {
+    let live = |snapshot: &SessionSnapshot| {
         snapshot.floor.counters.frames > 200 && quality(&floor, "se", snapshot, (4, 2)) == Quality::Live
     };
     await_state(&east, "live beyond the border", live);
     assert!(forwarded.sent() > 0);
     assert_eq!(forwarded.unsent(), 0);
     drop(west);
-    let gone = |snapshot: &Snapshot| quality(&floor, "se", snapshot, (4, 2)) == Quality::Stale;
+    let gone = |snapshot: &SessionSnapshot| quality(&floor, "se", snapshot, (4, 2)) == Quality::Stale;
     let snapshot = await_state(&east, "stale beyond the border", gone);
     assert_eq!(snapshot.floor.link, LinkState::Partial);
     for own in [(6, 2), (9, 4)] {

@@ -9,7 +9,7 @@ use crate::fields::Fields;
 use crate::node::Node;
 use crate::problem::Problem;
 use crate::record::Record;
-use crate::text::Text as RonText;
+use crate::text::RonText;
 
 /// Records in square brackets, no two of which may have the same subject.
 ///

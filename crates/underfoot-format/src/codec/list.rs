@@ -9,7 +9,7 @@ use crate::describe::FieldType;
 use crate::hand::Hand;
 use crate::node::Node;
 use crate::problem::Problem;
-use crate::text::Text as RonText;
+use crate::text::RonText;
 
 /// Values in square brackets.
 pub struct List<C> {

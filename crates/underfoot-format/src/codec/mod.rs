@@ -17,7 +17,7 @@ use super::describe::{FieldDescription, FieldType, first_paragraph};
 use super::fields::Fields;
 use super::hand::Hand;
 use super::node::Node;
-use super::text::{Entry, Text as RonText};
+use super::text::{Entry, RonText};
 
 /// Reads and writes a `T`.
 pub trait Codec<T> {

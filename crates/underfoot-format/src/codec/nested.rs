@@ -6,7 +6,7 @@ use crate::fields::Fields;
 use crate::hand::Hand;
 use crate::node::Node;
 use crate::record::{Record, Variants};
-use crate::text::{Entry, Text as RonText};
+use crate::text::{Entry, RonText};
 
 /// A record of its own.
 pub struct Rec;

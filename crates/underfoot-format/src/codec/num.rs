@@ -8,7 +8,7 @@ use crate::describe::FieldType;
 use crate::hand::Hand;
 use crate::node::Node;
 use crate::number::Number;
-use crate::text::{Entry, Text as RonText, number};
+use crate::text::{Entry, RonText, number};
 
 /// A number. The end of the field's name gives its unit.
 #[derive(Clone, Copy, Debug)]

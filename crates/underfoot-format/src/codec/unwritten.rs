@@ -5,7 +5,7 @@ use crate::describe::{FieldDescription, FieldType, first_paragraph};
 use crate::fields::Fields;
 use crate::hand::Hand;
 use crate::node::Node;
-use crate::text::{Entry, Text as RonText};
+use crate::text::{Entry, RonText};
 
 /// A value that follows from other fields where it is not written; the rules of the record compute it.
 pub struct Follow<C> {

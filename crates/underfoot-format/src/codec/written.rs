@@ -7,7 +7,7 @@ use super::Codec;
 use crate::describe::FieldType;
 use crate::node::Node;
 use crate::problem::Problem;
-use crate::text::Text as RonText;
+use crate::text::RonText;
 
 /// A value, and the bytes where it is written. The place does not count in comparisons.
 #[derive(Clone, Debug, Default)]

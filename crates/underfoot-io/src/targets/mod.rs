@@ -28,6 +28,8 @@ mod run;
 mod sink;
 mod standby;
 mod supervisor;
+#[cfg(any(windows, target_os = "macos", test))]
+mod system;
 #[cfg(all(test, unix))]
 mod tests;
 #[cfg(all(unix, not(target_os = "macos")))]

@@ -96,9 +96,11 @@ pub(super) fn open(target: &SendTarget) -> Result<Box<dyn Outlet>, OutletError> 
         Destination::Run(_) => Err(left_out("run")),
         #[cfg(all(unix, not(target_os = "macos")))]
         Destination::Keyboard(keyboard) => Ok(Box::new(super::x11::X11Outlet::open(keyboard)?)),
-        #[cfg(not(all(unix, not(target_os = "macos"))))]
+        #[cfg(any(windows, target_os = "macos"))]
+        Destination::Keyboard(keyboard) => Ok(Box::new(super::system::SystemOutlet::open(keyboard)?)),
+        #[cfg(not(any(unix, windows)))]
         Destination::Keyboard(_) => {
-            Err(OutletError::Gone("keys and pointer work under X11 only so far".into()))
+            Err(OutletError::Gone("this system has no keyboard that programs press".into()))
         }
     }
 }

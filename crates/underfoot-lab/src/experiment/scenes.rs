@@ -9,7 +9,7 @@ use super::follow::{ContactMatcher, Followed, Truth};
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::Geometry;
 use underfoot::units::Instant;
-use underfoot_sim::{FloorQuality, Load, MoveError, Scene, SceneKind};
+use underfoot_sim::{FloorQuality, Load, MoveError, PlayedScene, SceneKind};
 
 /// Scenes of people and objects ([`SceneKind`]) on floors of several qualities, by method.
 ///
@@ -109,11 +109,11 @@ impl SceneTable {
 }
 
 /// The scene of one person: each kind draws independently from the person's seed.
-fn scene(kind: SceneKind, seed: u64, geometry: &Geometry) -> Result<Scene, MoveError> {
-    Scene::of(kind, seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ kind as u64, geometry)
+fn scene(kind: SceneKind, seed: u64, geometry: &Geometry) -> Result<PlayedScene, MoveError> {
+    PlayedScene::of(kind, seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ kind as u64, geometry)
 }
 
-fn play(rig: &mut Rig, scene: &Scene, scores: &mut [Followed; 2]) {
+fn play(rig: &mut Rig, scene: &PlayedScene, scores: &mut [Followed; 2]) {
     let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), ContactMatcher::default()));
     let (mut loads, mut truth) = (Vec::<Load>::new(), Vec::<Truth>::new());
     for milli in 1..=scene.duration().as_millis() as u64 {

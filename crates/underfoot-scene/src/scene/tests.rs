@@ -12,7 +12,7 @@ use underfoot::floor::{Corner, Geometry, Rect, TileId};
 use underfoot::layout::{Layout, Shape, Widget};
 use underfoot::sense::Quality;
 use underfoot::units::Newtons;
-use underfoot::widget::{Indicator, Scale, Track, Value};
+use underfoot::widget::{Indicator, Scale, SliderTrack, Value};
 use underfoot::wire::LinkState;
 
 fn drawn(layout: &Layout, snapshot: &Snapshot) -> Scene {
@@ -81,8 +81,8 @@ fn words_stay_on_their_controls_and_off_each_other() {
     let mut behaviours = vec![
         button(),
         sample::switch(true),
-        sample::slider(Track::EAST, 0.0, 24.0, 0.0, 23.9),
-        sample::slider(Track::NORTH, -100.0, 100.0, 0.25, -99.75),
+        sample::slider(SliderTrack::EAST, 0.0, 24.0, 0.0, 23.9),
+        sample::slider(SliderTrack::NORTH, -100.0, 100.0, 0.25, -99.75),
     ];
     behaviours.extend(sample::others());
     for label in labels {

@@ -26,7 +26,7 @@ use underfoot_format::problem::Problem;
 use underfoot_format::reader::Reader;
 use underfoot_format::source::{Source, read_text};
 use underfoot_format::suggest::did_you_mean;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::{Codec, Rec, Record, Variants, filed};
 
 /// A scenario file, parsed and with its numbers checked, not yet resolved against a layout.
@@ -162,7 +162,7 @@ filed!(Scenario);
 
 /// A scenario file. Messages of a scenario that an app has read by serde call its file `Scenario`.
 impl Filed for Scenario {
-    fn written(&self) -> Text {
+    fn written(&self) -> RonText {
         Rec.write(&self.written)
     }
 

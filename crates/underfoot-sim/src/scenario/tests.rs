@@ -6,7 +6,7 @@ use underfoot::feel::Feel;
 use underfoot::layout::{Colour, CursorRule, Look, Region, Shape};
 use underfoot::units::Instant;
 use underfoot::widget::{
-    Behaviour, ButtonSpec, DialSpec, PadSpec, Scale, SliderSpec, Thresholds, Track, WidgetId,
+    Behaviour, ButtonSpec, DialSpec, PadSpec, Scale, SliderSpec, SliderTrack, Thresholds, WidgetId,
 };
 
 fn layout() -> Layout {
@@ -183,7 +183,7 @@ fn drags_follow_the_geometry_of_what_they_drag() {
     let turned: f32 = spokes.windows(2).map(|pair| pair[0].angle_to(pair[1])).sum();
     assert!((turned + 1.5 * std::f32::consts::PI).abs() < 0.02, "clockwise: {turned}");
 
-    let track = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
+    let track = SliderTrack::Arc { from_degrees: 180.0, to_degrees: 0.0 };
     layout.widgets[at].behaviour =
         Behaviour::Slider(SliderSpec { track, ..SliderSpec::new(thresholds, scale) });
     let way = ways(&layout, "Drag(widget: \"zoom\", from: 0.0, to: 1.0)");

@@ -97,13 +97,13 @@ impl SceneKind {
 /// People have 20 to 140 kg, are barefoot or wear shoes, heels or boots, and roll their feet like recorded people
 /// ([`super::RollingHabit`]); see [`RandomPerson`].
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct PlayedScene {
     script: Option<Script>,
     things: Vec<SceneObject>,
     duration: Duration,
 }
 
-impl Scene {
+impl PlayedScene {
     /// Creates the scene of this kind from `seed`, around the centre of a floor.
     ///
     /// Meant for floors of at least some 1.8 m; on smaller ones some feet stand beside the floor.
@@ -164,7 +164,7 @@ mod tests {
 
     /// The loads of a scene every 10 ms.
     fn frames(kind: SceneKind, seed: u64) -> Vec<Vec<Load>> {
-        let scene = Scene::of(kind, seed, &Geometry::default()).unwrap();
+        let scene = PlayedScene::of(kind, seed, &Geometry::default()).unwrap();
         let moments = (0..scene.duration().as_millis() as u64).step_by(10);
         let frame = |ms| {
             let mut loads = Vec::new();
@@ -221,7 +221,7 @@ mod tests {
     fn things_move_without_jumps_while_they_press() {
         for kind in SceneKind::ALL {
             for seed in 0..10 {
-                let scene = Scene::of(kind, seed, &Geometry::default()).unwrap();
+                let scene = PlayedScene::of(kind, seed, &Geometry::default()).unwrap();
                 let mut before: Vec<Load> = Vec::new();
                 for ms in 0..scene.duration().as_millis() as u64 {
                     let mut loads = Vec::new();

@@ -7,7 +7,7 @@ use super::facets::{Facet, facet_edits};
 use super::item::Item;
 use super::refusal::EditRefusal;
 use underfoot::floor::Rect;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// The edits that make `others` as `model` is: its size, its thresholds, its appearance and its feel. Their ids, labels,
 /// icons, ranges and messages stay, and so do their places: the south-west corner, or the middle where a neighbour
@@ -47,7 +47,7 @@ fn thresholds(document: &Document, model: &Item, other: &Item) -> Vec<Edit> {
     let kind = document.all_kinds().get(&own.kind).map(|kind| kind.behaviour.thresholds());
     let edit = |record: &Address, field: &str, wanted: f32, kind: Option<f32>| match kind {
         Some(kind) if kind == wanted => Edit::unset(record, field),
-        _ => Edit::set(record, field, Text::rounded(f64::from(wanted)).inline()),
+        _ => Edit::set(record, field, RonText::rounded(f64::from(wanted)).inline()),
     };
     [
         ("press_n", wanted.press.0, now.press.0, kind.map(|kind| kind.press.0)),

@@ -5,7 +5,7 @@ use super::refusal::EditRefusal;
 use super::rename::renaming;
 use super::splice::{LayoutLines, RecordText, Splice, spliced};
 use underfoot_format::outline::{Outline, OutlineShape};
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// One change of a layout. In a sequence, each edit addresses the records as the edits before it left them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -153,7 +153,7 @@ fn reorder(
 /// `text` in quotes, with the escapes of the file format.
 #[must_use]
 pub fn quoted(text: &str) -> String {
-    Text::quoted(text).inline()
+    RonText::quoted(text).inline()
 }
 
 /// Whether `outline` is one record, which a list can hold.

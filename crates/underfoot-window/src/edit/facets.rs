@@ -6,7 +6,7 @@ use super::document::Document;
 use super::item::Item;
 use super::refusal::EditRefusal;
 use underfoot::feel::Feel;
-use underfoot::schema::Kind;
+use underfoot::schema::ControlKind;
 use underfoot_format::Record;
 use underfoot_format::outline::Outline;
 use underfoot_format::source::MAX_BYTES;
@@ -39,7 +39,7 @@ impl Facet {
     }
 
     /// The fields of `kind`, as a file writes them: effects that have a name by their name.
-    fn of_kind(self, document: &Document, kind: &Kind) -> Vec<(String, String)> {
+    fn of_kind(self, document: &Document, kind: &ControlKind) -> Vec<(String, String)> {
         let mut entries: Vec<Entry> = Vec::new();
         match self {
             Self::Appearance => kind.look.write_fields(&mut entries),
@@ -108,7 +108,7 @@ fn kind_fields(document: &Document, facet: Facet, name: &str) -> Vec<(String, St
         widget.kind == name && document.record_of(*at).is_some_and(is_plain)
     });
     let Some((_, widget)) = plain else { return Vec::new() };
-    let kind = Kind {
+    let kind = ControlKind {
         name: name.to_owned(),
         behaviour: widget.behaviour.clone(),
         feel: widget.feel.clone(),

@@ -5,7 +5,7 @@ use super::document::Document;
 use super::item::Item;
 use underfoot::feel::Feel;
 use underfoot::layout::{CursorRule, Look, Widget};
-use underfoot::schema::{Diagnostic, Kind, Kinds};
+use underfoot::schema::{ControlKind, Diagnostic, Kinds};
 use underfoot::widget::Behaviour;
 use underfoot_format::describe::{FieldDescription, FieldType};
 use underfoot_format::text::Entry;
@@ -239,7 +239,7 @@ impl Document {
 
     /// The fields of a kind, which a control of it inherits.
     #[must_use]
-    pub fn fields_of_kind(kind: &Kind) -> Vec<FieldSection> {
+    pub fn fields_of_kind(kind: &ControlKind) -> Vec<FieldSection> {
         let sections = parts(&kind.behaviour, &kind.look, &kind.feel).into_iter().map(|part| {
             let properties = part.fields.iter().map(|field| {
                 let entry = part.entries.iter().find(|(name, _)| *name == field.name);

@@ -10,8 +10,8 @@ use super::refusal::EditRefusal;
 use super::rename::NEIGHBOURS;
 use super::snap::Edges;
 use underfoot::floor::Rect;
-use underfoot::widget::{Axis, Behaviour, Track};
-use underfoot_format::text::{Entry, Text};
+use underfoot::widget::{Axis, Behaviour, SliderTrack};
+use underfoot_format::text::{Entry, RonText};
 
 /// Fields that define a place relative to a neighbour.
 pub(super) const RELATIVE: [&str; 6] =
@@ -123,8 +123,8 @@ impl Document {
             self.place(item, stopped, false, &mut edits)?;
             let axis = match widget.map(|widget| &widget.behaviour) {
                 Some(Behaviour::Slider(slider)) => match slider.track {
-                    Track::Line { degrees: 0.0 } => Some("North"),
-                    Track::Line { degrees: 90.0 } => Some("East"),
+                    SliderTrack::Line { degrees: 0.0 } => Some("North"),
+                    SliderTrack::Line { degrees: 90.0 } => Some("East"),
                     _ => None,
                 },
                 Some(Behaviour::Selector(selector)) => Some(other(selector.axis)),
@@ -159,13 +159,13 @@ impl Document {
         );
         let [at, size] = self.placed(area);
         let fields = vec![
-            ("id", Text::quoted(id)),
-            ("kind", Text::quoted(kind)),
+            ("id", RonText::quoted(id)),
+            ("kind", RonText::quoted(kind)),
             at,
             size,
-            ("label", Text::quoted(label)),
+            ("label", RonText::quoted(label)),
         ];
-        Text::Record("Widget", fields).inline()
+        RonText::Record("Widget", fields).inline()
     }
 
     /// `at` and `size` of this area, in floor metres, as fields.
@@ -220,6 +220,6 @@ fn other(axis: Axis) -> &'static str {
 }
 
 /// Two numbers in the file's notation: to a ten-thousandth of a unit, which is below 0.1 mm.
-pub(super) fn pair(place: DVec2) -> Text {
-    Text::pair(((place * 1e4).round() / 1e4).into())
+pub(super) fn pair(place: DVec2) -> RonText {
+    RonText::pair(((place * 1e4).round() / 1e4).into())
 }

@@ -1,7 +1,7 @@
 //! Templates of layouts.
 
 use underfoot::floor::Geometry;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// A template for a new layout on the given floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +90,7 @@ impl Template {
 }
 
 fn plain(value: f64) -> String {
-    Text::double((value * 1e3).round() / 1e3).inline()
+    RonText::double((value * 1e3).round() / 1e3).inline()
 }
 
 #[cfg(test)]

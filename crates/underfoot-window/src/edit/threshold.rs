@@ -4,7 +4,7 @@ use super::address::Address;
 use super::change::Edit;
 use underfoot::units::Newtons;
 use underfoot::widget::Thresholds;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// Maximum ratio of release force to press force without chatter under a swaying foot, as the reader's warning
 /// states.
@@ -18,7 +18,7 @@ pub fn pressing(record: &Address, now: Thresholds, press: Newtons) -> Vec<Edit> 
     let press = press.0.round();
     let share = (now.release.0 / now.press.0).min(RELEASE_MOST);
     let release = (share * press).round().min((RELEASE_MOST * press).floor()).max(1.0);
-    let set = |field: &str, force: f32| Edit::set(record, field, Text::single(force).inline());
+    let set = |field: &str, force: f32| Edit::set(record, field, RonText::single(force).inline());
     vec![set("press_n", press), set("release_n", release)]
 }
 
@@ -27,7 +27,7 @@ pub fn pressing(record: &Address, now: Thresholds, press: Newtons) -> Vec<Edit> 
 #[must_use]
 pub fn releasing(record: &Address, now: Thresholds, release: Newtons) -> Vec<Edit> {
     let most = (RELEASE_MOST * now.press.0).floor().max(1.0);
-    let release = Text::single(release.0.round().clamp(1.0, most));
+    let release = RonText::single(release.0.round().clamp(1.0, most));
     vec![Edit::set(record, "release_n", release.inline())]
 }
 

@@ -93,7 +93,7 @@ impl App {
             presses: if input.playback.is_some() { PressLog::recorded() } else { PressLog::default() },
             plots: Plots::default(),
             panel: SidePanel::default(),
-            top_bar: TopBar::new(input.choices),
+            top_bar: TopBar::new(input.choices, options.begins_with_gallery),
             status: StatusBar::new(input.latency),
             time_line: input.playback.map(TimeLine::new),
             visit: input.visit.map(VisitBar::new),
@@ -167,6 +167,7 @@ impl App {
         let first: &[egui::Id] = if begun.is_none() { self.view.controls() } else { &[] };
         self.window.focus.begin(ui, first);
         self.show_top_bar(ui);
+        self.show_gallery(ui);
         let theme = self.appearance.theme();
         self.status.show(ui, &theme, &self.shown);
         help_bar(ui, &theme, self.activity());

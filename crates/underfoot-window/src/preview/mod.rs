@@ -21,6 +21,7 @@ mod feet;
 mod floor_check;
 mod floor_view;
 mod focus;
+mod gallery;
 mod icons;
 mod keyboard;
 mod labels;
@@ -101,6 +102,8 @@ pub struct PreviewOptions {
     pub layers: Show,
     /// The window for a projector.
     pub projection: ProjectionOptions,
+    /// Whether the window begins with the gallery of layouts.
+    pub begins_with_gallery: bool,
 }
 
 impl Default for PreviewOptions {
@@ -112,6 +115,7 @@ impl Default for PreviewOptions {
             settings: None,
             layers: Show::WINDOW,
             projection: ProjectionOptions::default(),
+            begins_with_gallery: false,
         }
     }
 }

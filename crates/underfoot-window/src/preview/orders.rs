@@ -1,7 +1,7 @@
 //! The commands of the window that a floor carries out by itself.
 
 use super::feed::PreviewCommand;
-use underfoot::serve::Command;
+use underfoot::serve::FloorCommand;
 use underfoot::wire::ControlMessage;
 
 impl PreviewCommand {
@@ -9,7 +9,7 @@ impl PreviewCommand {
     ///
     /// # Errors
     /// Returns a command unchanged that concerns layouts, files or checks: the program carries it out.
-    pub fn for_floor(self) -> Result<Command, Self> {
+    pub fn for_floor(self) -> Result<FloorCommand, Self> {
         let message = match self {
             Self::Enable { id, enabled: true } => ControlMessage::Enable { id },
             Self::Enable { id, enabled: false } => ControlMessage::Disable { id },
@@ -18,10 +18,10 @@ impl PreviewCommand {
             Self::MuteTile { tile, on } => ControlMessage::MuteTile { tile, on },
             Self::Feel { effect, gesture, tile } => {
                 let tile = u16::try_from(tile).unwrap_or(u16::MAX);
-                return Ok(Command::Audition { effect, gesture: Box::new(gesture), tile });
+                return Ok(FloorCommand::Audition { effect, gesture: Box::new(gesture), tile });
             }
             other => return Err(other),
         };
-        Ok(Command::Control(message))
+        Ok(FloorCommand::Control(message))
     }
 }

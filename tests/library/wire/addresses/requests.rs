@@ -168,10 +168,10 @@ fn apps_over_the_channel_are_refused_like_others_and_labels_outlive_a_new_layout
     let mut server = desk.server.with_commands(received);
     let id = WidgetId::new("button");
     let label = underfoot::wire::ControlMessage::Label { id: id.clone(), text: "Start".into() };
-    commands.send(underfoot::serve::Command::Control(label)).unwrap();
-    commands.send(underfoot::serve::Command::SetLayout(Box::new(layout(EVERYTHING)))).unwrap();
+    commands.send(underfoot::serve::FloorCommand::Control(label)).unwrap();
+    commands.send(underfoot::serve::FloorCommand::SetLayout(Box::new(layout(EVERYTHING)))).unwrap();
     commands
-        .send(underfoot::serve::Command::Control(underfoot::wire::ControlMessage::Get {
+        .send(underfoot::serve::FloorCommand::Control(underfoot::wire::ControlMessage::Get {
             id: WidgetId::new("no"),
         }))
         .unwrap();

@@ -4,7 +4,7 @@ use std::net::TcpStream;
 
 use serde_json::{Value, json};
 use underfoot::layout::Layout;
-use underfoot::runtime::Snapshot;
+use underfoot::runtime::SessionSnapshot;
 use underfoot::serve::Reference;
 
 use super::super::http::{self, RequestHead, turn_away};
@@ -60,7 +60,7 @@ enum Answer {
 }
 
 fn answer(head: &RequestHead, shared: &QueryShared) -> Answer {
-    let Snapshot { layout, floor, .. } = shared.session.snapshot();
+    let SessionSnapshot { layout, floor, .. } = shared.session.snapshot();
     if head.query.as_deref() == Some("HOST_INFO") {
         return Answer::Json(host_info(shared, &layout));
     }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::mpsc::sync_channel;
 use std::time::Duration;
 
-use underfoot::runtime::Snapshot;
+use underfoot::runtime::SessionSnapshot;
 use underfoot::sense::{BoardStatus, Quality};
-use underfoot::serve::Command;
+use underfoot::serve::FloorCommand;
 use underfoot::widget::OffReason;
 use underfoot::wire::LinkState;
 use underfoot_io::targets::TargetCounts;
@@ -20,7 +20,7 @@ const PATIENCE: Duration = Duration::from_millis(200);
 /// A floor at one instant.
 #[derive(Debug)]
 pub(super) struct ObservedFloor {
-    pub(super) snapshot: Snapshot,
+    pub(super) snapshot: SessionSnapshot,
     /// The address and the state of each board; `None` if the sensing thread does not answer.
     pub(super) boards: Option<Vec<(String, BoardStatus)>>,
     pub(super) events: Vec<(&'static str, u64)>,
@@ -60,7 +60,7 @@ impl ObservedFloor {
     pub(super) fn of(shared: &Shared) -> Self {
         let (to, boards) = sync_channel(1);
         let statuses =
-            shared.session.send(Command::GiveBoards(to)).then(|| boards.recv_timeout(PATIENCE).ok());
+            shared.session.send(FloorCommand::GiveBoards(to)).then(|| boards.recv_timeout(PATIENCE).ok());
         let addresses = shared.floor.boards.iter().map(|board| board.address.clone());
         let watch = &shared.watch;
         Self {

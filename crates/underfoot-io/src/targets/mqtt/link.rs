@@ -50,7 +50,7 @@ enum LinkNews {
 }
 
 /// The result of a look at a connection.
-pub(super) enum LinkState {
+pub(super) enum BrokerState {
     Same,
     /// The broker is there now.
     Changed,
@@ -74,18 +74,18 @@ impl BrokerLink {
     }
 
     /// Takes in the news of the connection.
-    pub(super) fn look(&mut self) -> LinkState {
-        let mut state = LinkState::Same;
+    pub(super) fn look(&mut self) -> BrokerState {
+        let mut state = BrokerState::Same;
         loop {
             match self.news.try_recv() {
                 Ok(LinkNews::Begun(client)) => self.client = Some(client),
                 Ok(LinkNews::Connected) => {
                     self.is_connected = true;
-                    state = LinkState::Changed;
+                    state = BrokerState::Changed;
                 }
-                Ok(LinkNews::Lost(reason)) => return LinkState::Lost(reason),
+                Ok(LinkNews::Lost(reason)) => return BrokerState::Lost(reason),
                 Err(TryRecvError::Empty) => return state,
-                Err(TryRecvError::Disconnected) => return LinkState::Lost("no connection".into()),
+                Err(TryRecvError::Disconnected) => return BrokerState::Lost("no connection".into()),
             }
         }
     }

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use underfoot::messages::{Act, Holdable, MqttMessage, MqttTarget};
 
-use self::link::{BrokerLink, LinkState};
+use self::link::{BrokerLink, BrokerState};
 use super::outlet::{Outlet, OutletError};
 
 /// Time between two attempts to connect.
@@ -100,14 +100,14 @@ impl MqttOutlet {
     /// Notices a broker that is there now, or is lost; connects again.
     fn look(&mut self) {
         let lost = match self.link.as_mut().map(BrokerLink::look) {
-            Some(LinkState::Changed) => {
+            Some(BrokerState::Changed) => {
                 self.problem = None;
                 self.states.repeat();
                 self.states.set(&availability(&self.target, ONLINE));
                 return;
             }
-            Some(LinkState::Same) => return,
-            Some(LinkState::Lost(reason)) => Some(reason),
+            Some(BrokerState::Same) => return,
+            Some(BrokerState::Lost(reason)) => Some(reason),
             None => None,
         };
         self.link = None;

@@ -9,13 +9,13 @@ use super::super::widths::CAP_HEIGHT;
 use super::reading::Reading;
 use super::{HANDLE, stops};
 use underfoot::floor::Rect;
-use underfoot::widget::{Scale, Track};
+use underfoot::widget::{Scale, SliderTrack};
 
 /// Points along a track.
 const POINTS: usize = 48;
 
 /// A slider with a curved or slanted track: a broad line, filled up to the handle.
-pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Track, value: f32) {
+pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: SliderTrack, value: f32) {
     face.draw(scene);
     let size = face.area.size();
     let broad = (0.18 * size.min_element()).clamp(0.016, 0.05);
@@ -26,12 +26,12 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Tra
         (0..=POINTS).map(move |step| at(from + (to - from) * step as f32 / POINTS as f32))
     };
     let (low, high) = match track {
-        Track::Line { .. } => {
+        SliderTrack::Line { .. } => {
             // A slanted line comes nearer to the side of the face than to its end.
             let edge = 1.5 * (0.5 * broad + 0.012) / at(0.0).distance(at(1.0));
             (edge.min(0.4), 1.0 - edge.min(0.4))
         }
-        Track::Arc { .. } => (0.0, 1.0),
+        SliderTrack::Arc { .. } => (0.0, 1.0),
     };
     let share = scale.share(value).clamp(low, high);
     let broadly = |colour| Paint::stroke(Stroke::new(broad, Ink::solid(colour)));
@@ -54,20 +54,20 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Tra
 }
 
 /// Position and width of the value and the label: at the centre of an arc, or in the corner that a line leaves free.
-fn words(track: Track, area: Rect, broad: f32) -> (Vec2, f32) {
+fn words(track: SliderTrack, area: Rect, broad: f32) -> (Vec2, f32) {
     match (track, track.circle(area.size())) {
         (_, Some((centre, radius))) => {
             let hub = area.centre() + centre;
             let middle = hub.clamp(area.min + Vec2::splat(0.03), area.max - Vec2::splat(0.03));
             (middle + Vec2::new(0.0, 0.014), (radius - 0.5 * broad) * 1.3)
         }
-        (Track::Line { degrees }, None) => {
+        (SliderTrack::Line { degrees }, None) => {
             let rising = degrees.to_radians().tan() >= 0.0;
             let side = if rising { 1.0 } else { -1.0 };
             let corner = area.centre() + area.size() * Vec2::new(0.25 * side, -0.28);
             (corner, 0.46 * area.size().x)
         }
-        (Track::Arc { .. }, None) => (area.centre(), 0.5 * area.size().x),
+        (SliderTrack::Arc { .. }, None) => (area.centre(), 0.5 * area.size().x),
     }
 }
 

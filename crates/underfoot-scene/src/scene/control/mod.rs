@@ -21,7 +21,7 @@ use reading::Reading;
 use underfoot::engine::WidgetState;
 use underfoot::floor::Rect;
 use underfoot::layout::{Colour, Shape, Widget};
-use underfoot::widget::{Axis, Behaviour, Scale, Track, Value};
+use underfoot::widget::{Axis, Behaviour, Scale, SliderTrack, Value};
 
 /// Colour of a slider's handle.
 const HANDLE: Colour = Colour::rgb(0xff, 0xff, 0xff);
@@ -62,8 +62,8 @@ fn draw(scene: &mut Scene, view: &View<'_>, widget: &Widget, state: WidgetState)
             selector::draw(scene, &calm(), spec, choice);
         }
         (Behaviour::Slider(spec), Some(Value::Number(value))) => match spec.track {
-            Track::EAST => slider::draw(scene, &calm(), &spec.scale, Axis::East, value),
-            Track::NORTH => slider::draw(scene, &calm(), &spec.scale, Axis::North, value),
+            SliderTrack::EAST => slider::draw(scene, &calm(), &spec.scale, Axis::East, value),
+            SliderTrack::NORTH => slider::draw(scene, &calm(), &spec.scale, Axis::North, value),
             track => curved::draw(scene, &calm(), &spec.scale, track, value),
         },
         (Behaviour::Pedal(spec), Some(Value::Number(value))) => {

@@ -1,14 +1,14 @@
 //! The top bar: the switch of the modes, the tools of the present mode, appearance, help, and the state of the link.
 
 use eframe::egui;
-use eframe::egui::accesskit::Role;
-use eframe::egui::{Align, Layout, Margin, Panel, RichText, Ui, WidgetInfo, vec2};
+use eframe::egui::{Align, Layout, Margin, Panel, RichText, Ui, vec2};
 
 use super::help::help_menu;
 use super::pills::{link_state, mutes};
 use crate::preview::app::App;
 use crate::preview::closing::file_name;
 use crate::preview::feed::PreviewCommand;
+use crate::preview::gallery::LayoutGallery;
 use crate::preview::style::{panel_frame, quiet};
 use crate::preview::visit::VisitBar;
 use underfoot_scene::egui_painter::color;
@@ -29,11 +29,10 @@ const TITLE: f32 = 150.0;
 /// Width of the name of the file beside the title, in points.
 const FILE: f32 = 88.0;
 
-/// The choice of layouts, whether the warnings are listed, and the width of the bar's right end.
+/// The gallery of layouts, whether the warnings are listed, and the width of the bar's right end.
 #[derive(Default)]
 pub(in crate::preview) struct TopBar {
-    /// Names of the layouts that the window can open.
-    pub(in crate::preview) choices: Vec<String>,
+    pub(in crate::preview) gallery: LayoutGallery,
     /// Whether the warnings about the layout are listed over the floor.
     pub(in crate::preview) lists_warnings: bool,
     /// Width of the part at the right in the last frame, in points.
@@ -61,33 +60,42 @@ impl ToolsWidth {
 }
 
 impl TopBar {
-    pub(in crate::preview) fn new(choices: Vec<String>) -> Self {
-        Self { choices, ..Self::default() }
+    /// A bar with these names of layouts to open; `begins_with_gallery` opens the gallery at once.
+    pub(in crate::preview) fn new(choices: Vec<String>, begins_with_gallery: bool) -> Self {
+        let mut gallery = LayoutGallery::new(choices);
+        if begins_with_gallery {
+            gallery.open();
+        }
+        Self { gallery, ..Self::default() }
     }
 
-    /// Shows the layout's title, as a menu if there is a choice; returns the index of the layout to open.
-    fn title(&self, ui: &mut Ui, theme: &Theme, title: &str) -> Option<usize> {
-        if self.choices.is_empty() {
-            let text = RichText::new(in_drawn_order(title)).size(15.0).strong().color(color(theme.ink));
+    /// Shows the layout's title, as a button that opens the gallery if there is a choice.
+    fn title(&mut self, ui: &mut Ui, theme: &Theme, title: &str) {
+        let title = in_drawn_order(title);
+        if self.gallery.is_empty() {
+            let text = RichText::new(title).size(15.0).strong().color(color(theme.ink));
             ui.add(egui::Label::new(text).truncate());
-            return None;
+        } else {
+            self.gallery.button(ui, &title, TITLE);
         }
-        let mut chosen = None;
-        let text = RichText::new(in_drawn_order(title)).color(color(theme.ink));
-        let menu = egui::ComboBox::from_id_salt("layout").selected_text(text).width(TITLE).truncate();
-        let response = menu.show_ui(ui, |ui| {
-            for (index, choice) in self.choices.iter().enumerate() {
-                if ui.selectable_label(*choice == title, choice).clicked() {
-                    chosen = Some(index);
-                }
-            }
-        });
-        response.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Layout"));
-        chosen
     }
 }
 
 impl App {
+    /// Shows the gallery while it is open, and opens the layout that the user chooses there.
+    pub(in crate::preview) fn show_gallery(&mut self, ui: &Ui) {
+        let (theme, geometry) = (self.appearance.theme(), &self.shown.floor.geometry);
+        let gallery = &mut self.top_bar.gallery;
+        let Some(index) = gallery.show(ui, &theme, geometry) else { return };
+        // In Design mode the floor follows the drawing board.
+        if !self.is_designing() {
+            self.shown.command(PreviewCommand::Open(index));
+        }
+        if let (Some(designer), Some(name)) = (&mut self.designer, self.top_bar.gallery.name(index)) {
+            designer.open_choice(name);
+        }
+    }
+
     /// Shows the bar; widgets come from left to right, which is the order of the keyboard too.
     pub(in crate::preview) fn show_top_bar(&mut self, ui: &mut Ui) {
         let theme = self.appearance.theme();
@@ -120,7 +128,7 @@ impl App {
     fn tools(&mut self, ui: &mut Ui, theme: &Theme, room: f32) {
         match &mut self.designer {
             Some(designer) if designer.is_open => {
-                designer.tools(ui, theme, &self.top_bar.choices);
+                designer.tools(ui, theme, &mut self.top_bar.gallery);
                 self.share_button(ui, true);
                 self.panel.button(ui, true, true);
             }
@@ -147,12 +155,7 @@ impl App {
             if let Some(designer) = self.designer.as_ref().filter(|designer| designer.is_open) {
                 return file_name(ui, theme, designer);
             }
-            if let Some(index) = self.top_bar.title(ui, theme, &self.shown.layout().title) {
-                self.shown.command(PreviewCommand::Open(index));
-                if let (Some(designer), Some(name)) = (&mut self.designer, self.top_bar.choices.get(index)) {
-                    designer.open_choice(name);
-                }
-            }
+            self.top_bar.title(ui, theme, &self.shown.layout().title);
         });
         if self.is_designing() || is_compact {
             return;

@@ -11,10 +11,10 @@ use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
 use crate::platform;
 use crate::preview::bars::{MessageStack, message_frame};
+use crate::preview::gallery::LayoutGallery;
 use crate::preview::icons::{self, Icon, icon_button};
 use crate::preview::style::{is_entered, quiet, toggle};
 use underfoot::floor::Rect;
-use underfoot::schema;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
 
@@ -23,8 +23,8 @@ type Action = fn(&mut EditedLayout);
 
 impl Designer {
     /// Shows files, undo, arrangement and the number of problems, in the top bar.
-    pub(in crate::preview) fn tools(&mut self, ui: &mut Ui, theme: &Theme, choices: &[String]) {
-        self.files(ui, choices);
+    pub(in crate::preview) fn tools(&mut self, ui: &mut Ui, theme: &Theme, gallery: &mut LayoutGallery) {
+        self.files(ui, gallery);
         let (can_undo, can_redo) = (self.edited.document.can_undo(), self.edited.document.can_redo());
         let any = !self.edited.selected.is_empty();
         if icon_button(ui, can_undo, Icon::Undo2, "Undo", "Ctrl+Z") {
@@ -55,7 +55,7 @@ impl Designer {
         self.count(ui, theme);
     }
 
-    fn files(&mut self, ui: &mut Ui, choices: &[String]) {
+    fn files(&mut self, ui: &mut Ui, gallery: &mut LayoutGallery) {
         ui.menu_button("File", |ui| {
             ui.menu_button("New", |ui| {
                 let geometry = self.edited.document.floor().geometry;
@@ -71,15 +71,10 @@ impl Designer {
                     }
                 }
             });
-            ui.menu_button("Open shipped", |ui| {
-                for name in choices.iter().filter(|name| schema::builtin_layout(name).is_some()) {
-                    if ui.button(name).clicked() {
-                        let text = schema::builtin_layout(name).unwrap_or_default();
-                        self.begin_untitled(name, text);
-                        ui.close();
-                    }
-                }
-            });
+            if ui.add_enabled(!gallery.is_empty(), egui::Button::new("Gallery")).clicked() {
+                gallery.open();
+                ui.close();
+            }
             let recent = shelf::recent(&self.storage.state);
             ui.add_enabled_ui(!recent.is_empty(), |ui| {
                 ui.menu_button("Open recent", |ui| {

@@ -9,7 +9,7 @@ use super::edited::EditedLayout;
 use super::inspector::{EDITOR_PX, capital, unit_name, unmarked_name};
 use crate::edit::{EditRefusal, PlaceNumber, SharedNumber, TypedChange, changing, shared_number};
 use crate::preview::style::{is_entered, quiet};
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_scene::scene::Theme;
 
 /// Shows place and size of the selection; `typed` holds the text of the field in which the user is typing.
@@ -27,7 +27,7 @@ pub(super) fn shared_place(
         let name = format!("all {}", number.name());
         ui.horizontal(|ui| {
             unmarked_name(ui, &format!("{} ({})", capital(number.name()), unit_name(&edited.document)));
-            let plain = |value: f64| Text::rounded(value).inline();
+            let plain = |value: f64| RonText::rounded(value).inline();
             let value = match shared {
                 SharedNumber::Same(value) => plain(value),
                 SharedNumber::Mixed(..) => String::new(),

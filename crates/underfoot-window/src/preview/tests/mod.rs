@@ -5,6 +5,7 @@ mod faults;
 mod feet;
 mod first_steps;
 mod floor_check;
+mod gallery;
 mod modes;
 mod panel;
 mod plots;

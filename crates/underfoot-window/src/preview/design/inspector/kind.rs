@@ -9,7 +9,7 @@ use super::field::name_cell;
 use super::words::{capital, choice, label};
 use crate::edit::{Address, Document, FieldOrigin, Property};
 use crate::preview::style::{quiet, section};
-use underfoot::schema::Kind;
+use underfoot::schema::ControlKind;
 use underfoot_format::describe::FieldType;
 use underfoot_format::words::unit;
 use underfoot_scene::egui_painter::{Palette, color};
@@ -29,7 +29,7 @@ pub(super) fn show(
     theme: &Theme,
     palette: &mut Palette,
     edited: &EditedLayout,
-    kind: &Kind,
+    kind: &ControlKind,
 ) -> Option<KindWish> {
     let mut wish = None;
     section(ui, theme, &format!("Kind {}", choice(&kind.name)), |ui| {

@@ -8,7 +8,7 @@ use super::words::{label, start, usual_range};
 use crate::edit::{Edit, pressing};
 use underfoot::units::Newtons;
 use underfoot_format::describe::FieldType;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 use underfoot_format::words::unit;
 
 /// Width of the number beside a slider, in points.
@@ -41,7 +41,7 @@ impl<'a> NumberField<'a> {
 
 /// A number as files write it.
 pub(super) fn written(number: f64) -> String {
-    Text::rounded(number).inline()
+    RonText::rounded(number).inline()
 }
 
 /// Shows `value` as a slider and a number; returns the new value, if any, and the part that was moved.
@@ -164,7 +164,7 @@ pub(super) fn pair(
     });
     let [first, second] = drags;
     let moved = if second.dragged() { &second } else { &first };
-    let value = Text::Tuple(now.map(Text::rounded).into()).inline();
+    let value = RonText::Tuple(now.map(RonText::rounded).into()).inline();
     let edits = (now != before).then(|| FieldEdits::from(field.set(value)).dragged_by(moved));
     (edits, first)
 }

@@ -9,7 +9,7 @@ use super::number::two_numbers;
 use super::words::label;
 use crate::edit::{Edit, FieldOrigin};
 use underfoot::floor::Rect;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// Shows a place or a size that is `before`, in the layout's unit.
 pub(super) fn place(ui: &mut Ui, field: &ShownField<'_>, before: [f64; 2]) -> FieldAnswer {
@@ -41,7 +41,7 @@ pub(super) fn place(ui: &mut Ui, field: &ShownField<'_>, before: [f64; 2]) -> Fi
 
 /// The edits that set place or size to `now`. A control that stood beside a neighbour gets a place of its own.
 fn placing(field: &ShownField<'_>, now: [f64; 2], is_at: bool) -> Vec<Edit> {
-    let written = || vec![field.set(Text::Tuple(now.map(Text::rounded).into()).inline())];
+    let written = || vec![field.set(RonText::Tuple(now.map(RonText::rounded).into()).inline())];
     let item = field.edited.item(field.record);
     let Some(item) = item.filter(|_| field.property.origin != FieldOrigin::Written) else { return written() };
     let unit = field.edited.document.unit_m();

@@ -14,7 +14,7 @@ use super::text::typed;
 use super::words::{choice, label};
 use crate::edit::FieldOrigin;
 use underfoot_format::describe::FieldType;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 /// Shows the value of a field for editing; returns the edits for which the user asks.
 pub(super) fn value(ui: &mut Ui, field: &ShownField<'_>, texts: &mut TypedTexts) -> FieldAnswer {
@@ -41,7 +41,7 @@ pub(super) fn value(ui: &mut Ui, field: &ShownField<'_>, texts: &mut TypedTexts)
             let said = if on { "yes" } else { "no" };
             let tick = ui.checkbox(&mut on, said);
             tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, on, label(&property.name)));
-            (tick.changed().then(|| field.set(Text::Flag(on).inline()).into()), tick)
+            (tick.changed().then(|| field.set(RonText::Flag(on).inline()).into()), tick)
         }
         FieldType::Variants(describe) if property.origin != FieldOrigin::Several => {
             variants(ui, field, &describe())

@@ -12,7 +12,7 @@ use crate::edit::Document;
 use underfoot::engine::{Snapshot, WidgetState};
 use underfoot::floor::{Geometry, Rect};
 use underfoot::layout::{Layout, Widget};
-use underfoot::schema::{Kind, Kinds, parse_layout};
+use underfoot::schema::{ControlKind, Kinds, parse_layout};
 use underfoot::widget::{Value, WidgetId};
 use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor};
 use underfoot_scene::scene::{self, Scene, Show, Theme, View};
@@ -21,7 +21,7 @@ use underfoot_scene::scene::{self, Scene, Show, Theme, View};
 static SHIPPED: LazyLock<Kinds> = LazyLock::new(Kinds::builtin);
 
 /// Whether `kind` comes with underfoot, unchanged.
-pub(in crate::preview::design) fn is_shipped(kind: &Kind) -> bool {
+pub(in crate::preview::design) fn is_shipped(kind: &ControlKind) -> bool {
     SHIPPED.get(&kind.name) == Some(kind)
 }
 

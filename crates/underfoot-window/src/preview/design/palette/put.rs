@@ -7,7 +7,7 @@ use super::in_hand::InHand;
 use super::thing::PaletteThing;
 use crate::edit::{Address, Edit, RecordList, free_row};
 use underfoot::floor::Rect;
-use underfoot_format::text::Text;
+use underfoot_format::text::RonText;
 
 impl EditedLayout {
     /// Puts `thing` on `area`, in floor metres, with this `label` in place of the usual one; returns whether the layout
@@ -28,22 +28,22 @@ impl EditedLayout {
                 (on_page(RecordList::Widgets), self.document.new_control(kind, area, label))
             }
             PaletteThing::Ground(name) => {
-                (on_page(RecordList::Grounds), Text::Variant(name, place.into()).inline())
+                (on_page(RecordList::Grounds), RonText::Variant(name, place.into()).inline())
             }
             PaletteThing::Stance => {
                 let [at, size] = place;
-                let fields = vec![at, size, ("label", Text::quoted(label.unwrap_or("Stand here")))];
+                let fields = vec![at, size, ("label", RonText::quoted(label.unwrap_or("Stand here")))];
                 (
                     Address::LAYOUT.entry(RecordList::Stances, usize::MAX),
-                    Text::Record("Stance", fields).inline(),
+                    RonText::Record("Stance", fields).inline(),
                 )
             }
             PaletteThing::Region => {
                 let [at, size] = place;
-                let fields = vec![("id", Text::quoted(self.document.free_id("region", &[]))), at, size];
+                let fields = vec![("id", RonText::quoted(self.document.free_id("region", &[]))), at, size];
                 (
                     Address::LAYOUT.entry(RecordList::Regions, usize::MAX),
-                    Text::Record("Region", fields).inline(),
+                    RonText::Record("Region", fields).inline(),
                 )
             }
         };
@@ -126,8 +126,8 @@ impl EditedLayout {
     }
 
     pub(super) fn add_page(&mut self) {
-        let id = Text::quoted(self.document.free_id("page_1", &[]));
-        let page = Text::Record("Page", vec![("id", id), ("widgets", Text::List(Vec::new()))]);
+        let id = RonText::quoted(self.document.free_id("page_1", &[]));
+        let page = RonText::Record("Page", vec![("id", id), ("widgets", RonText::List(Vec::new()))]);
         let at = Address::of(RecordList::Pages, usize::MAX);
         if self.edit(&[Edit::Insert { at, text: page.inline() }]) {
             self.refresh();
