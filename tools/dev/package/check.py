@@ -55,7 +55,7 @@ class Workspace:
         return needed & self.names
 
     def oldest(self, member):
-        """The newest of the compilers that `member`'s edition and its dependencies ask for, and the reason."""
+        """The oldest compiler with which `member`'s edition and all of its dependencies agree, and the reason."""
         needed = (EDITION[member["edition"]], f"edition {member['edition']}")
         seen, waiting = {member["id"]}, [member["id"]]
         while waiting:
@@ -89,9 +89,9 @@ def wrong_metadata(workspace, crate):
 
 
 def wrong_compiler(workspace, member):
-    """A rust-version that is not the one of the dependencies."""
+    """A rust-version older than the edition or a dependency asks for; clippy judges the functions of the standard library."""
     needed, reason = workspace.oldest(member)
-    if version(member["rust_version"]) != version(needed):
+    if version(member["rust_version"]) < version(needed):
         yield f"says rust-version {member['rust_version']}, but {reason} asks for {needed}"
 
 
