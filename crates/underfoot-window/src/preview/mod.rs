@@ -10,6 +10,8 @@ mod bars;
 mod browser;
 mod channels;
 mod closing;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod damage;
 mod design;
 #[cfg(not(target_arch = "wasm32"))]
 mod desktop;
