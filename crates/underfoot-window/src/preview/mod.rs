@@ -70,7 +70,7 @@ mod zoom;
 #[cfg(target_arch = "wasm32")]
 pub use browser::run;
 pub use channels::{Notice, ProgramChannels, WindowChannels, channels};
-pub use design::{DesignInput, KindsOf, usual_state};
+pub use design::{DesignInput, KindsOf, texts_beside, usual_state};
 #[cfg(not(target_arch = "wasm32"))]
 pub use desktop::run;
 pub use feed::{
@@ -80,7 +80,7 @@ pub use feed::{
 pub use feeds::{Mouse, SignalScopes, ToWindow, shoes};
 pub use playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 pub use projection::ProjectionOptions;
-pub use share::ShareDesk;
+pub use share::{LayoutToShare, ShareDesk};
 pub use visit::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
 
 use std::path::PathBuf;
