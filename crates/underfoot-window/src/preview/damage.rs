@@ -22,12 +22,12 @@ const SOFT: f32 = 2.0;
 /// Shapes of the old picture among which the counterpart of a new one is looked for.
 const LOOK_AHEAD: usize = 256;
 
-/// Draws only what differs from the picture on the canvas.
+/// Draws only the differences from the picture on the canvas.
 ///
 /// The owner keeps the canvas from being cleared between frames, and the window draws its own background.
 #[derive(Default)]
 pub(super) struct Damage {
-    /// What the canvas shows; `None` for an unknown picture.
+    /// The picture on the canvas; `None` for an unknown one.
     shown: Option<Picture>,
     /// The latest picture, which is on the canvas once it is `drawn`.
     latest: Option<Picture>,
@@ -129,7 +129,7 @@ fn on_pixels(area: Rect, pixels_per_point: f32) -> Rect {
     Rect::from_min_max(pos2(down(area.min.x), down(area.min.y)), pos2(up(area.max.x), up(area.max.y)))
 }
 
-/// A few areas that cover all of these and do not overlap: what is drawn twice is too dark.
+/// A few areas that cover all of these and do not overlap: soft edges that are drawn twice are too dark.
 fn joined(areas: impl Iterator<Item = Rect>) -> Vec<Rect> {
     let mut all: Vec<Rect> = Vec::new();
     for area in areas.filter(Rect::is_positive) {
