@@ -126,7 +126,7 @@ install_web() {
 
 # The packages that lead the browser and read the floor; and the libraries of the example pages.
 npm_folders() {
-    is_left_out bindings || echo bindings/web
+    { is_left_out bindings && is_left_out web; } || echo bindings/web
     is_left_out apps || echo bindings/web/examples
 }
 

@@ -28,12 +28,12 @@ build_web() {
     local target=${CARGO_TARGET_DIR:-target}
     local made=$target/web bindgen built optimiser=crates/underfoot-web/node_modules/.bin/wasm-opt
     install_web_tools
-    step cargo rustc --locked --profile web --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
-    built=$target/wasm32-unknown-unknown/web/underfoot_web.wasm
+    step cargo rustc --locked --profile page --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
+    built=$target/wasm32-unknown-unknown/page/underfoot_web.wasm
     rm -rf "$made"
-    step "$bindgen" --target web --no-typescript --out-name underfoot --out-dir "$made" "$built"
+    step "$bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-name underfoot --out-dir "$made" "$built"
     if [ -x "$optimiser" ]; then
-        step "$optimiser" -Os "${wasm_features[@]/#/--enable-}" "$made/underfoot_bg.wasm" -o "$made/underfoot.wasm"
+        step "$optimiser" -Oz "${wasm_features[@]/#/--enable-}" "$made/underfoot_bg.wasm" -o "$made/underfoot.wasm"
         rm "$made/underfoot_bg.wasm"
     else
         lacks "npm is missing, so wasm-opt does not make the page smaller"

@@ -7,6 +7,33 @@ const state = document.getElementById("state");
 // A link that is opened in this page has another layout behind `#`. What is not saved stays as a draft.
 addEventListener("hashchange", () => location.reload());
 
+// Files and folders that are dropped on the page: the window gets all of them with their paths.
+const MOST_FILES = 1000;
+
+async function filesIn(entry, found) {
+  if (found.length >= MOST_FILES || entry.name.startsWith(".")) return;
+  if (entry.isFile) {
+    found.push([entry.fullPath.replace(/^\//, ""), await new Promise((take, fail) => entry.file(take, fail))]);
+    return;
+  }
+  const reader = entry.createReader();
+  const next = () => new Promise((take, fail) => reader.readEntries(take, fail));
+  for (let entries = await next(); entries.length > 0; entries = await next()) {
+    for (const inner of entries) await filesIn(inner, found);
+  }
+}
+
+addEventListener("drop", async (event) => {
+  event.preventDefault();
+  const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry);
+  const found = [];
+  for (const entry of entries) await filesIn(entry, found);
+  // Of a folder, only what the window can open; a single file of another form gets its own message.
+  const texts = found.filter(([path]) => path.endsWith(".ron"));
+  const detail = entries.every((entry) => entry.isFile) ? found : texts;
+  dispatchEvent(new CustomEvent("underfoot-files", { detail }));
+}, true);
+
 // Over plain HTTP from another computer, browsers have no service worker: the page then needs its server.
 if ("serviceWorker" in navigator) {
   navigator.serviceWorker.register("offline.js").catch((error) => console.warn("no visits offline:", error));

@@ -107,7 +107,7 @@ impl PageFloor {
     ) -> Result<(Self, PreviewInput), NoFloor> {
         let nominal = Floor::of(geometry_of(shared.grid)?);
         let own = OwnTexts::of(shared);
-        let kinds = own.read()?;
+        let kinds = own.read(None)?;
         let document = Document::read(&shared.name, &shared.text, &kinds, &Arc::new(nominal.clone()))?;
         let sim = SimFloor::new(&nominal, SimConfig::default(), SEED);
         let floor = Arc::new(calibrated(&nominal, &sim, SEED)?);
@@ -142,7 +142,7 @@ impl PageFloor {
             name: shared.name.clone(),
             text: shared.text.clone(),
             path: None,
-            kinds_of: Box::new(move |_| kinds_of.read()),
+            kinds_of: Box::new(move |path| kinds_of.read(path)),
             state: usual_state(),
         };
         let input = PreviewInput {

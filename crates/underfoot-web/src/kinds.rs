@@ -1,12 +1,13 @@
-//! The kinds and effects of the user's in the page: those of a link, and those made here.
+//! The kinds and effects of the user's in the page: those of a link, those made here, and those beside a layout.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
 use underfoot::schema::{Diagnostics, Kinds};
 use underfoot_window::link::SharedLayout;
+use underfoot_window::preview::texts_beside;
 
 /// The texts of the user's kinds and effects. Clones share them.
 #[derive(Clone, Debug, Default)]
@@ -31,18 +32,25 @@ impl OwnTexts {
         self.0.borrow().effects.get(file).cloned().unwrap_or_default()
     }
 
-    /// The texts of kinds, and those of effects, by the names of their files.
+    /// The kinds and effects for the layout at `path`, as a layout without a text: those in the folders `widgets` and
+    /// `effects` beside it, or the kinds of the link, and the effects of the link and those kept here.
     #[must_use]
-    pub fn all(&self) -> (BTreeMap<String, String>, BTreeMap<String, String>) {
-        let texts = self.0.borrow();
-        (texts.kinds.clone(), texts.effects.clone())
+    pub fn of_layout(&self, path: Option<&Path>) -> SharedLayout {
+        let mut texts = self.0.borrow().clone();
+        let beside = |name| path.map(|path| texts_beside(path, name)).unwrap_or_default();
+        texts.effects.extend(beside("effects"));
+        let kinds = beside("widgets");
+        if !kinds.is_empty() {
+            texts.kinds = kinds;
+        }
+        texts
     }
 
-    /// All kinds and effects, with those that come with underfoot.
+    /// All kinds and effects for the layout at `path`, with those that come with underfoot.
     ///
     /// # Errors
     /// The problems of the first text that cannot be read.
-    pub fn read(&self) -> Result<Arc<Kinds>, Diagnostics> {
-        self.0.borrow().all_kinds().map(Arc::new)
+    pub fn read(&self, path: Option<&Path>) -> Result<Arc<Kinds>, Diagnostics> {
+        self.of_layout(path).all_kinds().map(Arc::new)
     }
 }

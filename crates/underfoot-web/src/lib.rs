@@ -6,6 +6,7 @@
 //! | [`clock`] | the time of that floor |
 //! | [`desk`] | layouts put on the floor, and the commands of the window |
 //! | [`kinds`] | kinds and effects: those that come with underfoot, and those of a link |
+//! | [`sound`] | the sound of a frame in one piece |
 //! | `page` | the start in a page (WebAssembly only) |
 //!
 //! All but `page` compiles for every system, and its tests run on the desktop.
@@ -17,3 +18,4 @@ pub mod floor;
 pub mod kinds;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
+pub mod sound;

@@ -8,7 +8,7 @@ use js_sys::{Float32Array, Function};
 use underfoot::floor::Geometry;
 use underfoot_window::link::SharedLayout;
 use underfoot_window::preview::{
-    PreviewError, PreviewInput, PreviewOptions, ProjectionOptions, ShareDesk, run, usual_state,
+    LayoutToShare, PreviewError, PreviewInput, PreviewOptions, ProjectionOptions, ShareDesk, run, usual_state,
 };
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -17,6 +17,7 @@ use web_sys::{HtmlCanvasElement, Window};
 
 use super::floor::{FIRST, PageFloor, shipped};
 use super::kinds::OwnTexts;
+use super::sound::FrameSound;
 
 /// Shows the window in `canvas`, on a floor with the layout behind `#` in the address of the page. `sound` describes
 /// the sound, `play` gets its samples as a `Float32Array`, and `click` is called when a control clicks.
@@ -33,7 +34,8 @@ pub async fn start(
 ) -> Result<(), JsValue> {
     let window = web_sys::window().ok_or("there is no page")?;
     let fragment = window.location().hash()?;
-    let (floor, mut input) = opened(&fragment, &play)?;
+    let heard = FrameSound::default();
+    let (floor, mut input) = opened(&fragment, &heard)?;
     floor.tell_sound(sound);
     let links =
         PageLinks { address: address(&window)?, geometry: input.floor.geometry, own: floor.own_texts() };
@@ -48,7 +50,7 @@ pub async fn start(
         begins_with_gallery: fragment.len() < 2,
         ..PreviewOptions::default()
     };
-    run_in_frames(&window, floor, click);
+    run_in_frames(&window, floor, PageHooks { play, click }, heard);
     run(input, options, canvas).await.map_err(|PreviewError::NoWindow(reason)| {
         JsValue::from(format!("this browser gives the page no WebGL ({reason})"))
     })
@@ -56,9 +58,10 @@ pub async fn start(
 
 /// The floor with the layout in `fragment`; for a link that cannot be read, the floor with the first layout, and a
 /// message that says why.
-fn opened(fragment: &str, play: &Function) -> Result<(PageFloor, PreviewInput), String> {
+fn opened(fragment: &str, heard: &FrameSound) -> Result<(PageFloor, PreviewInput), String> {
     let floor = |shared: &SharedLayout| {
-        PageFloor::new(shared, player(play.clone())).map_err(|error| error.to_string())
+        let heard = heard.clone();
+        PageFloor::new(shared, move |samples| heard.add(samples)).map_err(|error| error.to_string())
     };
     let first = || floor(&shipped(FIRST));
     if fragment.len() < 2 {
@@ -72,14 +75,6 @@ fn opened(fragment: &str, play: &Function) -> Result<(PageFloor, PreviewInput), 
             floor.tell(format!("The layout of the link cannot be shown; {wrong}"));
             Ok((floor, input))
         }
-    }
-}
-
-/// Passes samples on to the page.
-fn player(play: Function) -> impl FnMut(&[f32]) {
-    move |samples| {
-        // A page that cannot play has said so.
-        let _ = play.call1(&JsValue::NULL, &Float32Array::from(samples));
     }
 }
 
@@ -97,25 +92,38 @@ struct PageLinks {
 }
 
 impl ShareDesk for PageLinks {
-    fn link(&self, name: &str, text: &str) -> Result<String, String> {
-        let (kinds, effects) = self.own.all();
+    fn link(&self, layout: &LayoutToShare) -> Result<String, String> {
+        let (name, text) = (layout.name.clone(), layout.text.clone());
         let grid =
             (self.geometry != Geometry::default()).then(|| (self.geometry.columns(), self.geometry.rows()));
-        let shared = SharedLayout { name: name.into(), text: text.into(), grid, kinds, effects };
+        let shared = SharedLayout { name, text, grid, ..self.own.of_layout(layout.path.as_deref()) };
         let used = shared.with_used_only(&self.geometry).map_err(|problems| problems.to_string())?;
         let fragment = used.fragment().map_err(|error| error.to_string())?;
         Ok(format!("{}{fragment}", self.address))
     }
 }
 
+/// Functions of the page.
+struct PageHooks {
+    /// Plays samples.
+    play: Function,
+    /// Buzzes for a click.
+    click: Function,
+}
+
+/// A function for frames of the page that holds itself.
+type FrameSlot = Rc<RefCell<Option<Closure<dyn FnMut(f64)>>>>;
+
 /// Advances the floor in each frame of the page from now on.
-fn run_in_frames(window: &Window, mut floor: PageFloor, click: Function) {
-    let frame: Rc<RefCell<Option<Closure<dyn FnMut(f64)>>>> = Rc::default();
+fn run_in_frames(window: &Window, mut floor: PageFloor, hooks: PageHooks, heard: FrameSound) {
+    let frame = FrameSlot::default();
     let (own, page) = (Rc::clone(&frame), window.clone());
     *frame.borrow_mut() = Some(Closure::new(move |now_ms: f64| {
         floor.run_until(Duration::from_secs_f64((now_ms / 1e3).max(0.0)));
+        // A page that cannot play has said so.
+        heard.play(|samples| _ = hooks.play.call1(&JsValue::NULL, &Float32Array::from(samples)));
         if floor.has_clicked() {
-            let _ = click.call0(&JsValue::NULL);
+            let _ = hooks.click.call0(&JsValue::NULL);
         }
         request(&page, &own);
     }));

@@ -10,6 +10,7 @@ use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::units::Newtons;
 use underfoot_web::floor::{PageFloor, RATE, shipped};
+use underfoot_web::sound::FrameSound;
 use underfoot_window::link::SharedLayout;
 use underfoot_window::preview::{
     EventNews, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, Warnings,
@@ -180,9 +181,13 @@ fn kinds_and_effects_of_a_link_work_and_a_kept_effect_goes_into_the_next_link() 
     let name = effect.name.clone();
     page.input.channels.commands.send(PreviewCommand::SaveEffect { name: name.clone(), text }).unwrap();
     page.stand(big, 0.0, 50);
-    let (kinds, effects) = page.floor.own_texts().all();
-    assert_eq!((kinds.len(), effects.keys().collect::<Vec<_>>()), (2, vec![&format!("{name}.ron")]));
-    assert!(page.floor.own_texts().read().is_ok());
+    let own = page.floor.own_texts();
+    let texts = own.of_layout(None);
+    assert_eq!(
+        (texts.kinds.len(), texts.effects.keys().collect::<Vec<_>>()),
+        (2, vec![&format!("{name}.ron")])
+    );
+    assert!(own.read(None).is_ok());
 }
 
 #[test]
@@ -194,4 +199,44 @@ fn a_layout_with_errors_is_no_floor_and_says_where_they_are() {
     };
     let Err(error) = PageFloor::new(&shared, |_| {}) else { panic!("it has errors") };
     assert!(error.to_string().contains("bad.ron:1:"), "{error}");
+}
+
+#[test]
+fn a_layout_is_made_of_the_kinds_and_effects_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    };
+    write("widgets/huge.ron", r#"Kind(name: "huge", from: "button", feel: (press: "thud"))"#);
+    write(
+        "effects/thud.ron",
+        r#"Effect(name: "thud", about: "A low one", plays: Click(level_n: 9, modes: [(hz: 90, decay_ms: 30)]))"#,
+    );
+    let path = folder.path().join("layouts/mine.ron");
+    let page = Page::new(&shipped("first_steps"));
+    let own = page.floor.own_texts();
+    assert!(own.read(None).unwrap().get("huge").is_none(), "only beside the layout");
+    let kinds = own.read(Some(&path)).unwrap();
+    assert!(kinds.get("huge").is_some() && kinds.effects().get("thud").is_some());
+    assert_eq!(own.of_layout(Some(&path)).kinds.len(), 1, "they go into its link");
+}
+
+#[test]
+fn a_pause_within_a_sound_keeps_its_length_and_a_lasting_silence_wakes_nobody() {
+    let (sound, mut played) = (FrameSound::default(), Vec::new());
+    let mut frame = |samples: &[f32]| {
+        sound.add(samples);
+        sound.play(|samples| played.push(samples.len()));
+    };
+    frame(&[0.0; 1600]);
+    frame(&[0.0, 0.5]);
+    frame(&[0.0; 1600]);
+    frame(&[0.25, 0.0]);
+    (0..100).for_each(|_| frame(&[0.0; 1600]));
+    frame(&[]);
+    assert_eq!(played[..3], [2, 1600, 2]);
+    let pause: usize = played[3..].iter().sum();
+    assert!((RATE as usize..RATE as usize + 1600).contains(&pause), "{pause}");
 }

@@ -7,7 +7,8 @@
 //! |---|---|---|
 //! | `read`, `save`, `write_over` and the like | files | entries of the browser's local storage |
 //! | `FolderLock` | a locked file | an entry that the page renews |
-//! | `FileInbox`, `give` | paths | files copied into the storage, and downloads |
+//! | `FileInbox`, `give` | paths | files and folders copied into the storage, and downloads |
+//! | `texts_beside` | the texts in a folder | entries of the storage |
 //! | `repeat` | a thread | the frames of the page |
 //! | `put_report` | a file | a name in the page |
 
@@ -15,6 +16,14 @@
 mod browser;
 #[cfg(not(target_arch = "wasm32"))]
 mod desktop;
+#[cfg(any(test, all(feature = "window", target_arch = "wasm32")))]
+mod incoming;
+
+#[cfg(feature = "window")]
+use std::path::PathBuf;
+
+#[cfg(all(feature = "window", target_arch = "wasm32"))]
+pub(crate) use incoming::{Incoming, placed};
 
 #[cfg(target_arch = "wasm32")]
 pub(crate) use browser::files::{read, remove, save, write_over};
@@ -39,6 +48,19 @@ pub(crate) use desktop::{
 };
 
 #[cfg(all(feature = "window", target_arch = "wasm32"))]
-pub use browser::files::usual_state;
+pub use browser::files::{texts_beside, usual_state};
 #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-pub use desktop::files::usual_state;
+pub use desktop::files::{texts_beside, usual_state};
+
+/// A file that has come into a `FileInbox`.
+#[cfg(feature = "window")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(not(target_arch = "wasm32"), allow(dead_code, reason = "a desktop has the files already"))]
+pub(crate) enum Arrival {
+    /// A layout to open.
+    Layout(PathBuf),
+    /// So many kinds of controls and effects, which now lie beside the layouts.
+    Parts(usize),
+    /// The reason why a file did not come.
+    Refused(String),
+}

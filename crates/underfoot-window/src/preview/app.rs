@@ -331,7 +331,7 @@ impl App {
     /// Shows the button that shares the layout, if it can be shared.
     pub(super) fn share_button(&mut self, ui: &mut Ui, is_compact: bool) {
         if let (Some(share), Some(designer)) = (&mut self.share, &self.designer) {
-            share.button(ui, is_compact, || (designer.name(), designer.file_text()));
+            share.button(ui, is_compact, || designer.to_share());
         }
     }
 

@@ -1,5 +1,11 @@
 //! The window in a page of a browser.
 
+use js_sys::{Object, Reflect};
+use wasm_bindgen::JsValue;
+use wasm_bindgen::closure::Closure;
+use web_sys::HtmlCanvasElement;
+
+use super::damage::Damage;
 use super::{PreviewError, PreviewInput, PreviewOptions};
 
 /// Shows the window in `canvas` from now on, until the page is left. Letters that the program's own fonts lack are
@@ -10,15 +16,46 @@ use super::{PreviewError, PreviewInput, PreviewOptions};
 pub async fn run(
     input: PreviewInput,
     options: PreviewOptions,
-    canvas: web_sys::HtmlCanvasElement,
+    canvas: HtmlCanvasElement,
 ) -> Result<(), PreviewError> {
     // There are no gradients that need dithering.
     let web = eframe::WebOptions { dithering: false, ..Default::default() };
-    let start: eframe::AppCreator<'static> =
-        Box::new(move |context| Ok(super::app(input, &options, context)));
+    // Without WebGL 2, each frame draws the whole window.
+    let keeps_picture = keep_picture(&canvas).is_ok_and(|keeps| keeps);
+    let start: eframe::AppCreator<'static> = Box::new(move |context| {
+        let app = super::app(input, &options, context);
+        if keeps_picture {
+            context.egui_ctx.add_plugin(Damage::default());
+        }
+        Ok(app)
+    });
     let started = eframe::WebRunner::new().start(canvas, web, start).await;
     started.map_err(|error| {
         let message = error.as_string().unwrap_or_else(|| format!("{error:?}"));
         PreviewError::NoWindow(message)
     })
+}
+
+/// Lets the picture stay on the canvas between frames; returns whether the browser can do so.
+///
+/// A canvas has one context: eframe gets this one when it asks for its own.
+fn keep_picture(canvas: &HtmlCanvasElement) -> Result<bool, JsValue> {
+    let options = Object::new();
+    // The window smooths its own edges.
+    let parts = [
+        ("alpha", false),
+        ("antialias", false),
+        ("depth", false),
+        ("stencil", false),
+        ("preserveDrawingBuffer", true),
+    ];
+    for (name, is_on) in parts {
+        Reflect::set(&options, &name.into(), &is_on.into())?;
+    }
+    let Some(context) = canvas.get_context_with_context_options("webgl2", &options)? else {
+        return Ok(false);
+    };
+    // eframe clears the canvas before each frame.
+    let stays = Closure::<dyn Fn(u32)>::new(|_| {}).into_js_value();
+    Reflect::set(&context, &"clear".into(), &stays)
 }

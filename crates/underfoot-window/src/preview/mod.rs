@@ -10,6 +10,8 @@ mod bars;
 mod browser;
 mod channels;
 mod closing;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod damage;
 mod design;
 #[cfg(not(target_arch = "wasm32"))]
 mod desktop;
@@ -68,7 +70,7 @@ mod zoom;
 #[cfg(target_arch = "wasm32")]
 pub use browser::run;
 pub use channels::{Notice, ProgramChannels, WindowChannels, channels};
-pub use design::{DesignInput, KindsOf, usual_state};
+pub use design::{DesignInput, KindsOf, texts_beside, usual_state};
 #[cfg(not(target_arch = "wasm32"))]
 pub use desktop::run;
 pub use feed::{
@@ -78,7 +80,7 @@ pub use feed::{
 pub use feeds::{Mouse, SignalScopes, ToWindow, shoes};
 pub use playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 pub use projection::ProjectionOptions;
-pub use share::ShareDesk;
+pub use share::{LayoutToShare, ShareDesk};
 pub use visit::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
 
 use std::path::PathBuf;

@@ -20,6 +20,17 @@ fn screens(_: &eframe::Frame) -> Option<ConnectedScreens> {
     None
 }
 
+/// Does nothing: a desktop clears the window before each frame.
+#[cfg(not(target_arch = "wasm32"))]
+fn draw_ground(_: &Ui, _: egui::Color32) {}
+
+/// Fills the window behind everything: the canvas of a browser keeps its picture between frames.
+#[cfg(target_arch = "wasm32")]
+fn draw_ground(ui: &Ui, colour: egui::Color32) {
+    let ctx = ui.ctx();
+    ctx.layer_painter(egui::LayerId::background()).rect_filled(ctx.viewport_rect(), 0.0, colour);
+}
+
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.handle_close(ctx);
@@ -29,6 +40,7 @@ impl eframe::App for App {
         if self.projection.is_open() {
             self.projection.note_screens(screens(frame));
         }
+        draw_ground(ui, underfoot_scene::egui_painter::color(self.appearance.theme().canvas));
         self.show(ui);
     }
 

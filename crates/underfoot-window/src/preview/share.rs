@@ -1,5 +1,7 @@
 //! A layout given away as a link: the button, and the dialogue with link and QR code.
 
+use std::path::PathBuf;
+
 use eframe::egui::accesskit::Role;
 use eframe::egui::{self, Color32, Modal, Rect, RichText, Sense, TextEdit, Ui, WidgetInfo, vec2};
 use qrcodegen::{Mask, QrCode, QrCodeEcc, QrSegment, Version};
@@ -11,11 +13,22 @@ use underfoot_scene::scene::Theme;
 
 /// Makes links of layouts.
 pub trait ShareDesk {
-    /// The link to a page that opens the layout with this name and text.
+    /// The link to a page that opens this layout.
     ///
     /// # Errors
     /// A sentence that says why there is no link, for example because the text is too long.
-    fn link(&self, name: &str, text: &str) -> Result<String, String>;
+    fn link(&self, layout: &LayoutToShare) -> Result<String, String>;
+}
+
+/// The layout of Design mode, for a link.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LayoutToShare {
+    /// The name of its file, or the name that it began with.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    /// Its file; `None` for a layout without a file.
+    pub path: Option<PathBuf>,
 }
 
 /// Side of a QR code with its quiet zone, in points.
@@ -66,17 +79,11 @@ impl Share {
         Self { desk, given: None }
     }
 
-    /// Shows the button; a click opens the dialogue with the layout that `layout` returns by name and text.
-    pub(super) fn button(
-        &mut self,
-        ui: &mut Ui,
-        is_compact: bool,
-        layout: impl FnOnce() -> (String, String),
-    ) {
+    /// Shows the button; a click opens the dialogue with the layout that `layout` returns.
+    pub(super) fn button(&mut self, ui: &mut Ui, is_compact: bool, layout: impl FnOnce() -> LayoutToShare) {
         let button = named(ui.button(short(Icon::Share2, "Share", is_compact)), "Share");
         if button.on_hover_text("A link that opens this layout in any browser").clicked() {
-            let (name, text) = layout();
-            self.given = Some(GivenLink::new(self.desk.link(&name, &text)));
+            self.given = Some(GivenLink::new(self.desk.link(&layout())));
         }
     }
 

@@ -63,6 +63,8 @@ struct Finger {
     finger: (u64, u64),
     at: Vec2,
     force: Newtons,
+    /// Whether the screen measures its pressure: others report none, or always the maximum.
+    is_measured: bool,
 }
 
 impl Fingers {
@@ -81,8 +83,6 @@ impl Fingers {
     ) -> Vec<Vec<PreviewFoot>> {
         let mut paths: Vec<Vec<PreviewFoot>> = self.0.iter().map(|_| Vec::new()).collect();
         for touch in touches {
-            let force =
-                touch.pressure.map_or(foot.force, |share| Newtons(2.0 * share.min(1.0) * foot.force.0));
             let known =
                 self.0.iter().position(|known| known.as_ref().is_some_and(|one| one.finger == touch.finger));
             let place = match (touch.phase, known) {
@@ -92,13 +92,19 @@ impl Fingers {
             let Some(place) = place else { continue };
             paths.resize_with(self.0.len(), Vec::new);
             let lands = known.is_none();
+            let was_measured = self.0[place].as_ref().is_some_and(|finger| finger.is_measured);
+            let is_measured = was_measured || touch.pressure.is_some_and(|share| share < 1.0);
+            let force = match touch.pressure.filter(|_| is_measured) {
+                Some(share) => Newtons(2.0 * share.min(1.0) * foot.force.0),
+                None => foot.force,
+            };
             let path = &mut paths[place];
             if lands {
                 // Start above the floor: otherwise the foot would slide there.
                 path.push(under(touch.at, Newtons::ZERO, foot, sink));
             }
             path.push(under(touch.at, force, foot, sink));
-            self.0[place] = Some(Finger { finger: touch.finger, at: touch.at, force });
+            self.0[place] = Some(Finger { finger: touch.finger, at: touch.at, force, is_measured });
             if touch.phase == Phase::Up {
                 path.push(under(touch.at, Newtons::ZERO, foot, sink));
                 self.0[place] = None;
@@ -195,6 +201,17 @@ mod tests {
         assert_eq!(ends(&paths), [Some((0.5, 150.0))], "half is the usual force");
         let paths = fingers.step(&[touch(1, 0.5, Some(1.0), Phase::On)], usual(), &Floor);
         assert_eq!(ends(&paths), [Some((0.5, 300.0))]);
+    }
+
+    #[test]
+    fn a_screen_that_always_reports_the_maximum_measures_nothing() {
+        let mut fingers = Fingers::default();
+        for phase in [Phase::Down, Phase::On] {
+            let paths = fingers.step(&[touch(1, 0.5, Some(1.0), phase)], usual(), &Floor);
+            assert_eq!(ends(&paths), [Some((0.5, 150.0))]);
+        }
+        let paths = fingers.step(&[touch(1, 0.5, Some(0.8), Phase::On)], usual(), &Floor);
+        assert_eq!(ends(&paths), [Some((0.5, 240.0))], "it measures after all");
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //!
 //! A path is a name there: a folder exists while something is in it.
 
+#[cfg(feature = "window")]
+use std::collections::BTreeMap;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -90,6 +92,22 @@ pub(crate) fn is_folder(path: &Path) -> bool {
     let below = format!("{}/", key(path));
     let names = 0..storage.length().unwrap_or(0);
     names.filter_map(|index| storage.key(index).ok().flatten()).any(|name| name.starts_with(&below))
+}
+
+/// Returns the texts of all files named `*.ron` in the folder called `name` next to the layout at `path` or next to its
+/// folder, by their names: the user's kinds or effects.
+#[cfg(feature = "window")]
+#[must_use]
+pub fn texts_beside(path: &Path, name: &str) -> BTreeMap<String, String> {
+    let folders = path.ancestors().skip(1).take(2).map(|folder| folder.join(name));
+    let Some(folder) = folders.into_iter().find(|folder| is_folder(folder)) else { return BTreeMap::new() };
+    let (Ok(storage), below) = (storage(), format!("{}/", key(&folder))) else { return BTreeMap::new() };
+    let entries = (0..storage.length().unwrap_or(0)).filter_map(|index| storage.key(index).ok().flatten());
+    let files = entries.filter_map(|entry| {
+        let file = entry.strip_prefix(&below).filter(|file| file.ends_with(".ron") && !file.contains('/'))?;
+        Some((file.to_owned(), storage.get_item(&entry).ok().flatten()?))
+    });
+    files.collect()
 }
 
 /// Does nothing: a folder exists as soon as something is in it.

@@ -1,6 +1,8 @@
 //! Files of the computer that the user drops on the page or chooses, and files that the page gives away.
 
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use eframe::egui::{Context, DroppedFileHandle};
@@ -9,55 +11,104 @@ use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast, JsValue};
 use web_sys::{Blob, File, HtmlAnchorElement, HtmlInputElement, Url};
 
+use super::dropped::{DropListener, FileAt};
 use super::files::save;
+use crate::platform::{Arrival, Incoming, placed};
 
-/// Copies files of the computer into the storage of the browser, each under its own name.
+/// Copies files of the computer into the storage of the browser, each under its own path.
 pub(crate) struct FileInbox {
-    sent: Sender<Result<PathBuf, String>>,
-    come: Receiver<Result<PathBuf, String>>,
+    come: Receiver<Arrival>,
+    door: Door,
+    _drops: DropListener,
+}
+
+/// The end at which files come in.
+#[derive(Clone)]
+struct Door {
+    sent: Sender<Arrival>,
+    /// Draws the window after an arrival; empty before its first frame.
+    ctx: Rc<OnceCell<Context>>,
 }
 
 impl FileInbox {
     /// Whether [`FileInbox::choose`] shows the files of this computer; without that, the window asks for a path.
     pub(crate) const CHOOSES: bool = true;
 
-    /// An empty inbox.
+    /// An empty inbox, which takes in what is dropped on the page from now on.
     pub(crate) fn new() -> Self {
         let (sent, come) = channel();
-        Self { sent, come }
+        let door = Door { sent, ctx: Rc::default() };
+        let dropped = door.clone();
+        Self { come, door, _drops: DropListener::new(move |files| dropped.copy(files)) }
     }
 
-    /// Takes in a file that was dropped on the page.
-    pub(crate) fn take_dropped(&self, file: &DroppedFileHandle, ctx: &Context) {
-        if let Some(file) = file.web_file() {
-            copy(file.clone(), self.sent.clone(), ctx.clone());
+    /// Does nothing: the page reports what is dropped on it, with folders.
+    pub(crate) fn take_dropped(&self, _file: &DroppedFileHandle) {}
+
+    /// Lets the user choose files of the computer.
+    pub(crate) fn choose(&self) {
+        if let Err(error) = ask(self.door.clone()) {
+            self.door.give(Arrival::Refused(format!("the browser shows no files: {}", words(&error))));
         }
     }
 
-    /// Lets the user choose a file of the computer.
-    pub(crate) fn choose(&self, ctx: &Context) {
-        if let Err(error) = ask(self.sent.clone(), ctx.clone()) {
-            // The inbox has both ends.
-            let _ = self.sent.send(Err(format!("the browser shows no files: {}", words(&error))));
-        }
-    }
-
-    /// The next file, or the reason why it did not come.
-    pub(crate) fn next(&self) -> Option<Result<PathBuf, String>> {
+    /// The next arrival.
+    pub(crate) fn next(&self, ctx: &Context) -> Option<Arrival> {
+        self.door.ctx.get_or_init(|| ctx.clone());
         self.come.try_recv().ok()
     }
 }
 
+impl Door {
+    fn give(&self, arrival: Arrival) {
+        // The inbox has the other end; without one, nobody waits.
+        let _ = self.sent.send(arrival);
+        if let Some(ctx) = self.ctx.get() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Copies `files` into the storage, and reports the layouts among them: the first by name comes last, and stays
+    /// open.
+    fn copy(&self, mut files: Vec<FileAt>) {
+        let door = self.clone();
+        files.sort_by(|(one, _), (other, _)| one.cmp(other));
+        wasm_bindgen_futures::spawn_local(async move {
+            if files.is_empty() {
+                return door.give(Arrival::Refused("there is no file in it whose name ends in .ron".into()));
+            }
+            let (mut layouts, mut parts) = (Vec::new(), 0);
+            for (path, file) in files {
+                match stored(&path, &file).await {
+                    Ok((Incoming::Layout, path)) => layouts.push(path),
+                    Ok((Incoming::Part, _)) => parts += 1,
+                    Err(wrong) => door.give(Arrival::Refused(format!("{path} is not opened: {wrong}"))),
+                }
+            }
+            // Before the layouts that may be made of them.
+            if parts > 0 {
+                door.give(Arrival::Parts(parts));
+            }
+            layouts.into_iter().rev().for_each(|path| door.give(Arrival::Layout(path)));
+        });
+    }
+}
+
 /// Shows the browser's own dialogue for files.
-fn ask(sent: Sender<Result<PathBuf, String>>, ctx: Context) -> Result<(), JsValue> {
+fn ask(door: Door) -> Result<(), JsValue> {
     let document = web_sys::window().and_then(|window| window.document()).ok_or("there is no page")?;
     let input: HtmlInputElement = document.create_element("input")?.dyn_into()?;
     input.set_type("file");
     input.set_accept(".ron");
+    input.set_multiple(true);
     let chosen = input.clone();
     let take = Closure::once_into_js(move || {
-        if let Some(file) = chosen.files().and_then(|files| files.get(0)) {
-            copy(file, sent, ctx);
+        let Some(files) = chosen.files() else { return };
+        let files = (0..files.length()).filter_map(|index| files.get(index));
+        let files: Vec<FileAt> = files.map(|file| (file.name(), file)).collect();
+        // An empty choice is a change of mind.
+        if !files.is_empty() {
+            door.copy(files);
         }
     });
     input.set_onchange(Some(take.unchecked_ref()));
@@ -65,18 +116,9 @@ fn ask(sent: Sender<Result<PathBuf, String>>, ctx: Context) -> Result<(), JsValu
     Ok(())
 }
 
-/// Copies `file` into the storage, and reports its path there.
-fn copy(file: File, to: Sender<Result<PathBuf, String>>, ctx: Context) {
-    wasm_bindgen_futures::spawn_local(async move {
-        let name = file.name();
-        let copied = stored(&file).await.map_err(|wrong| format!("{name} is not opened: {wrong}"));
-        let _ = to.send(copied);
-        ctx.request_repaint();
-    });
-}
-
-async fn stored(file: &File) -> Result<PathBuf, String> {
-    let path = PathBuf::from(file.name());
+/// Copies `file` into the storage; returns its content and its path there.
+async fn stored(path: &str, file: &File) -> Result<(Incoming, PathBuf), String> {
+    let path = Path::new(path);
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("ron") => {}
         Some("mcap") => {
@@ -93,8 +135,9 @@ async fn stored(file: &File) -> Result<PathBuf, String> {
     let bytes = bytes.await.map_err(|error| words(&error))?;
     let text = String::from_utf8(js_sys::Uint8Array::new(&bytes).to_vec());
     let text = text.map_err(|_| "it is not a text in UTF-8".to_owned())?;
-    save(&text, &path).map_err(|error| error.to_string())?;
-    Ok(path)
+    let (content, place) = placed(path, &text);
+    save(&text, &place).map_err(|error| error.to_string())?;
+    Ok((content, place))
 }
 
 fn words(error: &JsValue) -> String {

@@ -1,5 +1,7 @@
 //! A page in a browser: local storage in place of files, frames in place of threads.
 
+#[cfg(feature = "window")]
+mod dropped;
 pub(super) mod files;
 #[cfg(feature = "window")]
 pub(super) mod inbox;

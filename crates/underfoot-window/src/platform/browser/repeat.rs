@@ -8,6 +8,9 @@ use wasm_bindgen::JsCast;
 use wasm_bindgen::closure::Closure;
 use web_time::Instant;
 
+/// A function for frames of the page that holds itself.
+type FrameSlot = Rc<RefCell<Option<Closure<dyn FnMut()>>>>;
+
 /// Calls `work` again and again: in the frame at `first`, and then in that at each time that it returns, until it
 /// returns `None`. While the page is hidden, it has no frames.
 ///
@@ -18,7 +21,7 @@ pub(crate) fn repeat(
     first: Instant,
     mut work: impl FnMut() -> Option<Instant> + 'static,
 ) -> io::Result<()> {
-    let slot: Rc<RefCell<Option<Closure<dyn FnMut()>>>> = Rc::default();
+    let slot = FrameSlot::default();
     let (own, mut due) = (Rc::clone(&slot), Some(first));
     *slot.borrow_mut() = Some(Closure::new(move || {
         if due.is_some_and(|due| Instant::now() >= due) {

@@ -1,5 +1,7 @@
 //! Files.
 
+#[cfg(feature = "window")]
+use std::collections::BTreeMap;
 use std::path::Path;
 
 #[cfg(feature = "window")]
@@ -19,6 +21,20 @@ pub(crate) fn is_file(path: &Path) -> bool {
 #[cfg(feature = "window")]
 pub(crate) fn is_folder(path: &Path) -> bool {
     path.is_dir()
+}
+
+/// Returns the texts of all files named `*.ron` in the folder called `name` next to the layout at `path` or next to its
+/// folder, by their names: the user's kinds or effects. Skips files that cannot be read.
+#[cfg(feature = "window")]
+#[must_use]
+pub fn texts_beside(path: &Path, name: &str) -> BTreeMap<String, String> {
+    let folder = underfoot::schema::folder_beside(path, name);
+    let files = folder.and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+    let texts = files.filter_map(|file| {
+        let name = file.file_name().into_string().ok().filter(|name| name.ends_with(".ron"))?;
+        Some((name, read(&file.path(), underfoot_format::source::MAX_BYTES as u64).ok()?))
+    });
+    texts.collect()
 }
 
 /// Removes the file at `path`. One that cannot be removed stays without a message.

@@ -5,6 +5,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use eframe::egui::{Context, DroppedFileHandle};
 
+use crate::platform::Arrival;
+
 /// Takes in files that the user drops on the window.
 pub(crate) struct FileInbox {
     sent: Sender<PathBuf>,
@@ -22,17 +24,17 @@ impl FileInbox {
     }
 
     /// Takes in a file that was dropped on the window.
-    pub(crate) fn take_dropped(&self, file: &DroppedFileHandle, _ctx: &Context) {
+    pub(crate) fn take_dropped(&self, file: &DroppedFileHandle) {
         // The inbox has both ends.
         let _ = self.sent.send(file.path().to_path_buf());
     }
 
     /// Does nothing.
-    pub(crate) fn choose(&self, _ctx: &Context) {}
+    pub(crate) fn choose(&self) {}
 
-    /// The next file, or the reason why it did not come.
-    pub(crate) fn next(&self) -> Option<Result<PathBuf, String>> {
-        self.come.try_recv().ok().map(Ok)
+    /// The next arrival.
+    pub(crate) fn next(&self, _ctx: &Context) -> Option<Arrival> {
+        self.come.try_recv().ok().map(Arrival::Layout)
     }
 }
 

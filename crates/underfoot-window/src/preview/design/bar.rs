@@ -92,7 +92,7 @@ impl Designer {
             {
                 if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
                     match to {
-                        Ask::Open => self.ask_to_open(ui.ctx()),
+                        Ask::Open => self.ask_to_open(),
                         Ask::SaveAs => self.ask_for(Ask::SaveAs),
                     }
                     ui.close();

@@ -4,8 +4,6 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use eframe::egui::Context;
-
 use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Document, LayoutFile, Saving, Template};
 use crate::platform::{self, FileInbox};
@@ -184,8 +182,8 @@ impl Designer {
     }
 
     /// Lets the user choose a file to open: in the dialogue of a browser, or by its path.
-    pub(super) fn ask_to_open(&mut self, ctx: &Context) {
-        if FileInbox::CHOOSES { self.storage.inbox.choose(ctx) } else { self.ask_for(Ask::Open) }
+    pub(super) fn ask_to_open(&mut self) {
+        if FileInbox::CHOOSES { self.storage.inbox.choose() } else { self.ask_for(Ask::Open) }
     }
 
     pub(super) fn ask_for(&mut self, to: Ask) {

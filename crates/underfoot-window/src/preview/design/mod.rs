@@ -39,12 +39,13 @@ use edited::{EditMessage, EditedLayout};
 
 use crate::edit::{Document, LayoutFile};
 use crate::platform::FileInbox;
+use crate::preview::share::LayoutToShare;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostics, Kinds};
 use underfoot::widget::WidgetId;
 
-pub use crate::platform::usual_state;
+pub use crate::platform::{texts_beside, usual_state};
 pub(super) use threshold::{Threshold, set_threshold, undo_design};
 
 /// The initial state of Design mode.
@@ -217,6 +218,12 @@ impl Designer {
     /// The text for its file.
     pub(super) fn file_text(&self) -> String {
         self.edited.document.file_text()
+    }
+
+    /// The layout for a link.
+    pub(super) fn to_share(&self) -> LayoutToShare {
+        let path = self.storage.file.path().map(Path::to_path_buf);
+        LayoutToShare { name: self.name(), text: self.file_text(), path }
     }
 
     /// The name of the layout: its file name, or the name that it began with.

@@ -4,6 +4,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Rect, Sense, Ui, WidgetInfo};
 use glam::Vec2;
 
+use crate::preview::icons::Icon;
 use crate::preview::labels::{Labels, StepCard};
 use crate::preview::messages::Happened;
 use crate::preview::shown::ShownFloor;
@@ -141,7 +142,7 @@ impl FirstSteps {
                 (false, true) => theme.accent,
                 (false, false) => theme.quiet,
             };
-            let mark = if is_done { "✔".to_owned() } else { (index + 1).to_string() };
+            let mark = if is_done { Icon::Check.unicode().to_string() } else { (index + 1).to_string() };
             let card = StepCard { mark: &mark, text: step.text(), colour };
             let place = labels.card(&painter, map.rect(target), &card, theme);
             let node = ui.interact(place, ui.scope_id().with(("first step", index)), Sense::hover());

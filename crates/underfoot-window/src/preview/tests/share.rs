@@ -1,15 +1,15 @@
 //! The dialogue that gives a layout away as a link.
 
 use super::*;
-use crate::preview::ShareDesk;
 use crate::preview::share::Share;
+use crate::preview::{LayoutToShare, ShareDesk};
 
 /// Links with the name and the length of a layout, or none.
 struct Links(bool);
 
 impl ShareDesk for Links {
-    fn link(&self, name: &str, text: &str) -> Result<String, String> {
-        let link = format!("https://example.org/#{name}.{}", text.len());
+    fn link(&self, layout: &LayoutToShare) -> Result<String, String> {
+        let link = format!("https://example.org/#{}.{}", layout.name, layout.text.len());
         if self.0 { Ok(link) } else { Err("the layout has 40 kB, and a link holds 32 kB".into()) }
     }
 }

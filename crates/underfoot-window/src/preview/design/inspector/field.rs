@@ -9,6 +9,7 @@ use eframe::egui::{Color32, Response, RichText, Sense, Stroke, Ui, WidgetInfo, v
 use super::super::edited::EditedLayout;
 use super::words::{choice, label};
 use crate::edit::{Address, Document, Edit, FieldOrigin, Property};
+use crate::preview::icons::Icon;
 use underfoot::layout::Widget;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -179,7 +180,7 @@ pub(super) fn reset(ui: &mut Ui, field: &ShownField<'_>) -> Option<Edit> {
     if property.origin != FieldOrigin::Written || KEPT.contains(&property.name.as_str()) {
         return None;
     }
-    let button = ui.small_button("⟲");
+    let button = ui.small_button(Icon::RotateCcw.unicode().to_string());
     let name = label(&property.name);
     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {name}")));
     let back = match property.inherited.as_str() {

@@ -8,6 +8,7 @@ use super::field::{FieldEdits, TypedTexts};
 use super::send_choices::{content_name, contents, first, refitted, time_name, times};
 use super::{FrameEdits, Inspector};
 use crate::edit::{Address, Edit};
+use crate::preview::icons::Icon;
 use crate::preview::style::quiet;
 use underfoot::layout::Widget;
 use underfoot::messages::{
@@ -143,7 +144,7 @@ impl MessageList<'_> {
                 let moved = Sending { when: *when, ..sending.clone() };
                 changed = refitted(&moved, sending.payload.sort()).map(Some);
             }
-            let remove = ui.small_button("✖").on_hover_text("Remove this message");
+            let remove = ui.small_button(Icon::X.unicode().to_string()).on_hover_text("Remove this message");
             remove.widget_info(|| {
                 WidgetInfo::labeled(Role::Button, true, format!("Remove message {}", index + 1))
             });

@@ -3,6 +3,7 @@
 mod screen;
 
 use super::*;
+use crate::preview::icons::Icon;
 use crate::preview::sample::step_on;
 use crate::preview::{DesignInput, VisitDesk, VisitOrder, VisitSize, VisitState};
 use screen::{ScreenShapes, ScreenText, faults};
@@ -226,7 +227,8 @@ impl Gallery {
 /// layout are 10 points wider than their panel, and a name on two lines touches the next one.
 fn is_known(fault: &str) -> bool {
     fault.contains("640 wide, Design")
-        && (fault.contains("“⟲” is cut at its side") || fault.contains("“Capture” covers “Takes”"))
+        && (fault.contains(&format!("“{}” is cut at its side", Icon::RotateCcw.unicode()))
+            || fault.contains("“Capture” covers “Takes”"))
 }
 
 /// The faults of all windows in a theme.

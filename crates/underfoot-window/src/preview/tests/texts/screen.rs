@@ -3,6 +3,7 @@
 use eframe::egui::epaint::{ClippedShape, TextShape};
 use eframe::egui::{self, Color32, FontFamily, LayerId, Pos2, Rect, Shape};
 
+use crate::preview::icons::Icon;
 use underfoot::layout::Colour;
 use underfoot_scene::scene::Theme;
 
@@ -132,7 +133,7 @@ impl ScreenText {
         }
         let is_level = area.top() < clip.bottom() && area.bottom() > clip.top();
         // The sign that takes a value out is drawn with empty margins.
-        let slack = if self.text == "⟲" { 3.0 } else { 1.0 };
+        let slack = if self.text == Icon::RotateCcw.unicode().to_string() { 3.0 } else { 1.0 };
         if is_level
             && !self.scrolls()
             && (area.left() < clip.left() - slack || area.right() > clip.right() + slack)
