@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Color32, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
+use eframe::egui::{Button, Color32, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::super::edited::EditedLayout;
 use super::words::{choice, label};
@@ -179,7 +179,9 @@ pub(super) fn reset(ui: &mut Ui, field: &ShownField<'_>) -> Option<Edit> {
     if property.origin != FieldOrigin::Written || KEPT.contains(&property.name.as_str()) {
         return None;
     }
-    let button = ui.small_button("⟲");
+    // It ends the row: no other button gets this padding.
+    ui.spacing_mut().button_padding.x = 2.0;
+    let button = ui.add(Button::new("⟲").small().min_size(vec2(RESET_PX, 0.0)));
     let name = label(&property.name);
     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {name}")));
     let back = match property.inherited.as_str() {
