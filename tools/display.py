@@ -30,9 +30,11 @@ class Display:
         """
         number = random.randrange(100, 30_000)
         read, write = os.pipe()
-        # Without -r, a key that a busy machine releases late repeats itself.
-        options = ["-displayfd", str(write), "-r", "-nolisten", "tcp", "-screen", "0", f"{size[0]}x{size[1]}x24"]
-        self.server = subprocess.Popen(["Xvfb", f":{number}", *options], pass_fds=[write], stderr=subprocess.DEVNULL)
+        # Without -r, a key that a busy machine releases late repeats itself. Without -noreset, the server begins anew once
+        # its last client has left, and refuses the next one meanwhile.
+        options = ["-r", "-noreset", "-nolisten", "tcp", "-screen", "0", f"{size[0]}x{size[1]}x24"]
+        self.server = subprocess.Popen(["Xvfb", f":{number}", "-displayfd", str(write), *options],
+                                       pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         # The reading end stays open: the server may still write the end of its line.
         return os.read(read, 16).decode().strip() or number

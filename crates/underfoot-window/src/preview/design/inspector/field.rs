@@ -126,11 +126,11 @@ pub(super) fn name_cell(ui: &mut Ui, text: RichText) -> Response {
     cell.inner
 }
 
-/// The beginning of a row without a mark.
-pub(in crate::preview::design) fn unmarked_name(ui: &mut Ui, text: &str) {
+/// The beginning of a row without a mark; returns its name.
+pub(in crate::preview::design) fn unmarked_name(ui: &mut Ui, text: &str) -> Response {
     ui.spacing_mut().item_spacing.x = GAP_PX;
     ui.allocate_exact_size(vec2(MARK_PX, ROW_PX), Sense::hover());
-    name_cell(ui, RichText::new(text));
+    name_cell(ui, RichText::new(text))
 }
 
 /// The origin of a value, in words.

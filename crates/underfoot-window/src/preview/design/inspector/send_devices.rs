@@ -16,7 +16,7 @@ impl MessageList<'_> {
         match &sending.payload {
             Payload::Dmx(settings) => light(ui, &name, sending.when, *settings).map(Payload::Dmx),
             Payload::Mqtt(topic, settings) => {
-                let typed = self.typed(ui, MessageText::new(&name("Topic"), topic, no_topic));
+                let typed = self.typed(ui, MessageText::new(&name("Topic"), topic, no_topic).wide("topic"));
                 let changed = self.broker_texts(ui, &name, sending.when, settings);
                 let is_changed = typed.is_some() || changed != *settings;
                 is_changed.then(|| Payload::Mqtt(typed.unwrap_or_else(|| topic.clone()), changed))
@@ -28,7 +28,8 @@ impl MessageList<'_> {
                     ui.label(quiet(self.theme, format!("{written} (edit it as text)")));
                     return None;
                 }
-                let typed = self.typed(ui, MessageText::new(&name("Arguments"), &written, any))?;
+                let typed =
+                    self.typed(ui, MessageText::new(&name("Arguments"), &written, any).wide("arguments"))?;
                 Some(Payload::Run(typed.split_whitespace().take(MAX_ARGUMENTS).map(str::to_owned).collect()))
             }
             _ => None,
@@ -48,7 +49,7 @@ impl MessageList<'_> {
             ui.end_row();
             ui.label(part);
             let now = text.clone().unwrap_or_default();
-            let typed = self.typed(ui, MessageText { name: &name(part), now: &now, hint, refusal: any });
+            let typed = self.typed(ui, MessageText::new(&name(part), &now, any).wide(hint));
             if let Some(typed) = typed {
                 *text = Some(typed).filter(|typed| !typed.is_empty());
             }

@@ -10,22 +10,31 @@ use underfoot_scene::egui_painter::color;
 /// Maximum number of letters of a text.
 const LONGEST: usize = 1000;
 
+/// Gives the reason why a text cannot be; `None` for a valid one.
+type Refusal = fn(&str) -> Option<String>;
+
 /// A text of a message.
 #[derive(Clone, Copy)]
 pub(super) struct MessageText<'a> {
     /// Its spoken name.
-    pub(super) name: &'a str,
-    pub(super) now: &'a str,
+    name: &'a str,
+    now: &'a str,
     /// The text that counts while the field is empty.
-    pub(super) hint: &'a str,
-    /// The reason why a text cannot be; `None` for a valid one.
-    pub(super) refusal: fn(&str) -> Option<String>,
+    hint: &'a str,
+    /// Whether it takes the rest of the row.
+    is_wide: bool,
+    refusal: Refusal,
 }
 
 impl<'a> MessageText<'a> {
     /// A text that must be written.
-    pub(super) const fn new(name: &'a str, now: &'a str, refusal: fn(&str) -> Option<String>) -> Self {
-        Self { name, now, hint: "", refusal }
+    pub(super) const fn new(name: &'a str, now: &'a str, refusal: Refusal) -> Self {
+        Self { name, now, hint: "", is_wide: false, refusal }
+    }
+
+    /// The same text in a field as wide as the rest of the row, as for addresses.
+    pub(super) const fn wide(self, hint: &'a str) -> Self {
+        Self { is_wide: true, hint, ..self }
     }
 }
 
@@ -34,7 +43,8 @@ impl MessageList<'_> {
     pub(super) fn typed(&mut self, ui: &mut Ui, of: MessageText<'_>) -> Option<String> {
         let text = self.texts.entry(of.name.to_owned()).or_insert_with(|| of.now.to_owned());
         let edit = TextEdit::singleline(text).hint_text(of.hint).char_limit(LONGEST);
-        let field = ui.add(edit.desired_width(PART_PX));
+        let width = if of.is_wide { ui.available_width() } else { PART_PX };
+        let field = ui.add(edit.desired_width(width));
         field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, of.name));
         if field.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
             of.now.clone_into(text);
@@ -74,16 +84,15 @@ pub(super) fn no_topic(text: &str) -> Option<String> {
 mod tests {
     use super::*;
 
+    fn reads(refusal: Refusal, good: &[&str], bad: &[&str]) {
+        assert!(good.iter().all(|text| refusal(text).is_none()), "{good:?}");
+        assert!(bad.iter().all(|text| refusal(text).is_some()), "{bad:?}");
+    }
+
     #[test]
     fn a_text_that_names_nothing_has_a_reason() {
-        let cases: [(fn(&str) -> Option<String>, &[&str], &[&str]); 3] = [
-            (no_key, &["Right", "Control+Shift+z", "+"], &["", "Rihgt", "Control+"]),
-            (no_note, &["C4", "60", "F#3"], &["", "H4", "128"]),
-            (no_topic, &["floor/lamp"], &["", "$SYS/x", "floor/#"]),
-        ];
-        for (refusal, good, bad) in cases {
-            assert!(good.iter().all(|text| refusal(text).is_none()), "{good:?}");
-            assert!(bad.iter().all(|text| refusal(text).is_some()), "{bad:?}");
-        }
+        reads(no_key, &["Right", "Control+Shift+z", "+"], &["", "Rihgt", "Control+Rihgt"]);
+        reads(no_note, &["C4", "60", "F#3"], &["", "H4", "128"]);
+        reads(no_topic, &["floor/lamp"], &["", "$SYS/x", "floor/#"]);
     }
 }

@@ -4,7 +4,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{self, ComboBox, DragValue, RichText, Ui, WidgetInfo};
 
 use super::super::edited::EditedLayout;
-use super::field::{FieldEdits, TypedTexts};
+use super::field::{FieldEdits, ROW_PX, TypedTexts};
 use super::send_choices::{content_name, contents, first, refitted, time_name, times};
 use super::send_texts::{MessageText, any, no_key, no_note};
 use super::{FrameEdits, Inspector};
@@ -47,7 +47,9 @@ impl Inspector {
         let count = widget.send.len();
         let title = if count == 0 { "Messages".to_owned() } else { format!("Messages ({count})") };
         let header = egui::CollapsingHeader::new(RichText::new(title).strong()).id_salt("messages");
-        let shown = header.default_open(count > 0).show(ui, |ui| {
+        let shown = header.default_open(count > 0).show_unindented(ui, |ui| {
+            // Names and fields of a row have one middle.
+            ui.spacing_mut().interact_size.y = ROW_PX;
             let written = edited.document.written(record, FIELD);
             if written.is_some_and(|text| text.contains('{')) {
                 // The fields of a pattern belong to a whole grid.
@@ -200,7 +202,8 @@ impl MessageList<'_> {
                 Some(Payload::Pointer(speed as f32))
             }
             Payload::Osc(address, settings) => {
-                let address = self.typed(ui, MessageText::new(&name("Address"), address, any))?;
+                let address =
+                    self.typed(ui, MessageText::new(&name("Address"), address, any).wide("/address"))?;
                 Some(Payload::Osc(address, settings.clone()))
             }
             Payload::Note(key, settings) => {
