@@ -1,5 +1,6 @@
 """A display of its own: Xvfb, with input by xdotool and pictures by ImageMagick."""
 import os
+import random
 import shutil
 import subprocess
 
@@ -17,21 +18,26 @@ class Display:
             probe = ["xdotool", "getdisplaygeometry"]
             if subprocess.run(probe, env=dict(os.environ, DISPLAY=f":{number}"), capture_output=True).returncode == 0:
                 break
-            # The server that had this number before has removed the socket of this one at its end.
+            # Another server has this number.
             end(self.server)
         self.env = dict(os.environ, DISPLAY=f":{number}", LIBGL_ALWAYS_SOFTWARE="1", **(env or {}))
         self.env.pop("WAYLAND_DISPLAY", None)
 
     def start(self, size):
-        """Starts the server; returns the number of its display."""
+        """Starts the server; returns the number of its display.
+
+        The first free number may be that of a server which is ending, and which removes the socket of its number.
+        """
+        number = random.randrange(100, 30_000)
         read, write = os.pipe()
-        # Without -r, a key that a busy machine releases late repeats itself.
-        self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-r", "-nolisten", "tcp", "-screen", "0", f"{size[0]}x{size[1]}x24"],
-            pass_fds=[write], stderr=subprocess.DEVNULL)
+        # Without -r, a key that a busy machine releases late repeats itself. Without -noreset, the server begins anew once
+        # its last client has left, and refuses the next one meanwhile.
+        options = ["-r", "-noreset", "-nolisten", "tcp", "-screen", "0", f"{size[0]}x{size[1]}x24"]
+        self.server = subprocess.Popen(["Xvfb", f":{number}", "-displayfd", str(write), *options],
+                                       pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         # The reading end stays open: the server may still write the end of its line.
-        return os.read(read, 16).decode().strip()
+        return os.read(read, 16).decode().strip() or number
 
     def x(self, *arguments, timeout=300):
         """One command of xdotool; returns what it prints."""

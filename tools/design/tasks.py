@@ -3,10 +3,12 @@
     python3 tools/design/tasks.py target/release/underfoot [NAME...] [--shots FOLDER]
 
 A click, a drag, a turn of the wheel, a key chord and a typed word are one action each. `before` counts the quickest way in
-the window of revision 13d9503, as its own pages and its source give it. With `--shots`, each action has a picture in a
-folder of its task. Names of tasks choose some of them; the exit status is 1 if one took more than two thirds of before.
+the window of revision 13d9503, as its own pages and its source give it. Actions that both ways have in common, such as
+the presses of people, count in the column `all` alone. With `--shots`, each action has a picture in a folder of its task.
+Names of tasks choose some of them; the exit status is 1 if one took more than two thirds of before.
 """
 import argparse
+import contextlib
 import os
 import re
 import signal
@@ -71,6 +73,8 @@ class Bench:
         self.program = program
         self.folder = tempfile.mkdtemp(prefix="underfoot-task-")
         self.path = os.path.join(self.folder, "mine.ron")
+        # Number of actions that both ways have in common.
+        self.common = 0
         if text is not None:
             with open(self.path, "w") as file:
                 file.write(text)
@@ -108,6 +112,14 @@ class Bench:
         else:
             self.window.click_on("Search things")
         self.window.until(lambda: self.window.has_focus("Search things"), "the keyboard in the search")
+
+    @contextlib.contextmanager
+    def in_common(self):
+        """The actions in it are the same in both ways."""
+        begun = self.window.count
+        yield
+        self.common += self.window.count - begun
+        self.window.count = begun
 
     def fail(self, what):
         sys.exit(f"{what}\n{self.read() if os.path.exists(self.path) else ''}")
@@ -179,14 +191,18 @@ def why_three(bench, _):
         bench.fail(f"the list does not say why all three did nothing: {told}")
 
 
+def press_each(window, names):
+    """Presses of people, one after the other."""
+    for number, name in enumerate(names, 1):
+        window.press(*window.at(name, "Button"), lambda: window.events().count('"pressed"') >= number, name)
+        window.until(lambda: window.events().count('"released"') >= number, "the end of the press")
+
+
 def threshold(bench, _):
     window = bench.window
     bench.begin()
-    for number in range(1, 4):
-        window.press(*window.at("Home", "Button"), lambda: window.events().count('"pressed"') >= number, "Home")
-        window.until(lambda: window.events().count('"released"') >= number, "the end of the press")
-    # The presses of people are none of the actions.
-    window.count = 0
+    with bench.in_common():
+        press_each(window, ["Home"] * 3)
     window.until(lambda: any(not it["is_off"] for it in window.all("Use and save")), "a threshold to use")
     window.click_on("Use and save")
     bench.saved(re.compile(r'id: "home".*press_n: '))
@@ -239,12 +255,8 @@ def visit(bench, _):
     bench.begin()
     window.key("F9")
     window.find(re.compile("^Stop "))
-    recorded = window.count
-    for number, name in enumerate(("Home", "North", "South"), 1):
-        window.press(*window.at(name, "Button"), lambda: window.events().count('"pressed"') >= number, name)
-        window.until(lambda: window.events().count('"released"') >= number, "the end of the press")
-    # The visit itself is none of the actions.
-    window.count = recorded
+    with bench.in_common():
+        press_each(window, ["Home", "North", "South"])
     window.key("F9")
     window.click_on("Play again")
     other = window.opened("Time line")
@@ -272,22 +284,21 @@ def project(bench, _):
     window.x("windowmove", window.appeared(f"^{re.escape(other)}$"), SIZE[0], 0)
     if not window.all("Corner 1", window=other):
         window.key("c", window=other)
-    begun = window.count
-    for corner, (east, north) in enumerate(((19, -17), (-18, -16), (19, 17), (-18, 16)), 1):
-        x, y = window.at(f"Corner {corner}", window=other)
-        window.drag((x, y), (x + east, y + north), window=other, what=f"corner {corner}")
-        moved = lambda: not near(window.at(f"Corner {corner}", window=other), (x, y))
-        window.until(moved, f"corner {corner} at its new place")
-    # Both ways have the four drags.
-    window.count = begun
-    window.key("c", window=other)
+    with bench.in_common():
+        for corner, (east, north) in enumerate(((19, -17), (-18, -16), (19, 17), (-18, 16)), 1):
+            x, y = window.at(f"Corner {corner}", window=other)
+            window.drag((x, y), (x + east, y + north), window=other, what=f"corner {corner}")
+            moved = lambda: not near(window.at(f"Corner {corner}", window=other), (x, y))
+            window.until(moved, f"corner {corner} at its new place")
+    # Back to the main window.
+    window.move(SIZE[0] / 2, SIZE[1] / 2)
     window.until(lambda: not window.all("Corner 1", window=other), "the end of the adjustment")
     data = os.path.join(bench.folder, "data", "underfoot")
     window.until(lambda: os.path.isdir(data) and os.listdir(data), "the saved corners")
 
 
-# Name, its task, the layout that it begins with, before: each way with its number of actions. Actions that both ways
-# have in common do not count: the presses of a visit, the presses for a threshold, the drags of the four corners.
+# Name, its task, the layout that it begins with, before: each way with its number of actions, without those that both
+# ways have in common: the presses of a visit, the presses for a threshold, the drags of the four corners.
 TASKS = {
     "six": (place_six, None, "place six controls", 14,
             "F2; six times: its kind at the left, the floor; Ctrl+S"),
@@ -327,7 +338,7 @@ def main():
     args = parser.parse_args()
     program = os.path.abspath(args.program)
     is_good = True
-    print("| task | before | now | share | steps now |\n|---|---|---|---|---|")
+    print("| task | before | now | share | all: before, now, share | steps now |\n|---|---|---|---|---|---|")
     for name in args.names or TASKS:
         task, layout, title, before, way = TASKS[name]
         ways = [(False, before, way)] + ([(True, *BY_KEYS[name])] if name in BY_KEYS else [])
@@ -341,7 +352,10 @@ def main():
             now = bench.window.count
             is_good &= 3 * now <= 2 * before
             steps = "; ".join(bench.window.actions) or "read it in the list"
-            print(f"| {title}{', by keys' * by_keys} | {before}: {way} | {now} | {now / before:.2f} | {steps} |", flush=True)
+            common = bench.common
+            all_of = f"{before + common}, {now + common}, {(now + common) / (before + common):.2f}"
+            print(f"| {title}{', by keys' * by_keys} | {before}: {way} | {now} | {now / before:.2f} | {all_of} | {steps} |",
+                  flush=True)
     sys.exit(0 if is_good else 1)
 
 

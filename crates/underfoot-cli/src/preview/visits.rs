@@ -169,7 +169,7 @@ impl Clerk {
         // A rename does not reach another disk.
         fs::copy(&self.file, &to).map_err(|error| Failure::File(to.clone(), error))?;
         self.shared.state().is_unsaved = false;
-        Ok(format!("Saved in {}.", to.display()))
+        Ok(format!("Saved in {}.", absolute(&to).display()))
     }
 
     fn play(&self) -> Result<(), Failure> {
@@ -215,11 +215,16 @@ impl Clerk {
         });
         shared.state().work = None;
         Ok(match exported? {
-            Exported::Whole => format!("Exported to {name}."),
+            Exported::Whole => format!("Exported to {}.", absolute(&to).display()),
             Exported::UpToBreak(failure) => failure.to_string(),
             Exported::Stopped => format!("The export to {name} was stopped."),
         })
     }
+}
+
+/// The path from the root, which shows its folder to the user; the path itself where the current folder is unknown.
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 fn length(path: &Path) -> u64 {

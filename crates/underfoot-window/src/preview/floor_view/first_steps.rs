@@ -37,7 +37,7 @@ impl FirstStep {
         match self {
             Self::Press => "Press here",
             Self::Drag => "Drag this",
-            Self::Stand => "Stand with the other foot: Space",
+            Self::Stand => "Stand here with the other foot: Space",
         }
     }
 

@@ -29,8 +29,12 @@ pub(super) fn events_part(
     height: f32,
 ) {
     let top = ui.cursor().top();
-    section(ui, theme, "Events", |ui| {
-        ui.label(quiet(theme, format!("{} so far", messages.event_count)).size(12.0));
+    // As wide as the headings above, beside whose parts is a scroll bar.
+    ui.scope(|ui| {
+        ui.set_max_width(ui.available_width() - 12.0);
+        section(ui, theme, "Events", |ui| {
+            ui.label(quiet(theme, format!("{} so far", messages.event_count)).size(12.0));
+        });
     });
     search_events(ui, messages, search);
     let left = height - (ui.cursor().top() - top) - 8.0;

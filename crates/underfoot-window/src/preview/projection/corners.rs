@@ -51,6 +51,8 @@ pub(super) struct CornerEditor {
     /// The corner that keys move; `None` while the corners are not adjusted.
     selected: Option<usize>,
     held: Option<HeldCorner>,
+    /// The corners that mouse or keys have placed since the adjustment began.
+    placed: [bool; 4],
     /// One step for each drag, and for presses of keys that follow each other within a second.
     steps: Undoer<Option<Placement>>,
 }
@@ -66,14 +68,28 @@ impl CornerEditor {
         self.held.is_some()
     }
 
+    /// Whether all four corners have been placed, and none is held.
+    pub(super) fn is_complete(&self) -> bool {
+        self.selected.is_some() && self.held.is_none() && self.placed == [true; 4]
+    }
+
     /// Begins or ends the adjustment.
     pub(super) fn toggle(&mut self) {
-        (self.selected, self.held) = (if self.selected.is_some() { None } else { Some(0) }, None);
+        let selected = if self.selected.is_some() { None } else { Some(0) };
+        self.close();
+        self.selected = selected;
+    }
+
+    /// Ends the adjustment if all four corners have been placed.
+    pub(super) fn end_if_complete(&mut self) {
+        if self.is_complete() {
+            self.close();
+        }
     }
 
     /// Ends the adjustment; the corners stay.
     pub(super) fn close(&mut self) {
-        (self.selected, self.held) = (None, None);
+        (self.selected, self.held, self.placed) = (None, None, [false; 4]);
     }
 
     /// Puts a held corner back, or else ends the adjustment; returns false if there was neither.
@@ -115,12 +131,13 @@ impl CornerEditor {
         ] {
             for _ in 0..presses(key) {
                 placement = placement.moved(corner, placement.corners[corner] + way * by);
+                self.placed[corner] = true;
             }
         }
         adjusted.set(placement);
         if presses(Key::Home) > 0 {
             self.note_step(now_s, adjusted.placement);
-            *adjusted.placement = None;
+            (*adjusted.placement, self.placed) = (None, [false; 4]);
         }
     }
 
@@ -175,6 +192,9 @@ impl CornerEditor {
                 adjusted.set(placement.moved(*index, to));
             }
             if is_release {
+                if let Some(placed) = self.placed.get_mut(*index) {
+                    *placed = true;
+                }
                 self.held = None;
                 self.note_step(now_s, adjusted.placement);
             }

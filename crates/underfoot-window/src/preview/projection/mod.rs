@@ -23,7 +23,7 @@ mod view;
 use std::path::PathBuf;
 
 use eframe::egui;
-use eframe::egui::{Key, Ui, ViewportBuilder, ViewportClass, ViewportCommand, ViewportId};
+use eframe::egui::{Event, Key, Pos2, Ui, ViewportBuilder, ViewportClass, ViewportCommand, ViewportId};
 
 use self::awake::Awake;
 use self::pair::{MOST, ProjectorName, ProjectorPair};
@@ -191,6 +191,7 @@ impl Projection {
         scene::draw(&mut self.controls, &view);
         let ctx = ui.ctx();
         let mut keys = Vec::new();
+        let pointer = ui.input(|i| i.events.iter().rev().find_map(moved_to));
         for index in 0..self.pair.count().min(MOST) {
             let name = ProjectorName { index };
             let builder = self.builder(name);
@@ -212,6 +213,11 @@ impl Projection {
                 }
                 let has_keys = !is_embedded || is_addressed;
                 let key = window.view.show(ui, setup, &floor, (name, has_keys));
+                // With two projectors, the lines of both are compared.
+                let is_away = pointer.is_some_and(|to| !is_embedded || !ui.max_rect().contains(to));
+                if is_away && !floor.is_pair {
+                    window.view.corners.end_if_complete();
+                }
                 keys.extend(key.map(|key| (index, key)));
             });
         }
@@ -279,6 +285,14 @@ impl Projection {
         if let Err(wrong) = store::save(&self.pair, file) {
             messages.note(format!("The corners are not remembered: {wrong}"));
         }
+    }
+}
+
+/// The place to which an event moves the pointer.
+fn moved_to(event: &Event) -> Option<Pos2> {
+    match event {
+        Event::PointerMoved(to) => Some(*to),
+        _ => None,
     }
 }
 

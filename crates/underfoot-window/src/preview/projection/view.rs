@@ -100,6 +100,8 @@ impl ProjectorView {
                 let mut lines = help_lines(name, setup.brightness, (selected, corner));
                 if floor.is_pair {
                     lines.push("Lines of both projectors that lie on each other are white".to_owned());
+                } else if self.corners.is_complete() {
+                    lines.push("All four are placed: the mouse in the main window ends this too".to_owned());
                 }
                 help(ui, picture, lines);
             }

@@ -252,6 +252,29 @@ fn tab_and_numbers_choose_the_corner_that_arrows_move() {
 }
 
 #[test]
+fn the_adjustment_ends_in_the_main_window_once_all_four_corners_are_placed() {
+    let mut room = adjusting();
+    let beside = egui::pos2(1275.0, 795.0);
+    for corner in ["Corner 1", "Corner 2", "Corner 3"] {
+        drag(&mut room, corner, vec2(4.0, 3.0));
+        room.hover(beside);
+        assert!(room.says("Corner 4"), "{corner} is not the last one");
+    }
+    room.window.key_press(Key::Num4);
+    room.window.key_press(Key::ArrowUp);
+    room.run(2);
+    assert!(room.says("Corner 4"), "it ends in the other window");
+    room.hover(beside);
+    room.run(1);
+    assert!(!room.says("Corner 4") && room.says("Projected Home"));
+    // The next adjustment begins anew.
+    room.window.key_press(Key::C);
+    room.run(2);
+    room.hover(beside - vec2(5.0, 5.0));
+    assert!(room.says("Corner 4"));
+}
+
+#[test]
 fn escape_puts_a_dragged_corner_back_and_undo_takes_back_step_by_step() {
     let mut room = adjusting();
     let start = room.place("Corner 1");

@@ -121,26 +121,26 @@ impl VisitBar {
                 let name = egui::TextEdit::singleline(&mut self.name).desired_width(150.0);
                 let field = ui.add(name).on_hover_text("Name of the file, without its ending");
                 field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Name of the visit"));
-                if self.state.is_unsaved {
-                    self.save_buttons(ui);
-                }
+                self.keep_buttons(ui);
                 self.export_buttons(ui, part);
+                if let Some(told) = &self.state.told {
+                    ui.label(quiet(theme, told).size(12.5));
+                }
             });
-            if let Some(told) = &self.state.told {
-                ui.label(quiet(theme, told).size(12.5));
-            }
         });
     }
 
-    fn save_buttons(&mut self, ui: &mut Ui) {
-        if ui.button("Save this visit").clicked() {
+    /// The buttons for the last recording of the floor: a saved one can still be played. A recording on display has a
+    /// file and a time line already.
+    fn keep_buttons(&mut self, ui: &mut Ui) {
+        if self.state.is_unsaved && ui.button("Save this visit").clicked() {
             self.desk.lead(VisitOrder::Save(self.path(".mcap")));
         }
         let hint = "In a window of its own, with a time line to trim it";
-        if ui.button("Play again").on_hover_text(hint).clicked() {
+        if self.state.off.is_none() && ui.button("Play again").on_hover_text(hint).clicked() {
             self.desk.lead(VisitOrder::PlayAgain);
         }
-        if ui.button("Discard").on_hover_text("Delete the recording").clicked() {
+        if self.state.is_unsaved && ui.button("Discard").on_hover_text("Delete the recording").clicked() {
             self.desk.lead(VisitOrder::Discard);
         }
     }

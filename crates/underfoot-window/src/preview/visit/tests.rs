@@ -60,6 +60,13 @@ fn a_visit_is_recorded_by_button_and_by_key_and_then_saved() {
     let orders = notes.orders();
     let [VisitOrder::Save(path), VisitOrder::PlayAgain] = &orders[..] else { panic!("{orders:?}") };
     assert_eq!(path, Path::new("visit.mcap"));
+    // Once it is saved, it can still be played.
+    notes.0.lock().unwrap().0.is_unsaved = false;
+    room.run(2);
+    assert!(!room.says("Save this visit") && !room.says("Discard"));
+    room.window.get_by_label("Play again").click();
+    room.run(2);
+    assert!(matches!(notes.orders()[..], [VisitOrder::PlayAgain]));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use eframe::egui::accesskit::Role;
 use eframe::egui::{ComboBox, Response, Ui, WidgetInfo};
 
-use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, ShownField};
+use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, ShownField, unmarked_name};
 use super::number::{NumberField, number, written};
 use super::words::{choice, label, start};
 use crate::edit::quoted;
@@ -126,8 +126,7 @@ pub(super) fn variant_fields(ui: &mut Ui, field: &ShownField<'_>) -> Option<Fiel
         };
         let Some(of) = NumberField::of(part.name, shape) else { continue };
         ui.horizontal(|ui| {
-            ui.add_space(16.0);
-            ui.label(label(part.name))
+            unmarked_name(ui, &label(part.name))
                 .on_hover_text(format!("{}.{}\n{}", field.property.name, part.name, part.about));
             match text.parse::<f64>() {
                 Ok(value) => {

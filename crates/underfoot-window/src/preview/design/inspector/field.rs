@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Color32, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
+use eframe::egui::{Button, Color32, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::super::edited::EditedLayout;
 use super::words::{choice, label};
@@ -127,11 +127,11 @@ pub(super) fn name_cell(ui: &mut Ui, text: RichText) -> Response {
     cell.inner
 }
 
-/// The beginning of a row without a mark.
-pub(in crate::preview::design) fn unmarked_name(ui: &mut Ui, text: &str) {
+/// The beginning of a row without a mark; returns its name.
+pub(in crate::preview::design) fn unmarked_name(ui: &mut Ui, text: &str) -> Response {
     ui.spacing_mut().item_spacing.x = GAP_PX;
     ui.allocate_exact_size(vec2(MARK_PX, ROW_PX), Sense::hover());
-    name_cell(ui, RichText::new(text));
+    name_cell(ui, RichText::new(text))
 }
 
 /// The origin of a value, in words.
@@ -180,7 +180,9 @@ pub(super) fn reset(ui: &mut Ui, field: &ShownField<'_>) -> Option<Edit> {
     if property.origin != FieldOrigin::Written || KEPT.contains(&property.name.as_str()) {
         return None;
     }
-    let button = ui.small_button(Icon::RotateCcw.unicode().to_string());
+    // It ends the row: no other button gets this padding.
+    ui.spacing_mut().button_padding.x = 2.0;
+    let button = ui.add(Button::new(Icon::RotateCcw.unicode().to_string()).small().min_size(vec2(RESET_PX, 0.0)));
     let name = label(&property.name);
     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {name}")));
     let back = match property.inherited.as_str() {

@@ -12,6 +12,7 @@ mod problems;
 mod sections;
 mod send_choices;
 mod send_devices;
+mod send_texts;
 mod sends;
 mod text;
 mod value;

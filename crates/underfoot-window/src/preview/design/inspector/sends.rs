@@ -1,11 +1,12 @@
 //! The messages of a control, one below the other: when, to which target, and what.
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{self, ComboBox, DragValue, RichText, TextEdit, Ui, WidgetInfo};
+use eframe::egui::{self, ComboBox, DragValue, RichText, Ui, WidgetInfo};
 
 use super::super::edited::EditedLayout;
-use super::field::{FieldEdits, TypedTexts};
+use super::field::{FieldEdits, ROW_PX, TypedTexts};
 use super::send_choices::{content_name, contents, first, refitted, time_name, times};
+use super::send_texts::{MessageText, any, no_key, no_note};
 use super::{FrameEdits, Inspector};
 use crate::edit::{Address, Edit};
 use crate::preview::icons::Icon;
@@ -19,7 +20,7 @@ use underfoot_format::Named;
 use underfoot_scene::scene::Theme;
 
 /// Width of the drop-downs and fields of a message, in points.
-const PART_PX: f32 = 126.0;
+pub(super) const PART_PX: f32 = 126.0;
 
 /// The field of the messages.
 const FIELD: &str = "send";
@@ -47,7 +48,9 @@ impl Inspector {
         let count = widget.send.len();
         let title = if count == 0 { "Messages".to_owned() } else { format!("Messages ({count})") };
         let header = egui::CollapsingHeader::new(RichText::new(title).strong()).id_salt("messages");
-        let shown = header.default_open(count > 0).show(ui, |ui| {
+        let shown = header.default_open(count > 0).show_unindented(ui, |ui| {
+            // Names and fields of a row have one middle.
+            ui.spacing_mut().interact_size.y = ROW_PX;
             let written = edited.document.written(record, FIELD);
             if written.is_some_and(|text| text.contains('{')) {
                 // The fields of a pattern belong to a whole grid.
@@ -77,7 +80,9 @@ impl Inspector {
             })
         });
         let edits = shown.body_returned.flatten()?;
-        Some((FIELD.into(), FieldEdits { edits, stroke: None }))
+        // The edits of one drag are one undo step.
+        let pressed_s = ui.input(|i| i.pointer.press_start_time().filter(|_| i.pointer.primary_down()));
+        Some((FIELD.into(), FieldEdits { edits, stroke: pressed_s.map(f64::to_bits) }))
     }
 }
 
@@ -110,7 +115,8 @@ pub(super) struct MessageList<'a> {
     pub(super) theme: &'a Theme,
     widget: &'a Widget,
     targets: &'a [SendTarget],
-    texts: &'a mut TypedTexts,
+    /// The texts in which the user is typing, by name.
+    pub(super) texts: &'a mut TypedTexts,
 }
 
 impl MessageList<'_> {
@@ -166,19 +172,20 @@ impl MessageList<'_> {
                 changed = Some(Some(Sending { payload: payload.clone(), ..sending.clone() }));
             }
         });
-        let payload = ui.horizontal(|ui| self.payload(ui, index, &sending.payload)).inner;
+        let payload = ui.horizontal_wrapped(|ui| self.payload(ui, index, sending)).inner;
         changed.or(payload.map(|payload| Some(Sending { payload, ..sending.clone() })))
     }
 
     /// Shows the settings of a content; returns the changed content.
-    fn payload(&mut self, ui: &mut Ui, index: usize, now: &Payload) -> Option<Payload> {
+    fn payload(&mut self, ui: &mut Ui, index: usize, sending: &Sending) -> Option<Payload> {
         let name = |part: &str| format!("{part} of message {}", index + 1);
-        match now {
+        match &sending.payload {
             Payload::Key(key) => {
                 let names: Vec<String> = KeyStroke::names().map(str::to_owned).collect();
                 let listed =
                     pick(ui, &name("Key"), &key.to_string(), &names).and_then(|at| names.get(at).cloned());
-                let typed = self.typed(ui, &name("Typed key"), &key.to_string());
+                let (spoken, now) = (name("Typed key"), key.to_string());
+                let typed = self.typed(ui, MessageText::new(&spoken, &now, no_key));
                 Some(Payload::Key(listed.or(typed)?.parse().ok()?))
             }
             Payload::Button(button) => {
@@ -196,12 +203,14 @@ impl MessageList<'_> {
                 Some(Payload::Pointer(speed as f32))
             }
             Payload::Osc(address, settings) => {
-                let address = self.typed(ui, &name("Address"), address)?;
+                let address =
+                    self.typed(ui, MessageText::new(&name("Address"), address, any).wide("/address"))?;
                 Some(Payload::Osc(address, settings.clone()))
             }
             Payload::Note(key, settings) => {
                 let note = MidiNote { channel: settings.channel, key: *key };
-                let typed = self.typed(ui, &name("Note"), &note.name());
+                let (spoken, now) = (name("Note"), note.name());
+                let typed = self.typed(ui, MessageText::new(&spoken, &now, no_note));
                 let channel = channel(ui, &name("Channel"), settings.channel);
                 let mut settings = *settings;
                 settings.channel = channel.unwrap_or(settings.channel);
@@ -232,7 +241,7 @@ impl MessageList<'_> {
                 settings.channel = channel;
                 Some(Payload::Bend(settings))
             }
-            Payload::Dmx(_) | Payload::Mqtt(..) | Payload::Run(_) => self.device(ui, index, now),
+            Payload::Dmx(_) | Payload::Mqtt(..) | Payload::Run(_) => self.device(ui, index, sending),
             Payload::Pressure(settings) => {
                 let channel = channel(ui, &name("Channel"), settings.channel)?;
                 let mut settings = *settings;
@@ -240,14 +249,6 @@ impl MessageList<'_> {
                 Some(Payload::Pressure(settings))
             }
         }
-    }
-
-    /// A text field; returns its text once the user has finished.
-    pub(super) fn typed(&mut self, ui: &mut Ui, name: &str, now: &str) -> Option<String> {
-        let text = self.texts.entry(name.to_owned()).or_insert_with(|| now.to_owned());
-        let field = ui.add(TextEdit::singleline(text).desired_width(PART_PX));
-        field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, name));
-        (field.lost_focus() && text != now).then(|| text.clone())
     }
 
     /// The buttons that add a message or a target.
@@ -306,7 +307,7 @@ pub(super) fn whole(ui: &mut Ui, name: &str, now: i64, range: std::ops::RangeInc
     let (short, _) = name.split_once(" of ").unwrap_or((name, ""));
     ui.label(short);
     let mut number = now;
-    let field = ui.add(DragValue::new(&mut number).range(range).speed(0.2));
+    let field = ui.add(DragValue::new(&mut number).range(range).speed(0.2).update_while_editing(false));
     field.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, name));
     (number != now).then_some(number)
 }

@@ -132,11 +132,9 @@ impl ScreenText {
             return None;
         }
         let is_level = area.top() < clip.bottom() && area.bottom() > clip.top();
-        // The sign that takes a value out is drawn with empty margins.
-        let slack = if self.text == Icon::RotateCcw.unicode().to_string() { 3.0 } else { 1.0 };
         if is_level
             && !self.scrolls()
-            && (area.left() < clip.left() - slack || area.right() > clip.right() + slack)
+            && (area.left() < clip.left() - 1.0 || area.right() > clip.right() + 1.0)
         {
             return Some("cut at its side");
         }
