@@ -6,6 +6,7 @@ use underfoot::schema::{Kinds, Severity, parse_layout};
 use underfoot::units::Newtons;
 use underfoot_lab::experiment::PlaceTable;
 use underfoot_scene::ergonomics::{self, RULES, Zone, predicted_error_m};
+use underfoot_sim::FloorQuality;
 
 /// Codes of the findings about the controls of a layout with these fields, errors with an exclamation mark.
 fn found(fields: &str) -> Vec<String> {
@@ -156,7 +157,7 @@ fn every_rule_is_explained_and_has_a_code_of_its_own() {
 /// The tables in the code come from 60 floors; a few floors come close to them.
 #[test]
 fn predicted_errors_are_those_of_the_simulated_floor() {
-    let mut table = PlaceTable::new(96);
+    let mut table = PlaceTable::on(FloorQuality::Paper, 96);
     for seed in 101..=108 {
         table.add_floor(seed).unwrap();
     }

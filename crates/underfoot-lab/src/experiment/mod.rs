@@ -65,7 +65,7 @@ pub use pond::{PondLaw, PondLaws};
 pub use pond_walk::{MannerLine, PondWalk, WalkManner};
 pub use rig::{ExperimentError, FaultHook, OFFSET_N, Rig};
 pub use scan::{ScanPoint, TileScan, TileSweep};
-pub use scenes::{SceneLine, SceneTable};
+pub use scenes::{SceneLine, SceneRows, SceneTable};
 pub use seam_object::{SeamObject, SeamObjectRow};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
 pub use taps::{HeavyFoot, TapLine, TapScene, TapScore, TapTable};

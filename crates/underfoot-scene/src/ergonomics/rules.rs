@@ -60,7 +60,7 @@ pub const RULES: &[Rule] = &[
         limits: "error: 95 in 100 feet that aim at its middle are found within more than half of its smaller side; \
                  warning: more than half of that",
         source: "Measured on simulated floors by force and by distance from a tile's edge: \
-                 `underfoot experiment place`. A floor file with position maps counts.",
+                 `underfoot experiment place --quality paper`. A floor file with position maps counts.",
         remedy: "make it larger, press it harder, or calibrate position maps (`underfoot calibrate map`)",
     },
     Rule {
