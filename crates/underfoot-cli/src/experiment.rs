@@ -8,8 +8,9 @@ use clap::Subcommand;
 use serde::Serialize;
 use underfoot::ground::IceSpec;
 use underfoot_lab::experiment::{
-    ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, PlaceTable,
-    PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
+    BesideTable, ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable,
+    PlaceTable, PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SeatedTable, SpotTable, TapTable,
+    TileScan, TwoFeet,
 };
 use underfoot_scene::picture;
 use underfoot_sim::{FloorQuality, SceneKind};
@@ -50,6 +51,9 @@ enum What {
     /// Rates of unintended activations and of missed presses: people who cross and use every shipped layout, and rows
     /// of buttons of many sizes and thresholds.
     Intent(IntentArgs),
+    /// Sliders under the feet of seated people: time to the first answer, and changes of a value at rest; buttons tapped
+    /// beside a foot that stands in their region, by its cursor rule.
+    Controls(FeetArgs),
     /// Whether the frozen pond follows its model, and the number of cracks for each manner of walking.
     Pond(PondArgs),
 }
@@ -174,6 +178,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Feet(args) => feet(args),
         What::Scenes(args) => scenes(args),
         What::Intent(args) => intent(args),
+        What::Controls(args) => controls(args),
         What::Pond(args) => pond(args),
     }
 }
@@ -243,6 +248,39 @@ fn intent(args: &IntentArgs) -> Result<(), Failure> {
     std::fs::write(&path, table.csv()).map_err(|error| Failure::File(path.clone(), error))?;
     outln!("{}", path.display());
     Ok(())
+}
+
+fn controls(args: &FeetArgs) -> Result<(), Failure> {
+    let quality = args.quality.quality;
+    let (mut seated, mut beside) = (SeatedTable::on(quality), BesideTable::on(quality));
+    let progress = ProgressLine::of("visit", 2 * args.people);
+    for visit in in_parallel(&progress, args.people, |number| {
+        let mut seated = SeatedTable::on(quality);
+        seated.add_person(args.seed.wrapping_add(number))?;
+        Ok(seated)
+    })? {
+        seated.append(visit);
+    }
+    if !args.json {
+        progress.print(&seated);
+    }
+    for visit in in_parallel(&progress, args.people, |number| {
+        let mut beside = BesideTable::on(quality);
+        beside.add_person(args.seed.wrapping_add(number))?;
+        Ok(beside)
+    })? {
+        beside.append(&visit);
+    }
+    if !args.json {
+        progress.print(&beside);
+        return Ok(());
+    }
+    #[derive(Serialize)]
+    struct Tables<S, B> {
+        seated: Vec<S>,
+        beside: Vec<B>,
+    }
+    print_json(&Tables { seated: seated.lines().collect(), beside: beside.lines().collect() })
 }
 
 /// Calls `act` `times` times on all processors, and counts each call in `progress`; returns the results in order.

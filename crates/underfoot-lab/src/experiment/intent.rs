@@ -502,6 +502,11 @@ fn layouts_with_controls() -> impl Iterator<Item = &'static str> {
     builtin_layouts().filter(has_controls)
 }
 
+/// Returns all of them.
+pub(super) fn shipped_layouts(geometry: &Geometry) -> Result<Vec<Layout>, ExperimentError> {
+    (0..layouts_with_controls().count()).map(|number| shipped(number, geometry)).collect()
+}
+
 /// Returns one of them, in a cycle.
 fn shipped(number: usize, geometry: &Geometry) -> Result<Layout, ExperimentError> {
     let count = layouts_with_controls().count().max(1);

@@ -72,6 +72,16 @@ pub const RULES: &[Rule] = &[
         remedy: "make it longer, or its steps coarser",
     },
     Rule {
+        code: "U107",
+        title: "a standing foot is the cursor",
+        limits: "warning: a stance zone overlaps a region with `cursor: Largest`, or is less than half a shoe (13 cm) \
+                 from it",
+        source: "The heaviest foot in such a region is its cursor. People stand up to half a shoe beside their zone: \
+                 then that foot, not the one on a control, is the cursor. Nearly all taps beside a foot that stands \
+                 in the region are missed by `Largest`, few by `Working` (`underfoot experiment controls`).",
+        remedy: "let the foot on a control be the cursor: `cursor: Working`, or move the zone away",
+    },
+    Rule {
         code: "U201",
         title: "too heavy for a light person",
         limits: "warning: the press takes more than half of the weight of 45 kg (221 N); error: more than all of it (441 N)",
