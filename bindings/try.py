@@ -205,7 +205,7 @@ class Trial:
     def walk(self, scenario, layout):
         path = self.folder / "visit.ron"
         path.write_text(scenario)
-        command = [self.underfoot, "simulate", layout, "--scenario", str(path), "--send", self.target]
+        command = [self.underfoot, "simulate", layout, "--quality", "paper", "--scenario", str(path), "--send", self.target]
         self.feet = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def end(self):
@@ -335,7 +335,7 @@ def main():
         good = True
         (Path(folder) / "beam.ron").write_text(PAGE)
         # The calibration that a lab would measure on the simulated floor.
-        subprocess.run([args.underfoot, "simulate", "--seconds", "0.1", "--send", said(free_address(socket.SOCK_DGRAM)),
+        subprocess.run([args.underfoot, "simulate", "--quality", "paper", "--seconds", "0.1", "--send", said(free_address(socket.SOCK_DGRAM)),
                         "--write-floor", str(Path(folder) / "floor.ron")], check=True, capture_output=True)
         for way, name, command in programs:
             # A machine that stops for 100 ms interrupts both links, but not at the same time.

@@ -145,9 +145,9 @@ uf_session *uf_session_listen(const char *address, const char *layout, const uf_
 uf_session *uf_session_replay(const char *recording, double speed, const uf_options *options, char *error,
                               size_t error_size);
 
-/* Starts a simulated floor of 6 x 6 tiles, with the page of controls in the file `layout` and the people and faults of
- * the file `scenario`; with NULL the built-in scenario, which fits the shipped layout map.ron. It runs in real time and
- * ends with the scenario. Of the options only `every_change` counts. NULL as above. */
+/* Starts a simulated floor of 6 x 6 tiles, new and well built (of the quality `slight`), with the page of controls in
+ * the file `layout` and the people and faults of the file `scenario`; with NULL the built-in scenario, which fits the
+ * shipped layout map.ron. It runs in real time and ends with the scenario. Of the options only `every_change` counts. NULL as above. */
 uf_session *uf_session_simulated(const char *layout, const char *scenario, const uf_options *options, char *error,
                                  size_t error_size);
 

@@ -54,12 +54,14 @@ pub(super) struct TrackedPerson {
     scale: WeighingScale,
     /// Sum of the person's contacts now.
     pub(super) sum: f32,
+    /// Maximum sum so far.
+    pub(super) carried: f32,
     seen: Instant,
 }
 
 impl TrackedPerson {
     pub(super) fn new(id: u32, now: Instant) -> Self {
-        Self { id, left: ArrayVec::new(), scale: WeighingScale::default(), sum: 0.0, seen: now }
+        Self { id, left: ArrayVec::new(), scale: WeighingScale::default(), sum: 0.0, carried: 0.0, seen: now }
     }
 
     /// The person's weight; `None` until it is known.
@@ -125,6 +127,7 @@ impl TrackedPerson {
     /// Processes the sum of the person's contacts.
     pub(super) fn carry(&mut self, sum: f32, now: Instant) {
         self.sum = sum;
+        self.carried = self.carried.max(sum);
         self.scale.weigh(sum, now);
         if sum > 0.0 {
             self.seen = now;

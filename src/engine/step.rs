@@ -41,7 +41,7 @@ const ALONG: f32 = 0.3;
 
 /// Longest time from one footfall to the other foot's next in a walk that goes on
 /// (a slow shuffle, 45 steps a minute).
-const STEP_TIME: Duration = Duration::from_millis(1300);
+pub(super) const STEP_TIME: Duration = Duration::from_millis(1300);
 
 /// Longest swing of a foot from one place to the next.
 const SWING_TIME: Duration = Duration::from_millis(900);
@@ -79,6 +79,10 @@ const ROLLED_WITHIN: Duration = Duration::from_millis(1200);
 const ROLLS: f32 = 0.35;
 const ROLLS_N: f32 = 200.0;
 
+/// Load on a person's feet that shows a body, in newtons: a walking child of 20 kg reaches 216 (1.1 times the weight); the
+/// feet of a person who sits and presses a control carry less.
+const BODY_N: f32 = 200.0;
+
 /// A heel strike: at least this force, in newtons, within this time of the landing.
 ///
 /// # Source
@@ -97,6 +101,23 @@ pub(super) struct Landing {
     pub(super) support: Option<Support>,
     /// Time since the last lift of another foot of the person, one that had pressed no control.
     pub(super) left: Option<Duration>,
+    /// Whether another foot of the person has been down for longer than a step takes.
+    pub(super) rests: bool,
+    /// Maximum load on the person's feet so far, in newtons.
+    pub(super) carried: f32,
+}
+
+/// The other foot of a person when a foot lands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum OtherFoot {
+    /// The person stands on it, and has not just stepped there.
+    Stands,
+    /// It has been down for longer than a step takes, without a body on it: the person sits or leans.
+    Rests,
+    /// None is known to be down, and the person's feet have never carried a body.
+    NeverStood,
+    /// None is known to be down, or it belongs to a walk.
+    Unknown,
 }
 
 /// A foot that carries the person while another one lands.
@@ -125,9 +146,17 @@ impl Landing {
         rolls_over || steps_on
     }
 
-    /// Whether the person stood on the other foot, and had not just stepped there.
-    pub(super) fn has_standing_support(&self) -> bool {
-        self.support.as_ref().is_some_and(|support| !support.stepped || support.age > STEP_TIME)
+    /// The other foot of the person.
+    pub(super) fn other_foot(&self) -> OtherFoot {
+        if self.support.as_ref().is_some_and(|support| !support.stepped || support.age > STEP_TIME) {
+            OtherFoot::Stands
+        } else if self.rests {
+            OtherFoot::Rests
+        } else if self.carried < BODY_N {
+            OtherFoot::NeverStood
+        } else {
+            OtherFoot::Unknown
+        }
     }
 }
 
@@ -204,7 +233,8 @@ mod tests {
         Support { at: Vec2::ZERO, age: Duration::from_secs(5), stepped: false, rolling: Vec2::ZERO };
 
     fn landing(support: Option<Support>, left_ms: Option<u64>) -> Landing {
-        Landing { at: Vec2::new(0.0, 0.6), support, left: left_ms.map(Duration::from_millis) }
+        let left = left_ms.map(Duration::from_millis);
+        Landing { at: Vec2::new(0.0, 0.6), support, left, rests: false, carried: 700.0 }
     }
 
     #[test]
@@ -226,6 +256,17 @@ mod tests {
         // A foot that went back to its earlier place does not make a step of the other foot's tap either.
         let back = Some(Support { age: Duration::from_millis(600), ..STANDING });
         assert!(!landing(back, Some(400)).walks());
+    }
+
+    #[test]
+    fn a_person_sits_whose_other_foot_rests_or_whose_feet_never_carried_a_body() {
+        let sits = |rests, carried| Landing { rests, carried, ..landing(None, None) }.other_foot();
+        assert_eq!(sits(true, 90.0), OtherFoot::Rests);
+        assert_eq!(sits(false, 150.0), OtherFoot::NeverStood);
+        assert_eq!(sits(false, 216.0), OtherFoot::Unknown, "a child walks");
+        assert_eq!(landing(Some(STANDING), None).other_foot(), OtherFoot::Stands);
+        let arrived = Some(Support { age: Duration::from_millis(600), stepped: true, ..STANDING });
+        assert_eq!(landing(arrived, None).other_foot(), OtherFoot::Unknown, "in a walk");
     }
 
     /// Time at which a foot with this load becomes a step, in milliseconds.

@@ -83,6 +83,13 @@ impl Sensing {
         self
     }
 
+    /// Learns the noise of each tile from the first frames of a table, before the first [`Self::update`]: a floor in use
+    /// learns it before the first foot. A tile whose readings the frames lack while it is idle takes the median of the
+    /// others. Frames in which no idle tile has a reading teach nothing.
+    pub fn learn_noise(&mut self, frames: &[ForceFrame]) {
+        self.tiles.learn_noise(frames);
+    }
+
     /// The contacts after `frame`, ordered by id.
     ///
     /// Frames count at their own times; for one that is no later than the last, no time passes. A frame of another

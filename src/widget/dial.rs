@@ -17,6 +17,7 @@
 use super::moment::{BehaviourInput, BehaviourMachine};
 use super::number::ControlNumber;
 use super::press::PressOutcome;
+use super::rest::RestingPlace;
 use super::scale::INITIAL;
 use super::track::wrapped;
 use super::{Emitted, Scale, SetError, Thresholds, Value};
@@ -46,11 +47,17 @@ pub(super) struct Dial {
     number: ControlNumber,
     /// Last angle of the foot, in radians.
     angle: Option<f32>,
+    rest: RestingPlace,
 }
 
 impl Dial {
     pub(super) fn new(spec: DialSpec) -> Self {
-        Self { number: ControlNumber::new(spec.scale, spec.initial), spec, angle: None }
+        Self {
+            number: ControlNumber::new(spec.scale, spec.initial),
+            spec,
+            angle: None,
+            rest: RestingPlace::default(),
+        }
     }
 }
 
@@ -61,7 +68,8 @@ impl BehaviourMachine for Dial {
         }
         self.number.follow_press(moment.outcome, emitted);
         let hub = HUB * 0.5 * moment.size.min_element();
-        let angle = moment.offset().filter(|offset| offset.length() >= hub).map(|offset| offset.to_angle());
+        let offset = moment.settled(&mut self.rest).map(|place| (place - 0.5) * moment.size);
+        let angle = offset.filter(|offset| offset.length() >= hub).map(|offset| offset.to_angle());
         if let (Some(before), Some(now)) = (self.angle, angle) {
             let turned = -wrapped(now - before).to_degrees();
             self.number.move_by(turned / self.spec.turn_degrees * self.spec.scale.range(), emitted);

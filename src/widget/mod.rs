@@ -26,6 +26,7 @@ mod possible;
 mod press;
 #[cfg(test)]
 mod random;
+mod rest;
 mod scale;
 mod selector;
 mod set_error;

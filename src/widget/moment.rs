@@ -5,6 +5,7 @@ use std::time::Duration;
 use glam::Vec2;
 
 use super::press::{PressOutcome, PressState};
+use super::rest::RestingPlace;
 use super::{Emitted, Input, SetError, Thresholds, Value};
 use crate::units::{Instant, Newtons};
 
@@ -59,6 +60,15 @@ impl BehaviourInput {
     /// The foot, if it presses firmly: only then may its place change a value.
     pub(super) fn firm_foot(&self) -> Option<FootOnControl> {
         self.foot.filter(|_| self.firm)
+    }
+
+    /// The place of that foot, 0 to 1 across the control, which stays while the foot rests: `rest` has its state.
+    pub(super) fn settled(&self, rest: &mut RestingPlace) -> Option<Vec2> {
+        if self.is(PressOutcome::Pressed) {
+            rest.forget();
+        }
+        let foot = self.firm_foot()?;
+        Some(rest.settle(foot.place, self.size, self.now))
     }
 
     /// Place of that foot, in metres from the control's middle.

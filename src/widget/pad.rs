@@ -15,6 +15,7 @@ use glam::Vec2;
 
 use super::moment::{BehaviourInput, BehaviourMachine};
 use super::press::PressOutcome;
+use super::rest::RestingPlace;
 use super::scale::QUANTUM;
 use super::scale::{VALUES, WIDTHS};
 use super::{Emitted, EventKind, Scale, SetError, Thresholds, Value};
@@ -88,12 +89,13 @@ pub(super) struct Pad {
     spec: PadSpec,
     value: Vec2,
     before: Vec2,
+    rest: RestingPlace,
 }
 
 impl Pad {
     pub(super) fn new(spec: PadSpec) -> Self {
         let value = Vec2::new(spec.x().settle(spec.initial.x), spec.y().settle(spec.initial.y));
-        Self { spec, value, before: value }
+        Self { spec, value, before: value, rest: RestingPlace::default() }
     }
 
     fn change(&mut self, value: Vec2, emitted: &mut Emitted) {
@@ -118,12 +120,14 @@ impl BehaviourMachine for Pad {
             }
             None => {}
         }
-        if let Some(foot) = moment.firm_foot() {
+        if let Some(place) = moment.settled(&mut self.rest) {
             let (x, y) = (self.spec.x(), self.spec.y());
             let follow =
                 |scale: Scale, now: f32, share| scale.follow(now, scale.at(share), QUANTUM).unwrap_or(now);
-            let (east, north) = (foot.place.x, foot.place.y);
-            self.change(Vec2::new(follow(x, self.value.x, east), follow(y, self.value.y, north)), emitted);
+            self.change(
+                Vec2::new(follow(x, self.value.x, place.x), follow(y, self.value.y, place.y)),
+                emitted,
+            );
         }
     }
 

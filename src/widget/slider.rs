@@ -11,7 +11,8 @@
 //!  7  lifting                       -> the value stays while the force falls (a lifting foot rolls)
 //!  8  release, anywhere             -> Released
 //!  9  a step, loss, an app stops it -> Changed (back to where it was), Cancelled
-//! 10  a force that can't be trusted -> the value stays
+//! 10  a force that can't be trusted, a foot that rests
+//!                                   -> the value stays
 //! 11  steps                         -> only whole steps, with hysteresis between them
 //! 12  an app sets it                -> no event; brought to range and steps
 //! ```
@@ -21,6 +22,7 @@ use std::time::Duration;
 use super::moment::{BehaviourInput, BehaviourMachine};
 use super::number::ControlNumber;
 use super::press::PressOutcome;
+use super::rest::RestingPlace;
 use super::scale::INITIAL;
 use super::scale::QUANTUM;
 use super::track::TrackFields;
@@ -89,11 +91,17 @@ pub(super) struct Slider {
     number: ControlNumber,
     /// Place of the press (rate) or last place of the foot (relative) along the track.
     anchor: Option<f32>,
+    rest: RestingPlace,
 }
 
 impl Slider {
     pub(super) fn new(spec: SliderSpec) -> Self {
-        Self { number: ControlNumber::new(spec.scale, spec.initial), spec, anchor: None }
+        Self {
+            number: ControlNumber::new(spec.scale, spec.initial),
+            spec,
+            anchor: None,
+            rest: RestingPlace::default(),
+        }
     }
 
     fn slide(&mut self, share: f32, elapsed: Duration, emitted: &mut Emitted) {
@@ -119,7 +127,8 @@ impl BehaviourMachine for Slider {
             self.anchor = None;
         }
         self.number.follow_press(moment.outcome, emitted);
-        let share = moment.firm_foot().and_then(|foot| self.spec.track.share_at(foot.place, moment.size));
+        let place = moment.settled(&mut self.rest);
+        let share = place.and_then(|place| self.spec.track.share_at(place, moment.size));
         match share {
             Some(share) => self.slide(share, moment.elapsed, emitted),
             // Motion in the meantime does not count as travel.

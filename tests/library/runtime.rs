@@ -12,7 +12,9 @@ use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::{EventKind, OffReason, SetError, Value, WidgetId};
 use underfoot::wire::{LinkCounters, SensorPacket};
-use underfoot_sim::{self as sim, Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated};
+use underfoot_sim::{
+    self as sim, FloorQuality, Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated,
+};
 
 use crate::support::layout;
 
@@ -292,7 +294,7 @@ fn a_floor_simulated_in_the_same_process_is_calibrated() {
     let page = layout("all_controls");
     let text = "Scenario(title: \"nobody\", steps: [Wait(ms: 1500)])";
     let scenario = Scenario::parse("nobody", text).unwrap();
-    let session = sim::session(page, &scenario).unwrap().start().unwrap();
+    let session = sim::session(page, &scenario, FloorQuality::default()).unwrap().start().unwrap();
     let ended = session.events().last().unwrap();
     assert_eq!(ended.kind, Kind::Ended(EndReason::SourceEnded));
     assert_eq!(session.snapshot().floor.health.uncalibrated, 0);
@@ -303,7 +305,8 @@ fn a_floor_simulated_in_the_same_process_is_calibrated() {
 
 #[test]
 fn a_floor_is_simulated_from_files() {
-    let session = sim::session_from_files("layouts/map.ron", None).unwrap().start().unwrap();
+    let session =
+        sim::session_from_files("layouts/map.ron", None, FloorQuality::default()).unwrap().start().unwrap();
     let first = session.events().find(|event| matches!(event.kind, Kind::Control(_))).unwrap();
     assert_eq!((first.id(), first.kind), ("home", Kind::Control(EventKind::Pressed)));
     // A layout is no scenario.
@@ -312,7 +315,8 @@ fn a_floor_is_simulated_from_files() {
         ("layouts/map.ron", Some("no such.ron"), "no such.ron"),
         ("layouts/map.ron", Some("layouts/map.ron"), "layouts/map.ron"),
     ] {
-        let problem = sim::session_from_files(layout, scenario.map(Path::new)).map(drop).unwrap_err();
+        let session = sim::session_from_files(layout, scenario.map(Path::new), FloorQuality::default());
+        let problem = session.map(drop).unwrap_err();
         assert!(problem.to_string().contains(wrong), "{problem}");
     }
 }

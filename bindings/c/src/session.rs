@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use underfoot::recording::Speed;
 use underfoot::runtime::{Event, Kind, Session, SessionBuilder};
+use underfoot_sim::FloorQuality;
 
 use crate::structs::ID_SIZE;
 
@@ -57,8 +58,9 @@ impl UfSession {
         scenario: Option<&str>,
         every_change: bool,
     ) -> Result<Self, String> {
-        let builder = underfoot_sim::session_from_files(layout, scenario.map(Path::new))
-            .map_err(|error| error.to_string())?;
+        let builder =
+            underfoot_sim::session_from_files(layout, scenario.map(Path::new), FloorQuality::default())
+                .map_err(|error| error.to_string())?;
         Self::start(builder, every_change)
     }
 

@@ -18,6 +18,7 @@ use underfoot::glam::Vec2;
 use underfoot::recording::Speed;
 use underfoot::runtime::{ControlHandle, Kind, Refusal, Session, SessionBuilder, SessionSnapshot};
 use underfoot::widget::{Indicator, SetError, Value};
+use underfoot_sim::{FloorQuality, UnknownQuality};
 
 use event::{fields, to_python};
 
@@ -139,16 +140,19 @@ fn replay(py: Python<'_>, recording: PathBuf, speed: Option<f64>, every_change: 
     })
 }
 
-/// Starts a simulated floor; without a file `scenario`, with the built-in one.
+/// Starts a simulated floor of a quality by its name; without a file `scenario`, with the built-in one.
 #[pyfunction]
 fn simulated(
     py: Python<'_>,
     layout: PathBuf,
     scenario: Option<PathBuf>,
+    quality: &str,
     every_change: bool,
 ) -> PyResult<Started> {
+    let quality: FloorQuality =
+        quality.parse().map_err(|error: UnknownQuality| PyValueError::new_err(error.to_string()))?;
     Started::new(py, every_change, move || {
-        underfoot_sim::session_from_files(layout, scenario.as_deref()).map_err(bad_files)
+        underfoot_sim::session_from_files(layout, scenario.as_deref(), quality).map_err(bad_files)
     })
 }
 

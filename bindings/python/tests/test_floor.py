@@ -134,6 +134,9 @@ class Simulated(unittest.TestCase):
             with self.assertRaises(ValueError) as failure:
                 underfoot.simulated(layout, scenario)
             self.assertIn(wrong, str(failure.exception))
+        with self.assertRaises(ValueError) as failure:
+            underfoot.simulated(LAYOUT, quality="good")
+        self.assertIn('"good"', str(failure.exception))
 
 
 class Listening(unittest.TestCase):

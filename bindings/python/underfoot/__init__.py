@@ -118,5 +118,5 @@ def replay(recording, *, speed=1.0, every_change=False):
     return Floor(_underfoot.replay(recording, speed, every_change))
 
 
-def simulated(layout, scenario=None, *, every_change=False):
-    return Floor(_underfoot.simulated(layout, scenario, every_change))
+def simulated(layout, scenario=None, *, quality="slight", every_change=False):
+    return Floor(_underfoot.simulated(layout, scenario, quality, every_change))

@@ -133,9 +133,11 @@ def simulated(
     layout: str | PathLike[str],
     scenario: str | PathLike[str] | None = None,
     *,
+    quality: Literal["ideal", "paper", "slight", "moderate", "severe"] = "slight",
     every_change: bool = False,
 ) -> Floor:
     """Starts a simulated floor of 6 x 6 tiles, with the page of controls in the file `layout` and the people and faults
-    of the file `scenario`; without it, the built-in scenario, which fits the shipped layout map.ron.
+    of the file `scenario`; without it, the built-in scenario, which fits the shipped layout map.ron. `quality` is that
+    of its plates and sensors.
 
     It runs in real time and ends with the scenario. ValueError describes an error in a file."""

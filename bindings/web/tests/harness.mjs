@@ -58,7 +58,7 @@ export class Site {
     site.folder = await mkdtemp(join(tmpdir(), "floor-"));
     [site.web, site.boards] = [await freeAddress(), await freeAddress()];
     // One that sends for a moment to a port that nobody reads.
-    const measure = ["--seed", SEED, "--write-floor", "floor.ron", "--seconds", "0.1", "--send", site.boards];
+    const measure = ["--quality", "paper", "--seed", SEED, "--write-floor", "floor.ron", "--seconds", "0.1", "--send", site.boards];
     await once(site.#start("simulate", ...measure), "exit");
     return site;
   }
@@ -77,7 +77,7 @@ export class Site {
 
   /** Plays a scenario; the file is named from the root of the repository. */
   play(scenario) {
-    const visit = ["--seed", SEED, "--scenario", join(root, scenario), "--send", this.boards];
+    const visit = ["--quality", "paper", "--seed", SEED, "--scenario", join(root, scenario), "--send", this.boards];
     return this.#start("simulate", this.layout, ...visit);
   }
 

@@ -8,16 +8,18 @@ use clap::Subcommand;
 use serde::Serialize;
 use underfoot::ground::IceSpec;
 use underfoot_lab::experiment::{
-    ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, PlaceTable,
-    PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
+    BesideTable, ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable,
+    PlaceTable, PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SeatedTable, SpotTable, TapTable,
+    TileScan, TwoFeet,
 };
 use underfoot_scene::picture;
-use underfoot_sim::FloorQuality;
+use underfoot_sim::{FloorQuality, SceneKind};
 
 use super::failure::Failure;
 use super::fonts::fonts;
 use super::output::print_json;
 use super::progress::ProgressLine;
+use super::quality_arg::{QualityArg, quality};
 
 /// Options of `underfoot experiment`.
 #[derive(clap::Args, Debug)]
@@ -43,12 +45,15 @@ enum What {
     Place(SpotArgs),
     /// Accuracy of both feet of people, and of the cursor of a foot that operates beside a heavy one.
     Feet(FeetArgs),
-    /// Accuracy of all contacts in fourteen scenes that are hard to sense, on floors with slight, moderate and severe
-    /// faults: walking, shifting weight, jumping, kneeling, sticks, wheels.
+    /// Accuracy of all contacts in fourteen scenes that are hard to sense, on floors of one quality or of several:
+    /// walking, shifting weight, jumping, kneeling, sticks, wheels.
     Scenes(ScenesArgs),
     /// Rates of unintended activations and of missed presses: people who cross and use every shipped layout, and rows
     /// of buttons of many sizes and thresholds.
     Intent(IntentArgs),
+    /// Sliders under the feet of seated people: time to the first answer, and changes of a value at rest; buttons tapped
+    /// beside a foot that stands in their region, by its cursor rule.
+    Controls(FeetArgs),
     /// Whether the frozen pond follows its model, and the number of cracks for each manner of walking.
     Pond(PondArgs),
 }
@@ -71,6 +76,8 @@ struct SpotArgs {
     /// Number of floors, each of other parts.
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     floors: u64,
+    #[command(flatten)]
+    quality: QualityArg,
     /// Seed of the first floor's parts; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -84,9 +91,8 @@ struct FeetArgs {
     /// Number of people, each on a floor of other parts.
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     people: u64,
-    /// The floor's faults: ideal or paper (rigid plates, even rolling feet), slight, moderate or severe.
-    #[arg(long, value_name = "FAULTS", default_value_t)]
-    faults: FloorQuality,
+    #[command(flatten)]
+    quality: QualityArg,
     /// Seed of the first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -103,9 +109,9 @@ struct ScenesArgs {
     /// Seed of the first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// The floors' faults, separated by commas: ideal, paper, slight, moderate, severe.
-    #[arg(long, value_name = "FAULTS", value_delimiter = ',', default_values_t = FloorQuality::REAL)]
-    faults: Vec<FloorQuality>,
+    /// Qualities of the simulated floors, separated by commas; each scene is played on a floor of each.
+    #[arg(long, value_name = "QUALITY", value_delimiter = ',', default_values_t = [FloorQuality::default()], value_parser = quality())]
+    quality: Vec<FloorQuality>,
     /// Print one JSON object instead of tables.
     #[arg(long)]
     json: bool,
@@ -116,15 +122,14 @@ struct IntentArgs {
     /// Number of people, each on a floor of other parts.
     #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     people: u64,
-    /// Total number of their steps over the shipped layouts.
-    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
+    /// Number of steps of each person over a shipped layout; 167 of 120 people are 20,000.
+    #[arg(long, value_name = "N", default_value_t = 167, value_parser = clap::value_parser!(u64).range(0..=1_000_000))]
     steps: u64,
-    /// Total number of their intended presses on the shipped layouts.
-    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
+    /// Number of intended presses of each person on a shipped layout.
+    #[arg(long, value_name = "N", default_value_t = 167, value_parser = clap::value_parser!(u64).range(0..=1_000_000))]
     presses: u64,
-    /// The floor's faults: ideal or paper (rigid plates, even rolling feet), slight, moderate or severe.
-    #[arg(long, value_name = "FAULTS", default_value_t)]
-    faults: FloorQuality,
+    #[command(flatten)]
+    quality: QualityArg,
     /// Seed of the first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -173,6 +178,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Feet(args) => feet(args),
         What::Scenes(args) => scenes(args),
         What::Intent(args) => intent(args),
+        What::Controls(args) => controls(args),
         What::Pond(args) => pond(args),
     }
 }
@@ -206,29 +212,28 @@ fn pond(args: &PondArgs) -> Result<(), Failure> {
 }
 
 fn intent(args: &IntentArgs) -> Result<(), Failure> {
-    let each =
-        IntentEffort { steps: args.steps.div_ceil(args.people), presses: args.presses.div_ceil(args.people) };
-    // The rows of buttons get a tenth of the steps and a quarter of the presses.
-    let sweepers = args.people.div_ceil(4);
-    let tenth = IntentEffort {
-        steps: (args.steps / 10).div_ceil(sweepers),
-        presses: (args.presses / 4).div_ceil(sweepers),
-    };
-    let empty = || (IntentTable::on(args.faults), IntentSweep::on(args.faults));
+    let IntentArgs { people, steps, presses, seed, .. } = *args;
+    let quality = args.quality.quality;
+    let progress = ProgressLine::of("person", people);
+    // Every fourth person also uses the rows of buttons, with as many presses and fewer steps: each crosses all rows.
+    let sweepers = people.div_ceil(4);
+    let on_rows = IntentEffort { steps: (2 * steps).div_ceil(5), presses };
+    let empty = || (IntentTable::on(quality), IntentSweep::on(quality));
     let (mut table, mut sweep) = empty();
     // In the order of people, not of completion: the same seed gives the same table.
-    for person in in_parallel("person", args.people, |number| {
-        let seed = args.seed.wrapping_add(number);
+    for person in in_parallel(&progress, people, |number| {
+        let seed = seed.wrapping_add(number);
         let (mut table, mut sweep) = empty();
-        table.add_person(seed, number, each)?;
+        table.add_person(seed, number, IntentEffort { steps, presses })?;
         if number < sweepers {
-            sweep.add_person(seed.wrapping_add(args.people), number, tenth)?;
+            sweep.add_person(seed.wrapping_add(people), number, on_rows)?;
         }
         Ok((table, sweep))
     })? {
         table.append(person.0);
         sweep.append(&person.1);
     }
+    drop(progress);
     if args.json {
         #[derive(Serialize)]
         struct Tables<L, C> {
@@ -245,13 +250,45 @@ fn intent(args: &IntentArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Calls `act` `times` times on all processors and shows the progress on a terminal; returns the results in order.
+fn controls(args: &FeetArgs) -> Result<(), Failure> {
+    let quality = args.quality.quality;
+    let (mut seated, mut beside) = (SeatedTable::on(quality), BesideTable::on(quality));
+    let progress = ProgressLine::of("visit", 2 * args.people);
+    for visit in in_parallel(&progress, args.people, |number| {
+        let mut seated = SeatedTable::on(quality);
+        seated.add_person(args.seed.wrapping_add(number))?;
+        Ok(seated)
+    })? {
+        seated.append(visit);
+    }
+    if !args.json {
+        progress.print(&seated);
+    }
+    for visit in in_parallel(&progress, args.people, |number| {
+        let mut beside = BesideTable::on(quality);
+        beside.add_person(args.seed.wrapping_add(number))?;
+        Ok(beside)
+    })? {
+        beside.append(&visit);
+    }
+    if !args.json {
+        progress.print(&beside);
+        return Ok(());
+    }
+    #[derive(Serialize)]
+    struct Tables<S, B> {
+        seated: Vec<S>,
+        beside: Vec<B>,
+    }
+    print_json(&Tables { seated: seated.lines().collect(), beside: beside.lines().collect() })
+}
+
+/// Calls `act` `times` times on all processors, and counts each call in `progress`; returns the results in order.
 fn in_parallel<T: Send>(
-    what: &'static str,
+    progress: &ProgressLine,
     times: u64,
     act: impl Fn(u64) -> Result<T, ExperimentError> + Sync,
 ) -> Result<Vec<T>, Failure> {
-    let progress = ProgressLine::of(what, times);
     let next = AtomicU64::new(0);
     let done = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
@@ -275,7 +312,6 @@ fn in_parallel<T: Send>(
             });
         }
     });
-    drop(progress);
     let mut done = done.into_inner().map_err(|_| Failure::Other("a thread of the experiment died".into()))?;
     done.sort_by_key(|(number, _)| *number);
     Ok(done.into_iter().map(|(_, result)| result).collect::<Result<_, _>>()?)
@@ -304,85 +340,103 @@ impl FigureArgs {
 }
 
 fn spot(args: &SpotArgs) -> Result<(), Failure> {
-    let (mut tile, mut seam) = (SpotTable::new(15), SeamTable::default());
-    counted("floor", args.floors, |step| {
-        tile.add_floor(args.seed.wrapping_add(step))?;
-        seam.add_floor(args.seed.wrapping_add(step))
-    })?;
-    if args.json {
-        #[derive(Serialize)]
-        struct Tables<L> {
-            lines: Vec<L>,
-        }
-        return print_json(&Tables { lines: tile.lines().chain(seam.lines()).collect() });
+    let quality = args.quality.quality;
+    let (mut tile, mut seam) = (SpotTable::on(quality, 15), SeamTable::on(quality));
+    let progress = ProgressLine::of("floor", 2 * args.floors);
+    for number in 0..args.floors {
+        tile.add_floor(args.seed.wrapping_add(number))?;
+        progress.advance();
     }
-    outln!("{tile}\n{seam}");
-    Ok(())
+    if !args.json {
+        progress.print(&tile);
+    }
+    for number in 0..args.floors {
+        seam.add_floor(args.seed.wrapping_add(number))?;
+        progress.advance();
+    }
+    if !args.json {
+        progress.print(&seam);
+        return Ok(());
+    }
+    #[derive(Serialize)]
+    struct Tables<L> {
+        lines: Vec<L>,
+    }
+    print_json(&Tables { lines: tile.lines().chain(seam.lines()).collect() })
 }
 
 fn place(args: &SpotArgs) -> Result<(), Failure> {
-    let mut table = PlaceTable::new(96);
-    counted("floor", args.floors, |step| table.add_floor(args.seed.wrapping_add(step)))?;
+    let mut table = PlaceTable::on(args.quality.quality, 96);
+    let progress = ProgressLine::of("floor", args.floors);
+    for number in 0..args.floors {
+        table.add_floor(args.seed.wrapping_add(number))?;
+        progress.advance();
+    }
     if args.json {
         return print_json(&table.lines().collect::<Vec<_>>());
     }
-    outln!("{table}");
+    progress.print(&table);
     Ok(())
 }
 
+/// Plays scene after scene with all people, and prints the rows of each as soon as it is complete.
 fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
-    let mut table = SceneTable::on(&args.faults);
-    // In the order of people, not of completion: the same seed gives the same table.
-    for person in in_parallel("person", args.people, |number| {
-        let mut table = SceneTable::on(&args.faults);
-        table.add_person(args.seed.wrapping_add(number))?;
-        Ok(table)
-    })? {
-        table.append(person);
+    let mut table = SceneTable::on(&args.quality);
+    let progress = ProgressLine::of("scene", args.people * SceneKind::ALL.len() as u64);
+    if !args.json {
+        out!("{}", SceneTable::heading(args.people));
+    }
+    for kind in SceneKind::ALL {
+        // In the order of people, not of completion: the same seed gives the same table.
+        for person in in_parallel(&progress, args.people, |number| {
+            let mut table = SceneTable::on(&args.quality);
+            table.add_scene(kind, args.seed.wrapping_add(number))?;
+            Ok(table)
+        })? {
+            table.append(person);
+        }
+        if !args.json {
+            progress.print(&table.rows(Some(kind)));
+        }
     }
     if args.json {
         return print_json(&table.lines().collect::<Vec<_>>());
     }
-    out!("{table}");
+    progress.print(&table.rows(None));
     Ok(())
 }
 
 fn feet(args: &FeetArgs) -> Result<(), Failure> {
-    let (mut people, mut taps) = (PeopleTable::on(args.faults), TapTable::on(args.faults));
-    for (person, tapping) in in_parallel("person", args.people, |number| {
-        let (mut people, mut taps) = (PeopleTable::on(args.faults), TapTable::on(args.faults));
-        let seed = args.seed.wrapping_add(number);
-        people.add_person(seed)?;
-        taps.add_person(seed)?;
-        Ok((people, taps))
+    let quality = args.quality.quality;
+    let (mut people, mut taps) = (PeopleTable::on(quality), TapTable::on(quality));
+    let progress = ProgressLine::of("visit", 2 * args.people);
+    for visit in in_parallel(&progress, args.people, |number| {
+        let mut people = PeopleTable::on(quality);
+        people.add_person(args.seed.wrapping_add(number))?;
+        Ok(people)
     })? {
-        people.append(person);
+        people.append(visit);
+    }
+    if !args.json {
+        progress.print(&people);
+    }
+    for tapping in in_parallel(&progress, args.people, |number| {
+        let mut taps = TapTable::on(quality);
+        taps.add_person(args.seed.wrapping_add(number))?;
+        Ok(taps)
+    })? {
         taps.append(tapping);
     }
-    if args.json {
-        #[derive(Serialize)]
-        struct Tables<P, T> {
-            people: Vec<P>,
-            taps: Vec<T>,
-        }
-        return print_json(&Tables { people: people.lines().collect(), taps: taps.lines().collect() });
+    if !args.json {
+        progress.print(&taps);
+        return Ok(());
     }
-    outln!("{people}\n{taps}");
-    Ok(())
-}
-
-/// Calls `act` `times` times and shows the progress on a terminal.
-fn counted(
-    what: &'static str,
-    times: u64,
-    mut act: impl FnMut(u64) -> Result<(), ExperimentError>,
-) -> Result<(), Failure> {
-    let progress = ProgressLine::of(what, times);
-    for step in 0..times {
-        act(step)?;
-        progress.advance();
+    #[derive(Serialize)]
+    struct Tables<P, T> {
+        people: Vec<P>,
+        taps: Vec<T>,
     }
-    Ok(())
+    print_json(&Tables { people: people.lines().collect(), taps: taps.lines().collect() })
 }
 
 impl From<ExperimentError> for Failure {

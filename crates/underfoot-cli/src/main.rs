@@ -40,6 +40,7 @@ mod play;
 mod preview;
 #[cfg(feature = "lab")]
 mod progress;
+mod quality_arg;
 mod rack;
 mod reference;
 mod render;

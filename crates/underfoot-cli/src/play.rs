@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use underfoot::floor::{Floor, Geometry};
+use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
 use underfoot::source::LinkFaults;
-use underfoot_sim::{self as sim, Scenario, Script, SimConfig, SimFloor};
+use underfoot_sim::{self as sim, BuildError, FloorBuild, Scenario, Script};
 
 use super::failure::Failure;
+use super::quality_arg::QualityArg;
 
 /// Options of the simulated floor on which a scenario is played.
 #[derive(clap::Args, Clone, Debug)]
@@ -15,43 +16,30 @@ pub(crate) struct SimArgs {
     /// Seed of the floor: it determines sensors and noise.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Perfect sensors: alike, exact, without noise, sending newtons.
-    #[arg(long)]
-    pub(crate) ideal: bool,
+    #[command(flatten)]
+    quality: QualityArg,
     /// Also press known points on every tile and use the resulting position maps.
-    #[arg(long, conflicts_with = "ideal")]
-    pub(crate) mapped: bool,
+    #[arg(long)]
+    mapped: bool,
 }
 
 impl Default for SimArgs {
     fn default() -> Self {
-        Self { seed: 1, ideal: false, mapped: false }
+        Self { seed: 1, quality: QualityArg::default(), mapped: false }
     }
 }
 
 impl SimArgs {
-    /// Configuration of the simulated floor.
-    pub(crate) fn config(&self) -> SimConfig {
-        if self.ideal { SimConfig::ideal() } else { SimConfig::default() }
+    /// The way to the simulated floor, with boards that send counts unless its sensors are exact.
+    pub(crate) const fn build(&self) -> FloorBuild {
+        let Self { seed, quality, mapped } = self;
+        FloorBuild { is_mapped: *mapped, ..FloorBuild::of(quality.quality, *seed) }
     }
+}
 
-    /// A simulated floor wired as `floor`, and `floor` after the work in the lab: calibrated, tared and perhaps
-    /// mapped.
-    pub(crate) fn calibrated(&self, floor: &Floor) -> Result<(SimFloor, Floor), Failure> {
-        let sim = SimFloor::new(floor, self.config(), self.seed);
-        let floor = self.measured(floor, &sim)?;
-        Ok((sim, floor))
-    }
-
-    /// `floor` as a lab measures its simulation `sim`.
-    pub(crate) fn measured(&self, floor: &Floor, sim: &SimFloor) -> Result<Floor, Failure> {
-        let floor = sim::calibrated(floor, sim, self.seed)
-            .map_err(|error| Failure::Other(format!("the simulated floor can't be calibrated: {error}")))?;
-        if !self.mapped {
-            return Ok(floor);
-        }
-        sim::mapped(&floor, sim, self.seed)
-            .map_err(|error| Failure::Other(format!("the simulated floor can't be mapped: {error}")))
+impl From<BuildError> for Failure {
+    fn from(error: BuildError) -> Self {
+        Self::Other(error.to_string())
     }
 }
 

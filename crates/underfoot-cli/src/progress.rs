@@ -31,6 +31,19 @@ impl ProgressLine {
         self.show(self.done.fetch_add(1, Ordering::Relaxed) + 1);
     }
 
+    /// Prints `rows` on standard output, with an empty line behind them; the next finished part shows the line again.
+    pub(crate) fn print(&self, rows: &impl fmt::Display) {
+        self.hide();
+        outln!("{rows}");
+    }
+
+    fn hide(&self) {
+        if self.is_shown {
+            // Overwrites the line, so that the next output begins on a clean line.
+            err!("\r{:60}\r", "");
+        }
+    }
+
     fn show(&self, done: u64) {
         if self.is_shown {
             err!(
@@ -54,10 +67,7 @@ impl ProgressLine {
 
 impl Drop for ProgressLine {
     fn drop(&mut self) {
-        if self.is_shown {
-            // Overwrites the line, so that the next output begins on a clean line.
-            err!("\r{:60}\r", "");
-        }
+        self.hide();
     }
 }
 

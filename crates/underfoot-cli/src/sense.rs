@@ -1,9 +1,10 @@
 //! `underfoot sense`: contacts and cursor from a force table.
 
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufRead, BufWriter, Write};
 use std::path::PathBuf;
 
 use clap::Args;
+use underfoot::floor::Geometry;
 use underfoot::outgoing::json::{ContactRecord, CursorRecord, SensedRecord};
 use underfoot::sense::{Contact, Cursor, CursorPicker, ForceFrame, ForceTable, Method, Sensing};
 
@@ -30,8 +31,15 @@ pub(crate) struct SenseArgs {
 /// Maximum size of a table in bytes: a day of a floor of 36 tiles at 1 kHz, read line by line.
 const MOST_BYTES: u64 = 128 << 30;
 
+/// Time at the beginning of a table in which the noise of the tiles is learnt (s).
+const LEARNT_S: f64 = 2.0;
+
+/// Maximum number of tile readings kept for that: 25 MB of them.
+const MOST_READINGS: usize = 1 << 20;
+
 /// Prints one JSON line per instant of the table on standard output.
 ///
+/// The noise of the tiles is learnt from the first two seconds, before the first line is printed.
 /// The cursor is that of a region as large as the floor. Ends when the reader of the output is gone.
 ///
 /// # Errors
@@ -47,18 +55,19 @@ pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
     table::warn_of_unread(&args.file, forces.unread());
     let mut sensing = Sensing::new(geometry, method).with_maps(&floor.position_maps);
     let mut picker = CursorPicker::default();
-    let mut frame = ForceFrame::empty(&geometry);
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    let mut instants = Instants::of(&mut forces, &geometry);
+    sensing.learn_noise(instants.ahead());
     loop {
-        let t_s = match forces.next_frame(&mut frame) {
-            Ok(Some(t_s)) => t_s,
+        let (t_s, frame) = match instants.next() {
+            Ok(Some(instant)) => instant,
             Ok(None) => break,
             Err(error) => {
                 out.flush().unwrap_or_else(note_failure);
                 return Err(Failure::File(args.file.clone(), error));
             }
         };
-        let contacts = sensing.update(&frame);
+        let contacts = sensing.update(frame);
         let cursor = picker.update(geometry.bounds(), contacts, frame.at);
         if let Err(error) = write_line(&mut out, t_s, contacts, cursor) {
             note_failure(error);
@@ -67,6 +76,64 @@ pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
     }
     out.flush().unwrap_or_else(note_failure);
     table::conclude(table::left_out(&args.file, forces.problems()).as_slice())
+}
+
+/// The instants of a table, of which the first [`LEARNT_S`] are read ahead.
+struct Instants<'a, R> {
+    table: &'a mut ForceTable<R>,
+    /// The frame of the last instant read.
+    frame: ForceFrame,
+    /// Times and frames read ahead, and the number of those already returned.
+    times: Vec<f64>,
+    frames: Vec<ForceFrame>,
+    returned: usize,
+    /// Failure of the reader behind them.
+    failure: Option<io::Error>,
+}
+
+impl<'a, R: BufRead> Instants<'a, R> {
+    fn of(table: &'a mut ForceTable<R>, geometry: &Geometry) -> Self {
+        let frame = ForceFrame::empty(geometry);
+        let mut read =
+            Self { table, frame, times: Vec::new(), frames: Vec::new(), returned: 0, failure: None };
+        let most = (MOST_READINGS / geometry.tile_count().max(1)).max(1);
+        while read.frames.len() < most {
+            match read.table.next_frame(&mut read.frame) {
+                Ok(Some(t_s)) => {
+                    read.times.push(t_s);
+                    read.frames.push(read.frame.clone());
+                    if read.times.first().is_some_and(|first| t_s - first >= LEARNT_S) {
+                        break;
+                    }
+                }
+                Ok(None) => break,
+                Err(error) => {
+                    read.failure = Some(error);
+                    break;
+                }
+            }
+        }
+        read
+    }
+
+    /// The frames read ahead.
+    fn ahead(&self) -> &[ForceFrame] {
+        &self.frames
+    }
+
+    /// The next instant with its time in seconds; `None` at the end of the table.
+    fn next(&mut self) -> io::Result<Option<(f64, &ForceFrame)>> {
+        let at = self.returned;
+        if at < self.frames.len() {
+            self.returned += 1;
+            return Ok(self.times.get(at).copied().zip(self.frames.get(at)));
+        }
+        self.frames = Vec::new();
+        if let Some(failure) = self.failure.take() {
+            return Err(failure);
+        }
+        Ok(self.table.next_frame(&mut self.frame)?.map(|t_s| (t_s, &self.frame)))
+    }
 }
 
 fn write_line(

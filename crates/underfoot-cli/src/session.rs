@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (script, rehearsed) = play::script(args.scenario.as_deref(), &layout, &geometry)?;
     std::fs::create_dir_all(&args.out).map_err(|error| Failure::File(args.out.clone(), error))?;
     let file = |name: &str| args.out.join(name);
-    let (sim, floor) = args.sim.calibrated(&floor)?;
+    let (sim, floor) = args.sim.build().in_use(&floor)?;
     if args.calibrate {
         let described = file("floor.ron");
         std::fs::write(&described, schema::write_floor(&floor))

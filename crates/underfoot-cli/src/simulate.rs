@@ -13,7 +13,7 @@ use underfoot::schema;
 use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::SourceError;
 use underfoot::wire::{SensorEncoder, SensorFormat};
-use underfoot_sim::{self as sim, Pace, SimConfig, SimFloor, SimulatedSensors, SimulatedSource};
+use underfoot_sim::{self as sim, FloorBuild, Pace, SimFloor, SimulatedSensors, SimulatedSource};
 
 use super::failure::Failure;
 use super::fault_args::FaultArgs;
@@ -44,7 +44,7 @@ pub(crate) struct Args {
     /// 127.0.0.1:9000.
     #[arg(long, value_name = "ADDR", value_delimiter = ',', value_parser = read_address)]
     send: Vec<SocketAddr>,
-    /// Format of the boards' readings; newtons with --ideal, counts otherwise.
+    /// Format of the boards' readings; newtons with `--quality ideal`, counts otherwise.
     #[arg(long, value_enum)]
     format: Option<Format>,
     /// Where to write the floor file that fits this floor, as a lab would: calibrated sensor by sensor and tared.
@@ -81,13 +81,15 @@ enum Format {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let layout = args.layout.load(&floor.geometry)?;
-    let (sim, encoder) = args.simulated(&floor)?;
-    args.write_fitted(&floor, &sim)?;
+    let build = FloorBuild { sends_newtons: args.format == Some(Format::Newtons), ..args.sim.build() };
+    let (sim, fitted) = build.in_use(&floor)?;
+    let encoder = SensorEncoder::new(&floor, args.sensor_format(&sim)?);
+    args.write_fitted(&floor, &fitted)?;
     if let Some(path) = &args.write_loads {
         write(path, &sim::load_table(&sim, args.sim.seed))?;
     }
     if let Some(path) = &args.write_presses {
-        let (sim, calibrated) = args.sim.calibrated(&floor)?;
+        let (sim, calibrated) = args.sim.build().measured(&floor)?;
         write(path, &sim::press_table(&calibrated, &sim, args.sim.seed))?;
     }
     let sent = args.send_all(&floor, &layout, &sim, encoder)?;
@@ -104,34 +106,29 @@ fn write(path: &Path, table: &str) -> Result<(), Failure> {
 }
 
 impl Args {
-    fn simulated(&self, floor: &Floor) -> Result<(SimFloor, SensorEncoder), Failure> {
-        let mut config: SimConfig = self.sim.config();
-        let format = match (self.format, config.sensing) {
-            (None | Some(Format::Newtons), SimulatedSensors::Exact) => SensorFormat::Newtons,
+    /// The format of the readings that the boards of `sim` send.
+    fn sensor_format(&self, sim: &SimFloor) -> Result<SensorFormat, Failure> {
+        match (self.format, sim.sensing()) {
+            (None | Some(Format::Newtons), SimulatedSensors::Exact) => Ok(SensorFormat::Newtons),
             (Some(_), SimulatedSensors::Exact) => {
-                return Err(Failure::Other("perfect sensors send newtons; leave out --format".into()));
+                Err(Failure::Other("an ideal floor sends newtons; leave out --format".into()))
             }
-            (Some(Format::Newtons), SimulatedSensors::Counts(parts) | SimulatedSensors::Newtons(parts)) => {
-                config.sensing = SimulatedSensors::Newtons(parts);
-                SensorFormat::Newtons
-            }
-            (Some(Format::Blob), _) => SensorFormat::Blob,
-            (None | Some(Format::Counts), _) => SensorFormat::Counts,
-        };
-        Ok((SimFloor::new(floor, config, self.sim.seed), SensorEncoder::new(floor, format)))
+            (Some(Format::Newtons), _) => Ok(SensorFormat::Newtons),
+            (Some(Format::Blob), _) => Ok(SensorFormat::Blob),
+            (None | Some(Format::Counts), _) => Ok(SensorFormat::Counts),
+        }
     }
 
     /// Writes the floor file that fits this simulated floor, and prints the commands that serve it.
-    fn write_fitted(&self, floor: &Floor, sim: &SimFloor) -> Result<(), Failure> {
-        let fitted = self.sim.measured(floor, sim)?;
+    fn write_fitted(&self, floor: &Floor, fitted: &Floor) -> Result<(), Failure> {
         let path = match (&self.write_floor, &self.floor.floor) {
             (Some(path), _) => {
-                save_floor(&fitted, path)?;
+                save_floor(fitted, path)?;
                 Some(path.clone())
             }
             // A file that an earlier run wrote fits already.
-            (None, Some(path)) if fitted == *floor => Some(path.clone()),
-            (None, _) => fitted_floor::keep(&fitted, self.sim.seed),
+            (None, Some(path)) if fitted == floor => Some(path.clone()),
+            (None, _) => fitted_floor::keep(fitted, self.sim.seed),
         };
         if let Some(path) = path {
             let areas: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();

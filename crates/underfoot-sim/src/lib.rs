@@ -6,20 +6,18 @@
 //!   -parts-> volts, noise -converter-> counts -> Readings per board
 //! ```
 //!
-//! Code that receives the packets can't distinguish them from real ones: the floor needs calibration ([`calibrated`])
-//! like a real one. The simulation is deterministic: the same seeds and feet give the same packets.
+//! Code that receives the packets can't distinguish them from real ones: the floor needs calibration
+//! ([`FloorBuild`]) like a real one. The simulation is deterministic: the same seeds and feet give the same packets.
 //!
 //! ```
 //! use std::time::Duration;
 //! use underfoot::floor::Floor;
 //! use underfoot::glam::Vec2;
-//! use underfoot_sim::{Pace, Performance, Person, Script, SimConfig, SimFloor, SimulatedSource, calibrated};
+//! use underfoot_sim::{FloorBuild, FloorQuality, Pace, Performance, Person, Script, SimulatedSource};
 //! use underfoot::source::SensorSource;
 //! use underfoot::units::Newtons;
 //!
-//! let nominal = Floor::default();
-//! let sim = SimFloor::new(&nominal, SimConfig::default(), 1);
-//! let floor = calibrated(&nominal, &sim, 1)?;
+//! let (sim, floor) = FloorBuild::of(FloorQuality::Slight, 1).in_use(&Floor::default())?;
 //!
 //! let mut person = Performance::new(Person::default(), 1);
 //! person.appear(Vec2::new(0.9, 0.6), 0.0)?;
@@ -33,6 +31,7 @@
 //! ```
 
 mod arrivals;
+mod build;
 mod curve;
 mod definition;
 mod drawn_walk;
@@ -71,6 +70,7 @@ mod watched;
 mod way;
 
 pub use arrivals::{ArrivalError, ArrivalHandle, Arrivals, arrivals};
+pub use build::{BuildError, FloorBuild, drift_zeros};
 pub use drawn_walk::{DrawnWalk, WalkError};
 pub use floor::{SimConfig, SimFloor, SimulatedSensors};
 pub use floor_clock::Host;

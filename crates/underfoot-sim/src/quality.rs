@@ -32,19 +32,26 @@ use underfoot::floor::{Geometry, SensorId};
 /// | broken sensors | none | none | none | none | one in 72, open or stuck |
 ///
 /// # Source
-/// Hysteresis of 10 % and creep of 5 % per decade are a maker's figures for force-sensing resistors; the error after
-/// calibration and 2 mV are the paper's; twist as at [`PlateConfig::twist`], seams as at [`SeamConfig`]. The other
-/// values are our choice.
+/// - Hysteresis of 10 % and creep of 5 % per decade are a maker's figures for force-sensing resistors, as upper limits;
+///   the better floors have a fifth and a half of them (our choice).
+/// - 5 % after calibration and 2 mV are the paper's. 2 % is our choice: the bench's load cell alone leaves 0.5 %. 5 mV
+///   is a converter with 9 effective bits of 5 V, as in microcontrollers (a step of 10 mV, over the root of 12, and the
+///   part's own 2 mV), 10 mV such a converter beside a motor (our choice).
+/// - Zero drift is our choice: 1 N is a sixth of the load of a tile that counts as loaded, and costs 1 cm at 40 N.
+/// - Twist as at [`PlateConfig::twist`]; seams and crosstalk as at [`SeamConfig`]. Crosstalk of 1 % is a corner's share
+///   that a common strip of rubber carries over; both other levels are a third and twice of it (our choice).
+/// - Soft saturation ends below the 400 N of the converter (our choice), and one broken sensor in 72 makes two on the
+///   paper's floor (our choice).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FloorQuality {
     /// No error at all ([`SimConfig::ideal`]), for tests that need exact readings.
     Ideal,
     /// The paper's plates and parts ([`SimConfig::default`]): rigid plates, sensors without memory.
     Paper,
-    /// New and well built.
+    /// New and well built: the floor of simulations that name no other.
+    #[default]
     Slight,
     /// Built by hand from plywood and force-sensing resistors, as most floors are.
-    #[default]
     Moderate,
     /// Thin plates, cheap parts near their limits, some of them broken.
     Severe,

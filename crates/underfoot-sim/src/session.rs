@@ -4,10 +4,11 @@ use std::path::Path;
 
 use thiserror::Error;
 
+use super::Scenario;
+use super::build::{BuildError, FloorBuild};
 use super::foot::FootDriver;
-use super::loadcell::{CalibrationError, calibrated};
+use super::quality::FloorQuality;
 use super::simulated::{Pace, SimulatedSource};
-use super::{Scenario, SimConfig, SimFloor};
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::{Session, SessionBuilder};
@@ -32,24 +33,28 @@ pub enum SimulationError {
     /// A fault of the scenario is invalid.
     #[error(transparent)]
     Fault(#[from] BadFault),
-    /// The simulated floor can't be calibrated.
-    #[error("the simulated floor can't be calibrated: {0}")]
-    Calibration(#[from] CalibrationError),
+    /// The simulated floor can't be measured.
+    #[error(transparent)]
+    Build(#[from] BuildError),
 }
 
-/// A session on a simulated floor of the default size, with the people and the faults of `scenario`:
-/// `session(layout, &scenario)?.start()?`. It ends with the scenario.
+/// A session on a simulated floor of the default size and of this quality, with the people and the faults of
+/// `scenario`: `session(layout, &scenario, FloorQuality::Slight)?.start()?`. It ends with the scenario.
 ///
 /// # Errors
 /// [`SimulationError`] has the problems of the scenario on this layout.
-pub fn session(layout: Layout, scenario: &Scenario) -> Result<SessionBuilder, SimulationError> {
+pub fn session(
+    layout: Layout,
+    scenario: &Scenario,
+    quality: FloorQuality,
+) -> Result<SessionBuilder, SimulationError> {
     let floor = Floor::default();
     let mut faults = LinkFaults::default();
     for fault in scenario.faults() {
         faults = faults.and(fault.parse()?);
     }
     let script = scenario.resolve(&layout, &floor.geometry)?;
-    let (source, clock, floor) = simulated(&floor, Box::new(script))?;
+    let (source, clock, floor) = simulated(&floor, quality, Box::new(script))?;
     let input: FloorInput = if faults == LinkFaults::default() {
         source.into()
     } else {
@@ -67,6 +72,7 @@ pub fn session(layout: Layout, scenario: &Scenario) -> Result<SessionBuilder, Si
 pub fn session_from_files(
     layout: impl AsRef<Path>,
     scenario: Option<&Path>,
+    quality: FloorQuality,
 ) -> Result<SessionBuilder, SimulationError> {
     let loaded = schema::load_layout_and_kinds(layout.as_ref(), &Floor::default().geometry);
     let layout = loaded.map_err(SimulationError::Layout)?.log_warnings();
@@ -74,27 +80,31 @@ pub fn session_from_files(
         Some(path) => Scenario::load(path)?,
         None => Scenario::parse("session", Scenario::SESSION)?,
     };
-    session(layout, &scenario)
+    session(layout, &scenario, quality)
 }
 
-/// A session on a simulated `floor`, calibrated as in the lab, with the feet that `driver` moves. Set the layout, but
-/// no other floor.
+/// A session on a simulated `floor` of this quality, calibrated as in the lab, with the feet that `driver` moves. Set
+/// the layout, but no other floor.
 ///
 /// # Errors
-/// [`SimulationError::Calibration`] if the sensors of the floor can't be calibrated.
-pub fn session_with(floor: &Floor, driver: Box<dyn FootDriver>) -> Result<SessionBuilder, SimulationError> {
-    let (source, clock, floor) = simulated(floor, driver)?;
+/// [`SimulationError::Build`] if the sensors of the floor can't be calibrated.
+pub fn session_with(
+    floor: &Floor,
+    quality: FloorQuality,
+    driver: Box<dyn FootDriver>,
+) -> Result<SessionBuilder, SimulationError> {
+    let (source, clock, floor) = simulated(floor, quality, driver)?;
     Ok(Session::source(source, clock).floor(floor))
 }
 
 /// Returns the packets of a simulated `floor` in real time, their clock, and the floor with its calibration.
 fn simulated(
     floor: &Floor,
+    quality: FloorQuality,
     driver: Box<dyn FootDriver>,
-) -> Result<(SimulatedSource, HostClock, Floor), CalibrationError> {
-    let sim = SimFloor::new(floor, SimConfig::default(), SEED);
-    let calibrated = calibrated(floor, &sim, SEED)?;
+) -> Result<(SimulatedSource, HostClock, Floor), BuildError> {
+    let (sim, floor) = FloorBuild::of(quality, SEED).in_use(floor)?;
     let source = SimulatedSource::new(sim, driver, Pace::RealTime);
     let clock = source.clock();
-    Ok((source, clock, calibrated))
+    Ok((source, clock, floor))
 }

@@ -15,8 +15,8 @@ use underfoot::serve::{Ended, Server};
 use underfoot::sink::{Fanout, StereoSink};
 use underfoot::source::{LinkFaults, SensorSource, TappedPackets};
 use underfoot_sim::{
-    CalibrationError, Host, Pace, RehearsalSource, SimConfig, SimFloor, SimulatedSource, arrivals,
-    calibrated, feet_by_hand, watched,
+    BuildError, FloorBuild, FloorQuality, Host, Pace, RehearsalSource, SimulatedSource, arrivals,
+    feet_by_hand, watched,
 };
 use underfoot_window::edit::Document;
 use underfoot_window::link::SharedLayout;
@@ -62,9 +62,9 @@ pub enum NoFloor {
         /// Number of rows.
         rows: u16,
     },
-    /// The simulated floor cannot be calibrated.
-    #[error("the simulated floor can't be calibrated: {0}")]
-    Calibration(#[from] CalibrationError),
+    /// The simulated floor cannot be measured.
+    #[error(transparent)]
+    Build(#[from] BuildError),
 }
 
 /// The simulated floor of the page.
@@ -109,8 +109,8 @@ impl PageFloor {
         let own = OwnTexts::of(shared);
         let kinds = own.read(None)?;
         let document = Document::read(&shared.name, &shared.text, &kinds, &Arc::new(nominal.clone()))?;
-        let sim = SimFloor::new(&nominal, SimConfig::default(), SEED);
-        let floor = Arc::new(calibrated(&nominal, &sim, SEED)?);
+        let (sim, floor) = FloorBuild::of(FloorQuality::default(), SEED).in_use(&nominal)?;
+        let floor = Arc::new(floor);
 
         let (hand, driver) = feet_by_hand();
         let (people, driver) = arrivals(Box::new(driver));

@@ -23,7 +23,7 @@ use underfoot::floor::{self, Floor};
 use underfoot::runtime::Session;
 use underfoot::schema::{self, Kinds};
 use underfoot_egui::FootInput;
-use underfoot_sim::{FootHandle, Scenario, feet_by_hand, session_with};
+use underfoot_sim::{FloorQuality, FootHandle, Scenario, feet_by_hand, session_with};
 
 use crate::app::Picture;
 use crate::guide::Guide;
@@ -94,11 +94,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         (Some(address), _) => (Session::listen(address.as_str()).floor(hardware), None),
         (None, Some(path)) => {
             let feet = Scenario::load(path)?.resolve(&layout, &geometry)?;
-            (session_with(&hardware, Box::new(feet))?, None)
+            (session_with(&hardware, FloorQuality::default(), Box::new(feet))?, None)
         }
         (None, None) => {
             let (hand, driver): (FootHandle, _) = feet_by_hand();
-            (session_with(&hardware, Box::new(driver))?, Some(hand))
+            (session_with(&hardware, FloorQuality::default(), Box::new(driver))?, Some(hand))
         }
     };
     let mut builder = builder.layout(layout);

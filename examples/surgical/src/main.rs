@@ -30,9 +30,7 @@ use underfoot::schema::{self, Kinds};
 use underfoot::source::{FaultInjector, LinkFaults};
 use underfoot::widget::Guard;
 use underfoot_egui::FootInput;
-use underfoot_sim::{
-    Pace, Scenario, SimConfig, SimFloor, SimulatedSource, calibrated, feet_by_hand, session_with,
-};
+use underfoot_sim::{FloorBuild, FloorQuality, Pace, Scenario, SimulatedSource, feet_by_hand, session_with};
 
 use crate::app::Shelf;
 use crate::feel::Feel;
@@ -122,7 +120,7 @@ fn view(args: Args) -> Result<(), Box<dyn Error>> {
         (None, Some(path)) => (played(path, &hardware, &layout)?, None),
         (None, None) => {
             let (hand, driver) = feet_by_hand();
-            (session_with(&hardware, Box::new(driver))?, Some(hand))
+            (session_with(&hardware, FloorQuality::default(), Box::new(driver))?, Some(hand))
         }
     };
     let mut builder = args.feel.attach(builder.layout(layout));
@@ -195,8 +193,7 @@ fn played(path: &Path, wired: &Floor, layout: &Layout) -> Result<SessionBuilder,
         faults = faults.and(fault.parse().map_err(|error| format!("{}: {error}", path.display()))?);
     }
     let feet = scenario.resolve(layout, &wired.geometry)?;
-    let sim = SimFloor::new(wired, SimConfig::default(), SEED);
-    let floor = calibrated(wired, &sim, SEED)?;
+    let (sim, floor) = FloorBuild::of(FloorQuality::default(), SEED).in_use(wired)?;
     let source = SimulatedSource::new(sim, Box::new(feet), Pace::RealTime);
     let source = FaultInjector::new(source, faults, SEED);
     let begun = Instant::now();

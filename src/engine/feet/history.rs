@@ -7,7 +7,9 @@ use glam::Vec2;
 use super::super::ignored::Ignored;
 use super::super::people::{SAME_FOOT_M, STANCE_M, TrackedPerson};
 use super::super::snapshot::FootRole;
-use super::super::step::{CARRIES, HeldSince, Landing, Loading, RESTS, RESTS_N, StepWatch, Support};
+use super::super::step::{
+    CARRIES, HeldSince, Landing, Loading, OtherFoot, RESTS, RESTS_N, StepWatch, Support,
+};
 use super::super::still::Stillness;
 use super::past::{PLACE_EVERY, Past, PastLoad};
 use crate::sense::{Contact, ContactId};
@@ -39,6 +41,10 @@ const STOOD_N: f32 = 150.0;
 /// s.
 const EARLY: Duration = Duration::from_millis(150);
 const AT_ONCE: f32 = 0.85;
+
+/// Maximum mean growth of the force of a foot that presses, in newtons a second: people who press build up 60 to 150 N
+/// in 60 to 120 ms; a walker of 45 kg loads a foot by 3000 N a second and more (as at [`super::super::step`]).
+const GENTLY_N_PER_S: f32 = 2000.0;
 
 /// Below this force a foot counts as lifted, in newtons: less than the release threshold of any control.
 pub(in crate::engine) const AS_GOOD_AS_LIFTED_N: f32 = 8.0;
@@ -89,8 +95,8 @@ pub(in crate::engine) struct FootHistory {
     pub(in crate::engine) pressing: bool,
     /// Whether it came from elsewhere, rather than from a control back to its earlier place.
     stepped: bool,
-    /// Whether the person stood on the other foot when it landed.
-    pub(super) has_support: bool,
+    /// The other foot of its person when it landed.
+    pub(super) beside: OtherFoot,
     pub(super) in_stance: bool,
     /// When the tracker last marked it as perhaps two feet.
     ambiguous: Option<Instant>,
@@ -121,7 +127,7 @@ impl FootHistory {
             force,
             pressing: false,
             stepped: person.steps_to(place, now),
-            has_support: false,
+            beside: OtherFoot::Unknown,
             in_stance: false,
             ambiguous: may_be_two(contact).then_some(now),
             step: false,
@@ -229,13 +235,18 @@ impl FootHistory {
     /// of it split off for a while, or a second foot that stood undetected beside it.
     pub(super) fn go_on_as(&mut self, other: &Self) {
         (self.landed, self.landed_at) = (other.landed, other.landed_at);
-        (self.step, self.stepped, self.has_support) = (other.step, other.stepped, other.has_support);
+        (self.step, self.stepped, self.beside) = (other.step, other.stepped, other.beside);
     }
 
     /// Sets the support and the step state from the landing.
     pub(super) fn land(&mut self, landing: &Landing) {
-        self.has_support = landing.has_standing_support();
+        self.beside = landing.other_foot();
         self.step = landing.walks();
+    }
+
+    /// Whether its force has grown no faster than that of a foot that presses.
+    fn lands_gently(&self, now: Instant) -> bool {
+        self.force <= GENTLY_N_PER_S * now.since(self.landed).as_secs_f32()
     }
 
     /// Whether its force and place are those of a tenth of a second ago, within the limits of a steady foot.
@@ -254,9 +265,9 @@ impl FootHistory {
     /// A control to stand on ([`PressMode::Stand`]) starts once the foot has settled. A guarded control starts once
     /// the foot has settled without taking the weight over, since that would be a step; a control that only requires
     /// confirmation starts at once if the other foot supports the person. A free control starts at once, except one
-    /// that acts at once ([`PressMode::Follow`]): no foot on it may carry a body, and a foot without a standing foot
-    /// beside it must have stopped gaining weight. A foot that lands in a walk stops gaining only when it is already
-    /// classified as a step.
+    /// that acts at once ([`PressMode::Follow`]): no foot on it may carry a body, and a foot without a foot that stands
+    /// or rests beside it must land gently, if its person has never carried a body, or else have stopped gaining weight.
+    /// A foot that lands in a walk stops gaining only when it is already classified as a step.
     pub(in crate::engine) fn is_meant(&self, mode: PressMode, guard: Guard, now: Instant) -> bool {
         let stays = || now.since(self.landed) >= SETTLED && self.is_steady();
         let settled = || stays() && !self.took_weight_over();
@@ -264,10 +275,14 @@ impl FootHistory {
             (PressMode::Stand, _) => stays(),
             (PressMode::Tap | PressMode::Hold, Guard::Free) => true,
             (PressMode::Follow, Guard::Free) => {
-                (self.has_support || self.has_steady_force())
-                    && self.share.is_none_or(|share| share < CARRIES)
+                let sits = match self.beside {
+                    OtherFoot::Stands | OtherFoot::Rests => true,
+                    OtherFoot::NeverStood => self.lands_gently(now),
+                    OtherFoot::Unknown => false,
+                };
+                (sits || self.has_steady_force()) && self.share.is_none_or(|share| share < CARRIES)
             }
-            (_, Guard::Confirm { .. }) => self.has_support || settled(),
+            (_, Guard::Confirm { .. }) => self.beside == OtherFoot::Stands || settled(),
             (_, Guard::HoldToRun { .. }) => settled(),
         }
     }
@@ -315,7 +330,7 @@ impl FootHistory {
             share,
             age: now.since(self.landed),
             travelled: self.place.distance(self.landed_at),
-            has_support: self.has_support,
+            has_support: self.beside == OtherFoot::Stands,
         };
         self.step |= self.watch.is_step(&loading, now);
     }

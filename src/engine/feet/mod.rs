@@ -8,7 +8,7 @@ use glam::Vec2;
 pub(super) use self::history::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
 use super::people::TrackedPerson;
 use super::snapshot::FootState;
-use super::step::Landing;
+use super::step::{Landing, STEP_TIME};
 use crate::layout::Stance;
 use crate::sense::{Contact, ContactId};
 use crate::units::{Instant, Newtons};
@@ -126,10 +126,16 @@ impl FootHistories {
             foot.go_on_as(other);
             return foot;
         }
+        let rests = |other: &FootHistory| {
+            other.force >= AS_GOOD_AS_LIFTED_N && now.since(other.landed) > STEP_TIME && !other.pressing
+        };
+        let mut mine = self.feet.iter().filter(|other| other.person == person.id && !other.is_object());
         let landing = Landing {
             at: foot.place,
             support: support.map(|support| support.as_support(now)),
             left: person.last_left(now),
+            rests: mine.any(rests),
+            carried: person.carried,
         };
         foot.land(&landing);
         foot
@@ -188,6 +194,7 @@ impl FootHistories {
 
 #[cfg(test)]
 mod tests {
+    use super::super::step::OtherFoot;
     use super::*;
 
     fn contact(id: u32, at: (f32, f32), force: f32, ambiguous: bool) -> Contact {
@@ -221,7 +228,7 @@ mod tests {
         let now = give(&mut feet, &[standing, contact(3, (0.5, 0.9), 40.0, false)], 10);
         let foot = feet.of(ContactId(3)).unwrap();
         assert!(!foot.is_step_on(PressMode::Tap, now), "it presses");
-        assert!(foot.has_support, "beside a foot that stands");
+        assert_eq!(foot.beside, OtherFoot::Stands);
     }
 
     #[test]

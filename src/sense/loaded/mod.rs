@@ -94,6 +94,19 @@ impl LoadedTiles {
         self.maps = maps.to_vec();
     }
 
+    /// Learns the noise of the tiles from `frames`, as a floor in use does before the first foot; then the floor is as
+    /// before its first frame.
+    pub(super) fn learn_noise(&mut self, frames: &[ForceFrame]) {
+        let mut last = None;
+        let mut surveyed = Vec::with_capacity(frames.len());
+        for frame in frames {
+            self.survey.update(frame, self.thresholds.least());
+            let dt = last.replace(frame.at).map_or(0.0, |last| frame.at.since(last).as_secs_f32());
+            surveyed.push((dt, self.survey.sums.clone(), frame.forces.as_slice()));
+        }
+        self.thresholds.learn(surveyed.iter().map(|(dt, sums, forces)| (*dt, sums.as_slice(), *forces)));
+    }
+
     pub(super) fn geometry(&self) -> &Geometry {
         &self.geometry
     }

@@ -1,6 +1,6 @@
 //! Position errors of people's feet: a small table as a snapshot, compared with the goals.
 //!
-//! `underfoot experiment feet --people 100` makes the same table of more people.
+//! `underfoot experiment feet --people 100 --quality paper` makes the same table of more people.
 
 use std::time::Duration;
 

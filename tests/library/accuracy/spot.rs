@@ -1,10 +1,11 @@
 //! Position error of one contact on floors of the paper's parts: tables as snapshots, compared with the goals.
 
 use underfoot_lab::experiment::{SeamTable, SpotTable, Thing, Way};
+use underfoot_sim::FloorQuality;
 
 #[test]
 fn one_contact_over_a_whole_tile() {
-    let mut table = SpotTable::new(5);
+    let mut table = SpotTable::on(FloorQuality::Paper, 5);
     (1..=20).for_each(|seed| table.add_floor(seed).unwrap());
     println!("{table}");
     insta::assert_snapshot!(table);
@@ -30,7 +31,7 @@ fn one_contact_over_a_whole_tile() {
 
 #[test]
 fn what_crosses_a_seam_is_found_as_well_as_in_the_middle_of_a_tile() {
-    let mut table = SeamTable::default();
+    let mut table = SeamTable::on(FloorQuality::Paper);
     (1..=20).for_each(|seed| table.add_floor(seed).unwrap());
     println!("{table}");
     insta::assert_snapshot!(table);

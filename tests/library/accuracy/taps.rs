@@ -1,6 +1,6 @@
 //! The effect of a heavy foot beside a region on the foot that works in it: a small table as a snapshot.
 //!
-//! `underfoot experiment feet --people 100` makes the same table of more people.
+//! `underfoot experiment feet --people 100 --quality paper` makes the same table of more people.
 
 use underfoot_lab::experiment::TapTable;
 

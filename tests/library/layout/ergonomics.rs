@@ -6,11 +6,17 @@ use underfoot::schema::{Kinds, Severity, parse_layout};
 use underfoot::units::Newtons;
 use underfoot_lab::experiment::PlaceTable;
 use underfoot_scene::ergonomics::{self, RULES, Zone, predicted_error_m};
+use underfoot_sim::FloorQuality;
 
 /// Codes of the findings about the controls of a layout with these fields, errors with an exclamation mark.
 fn found(fields: &str) -> Vec<String> {
+    found_in("at: (0, 0), size: (1.8, 1.8), cursor: Working", fields)
+}
+
+/// The same, with a region of these fields.
+fn found_in(region: &str, fields: &str) -> Vec<String> {
     let floor = Floor::default();
-    let region = "(id: \"r\", at: (0, 0), size: (1.8, 1.8))";
+    let region = format!("(id: \"r\", {region})");
     let text = format!("Layout(version: 1, regions: [{region}], units: Metres, {fields})");
     let loaded = parse_layout(&text, "page.ron", &Kinds::builtin(), &floor.geometry);
     let layout = loaded.unwrap_or_else(|problems| panic!("{problems}")).layout;
@@ -107,6 +113,24 @@ fn reach_is_counted_from_where_a_foot_can_stand() {
 }
 
 #[test]
+fn a_foot_that_stands_half_a_shoe_beside_its_zone_is_not_the_cursor() {
+    let by = |south: f32, rule: &str| {
+        found_in(
+            &format!("at: (0, {south}), size: (1.8, 1.2){rule}"),
+            "stances: [(at: (0.61, 0), size: (0.6, 0.3))], widgets: [
+                (id: \"a\", kind: \"button\", label: \"A\", at: (0.6, 0.75), size: (0.2, 0.2)),
+                (id: \"b\", kind: \"button\", label: \"B\", at: (1.0, 0.75), size: (0.2, 0.2))]",
+        )
+    };
+    assert_eq!(by(0.2, ""), ["U107"], "once for the region");
+    assert_eq!(by(0.42, ""), ["U107"]);
+    assert_eq!(by(0.44, ""), [] as [&str; 0]);
+    for rule in [", cursor: Working", ", cursor: Each"] {
+        assert_eq!(by(0.2, rule), [] as [&str; 0]);
+    }
+}
+
+#[test]
 fn forces_of_light_people_and_of_feet_at_rest() {
     let press = |fields: &str| of_one(&format!("at: (0.9, 0.9), size: (0.3, 0.3), {fields}"));
     assert_eq!(press("press_n: 220"), [] as [&str; 0]);
@@ -156,7 +180,7 @@ fn every_rule_is_explained_and_has_a_code_of_its_own() {
 /// The tables in the code come from 60 floors; a few floors come close to them.
 #[test]
 fn predicted_errors_are_those_of_the_simulated_floor() {
-    let mut table = PlaceTable::new(96);
+    let mut table = PlaceTable::on(FloorQuality::Paper, 96);
     for seed in 101..=108 {
         table.add_floor(seed).unwrap();
     }

@@ -432,7 +432,7 @@ impl Args {
             };
         let (people, driver) = arrivals(driver);
         let (driver, seen) = watched(Box::new(driver));
-        let (sim, floor) = self.sim.calibrated(floor)?;
+        let (sim, floor) = self.sim.build().in_use(floor)?;
         let driver = Box::new(driver);
         let source = SimulatedSource::new(sim, driver, Pace::RealTime);
         let clock = source.clock();

@@ -27,7 +27,7 @@ fn a_floor_in_another_process_drives_an_app_of_25_lines() {
     std::fs::write(folder.path().join("visit.ron"), VISIT).unwrap();
     let sent = underfoot()
         .current_dir(folder.path())
-        .args(["simulate", "--scenario", "visit.ron", "--send", &address])
+        .args(["simulate", "--quality", "paper", "--scenario", "visit.ron", "--send", &address])
         .stderr(Stdio::null())
         .status()
         .unwrap();

@@ -102,7 +102,16 @@ fn two_computers_serve_a_hall_between_them() {
     let addresses: Vec<&str> = computers.iter().map(|computer| computer.address.as_str()).collect();
     // Boards send to the computers concerned; these send to all, as through a switch.
     let simulated = underfoot()
-        .args(["simulate", "hall_buttons.ron", "--floor", "hall.ron", "--scenario", "visit.ron"])
+        .args([
+            "simulate",
+            "hall_buttons.ron",
+            "--quality",
+            "paper",
+            "--floor",
+            "hall.ron",
+            "--scenario",
+            "visit.ron",
+        ])
         .args(["--send", &addresses.join(",")])
         .current_dir(folder)
         .output()

@@ -159,7 +159,7 @@ def play(program, layout):
     try:
         # The sound system may print a message first.
         expect(any(b"Listening" in line for line in run.stderr), "the program does not listen")
-        simulate = subprocess.Popen([program, "simulate", "--send", f"{LOOPBACK}:{floor}"],
+        simulate = subprocess.Popen([program, "simulate", "--quality", "paper", "--send", f"{LOOPBACK}:{floor}"],
                                     stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 
         # An app drives controls while there is no foot on them.

@@ -132,7 +132,8 @@ fn two_processes_over_udp_give_the_same_events_as_one() {
     assert!(line.starts_with("Listening on"), "{line}");
 
     let begun = Instant::now();
-    let simulated = underfoot().args(["simulate", "--send", &address]).output().unwrap();
+    let paper = ["--quality", "paper"];
+    let simulated = underfoot().args(["simulate", "--send", &address]).args(paper).output().unwrap();
     assert!(simulated.status.success(), "{}", said(&simulated));
     let took = begun.elapsed();
     assert!(took > Duration::from_secs(10), "the session is played in real time, not in {took:?}");
@@ -142,7 +143,7 @@ fn two_processes_over_udp_give_the_same_events_as_one() {
     let report = std::io::read_to_string(chatter).unwrap();
     assert!(report.contains("From packet to click"), "{report}");
 
-    let session = underfoot().args(["session", "--out"]).arg(folder.path()).output().unwrap();
+    let session = underfoot().args(["session", "--out"]).arg(folder.path()).args(paper).output().unwrap();
     assert!(session.status.success(), "{}", said(&session));
     let alone = events(&std::fs::read_to_string(folder.path().join("events.jsonl")).unwrap());
     let apart = events(&lines);

@@ -77,7 +77,18 @@ fn the_latency_of_clicks_on_a_paced_device_is_told_stage_by_stage() {
     let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../../benches/latency/layout.ron");
     let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/../../benches/latency/scenario.ron");
     let mut simulated = underfoot()
-        .args(["simulate", layout, "--scenario", scenario, "--send", &address, "--seconds", "9"])
+        .args([
+            "simulate",
+            layout,
+            "--quality",
+            "paper",
+            "--scenario",
+            scenario,
+            "--send",
+            &address,
+            "--seconds",
+            "9",
+        ])
         .stderr(std::process::Stdio::null())
         .spawn()
         .unwrap();

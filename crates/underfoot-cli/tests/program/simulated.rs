@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use underfoot::floor::{Floor, Geometry};
 use underfoot::schema::load_floor;
-use underfoot_sim::{self as sim, SimConfig, SimFloor};
+use underfoot_sim::{FloorBuild, FloorQuality};
 
 use crate::end_to_end::{said, underfoot};
 use crate::ports::free_port;
@@ -65,8 +65,8 @@ fn a_simulated_floor_writes_the_file_that_fits_it() {
         assert!(command.starts_with("underfoot run map --floor "), "{command}");
         assert!(command.contains(" --listen 127.0.0.1:"), "{command}");
         let wired = Floor::of(Geometry::of_paper_tiles(grid.0, grid.1).unwrap());
-        let sim = SimFloor::new(&wired, SimConfig::default(), seed);
-        assert_eq!(load_floor(&path).unwrap(), sim::calibrated(&wired, &sim, seed).unwrap());
+        let (_, fitted) = FloorBuild::of(FloorQuality::Slight, seed).in_use(&wired).unwrap();
+        assert_eq!(load_floor(&path).unwrap(), fitted);
     }
 }
 
@@ -84,9 +84,9 @@ fn each_simulation_has_a_file_of_its_own_that_is_written_once() {
 #[test]
 fn boards_that_send_newtons_need_no_laws() {
     let folder = tempfile::tempdir().unwrap();
-    for options in [["--format", "newtons"].as_slice(), &["--ideal"]] {
-        let (path, _) = printed(&simulate(folder.path(), options));
-        let floor = Floor { noiseless: options == ["--ideal"], ..Floor::default() };
+    for options in [["--format", "newtons"], ["--quality", "ideal"]] {
+        let (path, _) = printed(&simulate(folder.path(), &options));
+        let floor = Floor { noiseless: options == ["--quality", "ideal"], ..Floor::default() };
         assert_eq!(load_floor(&path).unwrap(), floor, "{options:?}");
     }
 }

@@ -117,7 +117,7 @@ fn an_hour_of_packets_takes_no_more_than_its_first_five_minutes() {
         .map(Served)
         .unwrap();
     let mut boards = underfoot()
-        .args(["simulate", "map", "--send", &address, "--scenario"])
+        .args(["simulate", "map", "--quality", "paper", "--send", &address, "--scenario"])
         .arg(&scenario)
         .stderr(Stdio::null())
         .spawn()

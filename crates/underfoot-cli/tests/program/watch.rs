@@ -207,7 +207,7 @@ fn a_press_on_a_control_that_an_app_switched_off_is_counted_and_named() {
     });
     let simulated = underfoot()
         .current_dir(folder.path())
-        .args(["simulate", "--scenario", "visit.ron", "--send", &floor])
+        .args(["simulate", "--quality", "paper", "--scenario", "visit.ron", "--send", &floor])
         .stderr(Stdio::null())
         .status()
         .unwrap();

@@ -504,6 +504,11 @@ fn layouts_with_controls() -> Vec<&'static str> {
     names
 }
 
+/// Returns all of them.
+pub(super) fn shipped_layouts(geometry: &Geometry) -> Result<Vec<Layout>, ExperimentError> {
+    (0..layouts_with_controls().count()).map(|number| shipped(number, geometry)).collect()
+}
+
 /// Returns one of them, in a cycle.
 fn shipped(number: usize, geometry: &Geometry) -> Result<Layout, ExperimentError> {
     let name = layouts_with_controls().into_iter().cycle().nth(number).unwrap_or_default();

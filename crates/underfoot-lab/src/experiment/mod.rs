@@ -14,6 +14,8 @@
 //! | [`PeopleTable`] | accuracy of both feet of walking, turning and standing people | |
 //! | [`SceneTable`] | accuracy of all contacts in fourteen scenes, on floors of several qualities | |
 //! | [`TapTable`] | influence of a heavy foot beside a region on the foot that works in it | |
+//! | [`SeatedTable`] | sliders under seated people: first answer, and changes of a value at rest | |
+//! | [`BesideTable`] | buttons tapped beside a standing foot, by the region's cursor rule | |
 //! | [`EffectSheet`] | waveform, spectrum and figures of an effect | |
 //! | [`IntentTable`], [`IntentSweep`] | rates of false activations and of missed presses | |
 //! | [`PondLaws`] | onsets, energies, fronts and turns of the frozen pond, against its model | paper, section 4.1 |
@@ -28,6 +30,7 @@
 //! # Ok::<(), underfoot_lab::experiment::ExperimentError>(())
 //! ```
 
+mod beside;
 mod chart;
 mod effect;
 mod errors;
@@ -46,11 +49,13 @@ mod rig;
 mod scan;
 mod scenes;
 mod seam_object;
+mod seated;
 mod spot;
 mod taps;
 mod two_feet;
 mod wilson;
 
+pub use beside::{BesideLine, BesideTable};
 pub use effect::EffectSheet;
 pub use errors::{PositionErrors, Summary};
 pub use figure::Figure;
@@ -65,8 +70,9 @@ pub use pond::{PondLaw, PondLaws};
 pub use pond_walk::{MannerLine, PondWalk, WalkManner};
 pub use rig::{ExperimentError, FaultHook, OFFSET_N, Rig};
 pub use scan::{ScanPoint, TileScan, TileSweep};
-pub use scenes::{SceneLine, SceneTable};
+pub use scenes::{SceneLine, SceneRows, SceneTable};
 pub use seam_object::{SeamObject, SeamObjectRow};
+pub use seated::{SeatedLine, SeatedTable};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
 pub use taps::{HeavyFoot, TapLine, TapScene, TapScore, TapTable};
 pub use two_feet::TwoFeet;

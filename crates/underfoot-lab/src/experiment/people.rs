@@ -314,7 +314,7 @@ impl fmt::Display for PeopleTable {
 
 /// Note on the floor in a table's heading; empty for the paper's floor.
 pub(super) fn quality_note(floor: FloorQuality) -> String {
-    if floor == FloorQuality::Paper { String::new() } else { format!(" (faults: {})", floor.name()) }
+    if floor == FloorQuality::Paper { String::new() } else { format!(" ({floor})") }
 }
 
 #[cfg(test)]

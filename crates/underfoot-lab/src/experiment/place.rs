@@ -5,11 +5,13 @@ use std::fmt;
 use serde::Serialize;
 
 use super::errors::{PositionErrors, Summary};
+use super::people::quality_note;
 use super::rig::ExperimentError;
 use super::spot::{Bench, Thing, Way, geometry, spread};
 use underfoot::floor::TileId;
 use underfoot::units::Newtons;
 use underfoot_scene::ergonomics::Zone;
+use underfoot_sim::FloorQuality;
 
 /// The compared ways, without and with position maps: indices into [`Way::ALL`].
 const WAYS: [usize; 2] = [1, 2];
@@ -17,6 +19,7 @@ const WAYS: [usize; 2] = [1, 2];
 /// Distances between the estimated position of a standing foot and its true centre of pressure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceTable {
+    quality: FloorQuality,
     rows: Vec<Row>,
     places: u16,
     floors: usize,
@@ -30,21 +33,21 @@ struct Row {
 }
 
 impl PlaceTable {
-    /// Creates an empty table with `places` places per tile and force.
+    /// Creates an empty table for floors of this quality, with `places` places per tile and force.
     #[must_use]
-    pub fn new(places: u16) -> Self {
+    pub fn on(quality: FloorQuality, places: u16) -> Self {
         let rows = Zone::ALL.into_iter().flat_map(|zone| {
             Zone::FORCES_N.map(|force| Row { zone, force: Newtons(force), errors: Default::default() })
         });
-        Self { rows: rows.collect(), places, floors: 0 }
+        Self { quality, rows: rows.collect(), places, floors: 0 }
     }
 
     /// Tests the middle tile of another floor with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Errors of [`super::Rig::of_mapped_parts`].
+    /// Errors of [`super::Rig::of_quality`].
     pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
-        let mut bench = Bench::new(seed)?;
+        let mut bench = Bench::new(self.quality, seed)?;
         self.floors += 1;
         let geometry = geometry();
         let tile = geometry.cell(TileId::new(1, 1));
@@ -96,8 +99,12 @@ pub struct PlaceLine {
 
 impl fmt::Display for PlaceTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { places, floors, .. } = self;
-        writeln!(f, "error of one standing foot, {places} places per tile on {floors} floors, cm")?;
+        let Self { places, floors, quality, .. } = self;
+        writeln!(
+            f,
+            "error of one standing foot, {places} places per tile on {floors} floors{}, cm",
+            quality_note(*quality)
+        )?;
         writeln!(f, "place                force_n  found by    median     p95   worst")?;
         for row in &self.rows {
             for (way, errors) in WAYS.into_iter().zip(&row.errors) {

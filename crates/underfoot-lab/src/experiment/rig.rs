@@ -2,9 +2,6 @@
 
 use std::time::Duration;
 
-use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
-use rand_pcg::Pcg64Mcg;
 use smallvec::SmallVec;
 use thiserror::Error;
 
@@ -13,11 +10,11 @@ use underfoot::feel::Cue;
 use underfoot::floor::{Floor, Geometry, PositionMap, SensorId};
 use underfoot::layout::Layout;
 use underfoot::sense::{Assembler, ForceFrame, Method, Sensing, SensingConfig, SensorUncertainty, TileLoad};
-use underfoot::units::{Instant, Newtons};
+use underfoot::units::Instant;
 use underfoot::wire::{Readings, SensorPacket};
 use underfoot_sim::{
-    self as sim, CalibrationError, FloorQuality, Load, MappingError, MoveError, SensorFault, SimConfig,
-    SimFloor,
+    self as sim, BuildError, FloorBuild, FloorQuality, Load, MoveError, SensorFault, SimConfig, SimFloor,
+    drift_zeros,
 };
 
 /// Standard deviation of a sensor's zero drift since the tare (N).
@@ -26,12 +23,9 @@ pub const OFFSET_N: f32 = 0.5;
 /// Reason why an experiment can't run.
 #[derive(Debug, Error)]
 pub enum ExperimentError {
-    /// A sensor of the simulated floor can't be calibrated.
+    /// A sensor or a tile of the simulated floor can't be measured.
     #[error(transparent)]
-    Calibration(#[from] CalibrationError),
-    /// A tile of the simulated floor can't be mapped.
-    #[error(transparent)]
-    Mapping(#[from] MappingError),
+    Build(#[from] BuildError),
     /// A simulated person can't make a move of the experiment.
     #[error("a simulated person cannot move so: {0}")]
     Move(#[from] MoveError),
@@ -56,8 +50,7 @@ impl Rig {
     /// for each tile; then each sensor's zero drifts by [`OFFSET_N`].
     ///
     /// # Errors
-    /// [`ExperimentError::Calibration`] if no law fits a part, [`ExperimentError::Mapping`] if no map fits a tile's
-    /// presses.
+    /// [`ExperimentError::Build`] if no law fits a part, or no map a tile's presses.
     pub fn of_mapped_parts(geometry: Geometry, seed: u64) -> Result<Self, ExperimentError> {
         Self::of_quality(geometry, FloorQuality::Paper, seed)
     }
@@ -72,34 +65,27 @@ impl Rig {
         if quality == FloorQuality::Ideal {
             return Ok(Self::ideal(geometry));
         }
-        let wired = Floor::of(geometry);
-        let sim = SimFloor::new(&wired, quality.config(), seed);
-        let floor = sim::calibrated(&wired, &sim, seed)?;
-        let mut floor = sim::mapped(&floor, &sim, seed)?;
-        drift(&mut floor, quality.offset_n(), seed);
-        let mut rig = Self::over(sim, &floor);
-        for (sensor, fault) in quality.broken(&geometry, seed) {
-            rig.set_fault(sensor, Some(fault));
-        }
-        Ok(rig)
+        let build = FloorBuild { is_mapped: true, ..FloorBuild::of(quality, seed) };
+        let (sim, floor) = build.in_use(&Floor::of(geometry))?;
+        Ok(Self::over(sim, &floor))
     }
 
     /// Like [`Rig::of_mapped_parts`], with other plates or parts, and without position maps.
     ///
     /// # Errors
-    /// [`ExperimentError::Calibration`] if no law fits a part.
+    /// [`ExperimentError::Build`] if no law fits a part.
     pub fn of_parts(geometry: Geometry, config: SimConfig, seed: u64) -> Result<Self, ExperimentError> {
         let wired = Floor::of(geometry);
         let sim = SimFloor::new(&wired, config, seed);
-        let mut floor = sim::calibrated(&wired, &sim, seed)?;
-        drift(&mut floor, OFFSET_N, seed);
+        let mut floor = sim::calibrated(&wired, &sim, seed).map_err(BuildError::from)?;
+        drift_zeros(&mut floor, OFFSET_N, seed);
         Ok(Self::over(sim, &floor))
     }
 
     /// Like [`Rig::of_mapped_parts`], without position maps: the paper's floor.
     ///
     /// # Errors
-    /// [`ExperimentError::Calibration`] if no law fits a part.
+    /// [`ExperimentError::Build`] if no law fits a part.
     pub fn of_calibrated_parts(geometry: Geometry, seed: u64) -> Result<Self, ExperimentError> {
         Self::of_parts(geometry, SimConfig::default(), seed)
     }
@@ -243,20 +229,12 @@ pub trait FaultHook {
 /// No faults.
 impl FaultHook for () {}
 
-/// Shifts each sensor's zero by a normal random force with the standard deviation `offset_n`.
-fn drift(floor: &mut Floor, offset_n: f32, seed: u64) {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x00ff_5e75);
-    for tare in floor.tare.iter_mut().flatten() {
-        let normal: f32 = StandardNormal.sample(&mut rng);
-        *tare += Newtons(offset_n * normal);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use glam::Vec2;
 
     use super::*;
+    use underfoot::units::Newtons;
     use underfoot_sim::Print;
 
     fn load(force: f32) -> Load {

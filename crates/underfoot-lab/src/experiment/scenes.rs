@@ -13,15 +13,16 @@ use underfoot_sim::{FloorQuality, Load, MoveError, PlayedScene, SceneKind};
 
 /// Scenes of people and objects ([`SceneKind`]) on floors of several qualities, by method.
 ///
-/// One person acts in every scene on a floor of each quality with parts drawn from the person's seed; the floor is
-/// empty for a second between scenes. Feet, knees, wheels and sticks all count as feet: they are down from 10 N on,
+/// One person acts in every scene on a floor of each quality with parts drawn from the person's seed, after a second
+/// on which the floor is empty. Feet, knees, wheels and sticks all count as feet: they are down from 10 N on,
 /// as in [`super::PeopleTable`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneTable {
     floors: Vec<FloorQuality>,
     /// One entry per scene ([`SceneKind::ALL`]), floor and method ([`METHODS`]).
     scores: Vec<Vec<[Followed; 2]>>,
-    people: usize,
+    /// Number of people in each scene.
+    people: [u64; SceneKind::ALL.len()],
 }
 
 /// Interval between two samples of the errors (ms).
@@ -35,26 +36,31 @@ impl SceneTable {
     #[must_use]
     pub fn on(floors: &[FloorQuality]) -> Self {
         let none = vec![Default::default(); floors.len()];
-        Self { floors: floors.to_vec(), scores: vec![none; SceneKind::ALL.len()], people: 0 }
+        Self { floors: floors.to_vec(), scores: vec![none; SceneKind::ALL.len()], people: Default::default() }
     }
 
-    /// Simulates the person drawn from `seed` in all scenes on a floor of each quality.
+    /// Simulates the person drawn from `seed` in all scenes.
+    ///
+    /// # Errors
+    /// Those of [`SceneTable::add_scene`].
+    pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
+        SceneKind::ALL.into_iter().try_for_each(|kind| self.add_scene(kind, seed))
+    }
+
+    /// Simulates the person drawn from `seed` in one scene on a floor of each quality.
     ///
     /// # Errors
     /// Errors of [`Rig::of_quality`]; [`ExperimentError::Move`], which no seed should cause.
-    pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
+    pub fn add_scene(&mut self, kind: SceneKind, seed: u64) -> Result<(), ExperimentError> {
         let geometry = Geometry::default();
-        for (slot, floor) in self.floors.iter().enumerate() {
+        let scene = scene(kind, seed, &geometry)?;
+        let Some(row) = SceneKind::ALL.iter().position(|&other| other == kind) else { return Ok(()) };
+        for (floor, scores) in self.floors.iter().zip(&mut self.scores[row]) {
             let mut rig = Rig::of_quality(geometry, *floor, seed)?;
-            for (kind, scores) in SceneKind::ALL.into_iter().zip(&mut self.scores) {
-                let scene = scene(kind, seed, &geometry)?;
-                rig.hold(EMPTY_MS, &[], |_| {});
-                if let Some(scores) = scores.get_mut(slot) {
-                    play(&mut rig, &scene, scores);
-                }
-            }
+            rig.hold(EMPTY_MS, &[], |_| {});
+            play(&mut rig, &scene, scores);
         }
-        self.people += 1;
+        self.people[row] += 1;
         Ok(())
     }
 
@@ -64,7 +70,9 @@ impl SceneTable {
         for (score, others) in scores.zip(other.scores.into_iter().flatten().flatten()) {
             score.append(others);
         }
-        self.people += other.people;
+        for (people, others) in self.people.iter_mut().zip(other.people) {
+            *people += others;
+        }
     }
 
     /// Returns the result of one scene on one floor, by method ([`METHODS`]); `None` for a floor that is not in the
@@ -79,34 +87,49 @@ impl SceneTable {
     /// Returns all lines, for programs: scene by scene, the floors in their order, each method; all scenes together
     /// last.
     pub fn lines(&self) -> impl Iterator<Item = SceneLine> + '_ {
-        let each = SceneKind::ALL
-            .into_iter()
-            .zip(&self.scores)
-            .flat_map(|(kind, scores)| self.rows(kind.name(), scores.iter().cloned()));
-        let all = (0..self.floors.len()).map(|slot| {
-            let mut whole: [Followed; 2] = Default::default();
-            for score in self.scores.iter().filter_map(|scores| scores.get(slot)) {
-                whole.iter_mut().zip(score).for_each(|(whole, score)| whole.append(score.clone()));
-            }
-            whole
-        });
-        each.chain(self.rows("all scenes", all))
+        SceneKind::ALL.into_iter().map(Some).chain([None]).flat_map(move |kind| self.lines_of(kind))
     }
 
-    fn rows<'a>(
-        &'a self,
-        scene: &'static str,
-        scores: impl Iterator<Item = [Followed; 2]> + 'a,
-    ) -> impl Iterator<Item = SceneLine> + 'a {
-        self.floors.iter().zip(scores).flat_map(move |(floor, scores)| {
-            let methods = METHODS.map(|(_, method)| method);
-            methods
-                .into_iter()
-                .zip(scores)
-                .map(move |(method, score)| SceneLine::of(scene, *floor, method, score))
-        })
+    /// Returns the lines of one scene, or of all scenes together.
+    fn lines_of(&self, kind: Option<SceneKind>) -> Vec<SceneLine> {
+        let name = kind.map_or("all scenes", SceneKind::name);
+        let mut lines = Vec::new();
+        for (slot, floor) in self.floors.iter().enumerate() {
+            let mut whole: [Followed; 2] = Default::default();
+            for (row, scores) in SceneKind::ALL.into_iter().zip(&self.scores) {
+                if kind.is_none_or(|kind| kind == row) {
+                    let scores = scores.get(slot).into_iter().flatten();
+                    whole.iter_mut().zip(scores).for_each(|(whole, score)| whole.append(score.clone()));
+                }
+            }
+            let methods = METHODS.into_iter().zip(whole);
+            lines.extend(methods.map(|((_, method), score)| SceneLine::of(name, *floor, method, score)));
+        }
+        lines
+    }
+
+    /// Returns the head of the table of this many people, with a line break at its end.
+    #[must_use]
+    pub fn heading(people: u64) -> String {
+        format!(
+            "everything that presses, {people} people of 20 to 140 kg in each scene on floors of 6 x 6 tiles\n\
+             {:36}within 5 cm     error, cm{:28}changes per  inside  one foot\n\
+             scene             quality   method     each    all  median    p95  missed   extra  steps  1000 steps    \
+             95 %  ambiguous\n",
+            "", ""
+        )
+    }
+
+    /// Returns the rows of one scene, or those of all scenes together, for people: one per floor and method.
+    #[must_use]
+    pub fn rows(&self, kind: Option<SceneKind>) -> SceneRows {
+        SceneRows(self.lines_of(kind))
     }
 }
+
+/// Rows of a [`SceneTable`], as text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneRows(Vec<SceneLine>);
 
 /// The scene of one person: each kind draws independently from the person's seed.
 fn scene(kind: SceneKind, seed: u64, geometry: &Geometry) -> Result<PlayedScene, MoveError> {
@@ -199,32 +222,24 @@ impl SceneLine {
 
 impl fmt::Display for SceneTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "everything that presses, {} people of 20 to 140 kg in each scene on floors of 6 x 6 tiles",
-            self.people
-        )?;
-        writeln!(
-            f,
-            "                                    within 5 cm     error, cm                            changes per  inside  one foot"
-        )?;
-        writeln!(
-            f,
-            "scene             faults    method     each    all  median    p95  missed   extra  steps  1000 steps    95 %  ambiguous"
-        )?;
-        let mut last = "";
-        for line in self.lines() {
-            if last != line.scene && !last.is_empty() {
-                writeln!(f)?;
-            }
-            let percent = |share: Option<f32>| {
-                share.map_or_else(|| "-".into(), |share| format!("{:.1}%", 100.0 * share))
-            };
-            let plain = |value: Option<f32>| value.map_or_else(|| "-".into(), |value| format!("{value:.1}"));
+        f.write_str(&Self::heading(self.people.into_iter().max().unwrap_or_default()))?;
+        for kind in SceneKind::ALL {
+            writeln!(f, "{}", self.rows(Some(kind)))?;
+        }
+        write!(f, "{}", self.rows(None))
+    }
+}
+
+impl fmt::Display for SceneRows {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent =
+            |share: Option<f32>| share.map_or_else(|| "-".into(), |share| format!("{:.1}%", 100.0 * share));
+        let plain = |value: Option<f32>| value.map_or_else(|| "-".into(), |value| format!("{value:.1}"));
+        for (number, line) in self.0.iter().enumerate() {
             writeln!(
                 f,
                 "{:18}{:10}{:8}{:>7}{:>7}{:>8}{:>7}{:>7.2}%{:>7.2}%{:>7}{:>12}{:>8}{:>11}",
-                if last == line.scene { "" } else { line.scene },
+                if number > 0 { "" } else { line.scene },
                 line.floor,
                 line.method,
                 percent(Some(line.within_5cm)),
@@ -238,7 +253,6 @@ impl fmt::Display for SceneTable {
                 percent(line.inside_95),
                 percent(line.ambiguous),
             )?;
-            last = line.scene;
         }
         Ok(())
     }

@@ -7,11 +7,12 @@ use serde::Serialize;
 
 use super::errors::{PositionErrors, Summary};
 use super::follow::ELLIPSE_95;
+use super::people::quality_note;
 use super::rig::{ExperimentError, Rig};
 use underfoot::floor::{Geometry, TileId};
 use underfoot::sense::{Covariance, Method, Sensing};
 use underfoot::units::Newtons;
-use underfoot_sim::{Load, Print};
+use underfoot_sim::{FloorQuality, Load, Print};
 
 /// Forces of the single contacts (N).
 pub const FORCES_N: [f32; 4] = [50.0, 100.0, 200.0, 400.0];
@@ -92,8 +93,8 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    pub(super) fn new(seed: u64) -> Result<Self, ExperimentError> {
-        let mut rig = Rig::of_mapped_parts(geometry(), seed)?;
+    pub(super) fn new(quality: FloorQuality, seed: u64) -> Result<Self, ExperimentError> {
+        let mut rig = Rig::of_quality(geometry(), quality, seed)?;
         rig.hold(EMPTY_MS, &[], |_| {});
         Ok(Self::over(rig))
     }
@@ -194,14 +195,15 @@ impl SpotRow {
 pub struct SpotTable {
     /// One line per object, force and way.
     pub rows: Vec<SpotRow>,
+    quality: FloorQuality,
     side: u16,
     floors: usize,
 }
 
 impl SpotTable {
-    /// Creates an empty table of `side` x `side` places per tile.
+    /// Creates an empty table for floors of this quality, with `side` x `side` places per tile.
     #[must_use]
-    pub fn new(side: u16) -> Self {
+    pub fn on(quality: FloorQuality, side: u16) -> Self {
         let row = |thing, force, way| SpotRow {
             thing,
             force: Newtons(force),
@@ -215,15 +217,15 @@ impl SpotTable {
             .flat_map(|thing| FORCES_N.map(|force| Way::ALL.map(|way| row(thing, force, way))))
             .flatten()
             .collect();
-        Self { rows, side, floors: 0 }
+        Self { quality, rows, side, floors: 0 }
     }
 
     /// Tests the middle tile of another floor with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Errors of [`Rig::of_mapped_parts`].
+    /// Errors of [`Rig::of_quality`].
     pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
-        let mut bench = Bench::new(seed)?;
+        let mut bench = Bench::new(self.quality, seed)?;
         self.floors += 1;
         for rows in self.rows.chunks_exact_mut(Way::ALL.len()) {
             let (thing, force) = (rows[0].thing, rows[0].force);
@@ -245,8 +247,12 @@ impl SpotTable {
 
 impl fmt::Display for SpotTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { side, floors, .. } = self;
-        writeln!(f, "error of one contact over a whole tile, {side} x {side} places on {floors} floors, cm")?;
+        let Self { side, floors, quality, .. } = self;
+        writeln!(
+            f,
+            "error of one contact over a whole tile, {side} x {side} places on {floors} floors{}, cm",
+            quality_note(*quality)
+        )?;
         writeln!(f, "thing  force_n  found by    median     p95   worst  missed  in ellipse")?;
         for row in &self.rows {
             let SpotRow { thing, force, way, errors, missed, .. } = row;
@@ -276,19 +282,26 @@ impl SeamRow {
 }
 
 /// Accuracy of a contact at a seam compared with the middle of a tile, at 120 N.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SeamTable {
+    quality: FloorQuality,
     rows: [[SeamRow; Way::ALL.len()]; 2],
     floors: usize,
 }
 
 impl SeamTable {
+    /// Creates an empty table for floors of this quality.
+    #[must_use]
+    pub fn on(quality: FloorQuality) -> Self {
+        Self { quality, rows: Default::default(), floors: 0 }
+    }
+
     /// Tests another floor with parts drawn from `seed`.
     ///
     /// # Errors
-    /// Errors of [`Rig::of_mapped_parts`].
+    /// Errors of [`Rig::of_quality`].
     pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
-        let mut bench = Bench::new(seed)?;
+        let mut bench = Bench::new(self.quality, seed)?;
         self.floors += 1;
         let force = Newtons(120.0);
         for (thing, rows) in Thing::ALL.into_iter().zip(&mut self.rows) {
@@ -338,7 +351,12 @@ fn place_at_a_seam(step: u16) -> Vec2 {
 
 impl fmt::Display for SeamTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "error of one contact of 120 N at a seam and in mid-tile, {} floors, cm", self.floors)?;
+        writeln!(
+            f,
+            "error of one contact of 120 N at a seam and in mid-tile, {} floors{}, cm",
+            self.floors,
+            quality_note(self.quality)
+        )?;
         writeln!(f, "                 mid-tile                at a seam               ratio of")?;
         writeln!(f, "thing  found by    median     p95   worst  median     p95   worst  medians")?;
         for (thing, rows) in Thing::ALL.into_iter().zip(&self.rows) {

@@ -60,7 +60,7 @@ pub const RULES: &[Rule] = &[
         limits: "error: 95 in 100 feet that aim at its middle are found within more than half of its smaller side; \
                  warning: more than half of that",
         source: "Measured on simulated floors by force and by distance from a tile's edge: \
-                 `underfoot experiment place`. A floor file with position maps counts.",
+                 `underfoot experiment place --quality paper`. A floor file with position maps counts.",
         remedy: "make it larger, press it harder, or calibrate position maps (`underfoot calibrate map`)",
     },
     Rule {
@@ -70,6 +70,16 @@ pub const RULES: &[Rule] = &[
         source: "The place of a pressing foot is found within 0.5 cm at best (95 in 100, with position maps, \
                  200 N): two values must lie twice that apart.",
         remedy: "make it longer, or its steps coarser",
+    },
+    Rule {
+        code: "U107",
+        title: "a standing foot is the cursor",
+        limits: "warning: a stance zone overlaps a region with `cursor: Largest`, or is less than half a shoe (13 cm) \
+                 from it",
+        source: "The heaviest foot in such a region is its cursor. People stand up to half a shoe beside their zone: \
+                 then that foot, not the one on a control, is the cursor, and 88 of 100 presses were missed. \
+                 `underfoot experiment controls` measures both rules.",
+        remedy: "let the foot on a control be the cursor: `cursor: Working`, or move the zone away",
     },
     Rule {
         code: "U201",

@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use super::{Part, Subject, cm, predicted_error_m};
 use underfoot::floor::{Geometry, Rect, TileId};
-use underfoot::layout::{Stance, Widget};
+use underfoot::layout::{CursorRule, Stance, Widget};
 use underfoot::widget::{Axis, Behaviour, Guard, Mapping};
 
 /// Feet miss a control with a shorter side (m).
@@ -35,6 +35,7 @@ pub(super) fn review(subject: &mut Subject<'_>) {
     neighbours(subject);
     reach(subject);
     stance_tiles(subject);
+    standing_cursor(subject);
     place_error(subject);
     steps(subject);
 }
@@ -162,6 +163,30 @@ fn stance_tiles(subject: &mut Subject<'_>) {
     let zone = if stance.label.is_empty() { String::new() } else { format!(" \"{}\"", stance.label) };
     let message = format!("{} has no free tile between it and the stance zone{zone}", subject.name());
     subject.warning("U104", Part::Place, message, "the two feet share sensors".into());
+}
+
+/// Reports a region in which a standing foot may be the cursor, at its first control.
+fn standing_cursor(subject: &mut Subject<'_>) {
+    let number = subject.widget.region;
+    let Some(region) = subject.layout.regions.get(number) else { return };
+    let is_first =
+        subject.layout.widgets.iter().position(|widget| widget.region == number) == Some(subject.index);
+    if !is_first || region.cursor != CursorRule::Largest {
+        return;
+    }
+    let gap = |stance: &&Stance| gap_between_m(stance.area, region.area);
+    let nearest = subject.layout.stances.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
+    let Some(stance) = nearest.filter(|stance| gap(stance) < HALF_SHOE.y - SLACK_M) else { return };
+    let zone = if stance.label.is_empty() { String::new() } else { format!(" \"{}\"", stance.label) };
+    let expected = match gap(&stance) {
+        0.0 => "the zone reaches into the region".to_owned(),
+        gap => format!("they are {} apart, a shoe reaches {}", cm(gap), cm(HALF_SHOE.y)),
+    };
+    let message = format!(
+        "a foot that stands in or beside the stance zone{zone} can be the cursor of \"{}\"",
+        region.id
+    );
+    subject.warning("U107", Part::Id, message, expected);
 }
 
 fn place_error(subject: &mut Subject<'_>) {

@@ -64,6 +64,7 @@ pub fn mend(document: &Document, finding: &Finding, items: &[Item]) -> Option<Me
         }
         ("U103", _) => Some(Mend::new("Move it nearer", moved(document, item, PlaceRule::Reach)?)),
         ("U104", _) => Some(Mend::new("Leave one free row", moved(document, item, PlaceRule::Row)?)),
+        ("U107", _) => working_cursor(document, finding),
         _ => None,
     }
 }
@@ -101,6 +102,13 @@ fn crowding<'i>(document: &Document, item: &Item, items: &'i [Item]) -> Vec<&'i 
 fn grid(document: &Document, item: &Item, name: &str) -> Option<Mend> {
     let edits = GridRoom::needed(document, item)?.edits(document, item);
     document.trial(&edits).ok().map(|_| Mend::new(name, edits))
+}
+
+/// Lets the foot on a control be the cursor of the region, instead of the heaviest one.
+fn working_cursor(document: &Document, finding: &Finding) -> Option<Mend> {
+    let region = document.layout().widgets.get(finding.widget)?.region;
+    let edits = vec![Edit::set(&Address::of(RecordList::Regions, region), "cursor", "Working")];
+    document.trial(&edits).ok().map(|_| Mend::new("Follow the working foot", edits))
 }
 
 /// Moves a control into its region.
@@ -201,6 +209,28 @@ mod tests {
              (id: \"a\", kind: \"button\", at: (2.2, 1.2), size: (0.6, 0.6), label: \"A\")])",
         );
         mended(&mut near, "U104", "Leave one free row");
+    }
+
+    #[test]
+    fn a_foot_that_stands_beside_the_region_is_no_longer_its_cursor() {
+        let page = |rule: &str, y: &str| {
+            format!(
+                "Layout(version: 1, regions: [(id: \"r\", at: (0, 1), size: (6, 5){rule})], \
+                 stances: [(at: (2, {y}), size: (2, 0.7))], widgets: [\
+                 (id: \"a\", kind: \"button\", at: (2.2, 2.2), size: (0.6, 0.6), label: \"A\"),\
+                 (id: \"b\", kind: \"button\", at: (3.2, 2.2), size: (0.6, 0.6), label: \"B\")])"
+            )
+        };
+        let mut near = read(&page("", "0.2"));
+        assert_eq!(codes(&near), ["U107"], "once for the region");
+        mended(&mut near, "U107", "Follow the working foot");
+        assert!(near.text().contains("cursor: Working"), "{}", near.text());
+        let mut written = read(&page(", cursor: Largest /* rule */", "0.2"));
+        mended(&mut written, "U107", "Follow the working foot");
+        assert!(written.text().contains("cursor: Working /* rule */"), "{}", written.text());
+        for (rule, y) in [(", cursor: Each", "0.2"), (", cursor: Working", "0.2"), ("", "-0.2")] {
+            assert!(codes(&read(&page(rule, y))).is_empty(), "{rule} {y}");
+        }
     }
 
     #[test]

@@ -35,6 +35,8 @@ impl Template {
         // People use a small floor from beside it.
         let has_stance = rows >= 3 && columns >= 2;
         let south = u16::from(has_stance);
+        // A foot that stands at the edge of its zone reaches into the region.
+        let cursor = if has_stance { ", cursor: Working" } else { "" };
         let stance = match has_stance {
             true => format!(
                 "    // Where people stand: a foot here works nothing.\n    \
@@ -82,7 +84,7 @@ impl Template {
             "// A layout for a floor of {columns} x {rows} tiles. Places and sizes are in tiles, `at` is a \
              south-west corner.\nLayout(\n    version: 1,\n    title: \"New layout\",\n\n    \
              // The active area: a foot that presses in it works its controls.\n    \
-             regions: [(id: \"main\", at: (0, {south}), size: ({columns}, {}))],\n\n{stance}    \
+             regions: [(id: \"main\", at: (0, {south}), size: ({columns}, {}){cursor})],\n\n{stance}    \
              widgets: [\n{widgets}    ],\n{pages})\n",
             rows - south
         )

@@ -42,6 +42,9 @@ const CLIP_LEAST_N: f32 = 0.5;
 const VISITS: f32 = 128.0;
 const FIRST_VISITS: f32 = 8.0;
 
+/// Number of frames with a reading of an idle tile after which a table shows its noise: eight visits at 1 kHz.
+const KNOWN_FRAMES: u32 = 100;
+
 /// Maximum time constant of the smoothed deciding force (s): it delays the detection of a foot by as much.
 const SMOOTH_S: f32 = 0.008;
 
@@ -78,6 +81,8 @@ pub(super) struct LoadThresholds {
     /// Blocks with a noisy tile.
     noisy: Vec<bool>,
     is_any_noisy: bool,
+    /// Whether a tile without load may have no reading, as in a table that leaves it out.
+    skips_zeros: bool,
     /// The same for the smoothed force of noisy tiles, and that force.
     smoothed_differences: Vec<f32>,
     smoothed_read: Vec<f32>,
@@ -133,6 +138,7 @@ impl LoadThresholds {
             loaded: vec![0; tiles],
             noisy: vec![false; tiles.div_ceil(BLOCK)],
             is_any_noisy: false,
+            skips_zeros: false,
             smoothed_differences: vec![0.0; tiles],
             smoothed_read: vec![f32::NAN; tiles],
             smoothed: vec![0.0; tiles],
@@ -220,11 +226,59 @@ impl LoadThresholds {
         if self.is_any_noisy { 0.5 / DIFFERENCE * self.differences[index] } else { 0.0 }
     }
 
-    /// Initialises the noise from the first frame: only the disagreement of each plate's corners is known.
+    /// Initialises the noise from the first frame, unless it is known already: only the disagreement of each plate's
+    /// corners is known.
     pub(super) fn begin(&mut self, forces: &[[f32; 4]]) {
-        // No load twists a rigid plate much; at least half of the tiles are similar.
+        if self.visits == 0.0 {
+            // No load twists a rigid plate much; at least half of the tiles are similar.
+            self.begin_from(forces.iter());
+        }
+    }
+
+    /// Learns the noise of each tile from a table's first `frames`, of which each has the seconds since the last one, the
+    /// sums of its tiles and their forces. A tile without a reading while idle takes the median of the others.
+    pub(super) fn learn<'a>(&mut self, frames: impl Iterator<Item = (f32, &'a [f32], &'a [[f32; 4]])>) {
+        self.skips_zeros = true;
+        let tiles = self.differences.len();
+        let (mut place, mut idle) = (vec![NONE; tiles], vec![0_u32; tiles]);
+        for (dt, sums, forces) in frames {
+            let on = self.base.on.0;
+            if self.visits == 0.0 {
+                let is_idle = |forces: &&[f32; 4]| **forces != [0.0; 4] && forces.iter().sum::<f32>() < on;
+                self.begin_from(forces.iter().filter(is_idle));
+            }
+            self.smooth(sums);
+            for (index, place) in place.iter_mut().enumerate() {
+                let sum = sums.get(index).copied().unwrap_or_default();
+                let is_loaded = self.deciding(index, sum) >= self.tiles[index].on;
+                *place = if is_loaded { 0 } else { NONE };
+                idle[index] += u32::from(!is_loaded && sum != 0.0);
+            }
+            self.visit(sums, &place, std::iter::empty(), dt);
+        }
+        let known = |count: &u32| *count >= KNOWN_FRAMES;
+        let mut learnt: Vec<f32> = idle
+            .iter()
+            .zip(&self.differences)
+            .filter(|(count, _)| known(*count))
+            .map(|(_, noise)| *noise)
+            .collect();
+        if let Some(middle) = learnt.len().checked_sub(1).map(|last| last / 2) {
+            let median = *learnt.select_nth_unstable_by(middle, f32::total_cmp).1;
+            let unknown = idle.iter().zip(&mut self.differences).filter(|(count, _)| !known(*count));
+            unknown.for_each(|(_, noise)| *noise = median);
+        }
+        self.loaded.fill(0);
+        self.read.fill(f32::NAN);
+        self.smoothed_read.fill(f32::NAN);
+        self.smoothed.fill(0.0);
+        self.find_noisy(0.0, 0.0);
+    }
+
+    /// Initialises the noise from the disagreement of these plates' corners.
+    fn begin_from<'a>(&mut self, forces: impl Iterator<Item = &'a [f32; 4]>) {
         self.read.clear();
-        self.read.extend(forces.iter().map(|[sw, se, nw, ne]| (sw - se - nw + ne).abs()));
+        self.read.extend(forces.map(|[sw, se, nw, ne]| (sw - se - nw + ne).abs()));
         self.read.retain(|twist| twist.is_finite());
         let middle = self.read.len() / 2;
         let median = if self.read.is_empty() {
@@ -275,7 +329,7 @@ impl LoadThresholds {
         for (loaded, &place) in self.loaded.iter_mut().zip(place) {
             *loaded = if place == NONE { 0 } else { (*loaded + 1).min(SETTLED) };
         }
-        follow(&mut self.differences, &mut self.read, sums, &self.loaded, share);
+        follow(&mut self.differences, &mut self.read, sums, &self.loaded, share, self.skips_zeros);
         self.find_noisy(dt, share);
     }
 
@@ -316,6 +370,7 @@ impl LoadThresholds {
                 &self.smoothed[range.clone()],
                 &self.loaded[range.clone()],
                 share,
+                self.skips_zeros,
             );
             for index in range {
                 let noise = DEVIATIONS / DIFFERENCE * self.smoothed_differences[index];
@@ -356,13 +411,21 @@ impl LoadThresholds {
 }
 
 /// Updates the mean with the difference of each idle tile's reading from its last one: mean += `share` (difference −
-/// mean).
+/// mean). With `skips_zeros`, a sum of exactly zero is no reading.
 ///
 /// Without branches, over plain arrays.
-fn follow(differences: &mut [f32], read: &mut [f32], now: &[f32], loaded: &[u32], share: f32) {
+fn follow(
+    differences: &mut [f32],
+    read: &mut [f32],
+    now: &[f32],
+    loaded: &[u32],
+    share: f32,
+    skips_zeros: bool,
+) {
     let tiles = differences.iter_mut().zip(read).zip(now.iter().zip(loaded));
     for ((mean, read), (&now, &loaded)) in tiles {
-        let now = if loaded < SETTLED { now } else { f32::NAN };
+        let is_read = (loaded < SETTLED) & ((now != 0.0) | !skips_zeros);
+        let now = if is_read { now } else { f32::NAN };
         let difference = (now - *read).abs();
         let clipped = difference.min((CLIP * *mean).max(CLIP_LEAST_N));
         *mean = if difference.is_nan() { *mean } else { *mean + share * (clipped - *mean) };

@@ -1,3 +1,4 @@
+
 use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};
@@ -100,6 +101,36 @@ fn noise_is_known_at_any_rate_and_after_gaps() {
         floor.run(5, dt_s, &[(12, 60.0)]);
         assert_eq!(floor.run(100, dt_s, &[(12, 60.0)]).1, 0, "every {dt_s} s");
     }
+}
+
+#[test]
+fn a_table_shows_the_noise_before_the_first_foot_and_what_it_leaves_out_is_no_silence() {
+    // A foot stands on tile 7 from the first instant; tile 9 is never in the table.
+    let mut floor = Floor::new(2.0, 0.0, 0.0);
+    let frames: Vec<ForceFrame> = (0..1000)
+        .map(|_| {
+            floor.run(1, 0.001, &[(7, 400.0)]);
+            let mut frame = floor.frame.clone();
+            frame.forces[9] = [0.0; 4];
+            frame
+        })
+        .collect();
+    let geometry = Geometry::of_paper_tiles(5, 5).unwrap();
+    let mut tiles = LoadedTiles::new(geometry, LoadThreshold::default());
+    tiles.learn_noise(&frames);
+    for tile in [0, 7, 9, 24] {
+        let noise = tiles.thresholds.noise_n(tile);
+        assert!((1.5..2.5).contains(&noise), "tile {tile}: {noise} N of noise");
+    }
+    // The rest of the table has rows of loaded tiles only.
+    for milli in 1..5000 {
+        let mut frame = ForceFrame::empty(&geometry);
+        frame.at = floor.frame.at + Duration::from_millis(milli);
+        frame.forces[7] = [100.0; 4];
+        tiles.update(&frame);
+    }
+    assert!(tiles.thresholds.noise_n(3) > 1.5);
+    assert_eq!(tiles.list().len(), 1);
 }
 
 #[test]

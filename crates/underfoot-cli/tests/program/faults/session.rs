@@ -25,6 +25,8 @@ pub fn play(folder: &Path, more: &[&str]) {
             "page.ron",
             "--scenario",
             "visit.ron",
+            "--quality",
+            "paper",
             "--calibrate",
             "--out",
             "out",

@@ -94,8 +94,8 @@ fn simulate(site: &Site, port: u16) -> Child {
     let mut command: Command = underfoot();
     command
         .current_dir(site.folder.path())
-        .args(["simulate", "page.ron", "--floor", "floor.ron", "--seed", "7", "--scenario", "holds.ron"])
-        .args(["--send", &format!("127.0.0.1:{port}")])
+        .args(["simulate", "page.ron", "--floor", "floor.ron", "--quality", "paper", "--seed", "7"])
+        .args(["--scenario", "holds.ron", "--send", &format!("127.0.0.1:{port}")])
         .stderr(Stdio::null())
         .spawn()
         .unwrap()

@@ -182,7 +182,8 @@ pub(super) fn reset(ui: &mut Ui, field: &ShownField<'_>) -> Option<Edit> {
     }
     // It ends the row: no other button gets this padding.
     ui.spacing_mut().button_padding.x = 2.0;
-    let button = ui.add(Button::new(Icon::RotateCcw.unicode().to_string()).small().min_size(vec2(RESET_PX, 0.0)));
+    let button =
+        ui.add(Button::new(Icon::RotateCcw.unicode().to_string()).small().min_size(vec2(RESET_PX, 0.0)));
     let name = label(&property.name);
     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {name}")));
     let back = match property.inherited.as_str() {

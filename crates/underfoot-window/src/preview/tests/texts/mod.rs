@@ -3,7 +3,6 @@
 mod screen;
 
 use super::*;
-use crate::preview::icons::Icon;
 use crate::preview::sample::step_on;
 use crate::preview::{DesignInput, VisitDesk, VisitOrder, VisitSize, VisitState};
 use screen::{ScreenShapes, ScreenText, faults};

@@ -3,7 +3,6 @@
 use eframe::egui::epaint::{ClippedShape, TextShape};
 use eframe::egui::{self, Color32, FontFamily, LayerId, Pos2, Rect, Shape};
 
-use crate::preview::icons::Icon;
 use underfoot::layout::Colour;
 use underfoot_scene::scene::Theme;
 
