@@ -506,7 +506,7 @@ fn layouts_with_controls() -> Vec<&'static str> {
 
 /// Returns all of them.
 pub(super) fn shipped_layouts(geometry: &Geometry) -> Result<Vec<Layout>, ExperimentError> {
-    (0..layouts_with_controls().count()).map(|number| shipped(number, geometry)).collect()
+    (0..layouts_with_controls().len()).map(|number| shipped(number, geometry)).collect()
 }
 
 /// Returns one of them, in a cycle.

@@ -260,12 +260,12 @@ impl LoadThresholds {
         let mut learnt: Vec<f32> = idle
             .iter()
             .zip(&self.differences)
-            .filter(|(count, _)| known(*count))
+            .filter(|(count, _)| known(count))
             .map(|(_, noise)| *noise)
             .collect();
         if let Some(middle) = learnt.len().checked_sub(1).map(|last| last / 2) {
             let median = *learnt.select_nth_unstable_by(middle, f32::total_cmp).1;
-            let unknown = idle.iter().zip(&mut self.differences).filter(|(count, _)| !known(*count));
+            let unknown = idle.iter().zip(&mut self.differences).filter(|(count, _)| !known(count));
             unknown.for_each(|(_, noise)| *noise = median);
         }
         self.loaded.fill(0);

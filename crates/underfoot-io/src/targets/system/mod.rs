@@ -1,7 +1,7 @@
 //! Keys and pointer of macOS and Windows, through `enigo`. Under Linux only the tests use it, on an X server of their own.
 
 mod keys;
-#[cfg(all(test, unix, not(target_os = "macos")))]
+#[cfg(test)]
 mod tests;
 
 use std::collections::BTreeMap;

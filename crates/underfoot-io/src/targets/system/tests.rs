@@ -1,4 +1,5 @@
 //! The outlet on an X server of its own, observed by another client. Skipped without Xvfb.
+#![cfg(all(unix, not(target_os = "macos")))]
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
