@@ -13,7 +13,7 @@ mod closing;
 #[cfg(any(test, target_arch = "wasm32"))]
 #[cfg_attr(
     not(target_arch = "wasm32"),
-    allow(dead_code, reason = "only pages draw so; tests look at the areas")
+    allow(dead_code, reason = "a desktop clears its window before each frame")
 )]
 mod damage;
 mod design;
