@@ -44,15 +44,18 @@ pub(super) fn taken(
         }
         ArgumentKind::Flag => vec![argument("on", "i|f|T|F", DescribedLimits::flag())],
         ArgumentKind::TileFlag => {
-            let block = geometry.block();
-            let numbers = |range: Range<u16>| {
-                DescribedLimits::numbers(range.start.into(), range.end.saturating_sub(1).into())
-            };
-            vec![
-                argument("column", "i", numbers(block.column_range())),
-                argument("row", "i", numbers(block.row_range())),
-                argument("on", "i|f|T|F", DescribedLimits::flag()),
-            ]
+            let [column, row] = tile(geometry);
+            vec![column, row, argument("on", "i|f|T|F", DescribedLimits::flag())]
+        }
+        ArgumentKind::SensorFlag => {
+            let [column, row] = tile(geometry);
+            let sensor = DescribedLimits::text("sw, se, nw or ne, or the sensor's number from 0");
+            let on = argument("on", "i|f|T|F", DescribedLimits::flag());
+            vec![column, row, argument("sensor", "s|i", sensor), on]
+        }
+        ArgumentKind::ChannelFlag => {
+            let number = |name| argument(name, "i", DescribedLimits::numbers(0.0, u16::MAX.into()));
+            vec![number("board"), number("channel"), argument("on", "i|f|T|F", DescribedLimits::flag())]
         }
         ArgumentKind::Value => {
             let Some(widget) = widget else { return Vec::new() };
@@ -67,6 +70,14 @@ pub(super) fn taken(
             arguments
         }
     }
+}
+
+/// Returns column and row of a tile.
+fn tile(geometry: &Geometry) -> [Argument; 2] {
+    let block = geometry.block();
+    let numbers =
+        |range: Range<u16>| DescribedLimits::numbers(range.start.into(), range.end.saturating_sub(1).into());
+    [argument("column", "i", numbers(block.column_range())), argument("row", "i", numbers(block.row_range()))]
 }
 
 /// Returns the arguments of the value of a control with this behaviour.

@@ -14,6 +14,7 @@
 //! | [`PeopleTable`] | accuracy of both feet of walking, turning and standing people | |
 //! | [`SceneTable`] | accuracy of all contacts in fourteen scenes, on floors of several qualities | |
 //! | [`TapTable`] | influence of a heavy foot beside a region on the foot that works in it | |
+//! | [`StandTable`] | accuracy of a calibration by standing, beside that by a load cell | |
 //! | [`EffectSheet`] | waveform, spectrum and figures of an effect | |
 //! | [`IntentTable`], [`IntentSweep`] | rates of false activations and of missed presses | |
 //! | [`PondLaws`] | onsets, energies, fronts and turns of the frozen pond, against its model | paper, section 4.1 |
@@ -47,6 +48,7 @@ mod scan;
 mod scenes;
 mod seam_object;
 mod spot;
+mod standing;
 mod taps;
 mod two_feet;
 mod wilson;
@@ -68,6 +70,7 @@ pub use scan::{ScanPoint, TileScan, TileSweep};
 pub use scenes::{SceneLine, SceneTable};
 pub use seam_object::{SeamObject, SeamObjectRow};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
+pub use standing::{StandLine, StandTable};
 pub use taps::{HeavyFoot, TapLine, TapScene, TapScore, TapTable};
 pub use two_feet::TwoFeet;
 pub use wilson::Counted;
