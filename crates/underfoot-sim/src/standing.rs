@@ -33,8 +33,8 @@ impl Default for StandingHabit {
 /// Time without a person at the beginning, for the readings of the empty floor.
 const EMPTY: Duration = Duration::from_secs(2);
 
-/// Time on a mark: half a second to settle, two to measure, and a second to notice the end.
-const STAND: Duration = Duration::from_millis(3600);
+/// Time on a mark: a second until the stand counts as still, two to measure, and one to notice the end.
+const STAND: Duration = Duration::from_millis(4200);
 
 /// Returns the performance of a person who stands on `marks` in their order, with the feet together, from two seconds
 /// after the start; `seed` determines the sway and the misses.

@@ -4,8 +4,9 @@
 /// away.
 const SMOOTH: f32 = 0.1;
 
-/// Share of a new value in mean and variance: a time constant of 0.3 s, about half a step.
-const SPREAD: f32 = 0.016;
+/// Share of a new value in mean and variance: a time constant of 0.1 s. Half a second after a step the person counts as
+/// still.
+const SPREAD: f32 = 0.05;
 
 /// Motion below which a person stands: three times that of recorded quiet standing (our choice).
 const STILL: f32 = 0.03;
@@ -68,7 +69,7 @@ impl FloorMotion {
         self.loaded().next().is_some()
     }
 
-    /// Standard deviation of the outputs over 0.3 s as a share of their change, over the sensors that carry a load.
+    /// Standard deviation of the outputs over 0.1 s as a share of their change, over the sensors that carry a load.
     fn share(&self) -> f32 {
         let (varying, change) = self.loaded().fold((0.0, 0.0), |(varying, change), (_, sensor)| {
             (varying + sensor.variance, change + sensor.mean * sensor.mean)
