@@ -171,18 +171,18 @@ pub const COMMANDS: [Command; 19] = [
         path: "sensor/set",
         argument: ArgumentKind::SensorFlag,
         says: "Ignore a sensor (0), or use it again (1), until the program ends; its tile goes on with the others.",
-        make: use_sensors,
+        make: |_, argument| use_sensors(&argument),
     },
     Command {
         path: "sensor/channel",
         argument: ArgumentKind::ChannelFlag,
         says: "The same for the sensor on a channel of a board.",
-        make: use_sensors,
+        make: |_, argument| use_sensors(&argument),
     },
 ];
 
-fn use_sensors(_: WidgetId, argument: DecodedArgument) -> Option<ControlMessage> {
-    match argument {
+fn use_sensors(argument: &DecodedArgument) -> Option<ControlMessage> {
+    match *argument {
         DecodedArgument::SensorsFlag(choice, on) => Some(ControlMessage::UseSensors { choice, on }),
         _ => None,
     }

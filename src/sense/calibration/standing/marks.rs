@@ -68,7 +68,8 @@ impl StandingMark {
         let mut tiles: Vec<TileId> = geometry.tiles().filter(|tile| geometry.has(*tile)).collect();
         let first = geometry.first().row;
         tiles.sort_by_key(|tile| {
-            let along = if (tile.row - first) % 2 == 0 { tile.column } else { u16::MAX - tile.column };
+            let along =
+                if (tile.row - first).is_multiple_of(2) { tile.column } else { u16::MAX - tile.column };
             (tile.row, along)
         });
         tiles
