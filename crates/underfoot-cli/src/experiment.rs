@@ -9,7 +9,8 @@ use serde::Serialize;
 use underfoot::ground::IceSpec;
 use underfoot_lab::experiment::{
     ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, PlaceTable,
-    PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
+    PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SpotTable, StandTable, TapTable, TileScan,
+    TwoFeet,
 };
 use underfoot_scene::picture;
 use underfoot_sim::FloorQuality;
@@ -46,6 +47,9 @@ enum What {
     /// Accuracy of all contacts in fourteen scenes that are hard to sense, on floors with slight, moderate and severe
     /// faults: walking, shifting weight, jumping, kneeling, sticks, wheels.
     Scenes(ScenesArgs),
+    /// Accuracy after calibration by standing, beside that by a load cell, on floors of each law; by the number of
+    /// marks, and with the time that the person needs.
+    Calibration(SpotArgs),
     /// Rates of unintended activations and of missed presses: people who cross and use every shipped layout, and rows
     /// of buttons of many sizes and thresholds.
     Intent(IntentArgs),
@@ -172,6 +176,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Place(args) => place(args),
         What::Feet(args) => feet(args),
         What::Scenes(args) => scenes(args),
+        What::Calibration(args) => calibration(args),
         What::Intent(args) => intent(args),
         What::Pond(args) => pond(args),
     }
@@ -327,6 +332,23 @@ fn place(args: &SpotArgs) -> Result<(), Failure> {
         return print_json(&table.lines().collect::<Vec<_>>());
     }
     outln!("{table}");
+    Ok(())
+}
+
+fn calibration(args: &SpotArgs) -> Result<(), Failure> {
+    let mut table = StandTable::default();
+    // In the order of floors, not of completion: the same seed gives the same table.
+    for floor in in_parallel("floor", args.floors, |number| {
+        let mut table = StandTable::default();
+        table.add_floor(args.seed.wrapping_add(number))?;
+        Ok(table)
+    })? {
+        table.append(floor);
+    }
+    if args.json {
+        return print_json(&table.lines().collect::<Vec<_>>());
+    }
+    out!("{table}");
     Ok(())
 }
 

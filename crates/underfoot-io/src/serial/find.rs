@@ -39,6 +39,13 @@ fn listed() -> Vec<Listed> {
     ports
 }
 
+/// Returns the names of the serial ports of this machine, as `--serial` takes them; none if the system does not list
+/// them.
+#[must_use]
+pub fn port_names() -> Vec<String> {
+    listed().into_iter().map(|port| port.system).collect()
+}
+
 /// Returns the system's name of `port`; `None` if this machine does not have it.
 pub(super) fn find(port: &PortName) -> Option<String> {
     match port {

@@ -36,7 +36,7 @@ use underfoot::source::FloorInput;
 use underfoot::units::HostClock;
 use underfoot::wire::{LinkCause, LinkCounters, SensorPacket};
 
-pub use self::find::absent;
+pub use self::find::{absent, port_names};
 use self::thread::PortThread;
 
 /// Maximum number of waiting news: one second of 16 boards. Packets beyond are counted as overflowed.
