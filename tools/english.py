@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """How plain the comments are, for each module: tools/english.py [--list N] [--check] [FOLDER...]
 
-Counts "what", "who", "whose" and "whom" per 100 words of comments (those of documentation too) in Rust files, and of
-text in Markdown pages; and sentences that begin with one of them without asking anything. Words within backquotes,
+Counts "what", "who", "whose" and "whom" per 100 words of comments (those of documentation too) in Rust, RON, TOML, Python
+and shell files, and of text in Markdown pages; and sentences that begin with one of them without asking anything. Words within backquotes,
 code blocks and addresses do not count. `--list N` prints the N worst files, `--check` fails above the limits below.
 """
 
@@ -48,6 +48,19 @@ def comments(code):
     return blocks
 
 
+def lines_of_comment(text):
+    """The comments of a file in which they begin with `#`, those on neighbouring lines as one paragraph."""
+    lines = [re.sub(r"^# ?", "", line.strip()) if line.lstrip().startswith("#") else "" for line in text.splitlines()]
+    return [block for block in re.split(r"\n{2,}", "\n".join(lines)) if block.strip()]
+
+
+# How the texts of a file are found, by its suffix.
+TEXTS = {
+    ".rs": comments, ".ron": comments, ".toml": lines_of_comment, ".py": lines_of_comment, ".sh": lines_of_comment,
+    ".md": lambda text: [text],
+}
+
+
 def module_of(path):
     """The group in which `path` is counted: a folder below `src`, or a folder of the workspace."""
     parts = path.parts
@@ -62,7 +75,7 @@ def module_of(path):
 def count(path):
     """Words, watched words and crooked sentences of one file."""
     text = path.read_text(encoding="utf-8")
-    blocks = comments(text) if path.suffix == ".rs" else [text]
+    blocks = TEXTS[path.suffix](text)
     words = watched = 0
     crooked = []
     for block in blocks:
@@ -84,7 +97,7 @@ def main():
     modules, files = collections.defaultdict(lambda: [0, 0, 0]), []
     for name in names.stdout.splitlines():
         path = pathlib.Path(name)
-        if path.suffix not in (".rs", ".md") or not path.is_file():
+        if path.suffix not in TEXTS or not path.is_file() or "fixtures" in path.parts:
             continue
         words, watched, crooked = count(path)
         files.append((watched, words, len(crooked), name))

@@ -19,7 +19,7 @@ TOKEN = re.compile(
     re.DOTALL | re.VERBOSE,
 )
 
-# What an item is, behind its attributes and `pub`.
+# The word that names the sort of an item, behind its attributes and `pub`.
 FIRST_WORD = re.compile(
     r"\s*(?:#\[[^\]]*\]\s*)*(?:pub(?:\([^)]*\))?\s+)?(?:(?:const|unsafe|async)\s+)*(\w*)"
 )
@@ -68,7 +68,7 @@ def end_of_item(code, at):
     for place in range(at, len(code)):
         char = code[place]
         depth += (char in "([{") - (char in ")]}")
-        # What it stands in is closed.
+        # The brackets around it close.
         if depth < 0:
             return place
         if depth == 0 and char in closing:

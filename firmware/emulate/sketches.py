@@ -1,40 +1,13 @@
-"""Sketches in the emulator: off line as fast as it can, and in real time with `underfoot run` on their port."""
+"""Sketches in the emulator, off line as fast as it can."""
 
-import json
-import os
-import pathlib
-import queue
 import subprocess
-import sys
-import threading
-import time
-import typing
 
-FIRMWARE = pathlib.Path(__file__).resolve().parent.parent
-
-
-def come_first():
-    """Puts this process before others, where its user may: it keeps real time, as a board does."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
-    except PermissionError:
-        pass
-
-
-def need(is_so, otherwise):
-    if not is_so:
-        sys.exit(f"firmware/test: {otherwise}")
+from served import FIRMWARE, need
 
 
 def build(out):
     made = subprocess.run(["make", "-C", FIRMWARE, f"OUT={out}"], capture_output=True, text=True)
     need(made.returncode == 0, made.stdout + made.stderr)
-
-
-def write_script(path, changes):
-    """Writes (milliseconds, pin, value), by time."""
-    path.write_text("".join(f"{ms:.3f} {pin} {value}\n" for ms, pin, value in changes))
-    return path
 
 
 class Emulator:
@@ -43,105 +16,13 @@ class Emulator:
     def __init__(self, folder, made):
         self.folder, self.made = folder, made
 
+    def command(self, sketch):
+        return self.made / "avr", self.made / f"{sketch}.elf"
+
     def text(self, sketch, script, until_ms, options=()):
         out = self.folder / "out.txt"
-        command = [self.made / "avr", self.made / f"{sketch}.elf", script, "--out", out, "--until", str(until_ms)]
+        command = [*self.command(sketch), script, "--out", out, "--until", str(until_ms)]
         said = subprocess.run([*command, *options], capture_output=True, text=True, check=True).stdout.splitlines()
         need(" took 0;" in said[-1], said[-1])
         first_ms = float(said[0].split()[-2])
         return first_ms, out.read_text()
-
-
-def start(command, **options):
-    """A process whose lines are read, before others."""
-    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=come_first, **options)
-
-
-class Pad(typing.NamedTuple):
-    """A sketch, its floor file, and the sensors at its inputs."""
-
-    name: str
-    sketch: str
-    floor: pathlib.Path
-    side_m: float
-    sensor: typing.Callable
-    options: tuple = ()
-
-
-class Served:
-    """A sketch in real time, and `underfoot run` on its port; both end with it."""
-
-    def __init__(self, emulator, pad, script, underfoot):
-        self.command = [emulator.made / "avr", emulator.made / f"{pad.sketch}.elf"], pad.options
-        # A name that stays, as the one by the number of a USB device does.
-        self.port = emulator.folder / "port"
-        self.events, self.marks = queue.Queue(), queue.Queue()
-        self.plug_in(script)
-        layout = FIRMWARE / "arduino/go.ron"
-        command = [underfoot, "run", layout, "--floor", pad.floor, "--serial", self.port, "--json", "--no-osc"]
-        command += ["--listen", "127.0.0.1:0", "--wav", emulator.folder / "out.wav", "--seconds", "30"]
-        self.log = open(emulator.folder / "log.txt", "w+")
-        self.program = start(command, stderr=self.log)
-        self.listen(self.program, self.events)
-
-    def plug_in(self, script):
-        """Starts the board, whose script begins when the program opens its port."""
-        program, options = self.command
-        self.board = start([*program, script, *options])
-        path = self.board.stdout.readline().strip()
-        self.port.unlink(missing_ok=True)
-        self.port.symlink_to(path)
-        self.listen(self.board, self.marks)
-
-    def listen(self, process, sink):
-        threading.Thread(target=self.read, args=(process.stdout, sink), daemon=True).start()
-
-    @staticmethod
-    def read(source, sink):
-        for line in source:
-            sink.put((time.time(), line))
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        for process in self.board, self.program:
-            process.kill()
-            process.wait()
-
-    def said(self):
-        self.log.seek(0)
-        return self.log.read()
-
-    def mark(self):
-        """Unix seconds of the next mark of the script."""
-        try:
-            line = self.marks.get(timeout=15)[1]
-        except queue.Empty:
-            sys.exit(f"firmware/test: nobody opens the port: {self.said()}")
-        return float(line.split()[2])
-
-    def event(self, patience_s):
-        """The next event of the button, and its arrival in Unix seconds."""
-        until = time.monotonic() + patience_s
-        while True:
-            try:
-                at, line = self.events.get(timeout=max(until - time.monotonic(), 0.001))
-            except queue.Empty:
-                sys.exit(f"firmware/test: an event is missing; the program says: {self.said()}")
-            event = json.loads(line)
-            if event.get("id") == "go" and event.get("event") in ("pressed", "released", "clicked", "cancelled"):
-                return event, at
-
-    def pull_cable(self):
-        at = time.time()
-        self.board.terminate()
-        self.board.wait()
-        return at
-
-    def last_words(self):
-        """The emulator's counts, at its end."""
-        while True:
-            line = self.marks.get(timeout=5)[1].strip()
-            if line.startswith("sent "):
-                return line

@@ -5,7 +5,7 @@ use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, ForceFrame, ForceTable, LoadTable, PressTable};
 use underfoot_sim::Scenario;
-use underfoot::source::Faults;
+use underfoot::source::LinkFaults;
 use underfoot::units::Instant;
 use underfoot::wire::{Batch, Decoder};
 
@@ -88,7 +88,7 @@ impl Target {
                 forces || loads.is_ok() || presses.is_ok()
             }
             "ahap" => schema::read_ahap(text, "it").is_ok(),
-            _ => text.parse::<Faults>().is_ok(),
+            _ => text.parse::<LinkFaults>().is_ok(),
         }
     }
 

@@ -148,9 +148,9 @@ pub(super) struct Loading {
 /// Detects from its load that one foot carries a body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepWatch {
-    carries: Since,
-    stands: Since,
-    rests: Since,
+    carries: HeldSince,
+    stands: HeldSince,
+    rests: HeldSince,
 }
 
 impl StepWatch {
@@ -181,9 +181,9 @@ impl StepWatch {
 
 /// Start time of a condition that has held without a break.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Since(Option<Instant>);
+pub(super) struct HeldSince(Option<Instant>);
 
-impl Since {
+impl HeldSince {
     /// Notes whether the condition holds now. Returns for how long; `None` if it does not hold.
     pub(super) fn note(&mut self, is: bool, now: Instant) -> Option<Duration> {
         self.0 = is.then(|| self.0.unwrap_or(now));

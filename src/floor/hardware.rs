@@ -1,6 +1,9 @@
 //! The hardware of one floor.
 
+use std::collections::BTreeSet;
 use std::net::SocketAddr;
+
+use underfoot_packet::BoardAddress;
 
 use super::{
     Area, Calibration, CalibrationRecord, Corner, CountRange, Day, Drive, FloorFile, Geometry, Loudspeaker,
@@ -41,7 +44,7 @@ pub struct Floor {
     pub noiseless: bool,
     /// The sensors that are switched off: their readings never count. Their tiles continue with the others; a tile
     /// with two or more of them off senses nothing.
-    pub off: Vec<SensorId>,
+    pub off: BTreeSet<SensorId>,
     /// The day on which `tare` was measured; `None` if unknown.
     pub tared: Option<Day>,
     /// The networks that boards may send from; only this machine if it is empty.
@@ -78,7 +81,7 @@ impl Floor {
             calibration_records: vec![[None; 4]; tiles],
             map_records: vec![None; tiles],
             noiseless: false,
-            off: Vec::new(),
+            off: BTreeSet::new(),
             tared: None,
             allow: Vec::new(),
             serial: Vec::new(),
@@ -127,9 +130,10 @@ impl Floor {
 
     /// Switches a sensor off, or on again.
     pub fn switch(&mut self, sensor: SensorId, on: bool) {
-        self.off.retain(|other| *other != sensor);
-        if !on {
-            self.off.push(sensor);
+        if on {
+            self.off.remove(&sensor);
+        } else {
+            self.off.insert(sensor);
         }
     }
 
@@ -228,7 +232,7 @@ fn boards_by_row(geometry: &Geometry) -> Vec<Board> {
                     geometry.sensors(tile).iter().map(move |&corner| Some(SensorId { tile, corner }))
                 })
                 .collect();
-            let board = Board::new(format!("/underfoot/board/{}", boards.len()), channels);
+            let board = Board::new(BoardAddress(boards.len()).to_string(), channels);
             boards.extend(Some(board).filter(|board| !board.channels.is_empty()));
         }
     }

@@ -26,6 +26,12 @@ pub(super) fn of_event(line: &MessageLine, moment: &ControlMoment) -> Option<Act
         Payload::Program(number, ProgramSettings { channel }) => {
             Act::Midi(MidiMessage::Program(*channel, *number))
         }
+        Payload::Dmx(settings) => Act::Dmx(settings.at(1.0)),
+        Payload::Mqtt(topic, settings) => {
+            let When::On(trigger) = line.when else { return None };
+            Act::Mqtt(settings.at_event(topic, trigger.name()))
+        }
+        Payload::Run(arguments) => Act::Run(arguments.clone()),
         Payload::Pointer(_) | Payload::Note(..) | Payload::Bend(_) | Payload::Pressure(_) => return None,
     })
 }
@@ -39,6 +45,8 @@ pub(super) fn of_value(line: &MessageLine, moment: &ControlMoment, value: Value,
         Payload::Controller(settings) => Act::Midi(settings.at(part())),
         Payload::Bend(settings) => Act::Midi(settings.at(part())),
         Payload::Pressure(settings) => Act::Midi(settings.at(part())),
+        Payload::Dmx(settings) => Act::Dmx(settings.at(part())),
+        Payload::Mqtt(topic, settings) => Act::Mqtt(settings.of_value(topic, value, line.ends)),
         _ => return None,
     })
 }

@@ -286,7 +286,7 @@ impl Messenger {
         // Values between which the message makes no difference go out once.
         let is_old = match &act {
             Act::Wheel(step) => *step == 0,
-            Act::Midi(_) => state.told.as_ref() == Some(&act),
+            Act::Midi(_) | Act::Dmx(_) | Act::Mqtt(_) => state.told.as_ref() == Some(&act),
             _ => false,
         };
         if is_old {
@@ -297,7 +297,7 @@ impl Messenger {
         if self.outbox.allows(line.target, now, 1) {
             match &act {
                 Act::Wheel(step) => state.steps += step,
-                Act::Midi(_) => state.told = Some(act.clone()),
+                Act::Midi(_) | Act::Dmx(_) | Act::Mqtt(_) => state.told = Some(act.clone()),
                 _ => {}
             }
             state.pace.sent(now);

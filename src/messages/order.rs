@@ -4,8 +4,10 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::dmx::{DmxLevel, DmxSettings};
 use super::key::KeyStroke;
 use super::midi::{ControllerSettings, MidiMessage, MidiNote};
+use super::mqtt::{MqttMessage, MqttSwitch};
 use super::sending::MouseButton;
 use crate::widget::WidgetId;
 
@@ -39,6 +41,21 @@ pub enum Act {
     Osc(String, Vec<OscValue>),
     /// A MIDI message.
     Midi(MidiMessage),
+    /// The level of a DMX channel.
+    Dmx(DmxLevel),
+    /// An MQTT message.
+    Mqtt(MqttMessage),
+    /// Starts the target's program with these arguments.
+    Run(Vec<String>),
+}
+
+/// A state that lasts at its target until another one replaces it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StandingState {
+    /// The level of this DMX channel.
+    Level(u16),
+    /// The text that this topic retains.
+    Topic(String),
 }
 
 /// A thing that can be held down.
@@ -56,6 +73,10 @@ pub enum Holdable {
     Controller(ControllerSettings),
     /// All notes of a MIDI channel, 1 to 16; they are only released.
     Notes(u8),
+    /// A DMX channel: down is its upper level, up its lower one.
+    Dmx(DmxSettings),
+    /// A topic of MQTT that is on or off.
+    Mqtt(MqttSwitch),
 }
 
 /// One argument of an OSC message.
@@ -78,6 +99,18 @@ pub struct Unsent {
     pub held: u64,
     /// Feet that arrived where the most feet were already.
     pub crowded: u64,
+}
+
+impl Act {
+    /// The state that it sets; `None` for an act that leaves none, and for those that go down and come up.
+    #[must_use]
+    pub fn standing(&self) -> Option<StandingState> {
+        match self {
+            Self::Dmx(level) => Some(StandingState::Level(level.channel)),
+            Self::Mqtt(message) if message.retained => Some(StandingState::Topic(message.topic.clone())),
+            _ => None,
+        }
+    }
 }
 
 impl std::ops::Add for Unsent {
@@ -103,6 +136,8 @@ impl fmt::Display for Holdable {
                 write!(f, "controller {number} on channel {channel}")
             }
             Self::Notes(channel) => write!(f, "all notes on channel {channel}"),
+            Self::Dmx(settings) => settings.fmt(f),
+            Self::Mqtt(switch) => f.write_str(&switch.topic),
         }
     }
 }
@@ -128,6 +163,9 @@ impl fmt::Display for Act {
             Self::Move([right, down]) => write!(f, "pointer {right:+} {down:+}"),
             Self::Place([x, y]) => write!(f, "pointer at {x:.3} {y:.3}"),
             Self::Midi(message) => message.fmt(f),
+            Self::Dmx(level) => level.fmt(f),
+            Self::Mqtt(message) => message.fmt(f),
+            Self::Run(arguments) => write!(f, "start with {arguments:?}"),
             Self::Osc(address, values) => {
                 f.write_str(address)?;
                 values.iter().try_for_each(|value| write!(f, " {value}"))

@@ -4,11 +4,13 @@ use std::collections::BTreeSet;
 
 use glam::Vec2;
 
+use super::content::{self, ControlMoment};
+use super::discovery;
 use super::feet_settings::{ContactPayload, ContactSending};
 use super::midi::MidiNote;
 use super::order::{Act, Holdable, MessageOrder};
 use super::sending::{Payload, Sending, When};
-use super::target::SendTarget;
+use super::target::{Destination, SendTarget};
 use crate::floor::Rect;
 use crate::widget::{Behaviour, Value, WidgetId};
 
@@ -82,6 +84,25 @@ impl MessagePlan {
         }
     }
 
+    /// The states that last from the start on: the levels and retained texts of the controls' first values, and the
+    /// descriptions for Home Assistant.
+    #[must_use]
+    pub fn standing(&self) -> Vec<(usize, Act)> {
+        let mut all = Vec::new();
+        for line in &self.lines {
+            let first = line.initial.filter(|_| line.when == When::Value);
+            let moment = ControlMoment { value: first, ..ControlMoment::default() };
+            let act = first.and_then(|value| content::of_value(line, &moment, value, 0));
+            let described = match self.targets.get(line.target).map(|target| &target.to) {
+                Some(Destination::Mqtt(target)) if target.discovery => discovery::description(line, target),
+                _ => None,
+            };
+            let acts = [act, described.map(Act::Mqtt)].into_iter().flatten();
+            all.extend(acts.filter(|act| act.standing().is_some()).map(|act| (line.target, act)));
+        }
+        all
+    }
+
     fn index_of(&self, target: &str) -> Option<usize> {
         self.targets.iter().position(|it| it.name == *target)
     }
@@ -119,6 +140,8 @@ impl MessageLine {
                 Some(Holdable::Note(MidiNote { channel: settings.channel, key: *key }))
             }
             (Payload::Controller(settings), When::While) => Some(Holdable::Controller(*settings)),
+            (Payload::Dmx(settings), When::While) => Some(Holdable::Dmx(*settings)),
+            (Payload::Mqtt(topic, settings), When::While) => Some(Holdable::Mqtt(settings.switch(topic))),
             _ => None,
         }
     }

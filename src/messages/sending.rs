@@ -5,15 +5,20 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use underfoot_format::Named;
 
+use super::dmx::DmxSettings;
 use super::key::KeyStroke;
 use super::midi::{
     BendSettings, ControllerSettings, MidiNote, NoteSettings, PressureSettings, ProgramSettings,
 };
+use super::mqtt::MqttSettings;
 use super::target::TargetSort;
 use super::trigger::Trigger;
 
 /// Maximum number of messages of one control (our choice).
 pub const MAX_MESSAGES: usize = 16;
+
+/// Maximum number of arguments of one message (our choice).
+pub const MAX_ARGUMENTS: usize = 16;
 
 /// One message of a control: its time, its target and its content.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +65,12 @@ pub enum Payload {
     Bend(BendSettings),
     /// Pressure of a MIDI channel or key.
     Pressure(PressureSettings),
+    /// The level of a DMX channel.
+    Dmx(DmxSettings),
+    /// A message to this topic of MQTT.
+    Mqtt(String, MqttSettings),
+    /// The start of the target's program with these arguments.
+    Run(Vec<String>),
 }
 
 /// The arguments of an OSC message.
@@ -151,6 +162,9 @@ impl fmt::Display for Payload {
             Self::Pressure(PressureSettings { channel, key: Some(key), .. }) => {
                 write!(f, "pressure of {}", MidiNote { channel: *channel, key: *key })
             }
+            Self::Dmx(settings) => settings.fmt(f),
+            Self::Mqtt(topic, _) => f.write_str(topic),
+            Self::Run(arguments) => write!(f, "start with {arguments:?}"),
         }
     }
 }
@@ -175,6 +189,9 @@ impl Payload {
             Self::Program(..) => "Program",
             Self::Bend(_) => "Bend",
             Self::Pressure(_) => "Pressure",
+            Self::Dmx(_) => "Dmx",
+            Self::Mqtt(..) => "Mqtt",
+            Self::Run(_) => "Run",
         }
     }
 
@@ -187,6 +204,9 @@ impl Payload {
             Self::Note(..) | Self::Controller(_) | Self::Program(..) | Self::Bend(_) | Self::Pressure(_) => {
                 TargetSort::Midi
             }
+            Self::Dmx(_) => TargetSort::Dmx,
+            Self::Mqtt(..) => TargetSort::Mqtt,
+            Self::Run(_) => TargetSort::Program,
         }
     }
 
@@ -195,10 +215,10 @@ impl Payload {
     pub const fn suits(&self, when: When) -> bool {
         matches!(
             (self, when),
-            (Self::Osc(..) | Self::Controller(_), _)
+            (Self::Osc(..) | Self::Controller(_) | Self::Dmx(_) | Self::Mqtt(..), _)
                 | (Self::Key(_) | Self::Button(_) | Self::Note(..), When::On(_) | When::While)
                 | (Self::Wheel(_), When::On(_) | When::Value)
-                | (Self::Program(..), When::On(_))
+                | (Self::Program(..) | Self::Run(_), When::On(_))
                 | (Self::Pointer(_) | Self::Bend(_) | Self::Pressure(_), When::Value)
         )
     }

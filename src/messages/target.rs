@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use underfoot_format::{Named, Opt, Text, record};
 
+use super::dmx::{ArtNetTarget, SacnTarget};
+use super::mqtt::MqttTarget;
+
 /// Maximum number of targets of one layout (our choice: a desk has a handful of programs).
 pub const MAX_TARGETS: usize = 16;
 
@@ -24,6 +27,14 @@ pub enum Destination {
     Osc(OscTarget),
     /// A port of MIDI.
     Midi(MidiTarget),
+    /// A universe of DMX behind Art-Net.
+    ArtNet(ArtNetTarget),
+    /// A universe of DMX behind sACN.
+    Sacn(SacnTarget),
+    /// A broker of MQTT.
+    Mqtt(MqttTarget),
+    /// A program that messages start.
+    Run(ProgramTarget),
 }
 
 /// The sort of a receiver: each takes messages of its own.
@@ -35,6 +46,12 @@ pub enum TargetSort {
     Osc,
     /// A port of MIDI.
     Midi,
+    /// A universe of DMX.
+    Dmx,
+    /// A broker of MQTT.
+    Mqtt,
+    /// A program that messages start.
+    Program,
 }
 
 record! {
@@ -62,6 +79,15 @@ pub struct MidiTarget {
     pub port: String,
     /// Part of the name of a port that it connects to by itself.
     pub into: Option<String>,
+}
+
+/// A program that messages start, each time anew.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct ProgramTarget {
+    /// Its path, or its name in the folders of `PATH`.
+    pub program: String,
+    /// Whether the operator allows layouts to start programs; layouts cannot say so themselves.
+    pub is_allowed: bool,
 }
 
 impl MidiTarget {
@@ -105,11 +131,17 @@ impl Destination {
             Self::Keyboard(_) => TargetSort::Keyboard,
             Self::Osc(_) => TargetSort::Osc,
             Self::Midi(_) => TargetSort::Midi,
+            Self::ArtNet(_) | Self::Sacn(_) => TargetSort::Dmx,
+            Self::Mqtt(_) => TargetSort::Mqtt,
+            Self::Run(_) => TargetSort::Program,
         }
     }
 }
 
 impl TargetSort {
+    /// All sorts.
+    pub const ALL: [Self; 6] = [Self::Keyboard, Self::Osc, Self::Midi, Self::Dmx, Self::Mqtt, Self::Program];
+
     /// Its name in messages for people.
     #[must_use]
     pub const fn noun(self) -> &'static str {
@@ -117,6 +149,9 @@ impl TargetSort {
             Self::Keyboard => "a keyboard",
             Self::Osc => "a receiver of OSC",
             Self::Midi => "a MIDI port",
+            Self::Dmx => "a DMX universe",
+            Self::Mqtt => "an MQTT broker",
+            Self::Program => "a program to start",
         }
     }
 
@@ -127,6 +162,9 @@ impl TargetSort {
             Self::Keyboard => "Keyboard",
             Self::Osc => "Osc(\"127.0.0.1:53000\")",
             Self::Midi => "Midi(\"underfoot\")",
+            Self::Dmx => "ArtNet(\"127.0.0.1\")",
+            Self::Mqtt => "Mqtt(\"127.0.0.1:1883\")",
+            Self::Program => "Run(\"notify-send\")",
         }
     }
 }

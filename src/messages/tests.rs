@@ -27,8 +27,20 @@ fn plan() -> MessagePlan {
     let osc =
         Destination::Osc(OscTarget { address: "127.0.0.1:53000".into(), over: OscTransport::default() });
     let synth = Destination::Midi(MidiTarget { port: "synth".into(), into: None });
-    let mut plan =
-        MessagePlan::new(vec![target("viewer", keyboard), target("desk", osc), target("synth", synth)]);
+    let lights = Destination::Sacn(SacnTarget::USUAL);
+    let broker = Destination::Mqtt(MqttTarget {
+        address: "127.0.0.1:1883".into(),
+        base: None,
+        discovery: true,
+        user: None,
+    });
+    let mut plan = MessagePlan::new(vec![
+        target("viewer", keyboard),
+        target("desk", osc),
+        target("synth", synth),
+        target("lights", lights),
+        target("home", broker),
+    ]);
     let hold = Behaviour::Hold(HoldSpec { thresholds: AT });
     let slider = Behaviour::Slider(SliderSpec::new(AT, Scale::new(0.0, 10.0)));
     let pad = Behaviour::Pad(PadSpec {
@@ -52,6 +64,8 @@ fn plan() -> MessagePlan {
             sending(When::While, "desk", osc(None)),
             sending(When::While, "synth", note(48)),
             sending(When::While, "synth", Payload::Controller(controller(64, false))),
+            sending(When::While, "lights", Payload::Dmx(DmxSettings::of(12))),
+            sending(When::While, "home", Payload::Mqtt("lamp".into(), MqttSettings::PLAIN)),
         ],
     );
     let value = [
@@ -59,6 +73,8 @@ fn plan() -> MessagePlan {
         sending(When::Value, "viewer", Payload::Wheel(20)),
         sending(When::Value, "synth", Payload::Controller(controller(7, true))),
         sending(When::Value, "synth", Payload::Bend(BendSettings { channel: 1, from: -8192, to: 8191 })),
+        sending(When::Value, "lights", Payload::Dmx(DmxSettings { fine: true, ..DmxSettings::of(1) })),
+        sending(When::Value, "home", Payload::Mqtt("level".into(), MqttSettings::PLAIN)),
     ];
     plan.add(&WidgetId::new("w3"), &slider, &value);
     plan.add(&WidgetId::new("w4"), &pad, &[sending(When::Value, "viewer", Payload::Pointer(800.0))]);
@@ -123,7 +139,7 @@ impl PressedKeys {
                     _ => true,
                 })),
                 Act::Place(place) => assert!(place.iter().all(|share| (0.0..=1.0).contains(share))),
-                Act::Wheel(_) | Act::Move(_) | Act::Midi(_) => {}
+                Act::Wheel(_) | Act::Move(_) | Act::Midi(_) | Act::Dmx(_) | Act::Mqtt(_) | Act::Run(_) => {}
             }
         }
     }
@@ -223,7 +239,8 @@ fn a_key_is_down_for_as_long_as_reports_say_that_a_foot_holds_the_control() {
     let mut orders = Vec::new();
     messenger.event(&event("w2", EventKind::Pressed, 1000), &mut orders);
     let sound = ["note C3 on channel 1 down, velocity 32", "controller 64 on channel 1 down"];
-    assert_eq!(acts(&mut orders), ["left button down", "/pan down", sound[0], sound[1]]);
+    let [light, lamp] = ["DMX channel 12 down", "lamp down"];
+    assert_eq!(acts(&mut orders), ["left button down", "/pan down", sound[0], sound[1], light, lamp]);
     for ms in (1020..2000).step_by(20) {
         messenger.held(Instant::from_millis(ms), &[WidgetId::new("w2")], &mut orders);
         messenger.advance(Instant::from_millis(ms + 10), &mut orders);
@@ -231,7 +248,8 @@ fn a_key_is_down_for_as_long_as_reports_say_that_a_foot_holds_the_control() {
     assert_eq!(acts(&mut orders), [""; 0]);
     messenger.held(Instant::from_millis(2000), &[], &mut orders);
     let quiet = ["note C3 on channel 1 up", "controller 64 on channel 1 up"];
-    assert_eq!(acts(&mut orders), ["left button up", "/pan up", quiet[0], quiet[1]]);
+    let [light, lamp] = ["DMX channel 12 up", "lamp up"];
+    assert_eq!(acts(&mut orders), ["left button up", "/pan up", quiet[0], quiet[1], light, lamp]);
     messenger.held(Instant::from_millis(2020), &[WidgetId::new("w2")], &mut orders);
     assert_eq!(acts(&mut orders), [""; 0], "only a new press holds it again");
 }
@@ -350,6 +368,25 @@ fn a_slider_is_a_fine_controller_and_a_bend_and_repeats_neither() {
     }
     messenger.event(&event("w3", EventKind::Changed(Value::Number(10.0)), 1300), &mut orders);
     assert_eq!(midi(&mut orders), [], "only changes are sent");
+}
+
+#[test]
+fn a_slide_dims_a_light_and_a_retained_topic_and_repeats_neither() {
+    let mut messenger = Messenger::new(plan());
+    let mut orders = Vec::new();
+    let lasting = |orders: &mut Vec<MessageOrder>| -> Vec<String> {
+        let lasts = |order: &MessageOrder| order.act.standing().is_some();
+        orders.drain(..).filter(lasts).map(|order| order.act.to_string()).collect()
+    };
+    for (ms, value, level, text) in [(1000, 2.5, 16_384, "2.5"), (1100, 10.0, 65_535, "10")] {
+        messenger.event(&event("w3", EventKind::Changed(Value::Number(value)), ms), &mut orders);
+        assert_eq!(
+            lasting(&mut orders),
+            [format!("DMX channel 1: {level} of 65535"), format!("level {text:?}")]
+        );
+    }
+    messenger.event(&event("w3", EventKind::Changed(Value::Number(10.0)), 1300), &mut orders);
+    assert_eq!(lasting(&mut orders), [""; 0], "only changes are sent");
 }
 
 #[test]

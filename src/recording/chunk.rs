@@ -1,6 +1,6 @@
 //! Chunks of an MCAP file: decompressed and verified before use.
 
-use std::io::Read;
+use std::io::{self, Read};
 
 use super::bytes::ByteReader;
 use super::records::LONGEST_CHUNK;
@@ -156,5 +156,18 @@ fn zstd_frame(packed: &mut &[u8], bytes: &mut Vec<u8>, most: u64) -> Result<(), 
 fn lz4_frame(packed: &mut &[u8], bytes: &mut Vec<u8>, most: u64) -> Result<(), ChunkFault> {
     let room = most.saturating_add(1).saturating_sub(bytes.len() as u64);
     let mut decoder = lz4_flex::frame::FrameDecoder::new(&mut *packed).take(room);
-    decoder.read_to_end(bytes).map(drop).map_err(|error| error.to_string())
+    decoder.read_to_end(bytes).map(drop).map_err(|error| lz4_fault(&error))
+}
+
+/// The fault in words; the crate prints the names of its types.
+fn lz4_fault(error: &io::Error) -> ChunkFault {
+    use lz4_flex::frame::Error;
+    match error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
+        Some(Error::HeaderChecksumError | Error::BlockChecksumError | Error::ContentChecksumError) => {
+            "its frame does not fit its checksum".into()
+        }
+        Some(Error::WrongMagicNumber) => "it is no lz4 frame".into(),
+        Some(_) => "its frame is damaged".into(),
+        None => error.to_string(),
+    }
 }

@@ -9,7 +9,7 @@ use mcap::records::op;
 
 use super::chunk::Chunk;
 use super::entry::{self, Entry};
-use super::parts::{Attachment, Message, channel, metadata, statistics};
+use super::parts::{Attachment, McapMessage, channel, metadata, statistics};
 use super::records::{RawRecord, ReadState, Records};
 use super::{EVENTS, FLOOR, LAYOUT, METADATA, TOPICS};
 use crate::units::Instant;
@@ -188,7 +188,7 @@ impl MessageReader {
     /// Counts a message that is too long for our topics.
     fn pass_over_message(&mut self, record: &RawRecord) -> Result<(), End> {
         self.counts.messages += 1;
-        match Message::read(self.records.data()).map(|message| self.topics.get(&message.channel)) {
+        match McapMessage::read(self.records.data()).map(|message| self.topics.get(&message.channel)) {
             Some(Some(None)) => {
                 self.counts.foreign += 1;
                 Ok(())
@@ -282,7 +282,7 @@ fn read(
         }
         op::MESSAGE => {
             counts.messages += 1;
-            let message = Message::read(record).ok_or("a message that is too short")?;
+            let message = McapMessage::read(record).ok_or("a message that is too short")?;
             let topic = topics.get(&message.channel);
             match topic
                 .ok_or_else(|| format!("a message of channel {}, which is not defined", message.channel))?
@@ -299,7 +299,7 @@ fn read(
 }
 
 /// A message on one of our topics.
-fn ours(topic: &'static str, message: &Message<'_>, decoder: &Decoder) -> Result<Numbered, String> {
+fn ours(topic: &'static str, message: &McapMessage<'_>, decoder: &Decoder) -> Result<Numbered, String> {
     if topic == EVENTS {
         return Ok(Numbered::Part(LogPart::Event(message.data.to_vec())));
     }

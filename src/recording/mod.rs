@@ -11,7 +11,6 @@ mod events;
 mod messages;
 mod order;
 mod pack;
-mod packets;
 mod parts;
 mod reader;
 mod recorder;
@@ -35,7 +34,6 @@ use thiserror::Error;
 use crate::schema::Diagnostics;
 
 pub(crate) use entry::{Entry, decoder};
-pub use packets::{PacketTap, TappedPackets};
 pub use reader::Recording;
 pub(crate) use recorder::read_layout;
 pub use recorder::{Recorded, Recorder, WhenBehind};
@@ -43,7 +41,7 @@ pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
 pub use switch::RecordingSwitch;
 pub(crate) use tap::{Entries, EntrySink, tapped};
-pub use timeline::{Mark, MarkKind, Timeline};
+pub use timeline::{MarkKind, Timeline, TimelineMark};
 pub use transport::Transport;
 pub use trim::Trimmed;
 

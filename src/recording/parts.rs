@@ -48,7 +48,7 @@ pub(super) fn channel(record: &[u8]) -> Option<(u16, &str)> {
 }
 
 /// A message.
-pub(super) struct Message<'b> {
+pub(super) struct McapMessage<'b> {
     pub(super) channel: u16,
     pub(super) sequence: u32,
     pub(super) log_ns: u64,
@@ -56,7 +56,7 @@ pub(super) struct Message<'b> {
     pub(super) data: &'b [u8],
 }
 
-impl<'b> Message<'b> {
+impl<'b> McapMessage<'b> {
     pub(super) fn read(record: &'b [u8]) -> Option<Self> {
         let mut fields = ByteReader(record);
         let (channel, sequence) = (fields.u16()?, fields.u32()?);

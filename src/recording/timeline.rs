@@ -12,14 +12,14 @@ pub struct Timeline {
     /// First and last time of the recording so far.
     pub span: Option<(Instant, Instant)>,
     /// The important events, in the order of time.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<TimelineMark>,
     /// Reason for a break in the recording, if any.
     pub broken: Option<String>,
 }
 
 /// An important event.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Mark {
+pub struct TimelineMark {
     /// Time of the event.
     pub at: Instant,
     /// Kind of the event.
@@ -70,7 +70,7 @@ impl Recording {
     }
 }
 
-fn mark(line: &[u8]) -> Option<Mark> {
+fn mark(line: &[u8]) -> Option<TimelineMark> {
     let line = Line::read(line).ok()?;
     let kind = match line.message {
         Message::Control(event) if event.event == "pressed" => MarkKind::Pressed(event.id.0),
@@ -78,5 +78,5 @@ fn mark(line: &[u8]) -> Option<Mark> {
         Message::Link(link) if link.state == "lost" => MarkKind::LinkLost,
         _ => return None,
     };
-    Some(Mark { at: line.at?, kind })
+    Some(TimelineMark { at: line.at?, kind })
 }

@@ -19,12 +19,12 @@ const TOUCH: f64 = 1e-6;
 
 /// A rectangle as layouts write it: in their [`Units`], from the floor's south-west corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Area {
+pub(super) struct WrittenArea {
     min: [f64; 2],
     max: [f64; 2],
 }
 
-impl Area {
+impl WrittenArea {
     /// Reads the area from the fields `at` and `size`.
     pub(super) fn read(fields: &mut Fields<'_>, units: Units) -> Option<Self> {
         let (least, most) = (units.shortest(), units.furthest());
@@ -136,7 +136,7 @@ impl Area {
     }
 }
 
-impl fmt::Display for Area {
+impl fmt::Display for WrittenArea {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [west, south] = self.min.map(plain);
         let [east, north] = self.max.map(plain);
@@ -147,13 +147,13 @@ impl fmt::Display for Area {
 /// An area, and the place of its `at` in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Placed {
-    pub(super) area: Area,
+    pub(super) area: WrittenArea,
     pub(super) at: Range<usize>,
 }
 
 impl Placed {
     pub(super) fn read(fields: &mut Fields<'_>, units: Units) -> Option<Self> {
-        let area = Area::read(fields, units)?;
+        let area = WrittenArea::read(fields, units)?;
         Some(Self { area, at: fields.span("at") })
     }
 }
@@ -216,31 +216,31 @@ mod tests {
     #[test]
     fn edges_that_meet_touch_in_spite_of_rounding() {
         // In floating point, 0.1 + 0.2 is slightly more than 0.3.
-        let west = Area::new([0.1, 0.0], [0.2, 1.0]);
-        let east = Area::new([0.3, 0.0], [0.3, 1.0]);
+        let west = WrittenArea::new([0.1, 0.0], [0.2, 1.0]);
+        let east = WrittenArea::new([0.3, 0.0], [0.3, 1.0]);
         assert_eq!(west.shared(&east), None);
-        assert!(Area::new([5.3, 0.0], [0.7, 1.0]).within(&Area::new([0.0, 0.0], [6.0, 6.0])));
+        assert!(WrittenArea::new([5.3, 0.0], [0.7, 1.0]).within(&WrittenArea::new([0.0, 0.0], [6.0, 6.0])));
     }
 
     #[test]
     fn the_shortest_way_off_stays_on_the_floor() {
-        let floor = Area::new([0.0, 0.0], [6.0, 6.0]);
-        let below = Area::new([1.0, 1.0], [1.0, 1.0]);
-        let over = Area::new([1.75, 1.25], [1.0, 1.0]);
+        let floor = WrittenArea::new([0.0, 0.0], [6.0, 6.0]);
+        let below = WrittenArea::new([1.0, 1.0], [1.0, 1.0]);
+        let over = WrittenArea::new([1.75, 1.25], [1.0, 1.0]);
         assert_eq!(over.shared(&below).unwrap(), [0.25, 0.75]);
         assert_eq!(over.way_off(&below, &floor).as_deref(), Some("move it east by 0.25"));
-        let edge = Area::new([4.5, 1.0], [1.0, 1.0]);
-        let outer = Area::new([5.0, 1.0], [1.0, 1.0]);
+        let edge = WrittenArea::new([4.5, 1.0], [1.0, 1.0]);
+        let outer = WrittenArea::new([5.0, 1.0], [1.0, 1.0]);
         assert_eq!(outer.way_off(&edge, &floor).as_deref(), Some("move it north by 1"));
     }
 
     #[test]
     fn tiles_become_metres_by_the_pitch() {
         let geometry = Geometry::default();
-        let rect = Area::new([2.0, 1.0], [1.0, 0.5]).in_metres(&geometry, Units::Tiles);
+        let rect = WrittenArea::new([2.0, 1.0], [1.0, 0.5]).in_metres(&geometry, Units::Tiles);
         assert!((rect.min - Vec2::new(0.608, 0.304)).length() < 1e-6);
         assert!((rect.size() - Vec2::new(0.304, 0.152)).length() < 1e-6);
-        let metres = Area::new([0.5, 1.0], [0.25, 0.5]).in_metres(&geometry, Units::Metres);
+        let metres = WrittenArea::new([0.5, 1.0], [0.25, 0.5]).in_metres(&geometry, Units::Metres);
         assert_eq!(metres, Rect::new(Vec2::new(0.5, 1.0), Vec2::new(0.75, 1.5)));
     }
 }

@@ -6,13 +6,13 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::area::{Area, Placed};
+use super::area::{Placed, WrittenArea};
 use super::chain::Chains;
 use super::context::LayoutContext;
-use super::control::{Control, Grid, Size};
+use super::control::{Grid, Size, WrittenControl};
 use super::lists::MAX_WIDGETS;
 use super::node::Node;
-use super::place::{Beside, Placing, Spot};
+use super::place::{NeighbourPlace, Placing, WrittenSpot};
 use super::problem::Problem;
 use super::suggest::{did_you_mean, nearest};
 use underfoot_format::codec::By;
@@ -20,7 +20,7 @@ use underfoot_format::describe::FieldType;
 use underfoot_format::text::Text;
 
 /// Reads the entries of `widgets` into controls.
-pub(super) const WIDGETS: By<Vec<Control>, LayoutContext> = By {
+pub(super) const WIDGETS: By<Vec<WrittenControl>, LayoutContext> = By {
     shape: || FieldType::Words(WIDGET),
     read: |node, context| {
         let mut room = context.room;
@@ -36,7 +36,7 @@ const WIDGET: &str = "a list of controls, each with `id`, `kind`, a place, `size
     `left_of`, `above` and `below` with `gap` and `align`";
 
 /// Reads the controls of the list at `node`, in its own coordinates, and takes their number off the `room`.
-fn read(node: Node<'_>, context: &LayoutContext, room: &mut usize) -> Vec<Control> {
+fn read(node: Node<'_>, context: &LayoutContext, room: &mut usize) -> Vec<WrittenControl> {
     let nodes = node.list("widget", MAX_WIDGETS).unwrap_or_default();
     let entries: Vec<Entry<'_>> =
         nodes.into_iter().filter_map(|node| Entry::read(node, context, room)).collect();
@@ -54,7 +54,7 @@ struct Entry<'r> {
 enum EntryContent<'r> {
     Grid(Grid<'r>),
     /// Controls with places within the group, and their bounds.
-    Group(Vec<Control>, Option<Area>),
+    Group(Vec<WrittenControl>, Option<WrittenArea>),
 }
 
 impl<'r> Entry<'r> {
@@ -82,21 +82,21 @@ impl<'r> Entry<'r> {
     }
 
     /// Returns its area relative to its own place; `None` if the area is unknown.
-    fn extent(&self, neighbour: Option<&Area>) -> Option<Area> {
+    fn extent(&self, neighbour: Option<&WrittenArea>) -> Option<WrittenArea> {
         match &self.body {
             EntryContent::Grid(grid) => {
                 let cell = grid.cell_size(neighbour)?;
                 let side = |axis: usize, count: u32| {
                     f64::from(count) * cell[axis] + f64::from(count - 1) * grid.gap[axis]
                 };
-                Some(Area::new([0.0; 2], [side(0, grid.columns), side(1, grid.rows)]))
+                Some(WrittenArea::new([0.0; 2], [side(0, grid.columns), side(1, grid.rows)]))
             }
             EntryContent::Group(_, bounds) => *bounds,
         }
     }
 
     /// Places all of its controls; `by` is the shift of the entry.
-    fn move_by(&mut self, by: [f64; 2], neighbour: Option<&Area>) {
+    fn move_by(&mut self, by: [f64; 2], neighbour: Option<&WrittenArea>) {
         let at = self.placing.at.clone();
         match &mut self.body {
             EntryContent::Grid(grid) => {
@@ -105,7 +105,7 @@ impl<'r> Entry<'r> {
                     let (column, row) = (f64::from(cell.column), f64::from(grid.rows - 1 - cell.row));
                     let corner =
                         [by[0] + column * (size[0] + grid.gap[0]), by[1] + row * (size[1] + grid.gap[1])];
-                    control.place = Some(Placed { area: Area::new(corner, size), at: at.clone() });
+                    control.place = Some(Placed { area: WrittenArea::new(corner, size), at: at.clone() });
                 }
             }
             EntryContent::Group(controls, bounds) => {
@@ -118,7 +118,7 @@ impl<'r> Entry<'r> {
     }
 
     /// Returns the area of the neighbour called `name`, which is this entry or a part of it.
-    fn area_of(&self, name: &str) -> Option<Area> {
+    fn area_of(&self, name: &str) -> Option<WrittenArea> {
         match &self.body {
             EntryContent::Grid(grid) => {
                 let found = grid.controls.iter().find(|(_, control)| control.id.as_deref() == Some(name))?;
@@ -136,7 +136,7 @@ impl<'r> Entry<'r> {
         self.name.into_iter().chain(controls.iter().filter_map(|(_, control)| control.id.as_deref()))
     }
 
-    fn into_controls(self) -> Vec<Control> {
+    fn into_controls(self) -> Vec<WrittenControl> {
         match self.body {
             EntryContent::Grid(grid) => grid.controls.into_iter().map(|(_, control)| control).collect(),
             EntryContent::Group(controls, _) => controls,
@@ -145,16 +145,16 @@ impl<'r> Entry<'r> {
 }
 
 impl Grid<'_> {
-    fn cell_size(&self, neighbour: Option<&Area>) -> Option<[f64; 2]> {
+    fn cell_size(&self, neighbour: Option<&WrittenArea>) -> Option<[f64; 2]> {
         match self.size? {
             Size::Fixed(size) => Some(size),
-            Size::Neighbours => neighbour.map(Area::size),
+            Size::Neighbours => neighbour.map(WrittenArea::size),
         }
     }
 }
 
 /// Places the controls of all entries; a control has no place if that is unknown, which has been reported.
-fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
+fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<WrittenControl> {
     let follows = neighbours(&entries);
     let chains = Chains::of(&follows);
     for circle in &chains.circles {
@@ -163,8 +163,8 @@ fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
     for &index in chains.order.iter().filter(|&&index| !chains.is_circular(index)) {
         let Some(entry) = entries.get(index) else { continue };
         let moved = match entry.placing.spot {
-            Some(Spot::At(at)) => Some((at, None)),
-            Some(Spot::Beside(beside)) => {
+            Some(WrittenSpot::At(at)) => Some((at, None)),
+            Some(WrittenSpot::Beside(beside)) => {
                 beside_neighbour(&beside, entry, follows[index].map(|at| &entries[at]))
             }
             None => None,
@@ -188,10 +188,10 @@ fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
 
 /// Returns the shift of `entry`, and the area of its neighbour.
 fn beside_neighbour(
-    beside: &Beside<'_>,
+    beside: &NeighbourPlace<'_>,
     entry: &Entry<'_>,
     neighbour: Option<&Entry<'_>>,
-) -> Option<([f64; 2], Option<Area>)> {
+) -> Option<([f64; 2], Option<WrittenArea>)> {
     let area = neighbour?.area_of(beside.neighbour)?;
     let extent = entry.extent(Some(&area))?;
     let corner = beside.corner(&area, extent.size());
@@ -207,7 +207,7 @@ fn neighbours(entries: &[Entry<'_>]) -> Vec<Option<usize>> {
         }
     }
     let owner = |entry: &Entry<'_>| {
-        let Some(Spot::Beside(beside)) = entry.placing.spot else { return None };
+        let Some(WrittenSpot::Beside(beside)) = entry.placing.spot else { return None };
         let found = owners.get(beside.neighbour).copied();
         if found.is_none() {
             let others = owners.keys().copied().filter(|name| entry.names().all(|own| own != *name));
@@ -221,7 +221,7 @@ fn neighbours(entries: &[Entry<'_>]) -> Vec<Option<usize>> {
 /// Maximum number of names in a message.
 const LISTED: usize = 8;
 
-fn report_unknown(beside: &Beside<'_>, mut names: Vec<&str>) {
+fn report_unknown(beside: &NeighbourPlace<'_>, mut names: Vec<&str>) {
     names.sort_unstable();
     let help = if names.len() <= LISTED || nearest(beside.neighbour, names.iter().copied()).is_some() {
         did_you_mean(beside.neighbour, &names, '"')
@@ -235,10 +235,10 @@ fn report_unknown(beside: &Beside<'_>, mut names: Vec<&str>) {
 
 fn report_circle(circle: &[usize], entries: &[Entry<'_>]) {
     let beside = |&index: &usize| match entries.get(index)?.placing.spot {
-        Some(Spot::Beside(beside)) => Some(beside),
+        Some(WrittenSpot::Beside(beside)) => Some(beside),
         _ => None,
     };
-    let members: Vec<Beside<'_>> = circle.iter().filter_map(beside).collect();
+    let members: Vec<NeighbourPlace<'_>> = circle.iter().filter_map(beside).collect();
     let Some(first) = members.first() else { return };
     let span: Range<usize> = first.node.span();
     let message = match members.as_slice() {

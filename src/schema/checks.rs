@@ -2,19 +2,19 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::area::{Area, Placed};
-use super::control::Control;
+use super::area::{Placed, WrittenArea};
+use super::control::WrittenControl;
 use super::ground;
 use super::number::plain;
-use super::page::{Page, Zone};
+use super::page::{WrittenPage, WrittenZone};
 use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
 use crate::floor::{Geometry, TileBlock};
 
 /// Reports all conflicts between the parts of `page`, and between `page` and the floor.
-pub(super) fn check(reader: &Reader<'_>, page: &Page, geometry: &Geometry) {
-    let floor = Area::of_floor(geometry, page.units);
+pub(super) fn check(reader: &Reader<'_>, page: &WrittenPage, geometry: &Geometry) {
+    let floor = WrittenArea::of_floor(geometry, page.units);
     check_zones(reader, page, &floor, geometry);
     check_ids(reader, page);
     pages::check(reader, &page.pages, &page.controls);
@@ -41,13 +41,13 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page, geometry: &Geometry) {
     }
 }
 
-impl Control {
+impl WrittenControl {
     fn name(&self) -> String {
         self.id.as_ref().map_or("this widget".into(), |id| format!("\"{id}\""))
     }
 }
 
-impl Zone {
+impl WrittenZone {
     fn named(&self, noun: &str) -> String {
         match self.name.value.as_str() {
             "" => format!("this {noun}"),
@@ -56,7 +56,7 @@ impl Zone {
     }
 }
 
-fn check_zones(reader: &Reader<'_>, page: &Page, floor: &Area, geometry: &Geometry) {
+fn check_zones(reader: &Reader<'_>, page: &WrittenPage, floor: &WrittenArea, geometry: &Geometry) {
     for (index, region) in page.regions.iter().enumerate() {
         let Some(place) = &region.place else { continue };
         let name = region.named("region");
@@ -77,7 +77,7 @@ fn check_zones(reader: &Reader<'_>, page: &Page, floor: &Area, geometry: &Geomet
         let name = stance.named("stance zone");
         let off = off_floor(page, &name, place, floor).or_else(|| over_hole(page, &name, place, geometry));
         off.into_iter().for_each(|problem| reader.report(problem));
-        let inside = |zone: &&Zone| {
+        let inside = |zone: &&WrittenZone| {
             zone.place.as_ref().is_some_and(|region| region.area.shared(&place.area).is_some())
         };
         if let Some(region) = page.regions.iter().find(inside) {
@@ -88,8 +88,8 @@ fn check_zones(reader: &Reader<'_>, page: &Page, floor: &Area, geometry: &Geomet
     }
 }
 
-fn check_ids(reader: &Reader<'_>, page: &Page) {
-    let is_read = |zone: &&Zone| !zone.name.at.is_empty();
+fn check_ids(reader: &Reader<'_>, page: &WrittenPage) {
+    let is_read = |zone: &&WrittenZone| !zone.name.at.is_empty();
     let regions = page.regions.iter().filter(is_read);
     let regions = regions.map(|zone| (Some(zone.name.value.as_str()), &zone.name.at));
     check_unique(reader, "regions", regions);
@@ -119,7 +119,7 @@ fn check_unique<'a>(
 }
 
 /// Returns the problem of an area that is not completely on the floor.
-fn off_floor(page: &Page, name: &str, place: &Placed, floor: &Area) -> Option<Problem> {
+fn off_floor(page: &WrittenPage, name: &str, place: &Placed, floor: &WrittenArea) -> Option<Problem> {
     if place.area.within(floor) {
         return None;
     }
@@ -130,8 +130,9 @@ fn off_floor(page: &Page, name: &str, place: &Placed, floor: &Area) -> Option<Pr
 }
 
 /// Returns the problem of a control or a stance zone over a missing tile.
-fn over_hole(page: &Page, name: &str, place: &Placed, geometry: &Geometry) -> Option<Problem> {
-    let cell = |tile| Area::of_tiles(&TileBlock { first: tile, columns: 1, rows: 1 }, geometry, page.units);
+fn over_hole(page: &WrittenPage, name: &str, place: &Placed, geometry: &Geometry) -> Option<Problem> {
+    let cell =
+        |tile| WrittenArea::of_tiles(&TileBlock { first: tile, columns: 1, rows: 1 }, geometry, page.units);
     let missing = geometry.missing().iter().filter(|tile| geometry.index(**tile).is_some());
     let tile = missing.copied().find(|tile| place.area.shared(&cell(*tile)).is_some())?;
     let problem = Problem::error(place.at.clone(), format!("{name} lies over the missing tile {tile}"));
@@ -140,7 +141,7 @@ fn over_hole(page: &Page, name: &str, place: &Placed, geometry: &Geometry) -> Op
 }
 
 /// Returns the problem of a control that is not completely within one region.
-fn outside_region(page: &Page, name: &str, place: &Placed) -> Option<Problem> {
+fn outside_region(page: &WrittenPage, name: &str, place: &Placed) -> Option<Problem> {
     match page.region_of(&place.area).and_then(|index| page.regions.get(index)) {
         Some(region) => {
             let within = region.place.as_ref().is_none_or(|outer| place.area.within(&outer.area));
@@ -165,11 +166,11 @@ fn outside_region(page: &Page, name: &str, place: &Placed) -> Option<Problem> {
 /// Returns the problem of the first earlier control that overlaps the one at `index`.
 fn overlapping(
     reader: &Reader<'_>,
-    page: &Page,
+    page: &WrittenPage,
     index: usize,
     name: &str,
     place: &Placed,
-    floor: &Area,
+    floor: &WrittenArea,
 ) -> Option<Problem> {
     let control = &page.controls[index];
     let earlier = page.controls[..index].iter().filter(|other| pages::can_both_show(control, other));

@@ -10,7 +10,7 @@ use super::kind::Kind;
 use super::node::{Node, is_id};
 use super::place::Placing;
 use super::problem::Problem;
-use super::repeat::{self, Cell, Repeat};
+use super::repeat::{self, Cell, RepeatRecord};
 use super::send::{self, Fill};
 use super::units::Units;
 use crate::feel::Effects;
@@ -21,7 +21,7 @@ use underfoot_format::{Codec, Id};
 
 /// One control. A field that could not be read is `None` and has been reported.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Control {
+pub(super) struct WrittenControl {
     pub(super) id: Option<String>,
     pub(super) place: Option<Placed>,
     pub(super) label: Option<String>,
@@ -69,7 +69,7 @@ pub(super) struct Grid<'r> {
     pub(super) rows: u32,
     pub(super) columns: u32,
     /// The controls, without places so far.
-    pub(super) controls: Vec<(Cell, Control)>,
+    pub(super) controls: Vec<(Cell, WrittenControl)>,
 }
 
 impl<'r> Grid<'r> {
@@ -78,7 +78,7 @@ impl<'r> Grid<'r> {
         let LayoutContext { units, kinds, .. } = context;
         let mut fields = node.fields("Widget")?;
         let repeat =
-            fields.read("repeat", Some(Some(None)), |node| Some(Repeat::read(node, *units).map(Some)));
+            fields.read("repeat", Some(Some(None)), |node| Some(RepeatRecord::read(node, *units).map(Some)));
         let base = fields.read("kind", None, |node| kinds.named(node));
         let placing = Placing::read(&mut fields, *units);
         let size = size(&mut fields, placing.is_relative, *units);
@@ -134,10 +134,10 @@ impl<'r> Grid<'r> {
             let send = sends.filter(|_| sound).map(|sends| messages(sends, cell, label.as_deref()));
             sound &= send.as_ref().is_none_or(Option::is_some);
             let (kind, send) = (kind.filter(|_| sound), send.flatten().unwrap_or_default());
-            (cell, Control { id, label, place: None, page: None, goto, kind, send, written })
+            (cell, WrittenControl { id, label, place: None, page: None, goto, kind, send, written })
         };
         let controls = names.into_iter().map(control).collect();
-        let repeat = repeat.flatten().flatten().unwrap_or_else(Repeat::single);
+        let repeat = repeat.flatten().flatten().unwrap_or_else(RepeatRecord::single);
         Some(Self { placing, size, gap: repeat.gap, rows: repeat.rows, columns: repeat.columns, controls })
     }
 }
@@ -165,7 +165,7 @@ fn size(fields: &mut Fields<'_>, is_relative: bool, units: Units) -> Option<Size
 type Names = Vec<(Cell, Option<String>, Option<String>)>;
 
 /// Returns the ids and labels of all cells of a grid; none if there are more than `room`.
-fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> Names {
+fn names_of_grid(fields: &mut Fields<'_>, repeat: &RepeatRecord<'_>, room: usize) -> Names {
     let label = match fields.take("label") {
         Some(node) if repeat.has_labels() => {
             twice(node, "labels");

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::diagnostic::Diagnostics;
 use super::fields::Fields;
-use super::floor_areas::{self, AREAS, AreaRecord};
+use super::floor_areas::{self, AREAS, FloorAreaRecord};
 use super::floor_codecs::ValidTiles;
 use super::floor_measures::Measures;
 use super::floor_off::OffRecord;
@@ -72,8 +72,8 @@ pub fn parse_floor_with_ports(
     absent: &dyn Fn(&PortName) -> Option<String>,
 ) -> Result<Floor, Diagnostics> {
     let source = Source::new(name, text)?;
-    let reader = Reader::new(&source, FloorRecord::NAME, Limits::FLOOR);
-    if let Some(newer) = version::newer(&reader, FloorRecord::NAME) {
+    let reader = Reader::new(&source, FloorFileRecord::NAME, Limits::FLOOR);
+    if let Some(newer) = version::newer(&reader, FloorFileRecord::NAME) {
         return Err(newer);
     }
     let floor = reader.root("floor").and_then(|node| floor(node, absent));
@@ -81,8 +81,8 @@ pub fn parse_floor_with_ports(
 }
 
 fn floor(node: Node<'_>, absent: &dyn Fn(&PortName) -> Option<String>) -> Option<Floor> {
-    let mut fields = node.fields(FloorRecord::NAME)?;
-    let record = FloorRecord::read(&mut fields);
+    let mut fields = node.fields(FloorFileRecord::NAME)?;
+    let record = FloorFileRecord::read(&mut fields);
     let good = fields.are_read();
     let sides = [("tile_m", record.head.geometry.tile_m()), ("pitch_m", record.head.geometry.pitch_m())];
     let sides = sides.into_iter().filter(|(_, sides)| sides.x != sides.y);
@@ -120,7 +120,7 @@ fn floor(node: Node<'_>, absent: &dyn Fn(&PortName) -> Option<String>) -> Option
 }
 
 /// A floor as written. Its parts stand on the tiles of its head, which are read first.
-pub(super) struct FloorRecord {
+pub(super) struct FloorFileRecord {
     head: FloorHeadRecord,
     pub(super) parts: FloorPartsRecord,
 }
@@ -139,7 +139,7 @@ record! {
     /// The hardware of a floor.
     pub(super) struct FloorPartsRecord = "FloorParts" with ValidTiles;
     /// The parts of the floor with a computer of their own; one computer serves the whole floor if there are none.
-    pub(super) areas: Vec<AreaRecord> = "areas", AREAS => Vec::new();
+    pub(super) areas: Vec<FloorAreaRecord> = "areas", AREAS => Vec::new();
     /// Address on which the gateway that joins these computers listens.
     pub(super) gateway: Option<SocketAddr> = "gateway", Opt(ADDRESS) => None;
     /// Path of the file with the key that these computers share, from the floor file's folder.
@@ -227,7 +227,7 @@ const LOUDSPEAKERS: Distinct<LoudspeakerRecord> = Distinct {
     },
 };
 
-impl FloorRecord {
+impl FloorFileRecord {
     /// Its name in files.
     pub(super) const NAME: &'static str = FloorHeadRecord::NAME;
 
@@ -260,7 +260,7 @@ impl FloorRecord {
     fn floor(&self) -> Floor {
         let parts = &self.parts;
         let mut floor =
-            Floor::of(self.head.geometry).with_areas(parts.areas.iter().map(AreaRecord::area).collect());
+            Floor::of(self.head.geometry).with_areas(parts.areas.iter().map(FloorAreaRecord::area).collect());
         if let Some(boards) = &parts.boards {
             floor.boards = boards
                 .iter()
@@ -315,7 +315,7 @@ impl FloorRecord {
         let version = needed.max().unwrap_or(FIRST_VERSION);
         let head = FloorHeadRecord { version, geometry: floor.geometry };
         let parts = FloorPartsRecord {
-            areas: floor.areas.iter().map(AreaRecord::of).collect(),
+            areas: floor.areas.iter().map(FloorAreaRecord::of).collect(),
             gateway: floor.gateway,
             key: floor.key.clone(),
             boards,

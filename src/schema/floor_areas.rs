@@ -12,7 +12,7 @@ use underfoot_format::{Id, Opt, record};
 
 record! {
     /// The tiles of a large floor that one computer serves.
-    pub(super) struct AreaRecord = "Area" with ValidTiles;
+    pub(super) struct FloorAreaRecord = "Area" with ValidTiles;
     /// Unique among the floor's areas.
     id: Written<String> = "id", At(Id);
     /// Its tile in the south-west corner.
@@ -24,10 +24,10 @@ record! {
 }
 
 /// The areas of a floor; 1024 are more than any floor has.
-pub(super) const AREAS: Distinct<AreaRecord> =
-    Distinct { entry: "area", most: 1024, about: AreaRecord::told_apart };
+pub(super) const AREAS: Distinct<FloorAreaRecord> =
+    Distinct { entry: "area", most: 1024, about: FloorAreaRecord::told_apart };
 
-impl AreaRecord {
+impl FloorAreaRecord {
     fn told_apart(_: usize, area: &Self, fields: &Fields<'_>, seen: &mut Seen) {
         if !fields.have_failed(&["id"]) {
             seen.check(fields, format!("the area \"{}\"", area.id.value), area.id.at.clone());
@@ -53,7 +53,7 @@ impl AreaRecord {
 }
 
 /// Reports areas that leave the floor or share tiles, and tiles outside of all areas.
-pub(super) fn check(reader: &Reader<'_>, geometry: &Geometry, records: &[AreaRecord]) {
+pub(super) fn check(reader: &Reader<'_>, geometry: &Geometry, records: &[FloorAreaRecord]) {
     let floor = geometry.block();
     let blocks: Vec<TileBlock> = records.iter().map(|record| record.area().tiles).collect();
     let mut sound = true;
@@ -66,7 +66,7 @@ pub(super) fn check(reader: &Reader<'_>, geometry: &Geometry, records: &[AreaRec
         if block.common(&floor) != *block {
             report(format!("the area \"{id}\" has tiles beyond the floor"), format!("the floor has {floor}"));
         }
-        let both = |(_, other): &(&AreaRecord, &TileBlock)| !other.common(block).is_empty();
+        let both = |(_, other): &(&FloorAreaRecord, &TileBlock)| !other.common(block).is_empty();
         if let Some((other, shared)) = records.iter().zip(&blocks).take(number).find(both) {
             let tile = shared.common(block).first;
             let message = format!("the areas \"{}\" and \"{id}\" share tile {tile}", other.id.value);
@@ -76,7 +76,7 @@ pub(super) fn check(reader: &Reader<'_>, geometry: &Geometry, records: &[AreaRec
     for (number, record) in records.iter().enumerate() {
         let Some(listen) = &record.listen else { continue };
         let is_same =
-            |other: &&AreaRecord| other.listen.as_ref().is_some_and(|one| one.value == listen.value);
+            |other: &&FloorAreaRecord| other.listen.as_ref().is_some_and(|one| one.value == listen.value);
         if let Some(other) = records.iter().take(number).find(is_same) {
             let message =
                 format!("the areas \"{}\" and \"{}\" have one address", other.id.value, record.id.value);

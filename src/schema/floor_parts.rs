@@ -16,6 +16,7 @@ use crate::units::Newtons;
 use crate::wire::MAX_CHANNELS;
 use underfoot_format::codec::{At, Beside, Seen, Spelled, Written};
 use underfoot_format::{Faults, Flat, Name, Num, Opt, Pair, list, num, record};
+use underfoot_packet::BoardAddress;
 
 record! {
     /// A board and its sensors, as whole tiles or sensor by sensor.
@@ -51,11 +52,6 @@ const ADDRESS: Spelled<String> = Spelled {
     stand_in: String::new(),
 };
 
-/// Returns the default address of the board with this number.
-fn usual_address(number: usize) -> String {
-    format!("/underfoot/board/{number}")
-}
-
 impl BoardRecord {
     fn rules(&mut self, faults: &mut Faults) {
         match (&self.tiles, &self.channels) {
@@ -75,7 +71,7 @@ impl BoardRecord {
     /// Reports boards with the same address, and channels with the same sensor.
     pub(super) fn told_apart(number: usize, board: &Self, fields: &Fields<'_>, seen: &mut Seen) {
         if !fields.have_failed(&["address"]) {
-            let address = board.address.clone().unwrap_or_else(|| usual_address(number));
+            let address = board.address.clone().unwrap_or_else(|| BoardAddress(number).to_string());
             seen.check(fields, format!("the address {address}"), fields.span("address"));
         }
         for (sensor, span) in board.sensors(|_| &Corner::ALL) {
@@ -106,7 +102,7 @@ impl BoardRecord {
 
     /// Makes the board with this number on a floor of this `geometry`.
     pub(super) fn board(&self, number: usize, geometry: &Geometry) -> Board {
-        let address = self.address.clone().unwrap_or_else(|| usual_address(number));
+        let address = self.address.clone().unwrap_or_else(|| BoardAddress(number).to_string());
         let sensors = self.sensors(|tile| geometry.sensors(tile));
         let channels = sensors.into_iter().map(|(sensor, _)| sensor).collect();
         let sign = self.counts.as_ref().map_or(CountSign::Unsigned, |sign| sign.value);
@@ -132,7 +128,7 @@ impl BoardRecord {
     }
 
     pub(super) fn of(board: &Board, number: usize, geometry: &Geometry) -> Self {
-        let address = (board.address != usual_address(number)).then(|| board.address.clone());
+        let address = (board.address != BoardAddress(number).to_string()).then(|| board.address.clone());
         let tiles = whole_tiles(&board.channels, geometry);
         let written =
             |sensor: &Option<SensorId>| sensor.map(|sensor| ChannelSensor::of(sensor, geometry)).into();

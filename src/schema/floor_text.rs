@@ -1,11 +1,11 @@
 //! Writing of floor files.
 
-use super::floor::FloorRecord;
+use super::floor::FloorFileRecord;
 use crate::floor::{Floor, LawKind};
 use underfoot_format::text::Text;
 
 /// Comments above each field, and the comment in place of a field that is not written.
-const COMMENTS: [(&str, &[&str], Option<&str>); 16] = [
+const COMMENTS: [(&str, &[&str], Option<&str>); 17] = [
     ("sensors_m", &["Where the sensors are under each plate, from its centre: (east, north)."], None),
     ("missing", &["Cells of the grid without a tile."], None),
     ("plates", &["Plates that differ from the others."], None),
@@ -19,6 +19,7 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 16] = [
     ("allow", &["Where the boards' packets come from."], None),
     ("serial", &["The serial ports of boards, and the columns of those that send lines of text."], None),
     ("noiseless", &["The readings have no noise of their own: that they repeat says nothing."], None),
+    ("off", &["Sensors that are switched off."], None),
     ("tared", &[], None),
     (
         "sensors",
@@ -59,7 +60,7 @@ const ON_ONE_LINE: [&str; 3] = ["sensors_m", "allow", "response_db"];
 /// (`save_floor` rejects them on writing).
 #[must_use]
 pub fn write_floor(floor: &Floor) -> String {
-    let record = FloorRecord::of(floor);
+    let record = FloorFileRecord::of(floor);
     let is_told = |name: &str| COMMENTS.iter().any(|(told, ..)| *told == name);
     let (told, measures): (Vec<_>, Vec<_>) =
         record.written().into_iter().partition(|(name, _)| is_told(name));

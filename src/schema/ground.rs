@@ -9,7 +9,7 @@
 
 use std::ops::Range;
 
-use super::area::{Area, Placed};
+use super::area::{Placed, WrittenArea};
 use super::node::Node;
 use super::number::plain;
 use super::problem::Problem;
@@ -96,7 +96,7 @@ impl GroundDefinition {
     }
 
     /// Returns its area on the floor with area `floor`; `None` if the area could not be read.
-    pub(super) fn area(&self, floor: &Area) -> Option<Area> {
+    pub(super) fn area(&self, floor: &WrittenArea) -> Option<WrittenArea> {
         Some(self.place.as_ref()?.as_ref().map_or(*floor, |place| place.area))
     }
 
@@ -117,7 +117,7 @@ impl GroundDefinition {
 
     /// Makes the ground for the engine; `None` if any part is missing.
     pub(super) fn checked(&self, geometry: &Geometry, units: Units) -> Option<Ground> {
-        let area = self.area(&Area::of_floor(geometry, units))?.in_metres(geometry, units);
+        let area = self.area(&WrittenArea::of_floor(geometry, units))?.in_metres(geometry, units);
         let [surface, deep] = self.colours?;
         let spec = GroundSpec { area, page: self.page, seed: self.seed?, material: self.material? };
         Some(Ground { spec, surface, deep })
@@ -125,7 +125,12 @@ impl GroundDefinition {
 }
 
 /// Reports conflicts between grounds, and between them and the floor.
-pub(super) fn check(grounds: &[GroundDefinition], units: Units, floor: &Area, report: impl Fn(Problem)) {
+pub(super) fn check(
+    grounds: &[GroundDefinition],
+    units: Units,
+    floor: &WrittenArea,
+    report: impl Fn(Problem),
+) {
     for (index, definition) in grounds.iter().enumerate() {
         let Some(area) = definition.area(floor) else { continue };
         let at = definition.placed().map_or(definition.at.clone(), |place| place.at.clone());

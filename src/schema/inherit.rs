@@ -190,7 +190,10 @@ fn reader_of<'t>(source: &'t Source<'t>) -> Result<Reader<'t>, Diagnostics> {
 ///
 /// # Errors
 /// Every problem of any of the texts.
-fn read_texts(texts: &[(&str, &str)], below: &Kinds) -> Result<(Vec<Kind>, Diagnostics), Diagnostics> {
+pub(super) fn read_texts(
+    texts: &[(&str, &str)],
+    below: &Kinds,
+) -> Result<(Vec<Kind>, Diagnostics), Diagnostics> {
     let mut problems = Diagnostics::default();
     let mut sources = Vec::new();
     for (name, text) in texts {

@@ -93,6 +93,19 @@ impl Kinds {
         Ok(warnings)
     }
 
+    /// Adds the kinds that these texts describe, replacing others of the same name; returns warnings. Each comes with
+    /// its name in diagnostics.
+    ///
+    /// A kind may be made from another one of the texts or from any of these kinds.
+    ///
+    /// # Errors
+    /// Every problem of any of the texts, or two of them with a kind of the same name; these kinds are then unchanged.
+    pub fn add_all(&mut self, texts: &[(&str, &str)]) -> Result<Diagnostics, Diagnostics> {
+        let (kinds, warnings) = inherit::read_texts(texts, self)?;
+        kinds.into_iter().for_each(|kind| self.insert(kind));
+        Ok(warnings)
+    }
+
     /// Adds the kinds of all files named `*.ron` in `folder`, replacing others of the same name; returns warnings.
     ///
     /// # Errors

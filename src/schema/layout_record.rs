@@ -9,14 +9,14 @@ use std::sync::Arc;
 use super::area::{Place, Placed};
 use super::arrange::WIDGETS;
 use super::context::LayoutContext;
-use super::control::Control;
+use super::control::WrittenControl;
 use super::effect::OWN_EFFECTS;
 use super::fields::Fields;
 use super::ground::{GROUNDS, GroundDefinition};
 use super::inherit::{Choice, OWN_KINDS, OwnKinds};
 use super::kind::Kinds;
 use super::lists::MAX_WIDGETS;
-use super::pages::{PAGES, PageRecord};
+use super::pages::{LayoutPageRecord, PAGES};
 use super::send_contacts::CONTACTS;
 use super::targets::{TARGETS, TargetRecord};
 use super::units::Units;
@@ -33,7 +33,7 @@ pub(super) struct LayoutRecord {
     pub(super) head: LayoutHeadRecord,
     pub(super) zones: ZonesRecord,
     pub(super) controls: ControlsRecord,
-    pub(super) pages: Vec<PageRecord>,
+    pub(super) pages: Vec<LayoutPageRecord>,
     /// The kinds of which its controls can be made, with the effects that they may name.
     pub(super) kinds: Kinds,
 }
@@ -78,7 +78,7 @@ record! {
     /// The content of a layout besides its pages.
     pub(super) struct ControlsRecord = "Controls" with LayoutContext;
     /// The controls that are on every page.
-    pub(super) widgets: Vec<Control> = "widgets", WIDGETS => Vec::new();
+    pub(super) widgets: Vec<WrittenControl> = "widgets", WIDGETS => Vec::new();
     /// The simulated grounds on every page.
     pub(super) grounds: Vec<GroundDefinition> = "grounds", GROUNDS => Vec::new();
 }
@@ -131,7 +131,7 @@ impl LayoutRecord {
         let controls = ControlsRecord::read_fields(fields, None, &context);
         let mut context = context.after(controls.widgets.len());
         let pages = PAGES.read_by(fields, "pages", |fields| {
-            let page = PageRecord::read_fields(fields, None, &context);
+            let page = LayoutPageRecord::read_fields(fields, None, &context);
             context = context.after(page.widgets.len());
             page
         });

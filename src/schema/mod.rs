@@ -55,13 +55,16 @@ mod reference;
 mod repeat;
 #[cfg(feature = "save")]
 mod save;
+mod saved;
 mod send;
 mod send_checks;
 mod send_codecs;
 mod send_contacts;
+mod send_devices;
 mod send_midi;
 #[cfg(feature = "save")]
 mod state;
+mod target_devices;
 mod targets;
 #[cfg(test)]
 mod tests;
@@ -87,12 +90,13 @@ pub use page::{Loaded, folder_beside, kinds_beside, load_layout, load_layout_and
 pub use places::Places;
 pub use reference::{Chapter, reference, write_reference};
 #[cfg(feature = "save")]
-pub use save::{SaveError, Saved, save_floor, save_text, write_over};
+pub use save::{save_floor, save_text, write_over};
+pub use saved::{SaveError, Saved};
 pub use send::written_messages;
 #[cfg(feature = "save")]
 pub use state::usual_state;
 pub use underfoot_format::describe::{Description, FieldDescription, FieldType};
-pub use version::FORMAT_VERSION;
+pub use version::{FORMAT_VERSION, version_with};
 pub use write::write_layout;
 
 pub use effect::{is_effect_name, write_named_effect};

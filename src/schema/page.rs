@@ -3,15 +3,15 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::area::{Area, Placed};
+use super::area::{Placed, WrittenArea};
 use super::checks;
-use super::control::Control;
+use super::control::WrittenControl;
 use super::diagnostic::Diagnostics;
 use super::ground::GroundDefinition;
 use super::kind::Kinds;
 use super::layout_record::{ControlsRecord, LayoutHeadRecord, LayoutRecord, ZonesRecord};
 use super::node::Node;
-use super::pages::{self, PageRecord};
+use super::pages::{self, LayoutPageRecord};
 use super::pairs::Limits;
 use super::places::Places;
 use super::reader::Reader;
@@ -110,7 +110,7 @@ pub fn parse_layout(
     if let Some(newer) = version::newer(&reader, "Layout") {
         return Err(newer);
     }
-    let page = reader.root("layout").and_then(|node| Page::read(node, kinds));
+    let page = reader.root("layout").and_then(|node| WrittenPage::read(node, kinds));
     let layout = page.and_then(|(page, good)| {
         checks::check(&reader, &page, geometry);
         send_checks::check(&reader, &page);
@@ -123,13 +123,13 @@ pub fn parse_layout(
 }
 
 /// A layout as written; its problems have been reported.
-pub(super) struct Page {
+pub(super) struct WrittenPage {
     pub(super) version: u32,
     title: String,
     pub(super) units: Units,
-    pub(super) regions: Vec<Zone>,
-    pub(super) stances: Vec<Zone>,
-    pub(super) pages: Vec<PageRecord>,
+    pub(super) regions: Vec<WrittenZone>,
+    pub(super) stances: Vec<WrittenZone>,
+    pub(super) pages: Vec<LayoutPageRecord>,
     /// The kinds of which its controls can be made.
     kinds: Kinds,
     pub(super) targets: Vec<TargetRecord>,
@@ -138,7 +138,7 @@ pub(super) struct Page {
     /// The grounds of all pages.
     pub(super) grounds: Vec<GroundDefinition>,
     /// The controls of all pages.
-    pub(super) controls: Vec<Control>,
+    pub(super) controls: Vec<WrittenControl>,
     /// Whether all regions could be read.
     pub(super) regions_known: bool,
     /// Place of the list of controls in the text.
@@ -146,7 +146,7 @@ pub(super) struct Page {
 }
 
 /// A region (named by its id) or a stance zone (named by its label).
-pub(super) struct Zone {
+pub(super) struct WrittenZone {
     pub(super) name: Written<String>,
     pub(super) place: Option<Placed>,
     cursor: CursorRule,
@@ -154,7 +154,7 @@ pub(super) struct Zone {
     pub(super) send: Vec<Written<ContactSending>>,
 }
 
-impl Page {
+impl WrittenPage {
     /// Reads the layout at `node`, made of `kinds`; the flag says whether all of it could be read.
     fn read(node: Node<'_>, kinds: &Kinds) -> Option<(Self, bool)> {
         let mut fields = node.fields(LayoutRecord::NAME)?;
@@ -172,11 +172,11 @@ impl Page {
             regions.iter().all(|region| region.place.is_some()) && !node.reader.is_broken(&regions_at);
         for (number, page) in pages.iter_mut().enumerate() {
             let own = page.widgets.drain(..);
-            controls.extend(own.map(|control| Control { page: Some(number), ..control }));
+            controls.extend(own.map(|control| WrittenControl { page: Some(number), ..control }));
             let own = page.grounds.drain(..);
             grounds.extend(own.map(|ground| ground.on_page(number)));
         }
-        let zone = |name, place, cursor, send| Zone { name, place, cursor, send };
+        let zone = |name, place, cursor, send| WrittenZone { name, place, cursor, send };
         let regions = regions.into_iter().map(|it| zone(it.id, it.place, it.cursor, it.send)).collect();
         let stances = stances.into_iter();
         let stances = stances.map(|it| zone(it.label, it.place, CursorRule::default(), Vec::new())).collect();
@@ -199,8 +199,9 @@ impl Page {
     }
 
     /// Returns the region that contains the middle of `area`.
-    pub(super) fn region_of(&self, area: &Area) -> Option<usize> {
-        let holds = |zone: &Zone| zone.place.as_ref().is_some_and(|place| place.area.contains(area.middle()));
+    pub(super) fn region_of(&self, area: &WrittenArea) -> Option<usize> {
+        let holds =
+            |zone: &WrittenZone| zone.place.as_ref().is_some_and(|place| place.area.contains(area.middle()));
         self.regions.iter().position(holds)
     }
 
@@ -239,7 +240,7 @@ impl Page {
             title: self.title.clone(),
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
-            pages: self.pages.iter().map(PageRecord::checked).collect(),
+            pages: self.pages.iter().map(LayoutPageRecord::checked).collect(),
             targets: self.targets.iter().map(TargetRecord::checked).collect(),
             grounds: self
                 .grounds

@@ -10,7 +10,7 @@
 
 use super::arrange::WIDGETS;
 use super::context::LayoutContext;
-use super::control::Control;
+use super::control::WrittenControl;
 use super::ground::{GROUNDS, GroundDefinition};
 use super::lists::MAX_WIDGETS;
 use super::problem::Problem;
@@ -23,30 +23,30 @@ use underfoot_format::{Id, Text, record};
 
 record! {
     /// One of the pages of a layout; one is shown at a time.
-    pub(super) struct PageRecord = "Page" with LayoutContext;
+    pub(super) struct LayoutPageRecord = "Page" with LayoutContext;
     /// Unique among the layout's pages.
     pub(super) id: Written<String> = "id", At(Id);
     /// Its title for people.
     pub(super) title: String = "title", Text(200) => String::new();
     /// The controls that exist only while the page is shown.
-    pub(super) widgets: Vec<Control> = "widgets", WIDGETS => Vec::new();
+    pub(super) widgets: Vec<WrittenControl> = "widgets", WIDGETS => Vec::new();
     /// The simulated grounds while the page is shown.
     pub(super) grounds: Vec<GroundDefinition> = "grounds", GROUNDS => Vec::new();
 }
 
 /// The pages of a layout.
-pub(super) const PAGES: Distinct<PageRecord> =
+pub(super) const PAGES: Distinct<LayoutPageRecord> =
     Distinct { entry: "page", most: MAX_WIDGETS, about: |_, _, _, _| {} };
 
 /// Whether two controls can be present at the same time.
-pub(super) fn can_both_show(one: &Control, other: &Control) -> bool {
+pub(super) fn can_both_show(one: &WrittenControl, other: &WrittenControl) -> bool {
     one.page.is_none() || other.page.is_none() || one.page == other.page
 }
 
 /// Reports conflicts between pages and the controls that switch them.
-pub(super) fn check(reader: &Reader<'_>, pages: &[PageRecord], controls: &[Control]) {
+pub(super) fn check(reader: &Reader<'_>, pages: &[LayoutPageRecord], controls: &[WrittenControl]) {
     for (number, definition) in pages.iter().enumerate() {
-        let same = |other: &&PageRecord| other.id().is_some() && other.id == definition.id;
+        let same = |other: &&LayoutPageRecord| other.id().is_some() && other.id == definition.id;
         if let Some(earlier) = pages[..number].iter().find(same) {
             let message = format!("two pages have the id \"{}\"", definition.id.value);
             let expected = format!("the first is on line {}", reader.line(&earlier.id.at));
@@ -57,7 +57,7 @@ pub(super) fn check(reader: &Reader<'_>, pages: &[PageRecord], controls: &[Contr
         let Some(goto) = &control.goto else { continue };
         if number_of(&goto.value, pages).is_none() && pages.iter().all(|definition| definition.id().is_some())
         {
-            let ids: Vec<&str> = pages.iter().filter_map(PageRecord::id).collect();
+            let ids: Vec<&str> = pages.iter().filter_map(LayoutPageRecord::id).collect();
             let problem = Problem::error(goto.at.clone(), format!("there is no page \"{}\"", goto.value));
             let help = did_you_mean(&goto.value, &ids, '"');
             let help = help.unwrap_or_else(|| format!("add pages: [(id: \"{}\", widgets: [])]", goto.value));
@@ -71,7 +71,7 @@ pub(super) fn check(reader: &Reader<'_>, pages: &[PageRecord], controls: &[Contr
     }
 }
 
-impl PageRecord {
+impl LayoutPageRecord {
     /// Returns its id, if it could be read.
     fn id(&self) -> Option<&str> {
         (!self.id.at.is_empty()).then_some(&self.id.value)
@@ -84,6 +84,6 @@ impl PageRecord {
 }
 
 /// Returns the index of the page with this `id` among `pages`.
-pub(super) fn number_of(id: &str, pages: &[PageRecord]) -> Option<usize> {
+pub(super) fn number_of(id: &str, pages: &[LayoutPageRecord]) -> Option<usize> {
     pages.iter().position(|definition| definition.id() == Some(id))
 }

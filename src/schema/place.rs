@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::area::Area;
+use super::area::WrittenArea;
 use super::fields::Fields;
 use super::node::Node;
 use super::problem::Problem;
@@ -35,7 +35,7 @@ const ALIGNS: [(&str, Align); 3] = [("Start", Align::Start), ("Middle", Align::M
 
 /// A place next to a neighbour of the same list.
 #[derive(Clone, Copy)]
-pub(super) struct Beside<'r> {
+pub(super) struct NeighbourPlace<'r> {
     side: Side,
     align: Align,
     gap: f64,
@@ -47,17 +47,17 @@ pub(super) struct Beside<'r> {
 
 /// A place as written.
 #[derive(Clone, Copy)]
-pub(super) enum Spot<'r> {
+pub(super) enum WrittenSpot<'r> {
     /// The south-west corner of a control, the origin of a group.
     At([f64; 2]),
     /// Known once the neighbour has its place.
-    Beside(Beside<'r>),
+    Beside(NeighbourPlace<'r>),
 }
 
 /// The fields of a place.
 pub(super) struct Placing<'r> {
     /// `None` if it could not be read, which has been reported.
-    pub(super) spot: Option<Spot<'r>>,
+    pub(super) spot: Option<WrittenSpot<'r>>,
     /// Its place in the text.
     pub(super) at: Range<usize>,
     /// Whether it has a neighbour, whose size it may take.
@@ -83,7 +83,7 @@ impl<'r> Placing<'r> {
                 fields.report(problem.expected("there is no right_of, left_of, above or below").help(help));
             }
             let at = fields.read("at", None, |node| node.pair(-far..=far));
-            return Self { spot: at.map(Spot::At), at: fields.span("at"), is_relative: false };
+            return Self { spot: at.map(WrittenSpot::At), at: fields.span("at"), is_relative: false };
         };
         let also = fields.take("at").map(|node| ("at", node));
         let second = also.or(sides.get(1).map(|&(name, _, node)| (name, node)));
@@ -94,15 +94,15 @@ impl<'r> Placing<'r> {
         }
         let beside = node
             .text(64)
-            .and_then(|neighbour| Some(Beside { side, align: align?, gap: gap?, neighbour, node }));
-        let spot = beside.filter(|_| second.is_none()).map(Spot::Beside);
+            .and_then(|neighbour| Some(NeighbourPlace { side, align: align?, gap: gap?, neighbour, node }));
+        let spot = beside.filter(|_| second.is_none()).map(WrittenSpot::Beside);
         Self { spot, at: node.span(), is_relative: true }
     }
 }
 
-impl Beside<'_> {
+impl NeighbourPlace<'_> {
     /// Returns the south-west corner of an area of this `size` at this place.
-    pub(super) fn corner(&self, neighbour: &Area, size: [f64; 2]) -> [f64; 2] {
+    pub(super) fn corner(&self, neighbour: &WrittenArea, size: [f64; 2]) -> [f64; 2] {
         let (min, max) = (neighbour.min(), neighbour.max());
         let along = |axis: usize| match self.align {
             Align::Start => min[axis],

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::ground;
 use super::send_codecs;
 use super::suggest::did_you_mean;
+use super::targets;
 use crate::feel::{EffectKind, Feel, Manner};
 use crate::layout::Look;
 use crate::widget::Behaviour;
@@ -81,6 +82,11 @@ pub fn reference() -> Vec<Chapter> {
             send_codecs::describe(),
         ),
         Chapter::new(
+            "targets",
+            "Programs and devices that messages go to: `to` of an entry in `targets` of the layout.",
+            targets::describe(),
+        ),
+        Chapter::new(
             "grounds",
             "Material that the floor seems to be made of: in `grounds`, each with `at`, `size`, `seed`, `surface` and `deep`.",
             ground::describe(),
@@ -88,7 +94,7 @@ pub fn reference() -> Vec<Chapter> {
         Chapter::new(
             "floors",
             "A real or simulated floor: a file for `--floor`.",
-            vec![super::floor::FloorRecord::describe()],
+            vec![super::floor::FloorFileRecord::describe()],
         ),
     ]
 }

@@ -9,7 +9,7 @@ use super::units::Units;
 const MOST: u32 = 256;
 
 /// A grid of controls, in reading order: row by row from the north-west.
-pub(super) struct Repeat<'r> {
+pub(super) struct RepeatRecord<'r> {
     pub(super) columns: u32,
     pub(super) rows: u32,
     /// Gaps between columns and between rows.
@@ -31,7 +31,7 @@ pub(super) struct Cell {
     pub(super) row: u32,
 }
 
-impl<'r> Repeat<'r> {
+impl<'r> RepeatRecord<'r> {
     pub(super) fn read(node: Node<'r>, units: Units) -> Option<Self> {
         let mut fields = node.fields("Repeat")?;
         let far = units.furthest();

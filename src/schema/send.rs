@@ -6,8 +6,8 @@
 use super::node::Node;
 use super::problem::Problem;
 use super::send_codecs::{OscSettingsRecord, PointerRecord, WheelRecord, write_osc};
-use super::send_midi;
 use super::suggest::nearest;
+use super::{send_devices, send_midi};
 use crate::messages::{KeyStroke, MAX_MESSAGES, MouseButton, OscArgument, Payload, Sending, Trigger, When};
 use underfoot_format::codec::{By, List, Written};
 use underfoot_format::describe::FieldType;
@@ -89,6 +89,7 @@ fn read(node: Node<'_>, fill: &Fill<'_>) -> Option<Sending> {
                 "it follows a value: Value(Bend(...)), Value(Pressure(...))"
             }
             Payload::Program(..) => "a program is chosen at an event: On(clicked, Program(...))",
+            Payload::Run(_) => "a program starts at an event: On(clicked, Run(...))",
             _ => "a key, a button or a note is pressed by On(...) or While(...)",
         };
         message.report(problem.expected("expected another kind of message").help(help));
@@ -100,7 +101,7 @@ fn read(node: Node<'_>, fill: &Fill<'_>) -> Option<Sending> {
 /// Reads the target and the content of a message.
 fn payload(node: Node<'_>, when: When, fill: &Fill<'_>) -> Option<(String, Payload)> {
     let others = ["Key", "Button", "Wheel", "Pointer", "Osc"];
-    let call = node.call(&[&others[..], &send_midi::NAMES].concat())?;
+    let call = node.call(&[&others[..], &send_midi::NAMES, &send_devices::NAMES].concat())?;
     let target = |node: Node<'_>| Node { name: "target", ..node }.id().map(str::to_owned);
     match call.name {
         "Key" => {
@@ -144,8 +145,10 @@ fn payload(node: Node<'_>, when: When, fill: &Fill<'_>) -> Option<(String, Paylo
             }
             Some((to?, Payload::Osc(address?, settings)))
         }
-        _ => {
-            let (to, payload) = send_midi::read(&call, fill)?;
+        name => {
+            let is_midi = send_midi::NAMES.contains(&name);
+            let read = if is_midi { send_midi::read(&call, fill) } else { send_devices::read(&call, fill) };
+            let (to, payload) = read?;
             Some((target(to)?, payload))
         }
     }
@@ -200,7 +203,9 @@ fn write(sending: &Sending) -> Text {
             let values = [target, Text::quoted(&**address)];
             Text::Call("Osc", values.into_iter().chain(write_osc(settings)).collect())
         }
-        midi => send_midi::write(midi, target).unwrap_or(Text::Name("")),
+        other => send_midi::write(other, target.clone())
+            .or_else(|| send_devices::write(other, target))
+            .unwrap_or(Text::Name("")),
     };
     match sending.when {
         When::On(trigger) => Text::Call("On", vec![Text::Name(trigger.name()), payload]),
@@ -213,14 +218,7 @@ fn write(sending: &Sending) -> Text {
 pub(super) fn inherited(kind: &[Sending], at: Node<'_>, fill: &Fill<'_>) -> Option<Vec<Written<Sending>>> {
     let filled = kind.iter().map(|sending| {
         let mut value = sending.clone();
-        if let Payload::Osc(address, settings) = &mut value.payload {
-            *address = fill(at, address)?;
-            for argument in settings.arguments.iter_mut().flatten() {
-                if let OscArgument::Text(text) = argument {
-                    *text = fill(at, text)?;
-                }
-            }
-        }
+        send_devices::fill_in(&mut value.payload, &|text| fill(at, text))?;
         Some(Written { value, at: at.span() })
     });
     filled.collect()

@@ -2,20 +2,20 @@
 
 use std::collections::HashMap;
 
-use super::control::Control;
-use super::page::Page;
+use super::control::WrittenControl;
+use super::page::WrittenPage;
 use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
-use super::version::{self, WITH_MESSAGES};
+use super::version::{self, WITH_MESSAGES, version_with};
 use crate::messages::{ContactPayload, Payload, Sending, TargetSort, When};
 use crate::widget::{Behaviour, Guard};
 use underfoot_format::codec::Written;
 
 /// Reports messages without a target, messages that never go out or that nothing would end, and messages of two
 /// controls.
-pub(super) fn check(reader: &Reader<'_>, page: &Page) {
+pub(super) fn check(reader: &Reader<'_>, page: &WrittenPage) {
     let mut told: Vec<(usize, &'static str)> = Vec::new();
     let mut report = |at: &std::ops::Range<usize>, rule: &'static str, problem: Problem| {
         // All controls of a grid have the message of one place.
@@ -29,6 +29,13 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
     let written = of_controls.or(of_feet);
     if let Some(at) = page.targets.first().map(|target| &target.name.at).or(written) {
         version::require(reader, at.clone(), ("messages", WITH_MESSAGES), ("layout", page.version));
+    }
+    for target in &page.targets {
+        let first = version_with(target.to().sort());
+        if first > WITH_MESSAGES {
+            let things = "targets of DMX or MQTT and programs";
+            version::require(reader, target.name.at.clone(), (things, first), ("layout", page.version));
+        }
     }
     for control in &page.controls {
         let Some(kind) = &control.kind else { continue };
@@ -58,7 +65,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page) {
 type SendFault = Option<(String, String, Option<String>)>;
 
 /// A problem of the target called `name`, which must be of the `sort` that receives the message `payload`.
-fn of_target(page: &Page, name: &str, payload: &str, sort: TargetSort) -> SendFault {
+fn of_target(page: &WrittenPage, name: &str, payload: &str, sort: TargetSort) -> SendFault {
     if !page.targets_known {
         return None;
     }
@@ -102,8 +109,8 @@ fn of_guard(sending: &Sending, behaviour: &Behaviour) -> SendFault {
 }
 
 /// Warns of two controls that send the same message and can be pressed at the same time.
-fn twice(reader: &Reader<'_>, page: &Page) {
-    let mut first: HashMap<String, Vec<(&Control, usize)>> = HashMap::new();
+fn twice(reader: &Reader<'_>, page: &WrittenPage) {
+    let mut first: HashMap<String, Vec<(&WrittenControl, usize)>> = HashMap::new();
     for control in &page.controls {
         for Written { value: sending, at } in &control.send {
             // A wheel and a pointer may well be moved from several places.
@@ -129,9 +136,15 @@ fn twice(reader: &Reader<'_>, page: &Page) {
 /// The thing that a message acts on: two controls that act on one are in each other's way.
 fn subject(payload: &Payload) -> String {
     match payload {
-        Payload::Key(_) | Payload::Button(_) | Payload::Wheel(_) | Payload::Pointer(_) | Payload::Osc(..) => {
-            format!("{payload:?}")
-        }
+        Payload::Key(_)
+        | Payload::Button(_)
+        | Payload::Wheel(_)
+        | Payload::Pointer(_)
+        | Payload::Osc(..)
+        | Payload::Mqtt(..)
+        | Payload::Run(_) => format!("{payload:?}"),
+        // Several controls may well set one channel to levels of their own.
+        Payload::Dmx(settings) => format!("{payload} to {}", settings.top()),
         // Settings of a note, or the ends of a range, make no other message of it.
         Payload::Note(..)
         | Payload::Controller(_)
@@ -142,7 +155,7 @@ fn subject(payload: &Payload) -> String {
 }
 
 /// Warns of feet of two regions in one zone of MPE.
-fn twice_by_feet(reader: &Reader<'_>, page: &Page) {
+fn twice_by_feet(reader: &Reader<'_>, page: &WrittenPage) {
     let mut zones: HashMap<&str, std::ops::Range<usize>> = HashMap::new();
     for Written { value: sending, at } in page.regions.iter().flat_map(|region| &region.send) {
         if !matches!(sending.payload, ContactPayload::Mpe(_)) {

@@ -2,8 +2,8 @@
 
 use super::node::Node;
 use super::problem::Problem;
-use super::{send_contacts, send_midi};
-use crate::messages::{OscArgument, OscSettings};
+use super::{send_contacts, send_devices, send_midi};
+use crate::messages::{MAX_ARGUMENTS, OscArgument, OscSettings};
 use underfoot_format::codec::{By, List};
 use underfoot_format::describe::{Description, FieldType};
 use underfoot_format::ron2::ast::Expr;
@@ -12,9 +12,6 @@ use underfoot_format::{Num, Opt, Record, list, num, record};
 
 /// Ends of a range of OSC numbers.
 const ENDS: Num = num(-1e6..=1e6);
-
-/// Maximum number of arguments of one OSC message (our choice).
-const MAX_ARGUMENTS: usize = 16;
 
 record! {
     /// Steps of the mouse wheel.
@@ -175,7 +172,7 @@ pub(super) fn describe() -> Vec<Description> {
         form("On", "`On(event, message)`: the message goes out at once at each such event of the control."),
         form(
             "While",
-            "`While(pressed, message)`: a key, a button or an OSC address goes down when a foot presses the control and comes up \
+            "`While(pressed, message)`: a key, a button, an address or a channel goes down when a foot presses the control and comes up \
              when the hold ends. The control must have the guard `HoldToRun`.",
         ),
         form(
@@ -200,6 +197,7 @@ pub(super) fn describe() -> Vec<Description> {
         ),
     ];
     all.extend(send_midi::describe());
+    all.extend(send_devices::describe());
     all.extend(send_contacts::describe());
     all
 }

@@ -2,11 +2,12 @@
 
 use super::node::Node;
 use super::problem::Problem;
+use super::target_devices;
 use crate::messages::{
     Destination, KeyboardTarget, MAX_TARGETS, MidiTarget, OscTarget, OscTransport, SendTarget,
 };
 use underfoot_format::codec::{At, By, Distinct, Written};
-use underfoot_format::describe::FieldType;
+use underfoot_format::describe::{Description, FieldType};
 use underfoot_format::text::Text;
 use underfoot_format::{Codec, Id, Name, Opt, Rec, Record, record};
 
@@ -15,7 +16,8 @@ record! {
     pub(super) struct TargetRecord = "Target";
     /// Its name in messages, unique in the layout.
     pub(super) name: Written<String> = "name", At(Id);
-    /// The receiver: keyboard and pointer of the desktop, a program that receives OSC, or a port of MIDI.
+    /// The receiver: keyboard and pointer of the desktop, a program that receives OSC, a port of MIDI, a universe of DMX by
+    /// Art-Net or sACN, a broker of MQTT, or a program that messages start.
     to: Destination = "to", DESTINATION;
 }
 
@@ -47,7 +49,7 @@ pub(super) const TARGETS: Distinct<TargetRecord> = Distinct {
 const DESTINATION: By<Destination> = By {
     shape: || {
         FieldType::Words(
-            "Keyboard | Keyboard((window: \"part of a title\")) | Osc(\"host:port\") | Osc(\"host:port\", (over: Tcp)) | Midi(\"port\") | Midi(\"port\", (into: \"part of a name\"))",
+            "Keyboard | Keyboard((window: \"part of a title\")) | Osc(\"host:port\") | Osc(\"host:port\", (over: Tcp)) | Midi(\"port\") | Midi(\"port\", (into: \"part of a name\")) | ArtNet(\"address\", (universe: 0)) | Sacn | Sacn((universe: 1, to: \"address\", via: \"address\", priority: 100)) | Mqtt(\"host:port\", (base: \"floor\", discovery: true, user: \"name\")) | Run(\"program\")",
         )
     },
     read: |node, ()| destination(node),
@@ -68,6 +70,7 @@ const DESTINATION: By<Destination> = By {
             let settings = into.is_some().then(|| Rec.write(&IntoRecord { into: into.clone() }));
             Text::Call("Midi", [Text::quoted(&**port)].into_iter().chain(settings).collect())
         }
+        device => target_devices::write(device).unwrap_or(Text::Name("")),
     },
     stand_in: || Destination::Keyboard(ANY_WINDOW),
 };
@@ -79,7 +82,10 @@ const OSC: &str = "Osc(\"127.0.0.1:53000\")";
 const MIDI: &str = "Midi(\"underfoot\")";
 
 fn destination(node: Node<'_>) -> Option<Destination> {
-    let call = node.call(&["Keyboard", "Osc", "Midi"])?;
+    let call = node.call(&[&["Keyboard", "Osc", "Midi"][..], &target_devices::NAMES].concat())?;
+    if target_devices::NAMES.contains(&call.name) {
+        return target_devices::read(&call);
+    }
     if call.name == "Midi" {
         let ([port], settings) = call.values(MIDI)?;
         let into = settings
@@ -136,4 +142,28 @@ pub(super) fn write_all(targets: &[SendTarget]) -> Text {
         Text::Record(TargetRecord::NAME, entries)
     };
     Text::List(targets.iter().map(write).collect())
+}
+
+/// Describes the forms of targets for the reference.
+pub(super) fn describe() -> Vec<Description> {
+    let with = |name, about: &str, of: Description| Description::new(name, &[about], of.fields);
+    let mut all = vec![
+        with(
+            "Keyboard",
+            "`Keyboard` or `Keyboard((window: \"part of a title\"))`: keys and pointer of the desktop.",
+            KeyboardTarget::describe(),
+        ),
+        with(
+            "Osc",
+            "`Osc(\"127.0.0.1:53000\", (over: Udp))`: a program that receives OSC.",
+            OverRecord::describe(),
+        ),
+        with(
+            "Midi",
+            "`Midi(\"underfoot\", (into: \"part of a name\"))`: a port of MIDI that the program opens.",
+            IntoRecord::describe(),
+        ),
+    ];
+    all.extend(target_devices::describe());
+    all
 }

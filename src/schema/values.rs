@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::diagnostic::Diagnostics;
 use super::effect::{EffectFile, parse_effect};
-use super::floor::{FloorRecord, parse_floor};
+use super::floor::{FloorFileRecord, parse_floor};
 use super::inherit;
 use super::kind::{Kind, Kinds};
 use super::layout_record::LayoutRecord;
@@ -84,11 +84,11 @@ impl Filed for Kind {
 /// A floor file. A floor that an app has read has no file ([`FloorFile::NONE`]).
 impl Filed for Floor {
     fn written(&self) -> Text {
-        Text::Record(FloorRecord::NAME, FloorRecord::of(self).written())
+        Text::Record(FloorFileRecord::NAME, FloorFileRecord::of(self).written())
     }
 
     fn read(text: &str) -> Result<Self, Diagnostics> {
-        parse_floor(text, FloorRecord::NAME).map(|floor| Self { file: FloorFile::NONE, ..floor })
+        parse_floor(text, FloorFileRecord::NAME).map(|floor| Self { file: FloorFile::NONE, ..floor })
     }
 }
 

@@ -5,18 +5,31 @@ use std::ops::Range;
 use super::diagnostic::Diagnostics;
 use super::problem::Problem;
 use super::reader::Reader;
+use crate::messages::TargetSort;
 use underfoot_format::{Num, num};
 
 /// The newest version of the formats that this program reads and writes: version 2 added targets, messages and
 /// serial ports, version 3 rates and ranges of boards, plates other than squares with sensors at their corners, and
-/// sensors that are switched off.
-pub const FORMAT_VERSION: u32 = 3;
+/// sensors that are switched off, version 4 targets of DMX and MQTT and programs.
+pub const FORMAT_VERSION: u32 = 4;
 
 /// The version that is written to files without anything that a later version added, so that older programs read them.
 pub(super) const FIRST_VERSION: u32 = 1;
 
 /// The first version with targets and messages.
 pub(super) const WITH_MESSAGES: u32 = 2;
+
+/// The first version with DMX, MQTT and programs as targets.
+const WITH_DEVICES: u32 = 4;
+
+/// Returns the first version of layouts with targets of this `sort`.
+#[must_use]
+pub const fn version_with(sort: TargetSort) -> u32 {
+    match sort {
+        TargetSort::Keyboard | TargetSort::Osc | TargetSort::Midi => WITH_MESSAGES,
+        TargetSort::Dmx | TargetSort::Mqtt | TargetSort::Program => WITH_DEVICES,
+    }
+}
 
 /// The first version with serial ports.
 pub(super) const WITH_SERIAL_PORTS: u32 = 2;

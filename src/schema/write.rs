@@ -5,7 +5,7 @@ use super::send;
 use super::send_contacts;
 use super::targets;
 use super::units::Units;
-use super::version::{FIRST_VERSION, WITH_MESSAGES};
+use super::version::{FIRST_VERSION, WITH_MESSAGES, version_with};
 use crate::floor::Rect;
 use crate::ground::GroundMaterial;
 use crate::layout::{Ground, HEX, Layout, Widget};
@@ -48,7 +48,9 @@ pub(super) fn written(layout: &Layout) -> Vec<Entry> {
         Text::Record("Stance", entries)
     });
     let sends = !layout.targets.is_empty() || layout.sends();
-    let version = if sends { WITH_MESSAGES } else { FIRST_VERSION };
+    let least = if sends { WITH_MESSAGES } else { FIRST_VERSION };
+    let of_targets = layout.targets.iter().map(|target| version_with(target.to.sort()));
+    let version = of_targets.max().map_or(least, |newest| newest.max(least));
     let mut entries = vec![
         ("version", Text::Whole(version.into())),
         ("units", Name.write(&Units::Metres)),

@@ -25,6 +25,7 @@ mod priority;
 mod report;
 mod silent;
 mod since;
+mod stereo;
 #[cfg(feature = "net")]
 mod tuio;
 #[cfg(feature = "net")]
@@ -59,6 +60,7 @@ pub use osc::OscSink;
 pub use report::Report;
 pub use silent::SilentSink;
 pub use since::Since;
+pub use stereo::StereoSink;
 #[cfg(feature = "net")]
 pub use tuio::{TuioSink, TuioVersion};
 #[cfg(all(unix, feature = "net"))]

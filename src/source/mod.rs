@@ -6,6 +6,7 @@ mod journal;
 mod port;
 #[cfg(feature = "net")]
 mod shared;
+mod tapped;
 #[cfg(feature = "net")]
 mod udp;
 
@@ -15,6 +16,7 @@ pub use journal::{Incoming, Journal, Replay};
 pub use port::Port;
 #[cfg(feature = "net")]
 pub(crate) use shared::Shared;
+pub use tapped::{PacketTap, TappedPackets};
 #[cfg(feature = "net")]
 pub use udp::{ForwardCounters, Seal, Sealed, UdpSource};
 

@@ -1,7 +1,8 @@
 //! Encoding of packets as boards write them.
 
-use rosc::{OscMessage, OscPacket, OscType, encoder};
+use rosc::{OscPacket, encoder};
 use thiserror::Error;
+use underfoot_packet::{write_blob, write_counts, write_newtons};
 
 use super::{Readings, SensorPacket};
 use crate::floor::{Calibration, Floor};
@@ -91,40 +92,37 @@ impl SensorEncoder {
         if channels != readings {
             return Err(EncodeError::Channels { board: packet.board, channels, readings });
         }
-        let mut args = Vec::with_capacity(1 + channels);
-        args.push(OscType::Int(packet.sequence.cast_signed()));
+        let (address, number, bytes) = (board.address.as_str(), packet.sequence, &mut self.bytes);
+        bytes.clear();
+        let parts = board.calibration.iter();
         match (self.format, &packet.readings) {
             (SensorFormat::Counts, Readings::Counts(counts)) => {
-                args.extend(counts.iter().map(|count| OscType::Int(count.map_or(-1, i32::from))));
+                write_counts(address, number, counts.iter().copied(), bytes);
             }
             (SensorFormat::Blob, Readings::Counts(counts)) => {
-                let mut blob = Vec::with_capacity(2 * channels);
-                for count in counts {
-                    blob.extend(count.ok_or(EncodeError::NoCounts)?.to_be_bytes());
+                if counts.contains(&None) {
+                    return Err(EncodeError::NoCounts);
                 }
-                args.push(OscType::Blob(blob));
+                write_blob(address, number, counts.iter().map(|count| count.unwrap_or_default()), bytes);
             }
             (SensorFormat::Newtons, Readings::Counts(counts)) => {
                 let force = |(count, part): (&Option<u16>, &Calibration)| {
-                    OscType::Float(count.map_or(f32::NAN, |count| part.force(count).0))
+                    count.map_or(f32::NAN, |count| part.force(count).0)
                 };
-                args.extend(counts.iter().zip(&board.calibration).map(force));
+                write_newtons(address, number, counts.iter().zip(parts).map(force), bytes);
             }
             (SensorFormat::Newtons, Readings::Newtons(forces)) => {
-                args.extend(forces.iter().map(|&force| OscType::Float(force)));
+                write_newtons(address, number, forces.iter().copied(), bytes);
             }
             (SensorFormat::Newtons, Readings::Scaled(values)) => {
-                let parts = values.iter().zip(&board.calibration);
-                args.extend(
-                    parts.map(|(value, part)| OscType::Float(part.force_at(Calibration::volts_of(*value)).0)),
-                );
+                let force =
+                    |(value, part): (&f32, &Calibration)| part.force_at(Calibration::volts_of(*value)).0;
+                write_newtons(address, number, values.iter().zip(parts).map(force), bytes);
             }
             (SensorFormat::Counts | SensorFormat::Blob, Readings::Newtons(_) | Readings::Scaled(_)) => {
                 return Err(EncodeError::NoCounts);
             }
         }
-        let message = OscMessage { addr: board.address.clone(), args };
-        write(&OscPacket::Message(message), &mut self.bytes);
         Ok(&self.bytes)
     }
 }
@@ -138,6 +136,7 @@ pub(crate) fn write(packet: &OscPacket, bytes: &mut Vec<u8>) {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use rosc::{OscMessage, OscType};
 
     use super::*;
     use crate::floor::Geometry;
@@ -179,6 +178,23 @@ mod tests {
         ) {
             let sent = packet(board, sequence, Readings::Counts(counts.into_iter().collect()));
             prop_assert_eq!(round_trip(SensorFormat::Blob, &sent), sent);
+        }
+
+        /// Boards need no OSC library, and others read them with one.
+        #[test]
+        fn bytes_are_those_of_another_encoder(
+            number: u32,
+            counts in prop::collection::vec(any::<u16>(), 24),
+        ) {
+            let sent = packet(2, number, Readings::Counts(counts.iter().copied().map(Some).collect()));
+            let blob = OscType::Blob(counts.iter().flat_map(|count| count.to_be_bytes()).collect());
+            let ints = counts.iter().map(|&count| OscType::Int(count.into())).collect();
+            for (format, values) in [(SensorFormat::Counts, ints), (SensorFormat::Blob, vec![blob])] {
+                let args = [vec![OscType::Int(number.cast_signed())], values].concat();
+                let theirs = OscPacket::Message(OscMessage { addr: "/underfoot/board/2".to_owned(), args });
+                let mut encoder = SensorEncoder::new(&floor(), format);
+                prop_assert_eq!(encoder.encode(&sent).unwrap(), encoder::encode(&theirs).unwrap());
+            }
         }
 
         #[test]

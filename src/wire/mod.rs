@@ -31,7 +31,7 @@ pub use link::LinkState;
 pub use message::{ControlMessage, Request};
 pub use packet::{Readings, SensorPacket};
 pub use prefix::{BadPrefix, Prefix};
-pub use slip::{SlipDecoder, SlipFault, write_slip};
+pub use slip::{SlipDecoder, SlipFault};
 pub use split::each_message;
 
 pub use argument::{ArgumentKind, MAX_LABEL};
@@ -42,3 +42,4 @@ pub use guard::{DatagramLimits, Malformed, check};
 pub use json_request::{read_json, write_json};
 pub use packet::MAX_CHANNELS;
 pub use pattern::{is_pattern, matches};
+pub use underfoot_packet::write_slip;

@@ -1,13 +1,9 @@
 //! SLIP frames (RFC 1055), as OSC 1.1 uses them on serial lines.
 
 use thiserror::Error;
+use underfoot_packet::{END, ESC, ESC_END, ESC_ESC};
 
 use super::DatagramLimits;
-
-const END: u8 = 0xC0;
-const ESC: u8 = 0xDB;
-const ESC_END: u8 = 0xDC;
-const ESC_ESC: u8 = 0xDD;
 
 /// Maximum number of bytes that pass for the rest of a frame: longer than any single board's.
 const SKIPPED: usize = 2048;
@@ -117,22 +113,11 @@ impl SlipDecoder {
     }
 }
 
-/// Appends `datagram` to `out` as one SLIP frame with an END on both sides, as OSC 1.1 recommends.
-pub fn write_slip(datagram: &[u8], out: &mut Vec<u8>) {
-    out.push(END);
-    for byte in datagram {
-        match *byte {
-            END => out.extend([ESC, ESC_END]),
-            ESC => out.extend([ESC, ESC_ESC]),
-            byte => out.push(byte),
-        }
-    }
-    out.push(END);
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+
+    use underfoot_packet::write_slip;
 
     use super::*;
 

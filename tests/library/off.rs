@@ -226,6 +226,7 @@ fn every_reason_stands_in_the_page_and_in_the_bindings() {
     let page = read("docs/osc-and-tuio.md");
     let header = read("bindings/c/underfoot.h");
     let types = read("bindings/python/underfoot/_types.py");
+    let package = read("bindings/web/src/index.d.ts");
     for (number, reason) in (1..).zip(OffReason::ALL) {
         let name = reason.name();
         assert!(page.contains(&format!("| `{name}` |")), "{name} has no row");
@@ -234,6 +235,7 @@ fn every_reason_stands_in_the_page_and_in_the_bindings() {
             "{name} is not in C"
         );
         assert!(types.contains(&format!("    \"{name}\",")), "{name} is not in Python");
+        assert!(package.contains(&format!("\"{name}\"")), "{name} is not in the package for the web");
     }
     let rows = page.lines().skip_while(|line| !line.starts_with("| word | why |")).skip(2);
     let words = rows.take_while(|line| line.starts_with('|')).count();
@@ -242,12 +244,14 @@ fn every_reason_stands_in_the_page_and_in_the_bindings() {
 
 /// The same for presses that a control ignored.
 #[test]
-fn every_reason_of_an_ignored_press_stands_in_the_page_and_in_python() {
+fn every_reason_of_an_ignored_press_stands_in_the_page_and_in_the_bindings() {
     let read =
         |path: &str| std::fs::read_to_string(format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))).unwrap();
     let (page, types) = (read("docs/osc-and-tuio.md"), read("bindings/python/underfoot/_types.py"));
+    let package = read("bindings/web/src/index.d.ts");
     for name in Ignored::all().map(Ignored::name) {
         assert!(page.contains(&format!("| `{name}` |")), "{name} has no row");
         assert!(types.contains(&format!("    \"{name}\",")), "{name} is not in Python");
+        assert!(package.contains(&format!("\"{name}\"")), "{name} is not in the package for the web");
     }
 }

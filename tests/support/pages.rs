@@ -11,8 +11,8 @@ pub struct Page {
 }
 
 /// Languages of fenced blocks: `ron`, `sh` and `layers` are tested, `rust` is a doctest, the others are only shown.
-const LANGUAGES: [&str; 11] =
-    ["ron", "sh", "layers", "rust", "json", "toml", "console", "text", "c", "js", "python"];
+const LANGUAGES: [&str; 12] =
+    ["ron", "sh", "layers", "rust", "json", "toml", "console", "text", "c", "js", "python", "html"];
 
 /// All pages, in order of their names.
 pub fn pages() -> Vec<Page> {

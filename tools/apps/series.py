@@ -1,7 +1,9 @@
 """A series of twelve DICOM images: a test image of pydicom with a white bar that is longer from image to image, so that a
-picture of the screen tells which of them is shown: `python3 tools/apps/series.py FOLDER`.
+picture of the screen tells which of them is shown: `python3 tools/apps/series.py FOLDER`. Compressed images of pydicom are
+beside them, in `FOLDER/compressed`.
 """
 import os
+import shutil
 import sys
 
 import numpy
@@ -31,5 +33,14 @@ def write(folder):
     return names
 
 
+def copy_compressed(folder):
+    """Copies images in JPEG 2000 and JPEG-LS."""
+    os.makedirs(folder)
+    for name in ("MR_small_jp2klossless.dcm", "MR_small_jpeg_ls_lossless.dcm"):
+        shutil.copy(get_testdata_file(name), folder)
+
+
 if __name__ == "__main__":
+    os.makedirs(sys.argv[1], exist_ok=True)
     write(sys.argv[1])
+    copy_compressed(os.path.join(sys.argv[1], "compressed"))

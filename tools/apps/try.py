@@ -13,8 +13,9 @@ import tempfile
 import numpy
 
 from floor import Floor
-from screen import Screen, difference, missing
+from screen import Screen, difference
 from series import IMAGES, write as write_series
+from display import PROGRAMS, missing  # beside `screen`, which adds its folder
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
@@ -158,7 +159,7 @@ def main():
     shots = sys.argv[sys.argv.index("--shots") + 1] if "--shots" in sys.argv else None
     if shots:
         os.makedirs(shots, exist_ok=True)
-    lacking = missing("Xvfb", "xdotool", "import")
+    lacking = missing(*PROGRAMS)
     chosen = [app for app in (Viewer(), Globe()) if app.name in sys.argv] or [Viewer(), Globe()]
     for app in chosen:
         if lacks := lacking + missing(*app.needs):

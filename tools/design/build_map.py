@@ -20,7 +20,7 @@ from window import Floor, Window
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SHIPPED = os.path.join(ROOT, "layouts", "map.ron")
 
-# Kind (its name in the list of what can be put down), id, label, at, size, in tiles.
+# Kind (its name in the list at the left), id, label, at, size, in tiles.
 CONTROLS = [
     ("button", "pan_north", "North", (1.9, 2.9), (0.6, 0.5)),
     ("button", "pan_south", "South", (1.9, 2.2), (0.6, 0.5)),
@@ -147,7 +147,7 @@ def by_keys(window, path):
             window.shot(f"{3 if number == 0 else 4}-{control[1]}")
     fields.fill("Starts at", "0.3")
     save(window, path)
-    # A foot on what has the keyboard: shift+Tab leads to the last control, the slider.
+    # A foot on the control that has the keyboard: shift+Tab leads to the last control, the slider.
     window.key("F2")
     window.until(lambda: is_on(window, "Try"), "Try")
     while not window.has_focus("Zoom", "Slider"):
@@ -209,10 +209,13 @@ def region(window, fields):
 
 
 def fill(fields, control):
-    """The fields of the control that was put down; its size first: on the way, nothing overlaps or leaves the floor."""
+    """The fields of the control that was put down, at the end of a row by keys.
+
+    Its size first, then north: on the way, nothing overlaps or leaves the floor.
+    """
     _, identity, label, at, size = control
     values = [("Name for apps", identity), ("Text on it", label), ("Size: width", size[0]), ("Size: depth", size[1]),
-              ("Place: east", at[0]), ("Place: north", at[1])]
+              ("Place: north", at[1]), ("Place: east", at[0])]
     for name, value in values:
         fields.fill(name, str(value))
 

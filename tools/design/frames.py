@@ -81,7 +81,7 @@ def core_seconds(process):
 
 
 class Measured:
-    """What the runs of one program in one case gave: frames second by second, and milliseconds of a core a frame."""
+    """Results of the runs of one program in one case: frames second by second, and milliseconds of a core a frame."""
 
     def __init__(self):
         self.rates, self.costs = [], []

@@ -82,7 +82,7 @@ def main():
     window = Window(program, [path], folder)
     late = 0
     try:
-        # Both on the control; what is drawn of a foot does not reach the eye.
+        # Both on the control; the drawing of a foot does not reach the eye.
         left, top, right, bottom = window.find("home")["seen"]
         at = lambda east, north: (round(left + east * (right - left)), round(bottom - north * (bottom - top)))
         eye, foot = Eye(window.env["DISPLAY"], at(0.85, 0.85)), at(0.2, 0.2)

@@ -7,6 +7,7 @@ has cracked the ice, in Design one control is selected. They are saved as PNG wi
 """
 import argparse
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -19,26 +20,27 @@ THEMES = [("light", "light"), ("dark", "dark"), ("contrast", "high contrast")]
 LAYOUT = """Layout(
     version: 1,
     title: "Meaning",
-    regions: [(id: "work", at: (0, 2), size: (6, 4))],
-    stances: [(at: (2, 0), size: (2, 1.8), label: "Stand here")],
+    regions: [(id: "work", at: (0, 2), size: (6, 2))],
+    stances: [
+        (at: (2, 0), size: (2, 1), label: "Stand here"),
+        (at: (2, 5), size: (2, 1), label: "or here"),
+    ],
     grounds: [
-        Ice(at: (0, 0), size: (1.9, 1.9)),
-        Gravel(at: (4.1, 0), size: (1.9, 0.95)),
-        Wood(at: (4.1, 0.95), size: (1.9, 0.95)),
+        Ice(at: (0, 4.1), size: (1.9, 1.9)),
+        Gravel(at: (0, 0), size: (1.9, 1.9)),
+        Wood(at: (4.1, 0), size: (1.9, 1.9)),
     ],
     widgets: [
-        (id: "next", kind: "button", at: (0.2, 4.9), size: (0.9, 0.8), label: "Next"),
-        (id: "home", kind: "round_button", at: (1.4, 4.9), size: (0.8, 0.8), label: "Home", look: (icon: Home)),
-        (id: "delete", kind: "confirm_button", at: (2.5, 4.9), size: (1, 0.8), label: "Delete"),
-        (id: "drill", kind: "dead_man", at: (3.8, 4.9), size: (0.9, 0.8), label: "Drill"),
-        (id: "go", kind: "instant_button", at: (5, 4.9), size: (0.8, 0.8), label: "Go"),
-        (id: "light", kind: "switch", at: (0.2, 3.8), size: (1, 0.8), label: "Light", initial: true),
-        (id: "grip", kind: "hold", at: (1.5, 3.8), size: (1, 0.8), label: "Grip"),
-        (id: "view", kind: "selector", at: (2.8, 3.8), size: (3, 0.8), label: "View", options: ["Map", "Air", "3D"]),
-        (id: "zoom", kind: "slider", at: (0.2, 2.5), size: (2.2, 0.9), label: "Zoom", initial: 0.6),
-        (id: "turn", kind: "dial", at: (2.7, 2.4), size: (1.1, 1.1), label: "Turn"),
-        (id: "speed", kind: "pedal", at: (4.1, 2.4), size: (0.8, 1.1), label: "Speed"),
-        (id: "pan", kind: "pad", at: (5, 2.4), size: (0.8, 1.1), label: "Pan"),
+        (id: "next", kind: "button", at: (0.1, 2.05), size: (0.7, 0.85), label: "Next"),
+        (id: "light", kind: "switch", at: (1.05, 2.05), size: (0.7, 0.85), label: "Light", initial: true),
+        (id: "delete", kind: "confirm_button", at: (2, 2.05), size: (0.85, 0.85), label: "Delete"),
+        (id: "grip", kind: "hold", at: (3.1, 2.05), size: (0.7, 0.85), label: "Grip"),
+        (id: "zoom", kind: "slider", at: (4.05, 2.05), size: (1.85, 0.85), label: "Zoom", initial: 0.6),
+        (id: "home", kind: "round_button", at: (0.1, 3.1), size: (0.75, 0.85), label: "Home", look: (icon: Home)),
+        (id: "drill", kind: "dead_man", at: (1.2, 3.25), size: (0.7, 0.7), label: "Drill"),
+        (id: "view", kind: "selector", at: (2.25, 3.1), size: (1.75, 0.85), label: "View", options: ["Map", "Air", "3D"]),
+        (id: "turn", kind: "dial", at: (4.25, 3.1), size: (0.85, 0.85), label: "Turn"),
+        (id: "go", kind: "instant_button", at: (5.3, 3.1), size: (0.6, 0.85), label: "Go"),
     ],
 )
 """
@@ -50,20 +52,24 @@ def pictures(program, layout, theme, size, folder, name):
     os.makedirs(os.path.join(state, "state", "underfoot"))
     with open(os.path.join(state, "state", "underfoot", "window"), "w") as settings:
         settings.write(f"underfoot window 1\nwindow {theme}\nprojected {theme}\ntext 10\nfirst_steps off\n")
-    window = Window(program, [layout], folder=state, size=size)
+    sound = os.path.join(state, "sound.wav")
+    window = Window(program, [layout, "--wav", sound], folder=state, size=size)
     try:
         places = Floor(window)
-        for place in [(0.6, 0.7), (1.3, 1.2), (0.9, 1.5)]:
+        window.wheel(*places.at(1, 5), -12, "harder")
+        for place in [(0.5, 4.7), (1.3, 5.2), (0.8, 5.6)]:
             window.drag(places.at(*place), places.at(place[0] + 0.05, place[1]))
-        window.move(*places.at(0.65, 5.3))
+        window.wheel(*places.at(1, 5), 12, "softer")
+        for notice in window.all(re.compile("^Hide: ")):
+            window.click_on(notice["name"])
+        window.move(*places.at(0.45, 2.7))
         window.x("mousedown", 1)
-        window.move(*places.at(0.65, 5.25))
         subprocess.run(["sleep", "1"], check=True)
         save(window, os.path.join(folder, f"window-try-{name}.png"))
         window.x("mouseup", 1)
         window.key("F2")
-        window.click(*places.at(3.0, 5.3))
-        window.move(*places.at(3.0, 1.9))
+        window.click(*places.at(2.4, 2.5))
+        window.move(*places.at(3.0, 1.5))
         subprocess.run(["sleep", "1"], check=True)
         save(window, os.path.join(folder, f"window-design-{name}.png"))
     finally:

@@ -7,11 +7,13 @@ import json
 import mmap
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
+from display import PROGRAMS, Display, missing  # noqa: E402
 
 SIZE = (1400, 900)
 VARIABLE = "UNDERFOOT_SCREEN_REPORT"
@@ -21,7 +23,7 @@ NEVER = 300
 CALM_S, FRAMES = 0.04, 12
 
 
-class Window:
+class Window(Display):
     """`underfoot preview` with `arguments`, its state and its files in a folder of their own; ends with `close`.
 
     `actions` lists what a user did, and `count` counts it: each click, drag, key chord and typed word is one. With
@@ -30,26 +32,17 @@ class Window:
     """
 
     def __init__(self, program, arguments, folder=None, shots=None, size=SIZE, env=None, beside=0):
-        for needed in ("Xvfb", "xdotool", "import"):
-            if shutil.which(needed) is None:
-                sys.exit(f"{needed} is missing: apt-get install xvfb xdotool imagemagick")
+        if lacks := missing(*PROGRAMS):
+            sys.exit(f"{', '.join(lacks)} missing: apt-get install xvfb xdotool imagemagick")
         self.folder = folder or tempfile.mkdtemp(prefix="underfoot-design-")
         self.reports = os.path.join(self.folder, "screen")
         os.makedirs(self.reports, exist_ok=True)
         self.shots, self.pictures = shots, False
         self.actions, self.count = [], 0
         self.has_reports = reports_screen(program)
-        read, write = os.pipe()
-        screen = ["-screen", "0", f"{size[0] + beside}x{size[1]}x24"]
-        # Without -r, a key that a busy machine releases late repeats itself.
-        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-r", *screen], pass_fds=[write],
-                                       stderr=subprocess.DEVNULL)
-        os.close(write)
-        number = os.read(read, 16).decode().strip()
-        self.env = dict(os.environ, DISPLAY=f":{number}", LIBGL_ALWAYS_SOFTWARE="1",
-                        XDG_STATE_HOME=os.path.join(self.folder, "state"),
-                        XDG_DATA_HOME=os.path.join(self.folder, "data"), **{VARIABLE: self.reports}, **(env or {}))
-        self.env.pop("WAYLAND_DISPLAY", None)
+        super().__init__((size[0] + beside, size[1]), {
+            "XDG_STATE_HOME": os.path.join(self.folder, "state"), "XDG_DATA_HOME": os.path.join(self.folder, "data"),
+            VARIABLE: self.reports, **(env or {})})
         self.program = subprocess.Popen([program, "preview", *arguments, "--no-osc", "--json"], env=self.env,
                                         cwd=self.folder, stdout=open(os.path.join(self.folder, "events"), "w"),
                                         stderr=open(os.path.join(self.folder, "messages"), "w"))
@@ -70,11 +63,11 @@ class Window:
             if found:
                 return found[-1].decode()
             time.sleep(0.1)
-        self.server.terminate()
+        super().close()
         with open(os.path.join(self.folder, "messages")) as messages:
             sys.exit(f"{self.program.args[0]} has ended: {messages.read()}")
 
-    # What the program shows.
+    # Reading the screen.
 
     def report(self, window=None):
         """The last report of the main window, or of the one with this title; empty before the first."""
@@ -137,12 +130,7 @@ class Window:
         with open(os.path.join(self.folder, "events")) as events:
             return events.read()
 
-    # What the user does.
-
-    def x(self, *arguments):
-        """One command of xdotool."""
-        done = subprocess.run(["xdotool", *map(str, arguments)], env=self.env, check=True, capture_output=True)
-        return done.stdout.decode()
+    # Actions of a user.
 
     def send(self, *arguments, window=None, **counts):
         """Input by xdotool; waits until the program has counted it and is calm."""
@@ -266,14 +254,12 @@ class Window:
             deadline = time.monotonic() + 5
             while self.report().get("frame", 0) < begun + 2 and time.monotonic() < deadline:
                 time.sleep(0.01)
-        path = os.path.join(self.shots, name + ".png")
-        subprocess.run(["import", "-window", "root", path], env=self.env, check=True)
+        self.save(os.path.join(self.shots, name + ".png"))
 
     def close(self):
         self.program.terminate()
         self.program.wait(NEVER)
-        self.server.terminate()
-        self.server.wait(NEVER)
+        super().close()
 
 
 class Floor:

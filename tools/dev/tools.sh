@@ -35,6 +35,9 @@ tool_packages() {
     has npm || echo npm
     # It scrapes the floor's metrics.
     has prometheus || echo prometheus
+    # A broker of MQTT, and its client.
+    has mosquitto || echo mosquitto
+    has mosquitto_sub || echo mosquitto-clients
     has python3 || echo python3
     python3 -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
 }
@@ -61,10 +64,10 @@ app_packages() {
 # Whether LEAVE_OUT, words with blanks between them, has this one.
 is_left_out() { [[ " ${LEAVE_OUT:-} " == *" $1 "* ]]; }
 
-# Says of one tool that it is not there, and what is not tried for that; the run goes on.
+# Reports a missing tool and the checks left out for it; the run goes on.
 lacks() { say "NOT RUN: $*"; }
 
-# Runs an installation and says how long it took; a failed one is told and costs the run nothing but what it is for.
+# Runs an installation and says how long it took; a failed one is reported, and costs the run only its own checks.
 install_step() {
     local start=$SECONDS
     say "installing: $*"
@@ -111,17 +114,40 @@ make_python() {
     cp "$1" "$2"
 }
 
-# What leads the browser, in place; made anew when package.json changes.
+# Packages of npm in place, in each folder of `npm_folders`; made anew when its package.json changes.
 install_web() {
-    local wanted=bindings/web/package.json made=bindings/web/node_modules/made_from.json
+    local folder
+    for folder in $(npm_folders); do
+        cmp -s "$folder/package.json" "$folder/node_modules/made_from.json" && continue
+        command -v npm >/dev/null || { lacks "there is no npm, so nothing opens the floor's page"; return; }
+        install_step make_web "$folder"
+    done
+}
+
+# The packages that lead the browser and read the floor; and the libraries of the example pages.
+npm_folders() {
+    is_left_out bindings || echo bindings/web
+    is_left_out apps || echo bindings/web/examples
+}
+
+# The emulator of the Pico; installed again when package.json changes.
+install_pico() {
+    local wanted=firmware/emulate/package.json made=$tools/pico/made_from.json
+    ! is_left_out emulators || return 0
     cmp -s "$wanted" "$made" && return
-    command -v npm >/dev/null || { lacks "there is no npm, so nothing opens the floor's page"; return; }
-    install_step make_web "$wanted" "$made"
+    command -v npm >/dev/null || { lacks "there is no npm, so no firmware of a Pico runs"; return; }
+    install_step make_pico "$wanted" "$made"
+}
+
+make_pico() {
+    mkdir -p "$tools/pico" && cp "$1" "$tools/pico/package.json" || return
+    npm install --silent --no-audit --no-fund --no-package-lock --prefix "$tools/pico" || return
+    cp "$1" "$2"
 }
 
 make_web() {
-    npm install --silent --no-audit --no-fund --no-package-lock --prefix bindings/web || return
-    cp "$1" "$2"
+    npm install --silent --no-audit --no-fund --no-package-lock --prefix "$1" || return
+    cp "$1/package.json" "$1/node_modules/made_from.json"
 }
 
 # Whether a program of cargo's works, such as `nextest`.
@@ -158,6 +184,8 @@ tools_note() {
     python3 -c 'import pythonosc, pythontuio' 2>/dev/null \
         || lacks "python-osc and python-tuio are missing, so they read nothing that we send"
     python3 -c 'import zeroconf' 2>/dev/null || lacks "zeroconf is missing, so no other program looks for a floor by mDNS"
+    python3 -c 'import sacn, stupidArtnet' 2>/dev/null \
+        || lacks "sacn and stupidArtnet are missing, so no program of others receives our DMX"
     unshare --net true 2>/dev/null || unshare --user --map-root-user --net true 2>/dev/null \
         || lacks "no network namespace can be made here, so no network card comes late"
     as_root_quietly unshare --mount --pid --fork --cgroup true 2>/dev/null \
@@ -178,6 +206,7 @@ install_tools() {
     [ "$(uname)" != Linux ] || install_tool_packages
     install_python
     install_web
+    install_pico
     install_cargo_tools
     # The shell forgets where it has found a python3 before.
     hash -r

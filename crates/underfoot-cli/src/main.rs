@@ -49,6 +49,7 @@ mod senders;
 mod sense;
 mod session;
 mod setup;
+mod share;
 mod simulate;
 mod stop;
 mod table;
@@ -101,13 +102,15 @@ enum Command {
     /// Render an effect: sound, picture, figures; read and write Apple's haptic patterns.
     #[cfg(feature = "lab")]
     Feel(feel::Args),
+    /// Print a link that opens the layout in a browser, or in `underfoot preview`: the layout is in the link itself.
+    Share(share::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
     /// Check the actuators and their sound device: a walk from tile to tile, the devices, the channel map.
     Rack(rack::Args),
     /// Set up a new floor, step by step: boards, shape, wiring, calibration, a first layout.
     Setup(setup::Args),
-    /// Find which board reads which tiles, by stepping from board to board.
+    /// Find which board reads which tiles, by stepping from board to board; or draw the wiring.
     Wiring(wiring::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
     Sense(sense::SenseArgs),
@@ -173,6 +176,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Reference(args)) => reference::run(&args),
         #[cfg(feature = "lab")]
         Some(Command::Feel(args)) => feel::run(&args),
+        Some(Command::Share(args)) => share::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Rack(args)) => rack::run(&args),
         Some(Command::Setup(args)) => setup::run(&args),

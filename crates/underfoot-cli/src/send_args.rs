@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use underfoot::layout::Layout;
-use underfoot::messages::MessagePlan;
+use underfoot::messages::{Destination, MessagePlan, TargetSort};
 use underfoot_io::targets::{LoadedPlan, TargetSink, redirect};
 
 use super::failure::Failure;
@@ -12,13 +12,16 @@ use super::failure::Failure;
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct SendArgs {
     /// Move a target of the layout: another host and port for OSC (`desk=10.0.0.5:53000`, `desk=tcp:10.0.0.5:53000`),
-    /// another X display for a keyboard (`viewer=:1`), another name for a MIDI port (`synth=stage`). May be given several
-    /// times.
+    /// another X display for a keyboard (`viewer=:1`), another name for a MIDI port (`synth=stage`), another address for
+    /// Art-Net, sACN or MQTT (`lights=10.0.0.20`, `home=10.0.0.7:1883`), another program. May be given several times.
     #[arg(long = "target", value_name = "NAME=PLACE", value_parser = moved)]
     targets: Vec<(String, String)>,
     /// Send no messages of controls to the layout's targets.
     #[arg(long)]
     no_send: bool,
+    /// Let controls start the programs that the layout names, with the arguments that it writes.
+    #[arg(long, conflicts_with = "no_send")]
+    allow_run: bool,
 }
 
 fn moved(text: &str) -> Result<(String, String), String> {
@@ -40,6 +43,7 @@ impl SendArgs {
         if !plan.is_empty() {
             let names: Vec<&str> = plan.targets.iter().map(|target| target.name.as_str()).collect();
             errln!("Controls send to {}; -v shows every message.", names.join(", "));
+            self.tell_programs(&plan);
         } else if self.no_send {
             tell_off(layout, "--no-send");
         }
@@ -62,6 +66,15 @@ impl SendArgs {
         }
     }
 
+    /// Says that the programs of the layout do not start, if it has any and they are not allowed.
+    fn tell_programs(&self, plan: &MessagePlan) {
+        let programs = plan.targets.iter().filter(|target| target.to.sort() == TargetSort::Program);
+        let names: Vec<&str> = programs.map(|target| target.name.as_str()).collect();
+        if !self.allow_run && !names.is_empty() {
+            errln!("No program starts for {}: that needs --allow-run.", names.join(", "));
+        }
+    }
+
     /// The messages, with the targets where this command line puts them.
     fn plan(&self, layout: &Layout) -> Result<MessagePlan, String> {
         if self.no_send {
@@ -70,6 +83,11 @@ impl SendArgs {
         let mut plan = layout.plan();
         for (name, place) in &self.targets {
             redirect(&mut plan.targets, name, place)?;
+        }
+        for target in &mut plan.targets {
+            if let Destination::Run(program) = &mut target.to {
+                program.is_allowed = self.allow_run;
+            }
         }
         Ok(plan)
     }

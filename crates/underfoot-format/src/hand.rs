@@ -21,11 +21,11 @@ pub struct Knob {
 }
 
 /// The callback for each number.
-pub type Visit<'a> = dyn FnMut(&Knob, &mut f32) + 'a;
+pub type VisitKnob<'a> = dyn FnMut(&Knob, &mut f32) + 'a;
 
 /// Passes each number of a record to a callback, which may change it within its range.
 pub struct Hand<'v> {
-    visit: &'v mut Visit<'v>,
+    visit: &'v mut VisitKnob<'v>,
     part: String,
     /// Limits of the numbers that are marked as bounded.
     pub within: Option<Within>,
@@ -33,7 +33,7 @@ pub struct Hand<'v> {
 
 impl<'v> Hand<'v> {
     /// Passes the numbers to `visit`.
-    pub fn new(visit: &'v mut Visit<'v>) -> Self {
+    pub fn new(visit: &'v mut VisitKnob<'v>) -> Self {
         Self { visit, part: String::new(), within: None }
     }
 

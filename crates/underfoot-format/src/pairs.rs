@@ -25,7 +25,7 @@ impl Limits {
 
 /// A round or square bracket or a comma.
 #[derive(Clone, Copy, Debug)]
-pub struct Mark {
+pub struct Punctuation {
     /// Its byte in the text.
     pub at: usize,
     /// The bracket or comma.
@@ -50,10 +50,10 @@ impl Open {
 const MOST: usize = 20;
 
 /// Checks the brackets of `text` and returns their problems.
-pub fn check(text: &str, marks: &[Mark], limits: Limits) -> Vec<Problem> {
+pub fn check(text: &str, marks: &[Punctuation], limits: Limits) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut open: Vec<Open> = Vec::new();
-    for (index, &Mark { at, character }) in marks.iter().enumerate() {
+    for (index, &Punctuation { at, character }) in marks.iter().enumerate() {
         let here = at..at + 1;
         match character {
             b'(' | b'[' if open.len() == limits.depth => {
@@ -96,7 +96,7 @@ pub fn check(text: &str, marks: &[Mark], limits: Limits) -> Vec<Problem> {
 ///
 /// Either that bracket was never closed, or this one is surplus: the function chooses the repair with which more of
 /// the rest of the file pairs up.
-fn mend(text: &str, open: &mut Vec<Open>, rest: &[Mark]) -> Problem {
+fn mend(text: &str, open: &mut Vec<Open>, rest: &[Punctuation]) -> Problem {
     let Some((closing, rest)) = rest.split_first() else { return Problem::error(0..0, "") };
     let matching = open.iter().rposition(|bracket| bracket.closed_by(closing.character));
     if let (Some(matching), Some(inner)) = (matching, open.last().copied())
@@ -114,7 +114,7 @@ fn mend(text: &str, open: &mut Vec<Open>, rest: &[Mark]) -> Problem {
 }
 
 /// Counts the marks of `rest` that pair up with the `open` brackets; all and one more if no bracket stays open.
-fn horizon(open: &[Open], rest: &[Mark]) -> usize {
+fn horizon(open: &[Open], rest: &[Punctuation]) -> usize {
     let mut open: Vec<u8> = open.iter().map(|bracket| bracket.bracket).collect();
     for (index, mark) in rest.iter().enumerate() {
         match (mark.character, open.last()) {
@@ -138,7 +138,7 @@ fn never_closed(open: &Open) -> Problem {
 /// Returns the entry of a list, tuple or struct that holds the byte at `offset`, with the comma behind it.
 ///
 /// `None` outside of all brackets. The brackets must pair up.
-pub fn entry_around(marks: &[Mark], offset: usize) -> Option<Range<usize>> {
+pub fn entry_around(marks: &[Punctuation], offset: usize) -> Option<Range<usize>> {
     let here = marks.partition_point(|mark| mark.at < offset);
     let before = end_of_entry(marks[..here].iter().rev(), *b")]")?;
     let after = end_of_entry(marks[here..].iter(), *b"([")?;
@@ -146,7 +146,10 @@ pub fn entry_around(marks: &[Mark], offset: usize) -> Option<Range<usize>> {
 }
 
 /// Returns the first comma or bracket along `marks` that ends an entry; skips pairs that begin with one of `inner`.
-fn end_of_entry<'m>(mut marks: impl Iterator<Item = &'m Mark>, inner: [u8; 2]) -> Option<&'m Mark> {
+fn end_of_entry<'m>(
+    mut marks: impl Iterator<Item = &'m Punctuation>,
+    inner: [u8; 2],
+) -> Option<&'m Punctuation> {
     let mut depth = 0;
     marks.find(|mark| match mark.character {
         character if inner.contains(&character) => {

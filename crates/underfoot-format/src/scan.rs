@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::diagnostic::Diagnostics;
-use super::pairs::Mark;
+use super::pairs::Punctuation;
 use super::problem::Problem;
 
 /// Result of a scan.
@@ -16,7 +16,7 @@ pub struct Scan {
     /// Problems of its quotes, comments and characters.
     pub problems: Vec<Problem>,
     /// Its brackets and commas, except those in texts and comments.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<Punctuation>,
     /// Its comments.
     pub comments: Vec<Range<usize>>,
     /// Number of its words, numbers, texts, opening brackets and commas; a parser makes values of these.
@@ -74,7 +74,7 @@ impl Scanner<'_> {
             }
             '/' if rest.starts_with("/*") => self.block_comment(),
             '(' | '[' | ')' | ']' | ',' => {
-                self.scan.marks.push(Mark { at: self.at, character: first as u8 });
+                self.scan.marks.push(Punctuation { at: self.at, character: first as u8 });
                 self.at += 1;
             }
             '{' | '}' => self.curly_bracket(),

@@ -10,7 +10,7 @@ use ron2::ast::{AttributeContent, Document, Expr, parse_document_lossy};
 use ron2::error::ErrorKind;
 
 use super::complaint::{Complaint, rephrase};
-use super::pairs::{self, Limits, Mark, entry_around};
+use super::pairs::{self, Limits, Punctuation, entry_around};
 use super::problem::Problem;
 use super::scan::{Scan, scan};
 use super::suggest::did_you_mean;
@@ -51,7 +51,7 @@ pub(crate) fn parse<'t>(text: &'t str, kind: &str, limits: Limits) -> Syntax<'t>
 /// A text whose errors are repaired or blanked out as they are found.
 struct Mended<'t> {
     text: &'t str,
-    marks: Vec<Mark>,
+    marks: Vec<Punctuation>,
     holes: Vec<Range<usize>>,
     repairs: Vec<(usize, u8)>,
 }
@@ -98,7 +98,7 @@ impl<'t> Mended<'t> {
         self.repairs.push((at, character));
         let index = self.marks.partition_point(|mark| mark.at < at);
         match character {
-            b',' => self.marks.insert(index, Mark { at, character }),
+            b',' => self.marks.insert(index, Punctuation { at, character }),
             b' ' => self.marks.retain(|mark| mark.at != at),
             _ => {}
         }

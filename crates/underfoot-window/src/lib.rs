@@ -3,8 +3,11 @@
 //! | module | content |
 //! |---|---|
 //! | [`edit`] | layouts changed in place: edits of their text, undo, files, snapping; without a window |
+//! | [`link`] | a layout in a link |
 //! | `preview` | the window: a simulated or real floor, drawn, played with the mouse, and designed (feature `window`) |
 
 pub mod edit;
+pub mod link;
+mod platform;
 #[cfg(feature = "window")]
 pub mod preview;

@@ -54,7 +54,7 @@ def bounded():
 
 
 def check(program, paths, values=None):
-    """What the viewer makes of files: a list of its answers, or a sentence that says how it ended."""
+    """The viewer's results for files: a list of its answers, or a sentence that says how it ended."""
     command = [program, "check", *(["--values", values] if values else []), *map(str, paths)]
     try:
         run = subprocess.run(command, capture_output=True, timeout=SECONDS * len(paths), preexec_fn=bounded)
@@ -67,7 +67,7 @@ def check(program, paths, values=None):
 
 
 def reference(path):
-    """What pydicom makes of a file: its data set, the values of the first frame, and why there are none."""
+    """pydicom's results for a file: its data set, the values of the first frame, and why there are none."""
     try:
         data = pydicom.dcmread(path, force=True)
         if not any(name in data for name in ("PixelData", "FloatPixelData", "DoubleFloatPixelData")):

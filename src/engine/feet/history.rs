@@ -7,7 +7,7 @@ use glam::Vec2;
 use super::super::ignored::Ignored;
 use super::super::people::{SAME_FOOT_M, STANCE_M, TrackedPerson};
 use super::super::snapshot::FootRole;
-use super::super::step::{CARRIES, Landing, Loading, RESTS, RESTS_N, Since, StepWatch, Support};
+use super::super::step::{CARRIES, HeldSince, Landing, Loading, RESTS, RESTS_N, StepWatch, Support};
 use super::super::still::Stillness;
 use super::past::{PLACE_EVERY, Past, PastLoad};
 use crate::sense::{Contact, ContactId};
@@ -105,7 +105,7 @@ pub(in crate::engine) struct FootHistory {
     others: f32,
     /// The person's load when it landed, and since when it and the others have each carried about as much.
     before: f32,
-    another: Since,
+    another: HeldSince,
     past: Past,
 }
 
@@ -131,7 +131,7 @@ impl FootHistory {
             early: None,
             others: 0.0,
             before: person.sum,
-            another: Since::default(),
+            another: HeldSince::default(),
             past: Past::new(PastLoad { place, force, others: 0.0 }, now),
         }
     }
@@ -293,7 +293,7 @@ impl FootHistory {
         if self.force < AS_GOOD_AS_LIFTED_N {
             (self.landed, self.landed_at) = (now, self.place);
             (self.step, self.watch, self.early) = (false, StepWatch::default(), None);
-            (self.before, self.another) = (person.sum, Since::default());
+            (self.before, self.another) = (person.sum, HeldSince::default());
             return;
         }
         let of_weight = person.weight().map(|weight| self.force / weight.0);
@@ -328,7 +328,7 @@ impl FootHistory {
     /// Assigns the foot to another person.
     pub(super) fn give_to(&mut self, person: u32) {
         self.person = person;
-        (self.others, self.before, self.another) = (0.0, 0.0, Since::default());
+        (self.others, self.before, self.another) = (0.0, 0.0, HeldSince::default());
     }
 
     pub(super) fn role(&self, now: Instant) -> FootRole {

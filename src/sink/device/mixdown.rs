@@ -2,10 +2,9 @@
 
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
-use std::f32::consts::FRAC_PI_2;
-
 use cpal::{FromSample, Sample};
 
+use super::super::stereo::StereoMix;
 use super::options::Mix;
 use crate::floor::Floor;
 
@@ -16,18 +15,18 @@ pub(super) struct Mixdown {
     width: usize,
     /// Number of output channels, at least one.
     device_width: usize,
-    /// Gains of each input channel to the left and to the right; empty if channels are passed through.
-    pans: Vec<[f32; 2]>,
+    /// `None` if channels are passed through.
+    stereo: Option<StereoMix>,
 }
 
 impl Mixdown {
     /// Maps `width` channels of `floor` to `device_width` channels of a device.
     pub(super) fn new(floor: &Floor, mix: Mix, width: usize, device_width: usize) -> Self {
-        let pans = match mix {
-            Mix::PerActuator | Mix::AsManyAsThereAre => Vec::new(),
-            Mix::Stereo => pans(floor, width),
+        let stereo = match mix {
+            Mix::PerActuator | Mix::AsManyAsThereAre => None,
+            Mix::Stereo => Some(StereoMix::new(floor, width)),
         };
-        Self { width, device_width: device_width.max(1), pans }
+        Self { width, device_width: device_width.max(1), stereo }
     }
 
     /// Returns the number of output channels.
@@ -45,17 +44,13 @@ impl Mixdown {
             return;
         }
         for (from, to) in from.chunks_exact(self.width).zip(to.chunks_exact_mut(self.device_width)) {
-            if self.pans.is_empty() {
+            let Some(stereo) = &self.stereo else {
                 for (from, to) in from.iter().zip(to) {
                     *to = T::from_sample(*from);
                 }
                 continue;
-            }
-            let mut sides = [0.0; 2];
-            for (sample, pan) in from.iter().zip(&self.pans) {
-                sides[0] += sample * pan[0];
-                sides[1] += sample * pan[1];
-            }
+            };
+            let sides = stereo.sides(from);
             match to {
                 [both] => *both = T::from_sample((0.5 * (sides[0] + sides[1])).clamp(-1.0, 1.0)),
                 _ => {
@@ -66,21 +61,6 @@ impl Mixdown {
             }
         }
     }
-}
-
-/// Returns the gains to the left and to the right for each channel, by the column of its tile, at constant power.
-fn pans(floor: &Floor, width: usize) -> Vec<[f32; 2]> {
-    let (west, columns) = (floor.geometry.first().column, f32::from(floor.geometry.columns()));
-    let mut pans = vec![[0.0; 2]; width];
-    for (tile, actuator) in floor.geometry.tiles().zip(&floor.actuators) {
-        if let Some(actuator) = actuator
-            && let Some(pan) = pans.get_mut(usize::from(actuator.channel))
-        {
-            let (right, left) = ((f32::from(tile.column - west) + 0.5) / columns * FRAC_PI_2).sin_cos();
-            *pan = [left, right];
-        }
-    }
-    pans
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! LinkFaults between the boards and the floor program: lost, duplicated, delayed and damaged packets, and outages.
+//! Faults between the boards and the floor program: lost, duplicated, delayed and damaged packets, and outages.
 
 mod nemesis;
 mod spec;

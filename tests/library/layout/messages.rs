@@ -3,8 +3,8 @@
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::messages::{
-    BendSettings, Destination, KeyboardTarget, MidiTarget, MouseButton, OscArgument, OscTarget, OscTransport,
-    Payload, Trigger, When,
+    Act, ArtNetTarget, BendSettings, Destination, DmxSettings, KeyboardTarget, MidiTarget, MouseButton,
+    OscArgument, OscTarget, OscTransport, Payload, SacnTarget, Trigger, When,
 };
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout, write_layout};
 
@@ -182,6 +182,106 @@ fn what_midi_lacks_is_refused_with_its_place() {
     let port = MUSIC.replace("Midi(\"underfoot\")", "Midi(\"under:foot\")");
     let problems = parse_layout(&port, "it", &Kinds::builtin(), &Floor::default().geometry).unwrap_err();
     assert!(problems.to_string().contains("name of a port"), "{problems}");
+}
+
+const DEVICES: &str = r##"Layout(
+    version: 4,
+    targets: [
+        (name: "stage", to: ArtNet("10.0.0.20", (universe: 3))),
+        (name: "hall", to: Sacn((universe: 7, priority: 90))),
+        (name: "usual", to: Sacn),
+        (name: "home", to: Mqtt("broker.local:1883", (base: "floor", discovery: true, user: "floor"))),
+        (name: "note", to: Run("notify-send")),
+    ],
+    regions: [(id: "all", at: (0, 2), size: (6, 4))],
+    kinds: [(name: "scene", from: "button", send: [On(clicked, Mqtt("home", "scene/{n}", (payload: "{label}"))), On(clicked, Run("note", ["Scene {n}"]))])],
+    widgets: [
+        (id: "flash", kind: "dead_man", at: (0, 2), size: (0.9, 0.9),
+         send: [While(pressed, Dmx("stage", (channel: 12, from: 20))), While(pressed, Mqtt("home", "flash"))]),
+        (id: "level", kind: "slider", at: (1, 2), size: (2, 0.8),
+         send: [Value(Dmx("hall", (channel: 1, fine: true))), Value(Dmx("usual", (channel: 9, to: 100))),
+                Value(Mqtt("home", "level", (from: 0, to: 100)))]),
+        (id: "scene_{n}", kind: "scene", at: (0, 3), size: (0.7, 0.7), label: "S{n}", repeat: (columns: 2, gap: 0.2)),
+    ],
+)"##;
+
+#[test]
+fn a_layout_says_what_its_controls_send_to_lights_brokers_and_programs() {
+    let layout = read(DEVICES);
+    let stage = ArtNetTarget { address: "10.0.0.20".into(), universe: 3 };
+    assert_eq!(layout.targets[0].to, Destination::ArtNet(stage));
+    let hall = SacnTarget { universe: 7, priority: 90, ..SacnTarget::USUAL };
+    assert_eq!(layout.targets[1].to, Destination::Sacn(hall));
+    assert_eq!(layout.targets[2].to, Destination::Sacn(SacnTarget::USUAL));
+    let of = |id: &str| layout.widgets[layout.widget_index(id).unwrap()].send.as_slice();
+    let [light, topic] = of("flash") else { panic!() };
+    assert_eq!(light.payload, Payload::Dmx(DmxSettings { from: 20, ..DmxSettings::of(12) }));
+    assert!(matches!(&topic.payload, Payload::Mqtt(topic, _) if topic == "flash"));
+    let [scene, note] = of("scene_2") else { panic!() };
+    let Payload::Mqtt(topic, settings) = &scene.payload else { panic!("{scene:?}") };
+    assert_eq!((topic.as_str(), settings.payload.as_deref()), ("scene/2", Some("s2")));
+    assert_eq!(note.payload, Payload::Run(vec!["Scene 2".into()]));
+    let text = write_layout(&layout);
+    assert!(text.contains("version: 4,"), "{text}");
+    let again = read(&text);
+    assert_eq!((&again.targets, again.plan()), (&layout.targets, layout.plan()));
+    // Older programs read a layout without them.
+    assert!(write_layout(&read(PAGE)).contains("version: 2,"));
+}
+
+/// Lights stand where their controls do from the start on, and so do the states that a broker retains.
+#[test]
+fn a_plan_knows_the_states_that_last() {
+    let plan = read(DEVICES).plan();
+    let states: Vec<String> = plan.standing().iter().map(|(_, act)| act.to_string()).collect();
+    for state in ["DMX channel 1: 0 of 65535", "DMX channel 9: 0", "level \"0\""] {
+        assert!(states.contains(&state.to_owned()), "{state}: {states:#?}");
+    }
+    let described =
+        |act: &&(usize, Act)| matches!(&act.1, Act::Mqtt(it) if it.topic.starts_with("homeassistant/"));
+    assert_eq!(plan.standing().iter().filter(described).count(), 4, "{states:#?}");
+    let held: Vec<String> = plan.holdables().iter().map(|(_, what)| what.to_string()).collect();
+    assert_eq!(held, ["DMX channel 12", "flash"]);
+}
+
+#[test]
+fn what_lights_brokers_and_programs_lack_is_refused_with_its_place() {
+    let wrong = [
+        (r#"Dmx("stage", (channel: 0))"#, "expected 1 to 512"),
+        (r#"Dmx("stage", (channel: 513))"#, "expected 1 to 512"),
+        (r#"Dmx("stage", (channel: 512, fine: true))"#, "this channel has 8 bits only"),
+        (r#"Dmx("stage", (channel: 1, to: 256))"#, "more than 8 bits"),
+        (r#"Dmx("home", (channel: 1))"#, "\"home\" can't receive Dmx"),
+        (r#"Mqtt("home", "floor/#")"#, "no topic of a message"),
+        (r#"Mqtt("home", "$SYS/a")"#, "no topic of a message"),
+        (r#"Mqtt("home", "a", (from: 1))"#, "this range has one end"),
+        (r#"Run("note", ["a"])"#, "a program starts at an event"),
+        (r#"Run("home", ["a"])"#, "a program starts at an event"),
+    ];
+    for (message, expected) in wrong {
+        let text = DEVICES.replace(r#"Mqtt("home", "flash")"#, message);
+        assert_ne!(text, DEVICES);
+        let problems = parse_layout(&text, "it", &Kinds::builtin(), &Floor::default().geometry);
+        let problems = problems.map(|loaded| loaded.warnings).unwrap_err().to_string();
+        assert!(problems.contains(expected), "{message}: {problems}");
+    }
+    let targets = [
+        (r#"ArtNet("stage.local", (universe: 3))"#, "no IPv4 address"),
+        (r#"ArtNet("10.0.0.20", (universe: 40000))"#, "expected 0 to 32767"),
+        ("Sacn((universe: 0))", "expected 1 to 63999"),
+        (r#"Sacn((to: "hall"))"#, "no IPv4 address"),
+        (r#"Sacn((via: "eth0"))"#, "no IPv4 address"),
+        (r#"Run("")"#, "no program"),
+        (r#"Mqtt("broker.local")"#, "no address of a broker"),
+    ];
+    for (target, expected) in targets {
+        let text = DEVICES.replace(r#"ArtNet("10.0.0.20", (universe: 3))"#, target);
+        let problems = parse_layout(&text, "it", &Kinds::builtin(), &Floor::default().geometry).unwrap_err();
+        assert!(problems.to_string().contains(expected), "{target}: {problems}");
+    }
+    let older = DEVICES.replace("version: 4", "version: 3");
+    let problems = parse_layout(&older, "it", &Kinds::builtin(), &Floor::default().geometry).unwrap_err();
+    assert!(problems.to_string().contains("need version 4 of the format"), "{problems}");
 }
 
 /// Files of version 1 have no messages, and stay as they are.

@@ -12,10 +12,10 @@ use crate::sender::ANY_PORT;
 use crate::support::layout;
 use underfoot::floor::Floor;
 use underfoot::mirror::MirrorFeed;
-use underfoot::recording::{Recorder, Recording, Speed, TappedPackets, WhenBehind};
+use underfoot::recording::{Recorder, Recording, Speed, WhenBehind};
 use underfoot::sense::Method;
 use underfoot::serve::Server;
-use underfoot::source::{FaultInjector, FloorInput, Incoming, LinkFaults, UdpSource};
+use underfoot::source::{FaultInjector, FloorInput, Incoming, LinkFaults, TappedPackets, UdpSource};
 use underfoot::wire::{ControlMessage, Request};
 
 type Wrap = Box<dyn Fn(FloorInput) -> FloorInput>;
@@ -41,7 +41,7 @@ fn wrappers(file: &Path) -> Vec<(&'static str, Wrap)> {
             "copied packets",
             Box::new(move |input| {
                 packets.take(|_| {});
-                tap.wrap(input, geometry)
+                tap.wrap(input)
             }),
         ),
         ("joined windows", Box::new(move |input| feed.wrap(input, geometry))),

@@ -72,7 +72,7 @@ pub(crate) enum Exported {
 
 /// The form of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
+pub(crate) enum ExportForm {
     /// A folder of tables.
     Tables,
     /// A recording.
@@ -85,20 +85,20 @@ pub(crate) enum Form {
 pub(crate) fn export(
     file: &Path,
     part: &RecordedPart,
-    form: Form,
+    form: ExportForm,
     to: &Path,
     tell: Tell<'_>,
 ) -> Result<Exported, Failure> {
     match form {
-        Form::Tables => tables::write(file, to, part, tell),
-        Form::Film(width_px) => {
+        ExportForm::Tables => tables::write(file, to, part, tell),
+        ExportForm::Film(width_px) => {
             let exported = film::write(file, to, width_px, part, tell)?;
             if matches!(exported, Exported::Stopped) {
                 fs::remove_file(to).map_err(|error| Failure::File(to.into(), error))?;
             }
             Ok(exported)
         }
-        Form::Recording => {
+        ExportForm::Recording => {
             let trimmed = Recording::open(file)?.trim(to, (part.from, part.to), |at| tell(part.share(at)))?;
             match trimmed {
                 None => Ok(Exported::Stopped),
@@ -119,9 +119,9 @@ pub(crate) fn export(
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let part = RecordedPart::of(&args.file, args.from, args.to)?;
     let forms = [
-        (args.out.as_deref(), Form::Tables, "Forces, contacts and events are in"),
-        (args.gif.as_deref(), Form::Film(args.width), "The animated picture is"),
-        (args.mcap.as_deref(), Form::Recording, "The recording of the part is"),
+        (args.out.as_deref(), ExportForm::Tables, "Forces, contacts and events are in"),
+        (args.gif.as_deref(), ExportForm::Film(args.width), "The animated picture is"),
+        (args.mcap.as_deref(), ExportForm::Recording, "The recording of the part is"),
     ];
     let mut ended = Ok(());
     for (to, form, words) in forms {

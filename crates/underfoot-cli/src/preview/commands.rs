@@ -9,8 +9,6 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::{ControlsOff, Session};
 use underfoot::schema::{self, Diagnostics, Saved};
-use underfoot::serve::Command;
-use underfoot::wire::ControlMessage;
 use underfoot_window::edit;
 use underfoot_window::preview::{LayoutCause, LayoutNews, Notice, PreviewCommand, Warnings};
 
@@ -74,57 +72,49 @@ impl CommandHandler {
     ) {
         thread::spawn(move || {
             for wanted in commands {
-                let command = match wanted {
-                    PreviewCommand::Open(choice) => {
-                        self.open(choice);
-                        continue;
-                    }
-                    PreviewCommand::Watch(path) => {
-                        self.files.layout = path;
-                        match self.desk.watch(&self.files) {
-                            Ok(watch) => self.watch = watch,
-                            Err(failure) => drop(notices.send(failure.to_string().into())),
+                match wanted.for_floor() {
+                    Ok(command) => {
+                        if !self.desk.session.send(command) {
+                            break;
                         }
-                        continue;
                     }
-                    PreviewCommand::Try { layout, name, warnings, cause } => {
-                        self.desk.put(&name, cause, Arc::unwrap_or_clone(layout), warnings);
-                        continue;
-                    }
-                    PreviewCommand::TurnControlsOff(off) => {
-                        self.controls_off = off.then(|| self.desk.session.controls_off());
-                        continue;
-                    }
-                    PreviewCommand::SaveFloor { floor, path } => {
-                        let _ = notices.send(keep_floor(&floor, &path).into());
-                        continue;
-                    }
-                    PreviewCommand::SaveEffect { name, text } => {
-                        // The window may be closed already.
-                        let _ = notices.send(self.save(&name, &text).into());
-                        continue;
-                    }
-                    PreviewCommand::Enable { id, enabled: true } => {
-                        Command::Control(ControlMessage::Enable { id })
-                    }
-                    PreviewCommand::Enable { id, enabled: false } => {
-                        Command::Control(ControlMessage::Disable { id })
-                    }
-                    PreviewCommand::Mute(on) => Command::Control(ControlMessage::Mute { on }),
-                    PreviewCommand::MuteTile { tile, on } => {
-                        Command::Control(ControlMessage::MuteTile { tile, on })
-                    }
-                    PreviewCommand::Set { id, value } => Command::Control(ControlMessage::Set { id, value }),
-                    PreviewCommand::Feel { effect, gesture, tile } => {
-                        let tile = u16::try_from(tile).unwrap_or(u16::MAX);
-                        Command::Audition { effect, gesture: Box::new(gesture), tile }
-                    }
-                };
-                if !self.desk.session.send(command) {
-                    break;
+                    Err(wanted) => self.process(wanted, &notices),
                 }
             }
         });
+    }
+
+    /// Executes a command that concerns layouts, files or checks.
+    fn process(&mut self, wanted: PreviewCommand, notices: &SyncSender<Notice>) {
+        match wanted {
+            PreviewCommand::Open(choice) => self.open(choice),
+            PreviewCommand::Watch(path) => {
+                self.files.layout = path;
+                match self.desk.watch(&self.files) {
+                    Ok(watch) => self.watch = watch,
+                    Err(failure) => drop(notices.send(failure.to_string().into())),
+                }
+            }
+            PreviewCommand::Try { layout, name, warnings, cause } => {
+                self.desk.put(&name, cause, Arc::unwrap_or_clone(layout), warnings);
+            }
+            PreviewCommand::TurnControlsOff(off) => {
+                self.controls_off = off.then(|| self.desk.session.controls_off());
+            }
+            PreviewCommand::SaveFloor { floor, path } => {
+                let _ = notices.send(keep_floor(&floor, &path).into());
+            }
+            PreviewCommand::SaveEffect { name, text } => {
+                // The window may be closed already.
+                let _ = notices.send(self.save(&name, &text).into());
+            }
+            // The floor has carried these out.
+            PreviewCommand::Enable { .. }
+            | PreviewCommand::Set { .. }
+            | PreviewCommand::Mute(_)
+            | PreviewCommand::MuteTile { .. }
+            | PreviewCommand::Feel { .. } => {}
+        }
     }
 
     fn open(&mut self, choice: usize) {

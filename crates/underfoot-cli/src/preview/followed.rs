@@ -17,7 +17,7 @@ use underfoot::schema::Diagnostics;
 use underfoot::sink::{EventSink, Report};
 use underfoot_window::preview::{
     LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
-    Warnings,
+    ToWindow, Warnings,
 };
 
 use super::super::failure::Failure;
@@ -25,7 +25,6 @@ use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::super::watch::FileWatch;
 use super::LOOK;
 use super::commands::keep_floor;
-use super::feeds::ToWindow;
 
 /// Maximum number of waiting lines: beyond, their writer blocks, and counts the lines that it drops.
 const WAITING: usize = 64;
@@ -80,7 +79,7 @@ impl FollowedFeed {
         let floor = FollowedFloor {
             lines: read,
             changes,
-            events: ToWindow { events: window.events.clone(), missed: 0 },
+            events: ToWindow::new(window.events.clone()),
             window,
             mirror,
             snapshots: input,

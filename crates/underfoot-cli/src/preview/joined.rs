@@ -13,13 +13,13 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource};
 use underfoot::outgoing::json::{JsonValue, Message, RefusalRecord};
-use underfoot::recording::{PacketTap, TappedPackets};
 use underfoot::runtime::Session;
 use underfoot::schema;
 use underfoot::serve::Command;
+use underfoot::source::{PacketTap, TappedPackets};
 use underfoot_window::preview::{
     EventNews, LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink,
-    ServerState,
+    ServerState, ToWindow,
 };
 
 use super::super::failure::Failure;
@@ -28,7 +28,7 @@ use super::super::watch::FileWatch;
 use super::LOOK;
 use super::announced::announced;
 use super::commands::keep_floor;
-use super::feeds::{ToWindow, stop_and_wait};
+use super::stop_and_wait;
 
 /// Interval between comparisons of the controls with the server's.
 const COMPARE_EVERY: Duration = Duration::from_millis(100);
@@ -150,12 +150,12 @@ impl Run {
     ) -> Result<Self, Failure> {
         let (clock, left_out) = (source.clock(), Box::new(source.left_out()));
         let input = announced(source, window.layouts.clone(), LayoutCause::Served);
-        let input = tap.wrap(input, greeting.floor.geometry);
+        let input = tap.wrap(input);
         let session = Session::source(input, clock)
             .floor(greeting.floor.clone())
             .layout(greeting.layout.clone())
             .method(greeting.method)
-            .sink(ToWindow { events: window.events.clone(), missed: 0 })
+            .sink(ToWindow::new(window.events.clone()))
             .start()?;
         let snapshots = session.take_snapshots();
         Ok(Self { session, snapshots, left_out })

@@ -2,7 +2,6 @@
 
 mod announced;
 mod commands;
-mod feeds;
 mod followed;
 mod joined;
 mod layers;
@@ -22,12 +21,12 @@ use clap::Args as _;
 use underfoot::feel::Renderer;
 use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
-use underfoot::recording::{Recording, RecordingSwitch, TappedPackets};
+use underfoot::recording::{Recording, RecordingSwitch};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
-use underfoot::source::{FloorInput, LinkFaults};
+use underfoot::source::{FloorInput, LinkFaults, TappedPackets};
 use underfoot::units::HostClock;
 use underfoot_scene::scene::Show;
 use underfoot_sim::{
@@ -35,12 +34,11 @@ use underfoot_sim::{
     feet_by_hand, watched,
 };
 use underfoot_window::preview::{
-    self, DesignInput, FootSink, Notice, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
-    ProjectionOptions, ScopeFeed, ShoeFeed, Warnings, channels,
+    self, DesignInput, FootSink, Mouse, Notice, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
+    ProjectionOptions, ScopeFeed, ShoeFeed, SignalScopes, ToWindow, Warnings, channels, shoes,
 };
 
 use self::commands::{CommandHandler, Desk};
-use self::feeds::{Mouse, SignalScopes, ToWindow, shoe, stop_and_wait};
 use self::followed::FollowedFeed;
 use self::joined::Joined;
 use self::layers::read_layers;
@@ -57,10 +55,11 @@ use super::play::{self, SimArgs};
 use super::run::LISTEN;
 use super::run::end;
 use super::senders::{BoardArgs, CommandArgs};
+use super::share;
 use super::stop::stop_flag;
 
 /// Options of `underfoot preview`.
-#[derive(clap::Args, Debug, Default)]
+#[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct Args {
     #[command(flatten)]
     layout: LayoutArgs,
@@ -164,6 +163,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(path) = args.recording() {
         return replayed(args, path);
     }
+    if let Some(of_link) = args.of_link()? {
+        return run(&of_link);
+    }
     if let Some(address) = args.join {
         return joined(args, address);
     }
@@ -189,14 +191,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let notice = move |text| drop(told.try_send(Notice::Sound(text)));
     let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
     let (tap, packets) = TappedPackets::new();
-    let input = tap.wrap(stage.input, floor.geometry);
+    let input = tap.wrap(stage.input);
     let mut session = Session::source(input, stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())
         .method(if args.eq4 { Method::Eq4 } else { Method::default() })
         .prefix(args.outputs.prefix.osc_prefix.clone())
         .sink(args.outputs.open(&floor.geometry)?)
-        .sink(ToWindow { events, missed: 0 })
+        .sink(ToWindow::new(events))
         .actuators(actuators)
         .latency(latency.clone());
     let switch = RecordingSwitch::default();
@@ -258,6 +260,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             _ => Ok(()),
         },
         Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),
+    }
+}
+
+/// Stops a floor and waits until it has ended, so that no more reports come from it.
+fn stop_and_wait(session: &Session) {
+    session.stop();
+    while !session.has_ended() {
+        thread::sleep(Duration::from_millis(1));
     }
 }
 
@@ -352,6 +362,21 @@ struct Stage {
 }
 
 impl Args {
+    /// The same options with the files of a link in place of the link; `None` without one.
+    fn of_link(&self) -> Result<Option<Self>, Failure> {
+        let Some(link) = self.layout.layout.as_deref().filter(|layout| share::is_link(layout)) else {
+            return Ok(None);
+        };
+        let (path, geometry) = share::unpack(&link.to_string_lossy(), &preview::usual_state())?;
+        errln!("The layout of the link is in {}.", path.display());
+        let mut args = self.clone();
+        args.layout.layout = Some(path);
+        if args.floor.floor.is_none() && args.floor.grid.is_none() {
+            args.floor.grid = geometry;
+        }
+        Ok(Some(args))
+    }
+
     /// The recording, if one is given in place of a layout.
     fn recording(&self) -> Option<&Path> {
         self.layout.path().filter(|path| Recording::is_at(path))
@@ -406,11 +431,7 @@ impl Args {
                 (Box::new(driver), "simulated floor", Some(Box::new(Mouse(handle))))
             };
         let (people, driver) = arrivals(driver);
-        let (driver, mut seen) = watched(Box::new(driver));
-        let shoes: ShoeFeed = Box::new(move |shoes| {
-            shoes.clear();
-            shoes.extend(seen.read().iter().map(shoe));
-        });
+        let (driver, seen) = watched(Box::new(driver));
         let (sim, floor) = self.sim.calibrated(floor)?;
         let driver = Box::new(driver);
         let source = SimulatedSource::new(sim, driver, Pace::RealTime);
@@ -425,7 +446,7 @@ impl Args {
             people: Some(people),
             name: name.into(),
             feet,
-            shoes: Some(shoes),
+            shoes: Some(shoes(seen)),
         })
     }
 

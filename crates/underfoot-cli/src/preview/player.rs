@@ -10,18 +10,19 @@ use std::time::Duration;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::recording::{Mark, MarkKind, Progress, Recording, Speed, Timeline, Transport};
+use underfoot::recording::{MarkKind, Progress, Recording, Speed, Timeline, TimelineMark, Transport};
 use underfoot::runtime::Session;
 use underfoot::sink::Since;
 use underfoot::units::Instant;
 use underfoot_window::preview::{
-    EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels,
+    EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState,
+    ProgramChannels, ToWindow,
 };
 
 use super::super::failure::Failure;
 use super::LOOK;
 use super::announced::announced;
-use super::feeds::{ToWindow, stop_and_wait};
+use super::stop_and_wait;
 
 /// A recording that is shown; ends when this is dropped.
 pub(super) struct ShownRecording {
@@ -115,7 +116,7 @@ fn read_marks(path: &Path, first: Instant, shown: Arc<Shown>) -> Result<(), Fail
         .map_err(|error| Failure::Other(error.to_string()))
 }
 
-fn told(mark: &Mark, first: Instant) -> PlaybackMark {
+fn told(mark: &TimelineMark, first: Instant) -> PlaybackMark {
     let (what, weight) = match &mark.kind {
         MarkKind::Pressed(id) => (format!("{id} pressed"), MarkWeight::Usual),
         MarkKind::Cancelled(id) => (format!("{id} cancelled"), MarkWeight::Odd),
@@ -152,7 +153,7 @@ impl Run {
             .floor(floor.clone())
             .layout(layout.clone())
             .method(method)
-            .sink(Since::new(ToWindow { events: window.events.clone(), missed: 0 }, first))
+            .sink(Since::new(ToWindow::new(window.events.clone()), first))
             .start()?;
         let snapshots = session.take_snapshots();
         Ok(Self { session, floor, layout: Arc::new(layout), transport, progress, snapshots, first })

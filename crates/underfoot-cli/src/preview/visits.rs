@@ -15,7 +15,7 @@ use underfoot::runtime::Session;
 use underfoot::serve::Command;
 use underfoot_window::preview::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
 
-use super::super::export::{Exported, FILM_WIDTH, Form, RecordedPart, export};
+use super::super::export::{ExportForm, Exported, FILM_WIDTH, RecordedPart, export};
 use super::super::failure::Failure;
 
 /// Maximum number of commands that wait: a person's clicks during an export.
@@ -196,9 +196,9 @@ impl Clerk {
     fn export(&self, form: VisitForm, to: &Path, part: Option<(f64, f64)>) -> Result<String, Failure> {
         let to = free(to);
         let form = match form {
-            VisitForm::Picture => Form::Film(FILM_WIDTH),
-            VisitForm::Recording => Form::Recording,
-            VisitForm::Tables => Form::Tables,
+            VisitForm::Picture => ExportForm::Film(FILM_WIDTH),
+            VisitForm::Recording => ExportForm::Recording,
+            VisitForm::Tables => ExportForm::Tables,
         };
         let name = to.display().to_string();
         let shared = &self.shared;

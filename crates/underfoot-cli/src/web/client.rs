@@ -8,11 +8,12 @@ use tungstenite::Message;
 use super::broadcast::ClientLines;
 use super::greeting::{greeting, mirror_greeting};
 use super::layout;
+use super::off::OffNews;
 use super::request::{StandingRequests, process};
 use super::socket::{ClientSocket, End};
 use super::{MOST_BYTES, Shared};
 
-/// Interval between two checks for another layout.
+/// Interval between two checks for another layout, and for controls that went off or on.
 const LAYOUT_EVERY: Duration = Duration::from_secs(1);
 
 /// Serves one client until it leaves; `joins` if it is a window that shows the floor as well.
@@ -32,12 +33,18 @@ fn talk(
     joins: bool,
     lines: &ClientLines,
 ) -> Result<End, End> {
-    let (mut shown, mut standing) = (None, StandingRequests::default());
+    let (mut shown, mut standing, mut off) = (None, StandingRequests::default(), OffNews::default());
     let greeting = if joins { mirror_greeting } else { greeting };
     loop {
         let seen = shared.session.snapshot();
         if shown.replace(seen.floor.layout_revision) != Some(seen.floor.layout_revision) {
             socket.send(Message::text(greeting(&seen, shared)))?;
+            off.greeted(&seen);
+        }
+        // Windows compute it from the packets.
+        let states = if joins { Vec::new() } else { off.lines(&seen) };
+        for state in states {
+            socket.send(Message::text(state))?;
         }
         let next_look = Instant::now() + LAYOUT_EVERY;
         while Instant::now() < next_look {

@@ -10,6 +10,7 @@ mod client;
 mod greeting;
 mod http;
 mod layout;
+mod off;
 mod origin;
 mod pages;
 mod query;

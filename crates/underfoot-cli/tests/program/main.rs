@@ -25,15 +25,20 @@ mod hostile_pages;
 mod input;
 #[cfg(target_os = "linux")]
 mod letters;
+#[cfg(unix)]
+mod lights;
 #[cfg(target_os = "linux")]
 mod midi;
 mod mirror;
+#[cfg(unix)]
+mod mqtt;
 mod output;
 mod page_commands;
 mod plan;
 mod query;
 mod rack;
 mod recordings;
+mod run_programs;
 mod senders;
 #[cfg(unix)]
 mod serial;

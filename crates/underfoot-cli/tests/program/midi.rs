@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use crate::holds::client::Client;
 use crate::holds::site::{Boards, Site};
-use crate::targets::{Observer, comes_up_soon, guardian, kill, page, twenty_rounds, until};
+use crate::targets::{NO_DESK, Observer, comes_up_soon, guardian, kill, page, twenty_rounds, until};
 
 /// The client name of the listener.
 const LISTENER: &str = "midi_listener";
@@ -154,9 +154,6 @@ fn bytes(line: &str) -> Option<Vec<u8>> {
 fn synth() -> String {
     format!("(name: \"synth\", to: Midi(\"underfoot\", (into: \"{LISTENER}\"))), {NO_DESK}")
 }
-
-/// A receiver that nobody reads, for the slider of the page.
-const NO_DESK: &str = "(name: \"desk\", to: Osc(\"127.0.0.1:9\"))";
 
 const HOLD: &str = r#"While(pressed, Note("synth", "C4"))"#;
 

@@ -2,22 +2,19 @@
 
 use std::io::{Read, Write};
 use std::net::SocketAddr;
-use std::process::Command;
 use std::time::{Duration, Instant};
 
 use rosc::OscPacket;
 use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket, client};
 
+use crate::clients::try_script;
 use crate::holds::client::Client;
 use crate::holds::site::{Boards, Run, Site};
 use crate::web::{answer, free_address, stream};
 
 /// Time-out for an event that must happen.
 const AT_LAST: Duration = Duration::from_secs(30);
-
-/// Exit status of the script without a library.
-const NOT_RUN: i32 = 77;
 
 fn run(site: &Site) -> (Run, SocketAddr) {
     let query = free_address();
@@ -146,15 +143,5 @@ fn hostile_clients_of_osc_query_get_nothing_and_take_nothing() {
 /// `./dev test` prints beforehand whether this test will run: `pip install zeroconf`.
 #[test]
 fn zeroconf_of_python_finds_the_floor_and_sees_it_leave() {
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/program/discover.py");
-    let Ok(output) = Command::new("python3").args([script, env!("CARGO_BIN_EXE_underfoot")]).output() else {
-        println!("not run: there is no python3");
-        return;
-    };
-    let said = String::from_utf8_lossy(&output.stderr);
-    if output.status.code() == Some(NOT_RUN) {
-        println!("{said}");
-        return;
-    }
-    assert!(output.status.success(), "{said}");
+    try_script("discover.py", &[]);
 }

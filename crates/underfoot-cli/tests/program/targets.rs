@@ -27,7 +27,7 @@ const AT_LAST: Duration = Duration::from_secs(30);
 pub fn page(targets: &str, send: &str) -> String {
     format!(
         r#"Layout(
-    version: 2,
+    version: 4,
     targets: [{targets}],
     regions: [(id: "left", at: (0, 0), size: (1, 2)), (id: "right", at: (1, 0), size: (2, 2))],
     widgets: [
@@ -38,6 +38,9 @@ pub fn page(targets: &str, send: &str) -> String {
 )"#
     )
 }
+
+/// A receiver that nobody reads, for the slider of the page.
+pub const NO_DESK: &str = "(name: \"desk\", to: Osc(\"127.0.0.1:9\"))";
 
 /// An observer of what is down.
 pub trait Observer {

@@ -139,6 +139,25 @@ impl Page {
     }
 }
 
+#[test]
+fn a_page_hears_that_a_slider_goes_off_and_on_with_its_boards() {
+    let site = Site::new();
+    let (run, web) = run(&site, &[]);
+    let mut page = Page::open(web);
+    page.wait_until("the floor is shown", |page| page.told.iter().any(|line| line["event"] == "floor"));
+    // No app asks for the state of the slider, and no guard makes the server report it by itself.
+    let is = |page: &Page, off: &Value| {
+        let mut states = page.told.iter().filter(|line| line["event"] == "state" && line["id"] == "zoom");
+        states.next_back().is_some_and(|state| state["off"] == *off)
+    };
+    let boards = Boards::start(&site, run.address);
+    page.wait_until("it is on", |page| is(page, &json!(null)));
+    drop(boards);
+    page.wait_until("it is off", |page| is(page, &json!("link_lost")));
+    assert!(page.told.iter().filter(|line| line["event"] == "floor").count() == 1, "one greeting");
+    drop(run);
+}
+
 pub(super) fn signal(run: &Run, name: &str) {
     let status = Command::new("kill").args(["-s", name, &run.child.id().to_string()]).status().unwrap();
     assert!(status.success());

@@ -56,3 +56,32 @@ fn a_walk_finds_boards_that_have_changed_places_and_keeps_the_floor_as_it_is() {
         |floor: &Floor| floor.boards.iter().map(|board| board.address.clone()).collect::<Vec<_>>();
     assert_eq!(addresses(&found), addresses(&swapped));
 }
+
+#[test]
+fn the_pictures_of_a_floor_name_the_input_of_each_sensor() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    for (floor, line, pin) in [
+        ("arduino/pad", "0,/underfoot/board/0,A3,0,0,ne,0.2700,0.2700", "A3"),
+        ("pico/floor", "0,/underfoot/board/0,U4 CH7,3,1,ne,", "GP14 (pin 19)"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let output = underfoot()
+            .args(["wiring", "--picture", &format!("{root}/firmware/{floor}.ron"), "--out"])
+            .arg(folder.path().join("wires.svg"))
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let read = |file: &str| std::fs::read_to_string(folder.path().join(file)).unwrap();
+        assert!(read("wires.csv").contains(line), "{}", read("wires.csv"));
+        assert!(read("wires-circuit.svg").contains(pin), "{floor}");
+        assert!(read("wires.svg").contains("aria-label"), "{floor}");
+    }
+}
+
+#[test]
+fn a_board_with_more_channels_than_the_inputs_of_its_sort_is_refused() {
+    let output = underfoot().args(["wiring", "--picture", "paper", "--pins", "arduino"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("/underfoot/board/0 has 24 channels, and each Arduino has 16 inputs"), "{said}");
+    assert!(!output.status.success());
+}

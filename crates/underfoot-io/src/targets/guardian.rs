@@ -1,7 +1,7 @@
 //! The guardian: a process that sends, notes everything that is down, and releases it when the server fails.
 //!
 //! ```text
-//! plan               -> everything that the layout can hold is released
+//! plan               -> everything that the layout can hold is released; states that last are set
 //! act                -> carried out; each down is noted
 //! heartbeat          -> acknowledged
 //! none for 80 ms     -> everything comes up; nothing is pressed again by itself
@@ -85,6 +85,7 @@ impl<W: Write> Guardian<W> {
             let wait = PATIENCE.saturating_sub(heard.elapsed());
             // Without patience left, it only tries to release the rest.
             let wait = if wait.is_zero() { AGAIN } else { wait };
+            let wait = self.work().map_or(wait, |due| wait.min(due));
             match messages.recv_timeout(wait) {
                 Ok(message) => {
                     let is_late = heard.elapsed() > PATIENCE;
@@ -115,18 +116,29 @@ impl<W: Write> Guardian<W> {
             std::thread::sleep(AGAIN);
             self.release_all();
         }
+        self.outlets.end();
+    }
+
+    /// Does what is due at the targets by itself; returns the time until more is due.
+    fn work(&mut self) -> Option<Duration> {
+        let mut notices = Vec::new();
+        let due = self.outlets.work(&mut |text| notices.push(text));
+        self.tell(notices);
+        due
     }
 
     fn process(&mut self, message: ToGuardian) {
         match message {
-            ToGuardian::Setup(targets, holdables) => {
+            ToGuardian::Setup(targets, holdables, states) => {
                 self.release_all();
                 self.outlets.change(targets);
+                self.outlets.forget();
                 self.connections.told.clear();
                 self.open_all();
                 self.starting = holdables.into_iter().collect();
                 self.begun = Instant::now();
                 self.release_old();
+                states.into_iter().for_each(|(target, act)| self.act(target, &act));
             }
             ToGuardian::Act(target, act) => self.act(target, &act),
             ToGuardian::Beat(number) => {

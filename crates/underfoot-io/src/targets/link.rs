@@ -12,8 +12,8 @@ const LONGEST: u64 = 4 << 20;
 /// From the server.
 #[derive(Debug, Deserialize, Serialize)]
 pub(super) enum ToGuardian {
-    /// The targets, and everything that messages can hold down there: all of it is released first.
-    Setup(Vec<SendTarget>, Vec<(usize, Holdable)>),
+    /// The targets, everything that messages can hold down there, which is released first, and the states that last there.
+    Setup(Vec<SendTarget>, Vec<(usize, Holdable)>, Vec<(usize, Act)>),
     /// An order for the target with this index.
     Act(usize, Act),
     /// The server works; the guardian answers with the same number.

@@ -1,9 +1,9 @@
-//! Targets: the messages of controls as keys, pointer, OSC and MIDI, with the guarantee that each key that goes down comes
-//! up.
+//! Targets: the messages of controls as keys, pointer, OSC, MIDI, DMX and MQTT, and as programs that they start, with the
+//! guarantee that each key that goes down comes up.
 //!
 //! ```text
 //! sensing thread          supervisor thread               process `underfoot guardian`
-//! TargetSink(Messenger) -> orders, heartbeats -> stdin ->  Guardian -> Outlets -> X server, OSC, MIDI
+//! TargetSink(Messenger) -> orders, heartbeats -> stdin ->  Guardian -> Outlets -> X server, OSC, ...
 //!                          acknowledgements   <- stdout <-
 //!                          guardian failed: Outlets of its own release everything, and a new guardian starts
 //! ```
@@ -11,14 +11,20 @@
 //! The guardian releases everything when its input ends or no heartbeat has come for [`PATIENCE`]. A heartbeat goes out
 //! only if the sensing thread has polled its sinks recently, so a server that hangs counts as dead.
 
+#[cfg(feature = "dmx")]
+mod dmx;
 mod guardian;
 mod link;
 #[cfg(any(feature = "midi", feature = "jack"))]
 mod midi;
+#[cfg(feature = "mqtt")]
+mod mqtt;
 mod osc;
 mod outlet;
 mod outlets;
 mod redirect;
+#[cfg(feature = "run")]
+mod run;
 mod sink;
 mod standby;
 mod supervisor;

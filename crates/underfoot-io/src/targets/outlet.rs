@@ -1,5 +1,7 @@
 //! One way out: the seam between messages and the systems that receive them.
 
+use std::time::Duration;
+
 use thiserror::Error;
 use underfoot::messages::{Act, Destination, Holdable, SendTarget};
 
@@ -19,6 +21,21 @@ pub trait Outlet: Send {
     /// # Errors
     /// As [`Outlet::carry_out`].
     fn release(&mut self, what: &Holdable) -> Result<(), OutletError>;
+
+    /// Does what is due by now: states that wait for their time go out, a lost connection is made again. Returns the time
+    /// until it must be called again; `None` for a target that has nothing to do by itself.
+    ///
+    /// # Errors
+    /// The target cannot be reached; it tries again by itself, and stays open.
+    fn work(&mut self) -> Result<Option<Duration>, OutletError> {
+        Ok(None)
+    }
+
+    /// Forgets the states of an earlier layout.
+    fn forget(&mut self) {}
+
+    /// Says goodbye before the process ends in order.
+    fn end(&mut self) {}
 
     /// Whether the way is still being opened.
     fn is_opening(&mut self) -> bool {
@@ -65,6 +82,18 @@ pub(super) fn open(target: &SendTarget) -> Result<Box<dyn Outlet>, OutletError> 
             "the MIDI port {}: this program was built without the features midi and jack",
             midi.port
         ))),
+        #[cfg(feature = "dmx")]
+        Destination::ArtNet(_) | Destination::Sacn(_) => Ok(Box::new(super::dmx::DmxOutlet::open(target)?)),
+        #[cfg(not(feature = "dmx"))]
+        Destination::ArtNet(_) | Destination::Sacn(_) => Err(left_out("dmx")),
+        #[cfg(feature = "mqtt")]
+        Destination::Mqtt(mqtt) => Ok(Box::new(super::mqtt::MqttOutlet::open(mqtt)?)),
+        #[cfg(not(feature = "mqtt"))]
+        Destination::Mqtt(_) => Err(left_out("mqtt")),
+        #[cfg(feature = "run")]
+        Destination::Run(program) => Ok(Box::new(super::run::ProgramOutlet::open(program)?)),
+        #[cfg(not(feature = "run"))]
+        Destination::Run(_) => Err(left_out("run")),
         #[cfg(all(unix, not(target_os = "macos")))]
         Destination::Keyboard(keyboard) => Ok(Box::new(super::x11::X11Outlet::open(keyboard)?)),
         #[cfg(not(all(unix, not(target_os = "macos"))))]
@@ -72,4 +101,9 @@ pub(super) fn open(target: &SendTarget) -> Result<Box<dyn Outlet>, OutletError> 
             Err(OutletError::Gone("keys and pointer work under X11 only so far".into()))
         }
     }
+}
+
+#[cfg(not(all(feature = "dmx", feature = "mqtt", feature = "run")))]
+fn left_out(feature: &str) -> OutletError {
+    OutletError::Gone(format!("this program was built without the feature {feature}"))
 }

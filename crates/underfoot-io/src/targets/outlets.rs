@@ -9,6 +9,9 @@ use super::outlet::{self, Outlet, OutletError};
 /// Time between two attempts to open a target.
 const AGAIN: Duration = Duration::from_millis(500);
 
+/// Time until a target that cannot be reached is asked again for what is due.
+const TROUBLE: Duration = Duration::from_millis(20);
+
 /// All targets of one layout.
 pub(super) struct Outlets {
     doors: Vec<Door>,
@@ -42,6 +45,7 @@ impl Outlets {
             None => Door::new(target),
         };
         self.doors = targets.into_iter().map(door).collect();
+        before.iter_mut().for_each(Door::end);
     }
 
     /// Opens all targets; those that are gone are tried again later.
@@ -52,6 +56,38 @@ impl Outlets {
     /// Whether the way to a target is still being opened.
     pub(super) fn are_opening(&mut self) -> bool {
         self.doors.iter_mut().filter_map(|door| door.open.as_mut()).any(|open| open.is_opening())
+    }
+
+    /// Does what is due at all open targets; returns the time until it must be called again, if there is one. `notice` gets
+    /// problems, each once, and their ends.
+    pub(super) fn work(&mut self, notice: &mut dyn FnMut(String)) -> Option<Duration> {
+        let mut soonest: Option<Duration> = None;
+        for door in &mut self.doors {
+            let Some(open) = &mut door.open else { continue };
+            let due = match open.work() {
+                Ok(None) => continue,
+                Ok(Some(due)) => {
+                    door.works(notice);
+                    due
+                }
+                Err(error) => {
+                    door.fails(&error, notice);
+                    TROUBLE
+                }
+            };
+            soonest = Some(soonest.map_or(due, |soonest| soonest.min(due)));
+        }
+        soonest
+    }
+
+    /// Forgets the states of an earlier layout at all open targets.
+    pub(super) fn forget(&mut self) {
+        self.doors.iter_mut().filter_map(|door| door.open.as_mut()).for_each(|open| open.forget());
+    }
+
+    /// Says goodbye to all open targets.
+    pub(super) fn end(&mut self) {
+        self.doors.iter_mut().for_each(Door::end);
     }
 
     /// The ports that receive from each open target by connections, with the index of the target.
@@ -103,21 +139,11 @@ impl Outlets {
         let done = door.opened().and_then(work);
         match done {
             Ok(()) => {
-                if door.told.take().is_some() {
-                    notice(format!("target {}: it works again", door.target.name));
-                }
+                door.works(notice);
                 true
             }
             Err(error) => {
-                if matches!(error, OutletError::Gone(_)) {
-                    door.open = None;
-                    door.missing.clone_from(&door.receivers);
-                }
-                let problem = error.to_string();
-                if door.told.as_ref() != Some(&problem) {
-                    notice(format!("target {}: {problem}", door.target.name));
-                    door.told = Some(problem);
-                }
+                door.fails(&error, notice);
                 false
             }
         }
@@ -127,6 +153,33 @@ impl Outlets {
 impl Door {
     const fn new(target: SendTarget) -> Self {
         Self { target, open: None, tried: None, told: None, receivers: Vec::new(), missing: Vec::new() }
+    }
+
+    /// Says goodbye to the target.
+    fn end(&mut self) {
+        if let Some(open) = &mut self.open {
+            open.end();
+        }
+    }
+
+    /// Reports the end of a problem.
+    fn works(&mut self, notice: &mut dyn FnMut(String)) {
+        if self.told.take().is_some() {
+            notice(format!("target {}: it works again", self.target.name));
+        }
+    }
+
+    /// Reports a problem, if it is a new one; closes a way that is gone.
+    fn fails(&mut self, error: &OutletError, notice: &mut dyn FnMut(String)) {
+        if matches!(error, OutletError::Gone(_)) {
+            self.open = None;
+            self.missing.clone_from(&self.receivers);
+        }
+        let problem = error.to_string();
+        if self.told.as_ref() != Some(&problem) {
+            notice(format!("target {}: {problem}", self.target.name));
+            self.told = Some(problem);
+        }
     }
 
     /// The open way; opens it unless that has just failed.

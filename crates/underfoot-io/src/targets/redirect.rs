@@ -1,9 +1,12 @@
 //! Targets that the command line moves: `desk=10.0.0.5:53000`, `viewer=:1`.
 
-use underfoot::messages::{Destination, MidiTarget, OscTarget, OscTransport, SendTarget};
+use underfoot::messages::{
+    ArtNetTarget, Destination, MidiTarget, OscTarget, OscTransport, SacnTarget, SendTarget,
+};
 
 /// Moves the target called `name` in `targets` to `place`: for OSC a host and a port, after `tcp:` or `udp:` for
-/// another protocol; for a keyboard an X display such as `:1`; for MIDI the name of its port.
+/// another protocol; for a keyboard an X display such as `:1`; for MIDI the name of its port; for Art-Net and sACN the
+/// address of a receiver; for MQTT a host and a port; for a program its path.
 ///
 /// # Errors
 /// Says that there is no such target, or that the place does not suit it.
@@ -39,6 +42,34 @@ pub fn redirect(targets: &mut [SendTarget], name: &str, place: &str) -> Result<(
                 return Err(format!("{name} is a MIDI port: write its name, such as {name}=stage"));
             }
             place.clone_into(&mut midi.port);
+        }
+        Destination::ArtNet(art_net) => {
+            if !ArtNetTarget::is_address(place) {
+                return Err(format!(
+                    "{name} is a node of Art-Net: write its address, such as {name}=10.0.0.20"
+                ));
+            }
+            place.clone_into(&mut art_net.address);
+        }
+        Destination::Sacn(sacn) => {
+            if !SacnTarget::is_address(place) {
+                return Err(format!(
+                    "{name} is a universe of sACN: write an address, such as {name}=10.0.0.20"
+                ));
+            }
+            sacn.to = Some(place.to_owned());
+        }
+        Destination::Mqtt(mqtt) => {
+            if !OscTarget::is_address(place) {
+                return Err(format!("{name} is a broker of MQTT: write {name}=127.0.0.1:1883"));
+            }
+            place.clone_into(&mut mqtt.address);
+        }
+        Destination::Run(run) => {
+            if place.trim().is_empty() {
+                return Err(format!("{name} is a program: write {name}=/usr/bin/notify-send"));
+            }
+            place.clone_into(&mut run.program);
         }
     }
     Ok(())

@@ -9,7 +9,7 @@ use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use tracing::{info, warn};
-use underfoot::messages::{MessageOrder, MessagePlan};
+use underfoot::messages::{Act, MessageOrder, MessagePlan};
 use underfoot::sink::{Rank, claim_priority};
 
 use super::link::{FromGuardian, ToGuardian, next, put};
@@ -145,7 +145,7 @@ impl GuardianSupervisor {
         let output = child.stdout.take().ok_or_else(missing)?;
         let (tell, answers) = sync_channel(MAX_ANSWERS);
         Builder::new().name("guardian out".into()).spawn(move || read(output, &tell))?;
-        put(&mut input, &plan_for(&self.plan))?;
+        put(&mut input, &plan_for(&self.plan, self.standby.states_for(&self.plan)))?;
         for (target, receivers) in self.standby.receivers() {
             put(&mut input, &ToGuardian::Connect(*target, receivers.clone()))?;
         }
@@ -184,7 +184,7 @@ impl GuardianSupervisor {
             Ok(TargetJob::Setup(plan)) => {
                 // It opens targets, which takes as long as at a start.
                 guardian.is_ready = false;
-                put(&mut guardian.input, &plan_for(plan))
+                put(&mut guardian.input, &plan_for(plan, self.standby.states_for(plan)))
             }
             Ok(TargetJob::Send(_)) if !guardian.is_ready => {
                 self.shared.undone.fetch_add(1, Ordering::Relaxed);
@@ -228,8 +228,8 @@ impl GuardianSupervisor {
     }
 }
 
-fn plan_for(plan: &MessagePlan) -> ToGuardian {
-    ToGuardian::Setup(plan.targets.clone(), plan.holdables().into_iter().collect())
+fn plan_for(plan: &MessagePlan, states: Vec<(usize, Act)>) -> ToGuardian {
+    ToGuardian::Setup(plan.targets.clone(), plan.holdables().into_iter().collect(), states)
 }
 
 /// Reads the guardian's answers until it ends.

@@ -98,7 +98,7 @@ impl GuardedServer {
         let mut server = Self { input, answers: BufReader::new(answers), receiver, guardian: Some(guardian) };
         let address = server.receiver.local_addr().unwrap().to_string();
         let drive = (0, Holdable::Osc("/drive".into()));
-        server.say(&ToGuardian::Setup(vec![desk(address, OscTransport::Udp)], vec![drive]));
+        server.say(&ToGuardian::Setup(vec![desk(address, OscTransport::Udp)], vec![drive], vec![]));
         assert_eq!(server.heard(), "/drive 0", "before the first message all is released");
         server.beat(1);
         server

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::intent_act::{Act, Somebody};
+use super::intent_act::{PlannedAct, Somebody};
 use super::people::quality_note;
 use super::rig::{ExperimentError, Rig};
 use super::wilson::Counted;
@@ -375,7 +375,7 @@ impl IntentTrial {
         whole
     }
 
-    fn take(&mut self, event: &WidgetEvent, since: Duration, act: &Act) {
+    fn take(&mut self, event: &WidgetEvent, since: Duration, act: &PlannedAct) {
         let Some(widget) = self.engine.layout().widget_index(event.id.as_str()) else { return };
         let spec = &self.engine.layout().widgets[widget];
         if Guarded::of(spec) != self.guard {
@@ -407,7 +407,7 @@ impl IntentTrial {
         }
     }
 
-    fn conclude(&mut self, act: &Act) {
+    fn conclude(&mut self, act: &PlannedAct) {
         for (intended, &done) in act.intended.iter().zip(&self.done) {
             let spec = &self.engine.layout().widgets[intended.widget];
             let score = self.scores.entry((spec.kind.clone(), Guarded::of(spec))).or_default();
@@ -456,7 +456,7 @@ impl IntentStage {
     }
 
     /// Plays an act to every trial at once, and returns the number of steps: touchdowns outside intended presses.
-    pub(super) fn play(&mut self, act: &Act, trials: &mut [IntentTrial]) -> u64 {
+    pub(super) fn play(&mut self, act: &PlannedAct, trials: &mut [IntentTrial]) -> u64 {
         let bounds = self.geometry().bounds();
         for trial in trials.iter_mut() {
             trial.done.clear();

@@ -57,7 +57,7 @@ pub(super) struct Intended {
 
 /// One act of a person: a script, and the intended presses in it.
 #[derive(Clone, Debug)]
-pub(super) struct Act {
+pub(super) struct PlannedAct {
     pub(super) script: Script,
     pub(super) intended: Vec<Intended>,
 }
@@ -111,7 +111,7 @@ impl Somebody {
 
     /// Crosses the floor over a point of `area`: straight on, or with a stop, perhaps with a turn or a sidestep
     /// there.
-    pub(super) fn cross(&mut self, area: Rect) -> Result<Act, ExperimentError> {
+    pub(super) fn cross(&mut self, area: Rect) -> Result<PlannedAct, ExperimentError> {
         let through = area.min + area.size() * self.pair(0.0, 1.0);
         let way = self.rng.random_range(0.0..TAU);
         let from = self.beyond(through, way + PI);
@@ -134,7 +134,7 @@ impl Somebody {
             }
         }
         walker.walk(&[to])?;
-        Ok(Act { script: Script::new(vec![walker], self.bounds), intended: Vec::new() })
+        Ok(PlannedAct { script: Script::new(vec![walker], self.bounds), intended: Vec::new() })
     }
 
     /// Comes to the layout's stance zone, uses controls `times` times, and leaves.
@@ -145,7 +145,7 @@ impl Somebody {
         layout: &Layout,
         wanted: impl Fn(&Widget) -> bool,
         times: usize,
-    ) -> Result<Act, ExperimentError> {
+    ) -> Result<PlannedAct, ExperimentError> {
         let choice: Vec<usize> =
             (0..layout.widgets.len()).filter(|&index| wanted(&layout.widgets[index])).collect();
         let mut user = self.performance();
@@ -169,7 +169,7 @@ impl Somebody {
         let away = self.rng.random_range(PI..TAU);
         let away = self.beyond(stance, away);
         user.walk(&[away])?;
-        Ok(Act { script: Script::new(vec![user], self.bounds), intended })
+        Ok(PlannedAct { script: Script::new(vec![user], self.bounds), intended })
     }
 
     /// Does the presses that the control's guard needs to act once.

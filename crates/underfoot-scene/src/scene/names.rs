@@ -13,10 +13,12 @@ const PLATE: f32 = 0.9;
 
 /// Returns `wish` as far as it is readable on any plate of this theme.
 pub(super) fn ink(theme: &Theme, wish: Colour) -> Ink {
-    let active = theme.plate.mix(theme.accent, ground::TINT);
-    let loaded = active.mix(theme.load, ground::MOST_LOAD);
+    let loaded = |plate: Colour| plate.mix(theme.load, ground::MOST_LOAD);
+    let tinted = |plate: Colour| plate.mix(theme.accent, ground::TINT);
+    // The tint of a region lies under the load where it fills a tile, over it elsewhere.
+    let wish = theme.legible(wish, loaded(tinted(theme.plate)));
     // A colour that is readable there is readable on a plate at rest, which differs more from the theme's ink.
-    Ink::solid(theme.legible(wish, loaded))
+    Ink::solid(theme.legible(wish, tinted(loaded(theme.plate))))
 }
 
 /// Writes `name` on one line within the width `room_m`, between the lettering's size and `smallest_m`, all in metres.

@@ -3,7 +3,7 @@
 use super::address::{Address, list_of};
 use super::refusal::EditRefusal;
 use super::rename::renaming;
-use super::splice::{RecordText, Splice, TextLines, spliced};
+use super::splice::{LayoutLines, RecordText, Splice, spliced};
 use underfoot_format::outline::{Outline, OutlineShape};
 use underfoot_format::text::Text;
 
@@ -75,7 +75,7 @@ impl Edit {
 
     /// Returns `text` after the edit; `root` is its outline.
     pub(super) fn done(&self, text: &str, root: &Outline) -> Result<String, EditRefusal> {
-        let lines = TextLines(text);
+        let lines = LayoutLines(text);
         let splices = match self {
             Self::Set { record, field, value } => {
                 let path: Vec<&str> = field.split('.').collect();
@@ -117,7 +117,7 @@ pub(super) fn in_list<'o>(root: &'o Outline, address: &Address) -> Result<(&'o O
 }
 
 fn insert(
-    lines: TextLines<'_>,
+    lines: LayoutLines<'_>,
     root: &Outline,
     at: &Address,
     piece: &RecordText,
@@ -131,7 +131,12 @@ fn insert(
     Ok(lines.insert(parent, parent.elements.len(), &list))
 }
 
-fn reorder(lines: TextLines<'_>, root: &Outline, record: &Address, to: usize) -> Result<String, EditRefusal> {
+fn reorder(
+    lines: LayoutLines<'_>,
+    root: &Outline,
+    record: &Address,
+    to: usize,
+) -> Result<String, EditRefusal> {
     let (list, index) = in_list(root, record)?;
     let to = to.min(list.elements.len() - 1);
     if to == index {
@@ -141,7 +146,7 @@ fn reorder(lines: TextLines<'_>, root: &Outline, record: &Address, to: usize) ->
     let without = spliced(lines.0, lines.take(list, index));
     let again = Outline::parse(&without).ok_or_else(|| EditRefusal::Missing(record.clone()))?;
     let (parent, kind, _) = record.split().ok_or_else(|| EditRefusal::Missing(record.clone()))?;
-    let splices = insert(TextLines(&without), &again, &parent.entry(kind, to), &piece)?;
+    let splices = insert(LayoutLines(&without), &again, &parent.entry(kind, to), &piece)?;
     Ok(spliced(&without, splices))
 }
 

@@ -10,7 +10,7 @@ use super::item::Item;
 use super::place::pair;
 use super::refusal::EditRefusal;
 use super::rename::{NEIGHBOURS, referring};
-use super::splice::{RecordText, TextLines, spliced};
+use super::splice::{LayoutLines, RecordText, spliced};
 use underfoot_format::outline::Outline;
 use underfoot_format::source::MAX_BYTES;
 
@@ -25,7 +25,7 @@ impl Document {
     /// The text of a record with its comments.
     fn piece(&self, record: &Address) -> Option<RecordText> {
         let (parent, list, index) = record.split()?;
-        TextLines(self.text()).piece(list_of(parent.find(self.root())?, list)?, index)
+        LayoutLines(self.text()).piece(list_of(parent.find(self.root())?, list)?, index)
     }
 
     /// As [`Document::copy`] without comments; a record beside a neighbour that is not copied gets a place of its
@@ -102,7 +102,7 @@ impl Document {
             if !super::change::is_record(&element.value) {
                 return Err(EditRefusal::NotARecord);
             }
-            let mut piece = TextLines(&text).piece(&entries, number).ok_or(EditRefusal::NotARecord)?;
+            let mut piece = LayoutLines(&text).piece(&entries, number).ok_or(EditRefusal::NotARecord)?;
             self.renew(&mut piece.text, by, &mut ids).ok_or(EditRefusal::NotARecord)?;
             pieces.push((piece, home(&element.value)));
         }
@@ -128,7 +128,7 @@ impl Document {
             let taken: Vec<String> = ids.iter().map(|(_, new)| new.clone()).collect();
             let new =
                 if old.contains('{') { old.replacen('{', "copy_{", 1) } else { self.free_id(&old, &taken) };
-            let splices = TextLines(text).set(record, &["id"], &quoted(&new));
+            let splices = LayoutLines(text).set(record, &["id"], &quoted(&new));
             *text = spliced(text, splices);
             ids.push((old, new));
         }
@@ -140,7 +140,7 @@ impl Document {
         if let Some([east, north]) = numbers.as_deref() {
             let by = by.as_dvec2() / self.unit_m();
             let value = pair(DVec2::new(*east, *north) + by).inline();
-            *text = spliced(text, TextLines(text).set(&root, &["at"], &value));
+            *text = spliced(text, LayoutLines(text).set(&root, &["at"], &value));
         }
         Some(())
     }

@@ -4,8 +4,8 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::merge::{Merge, merge};
-use underfoot::schema::{SaveError, save_text, write_over};
-use underfoot_format::file::read_bounded;
+use crate::platform;
+use underfoot::schema::SaveError;
 use underfoot_format::source::MAX_BYTES;
 
 /// Name of the draft of a layout without a file.
@@ -63,7 +63,7 @@ impl LayoutFile {
     /// # Errors
     /// The error of the system; [`ErrorKind::InvalidData`] for a text that is not UTF-8.
     pub fn open(path: &Path) -> io::Result<(Self, String)> {
-        let text = read_bounded(path, MAX_BYTES as u64)?;
+        let text = platform::read(path, MAX_BYTES as u64)?;
         let file = Self { path: Some(path.into()), ..Self::untitled(Path::new(""), &text) };
         Ok((file, text))
     }
@@ -114,7 +114,7 @@ impl LayoutFile {
     /// # Errors
     /// The error of the system for a draft that cannot be read.
     pub fn left_over(&self) -> io::Result<Option<String>> {
-        match read_bounded(&self.draft_path(), MAX_BYTES as u64) {
+        match platform::read(&self.draft_path(), MAX_BYTES as u64) {
             Ok(text) => Ok(Some(text).filter(|text| *text != self.base)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error),
@@ -134,7 +134,7 @@ impl LayoutFile {
             return Ok(());
         }
         if self.draft.as_deref() != Some(text) {
-            write_over(text, &self.draft_path())?;
+            platform::write_over(text, &self.draft_path())?;
             self.draft = Some(text.into());
         }
         Ok(())
@@ -143,7 +143,7 @@ impl LayoutFile {
     /// Removes the draft, after it was restored or discarded.
     pub fn drop_draft(&mut self) {
         // A draft that cannot be removed is offered again next time: no data is lost.
-        let _ = std::fs::remove_file(self.draft_path());
+        platform::remove(&self.draft_path());
         self.draft = None;
     }
 
@@ -155,7 +155,7 @@ impl LayoutFile {
     /// empty.
     pub fn outside(&mut self) -> io::Result<Option<String>> {
         let Some(path) = &self.path else { return Ok(None) };
-        match read_bounded(path, MAX_BYTES as u64) {
+        match platform::read(path, MAX_BYTES as u64) {
             // An empty file is a new layout.
             Ok(text) if self.is_new && text.trim().is_empty() => Ok(None),
             Ok(text) => Ok(Some(text).filter(|text| *text != self.base)),
@@ -200,7 +200,7 @@ impl LayoutFile {
         if let Some(theirs) = self.outside().map_err(failed)? {
             return Ok(self.take_in(text, theirs));
         }
-        save_text(text, &path)?;
+        platform::save(text, &path)?;
         (self.base, self.is_new) = (text.into(), false);
         self.drop_draft();
         Ok(Saving::Saved)
@@ -211,7 +211,7 @@ impl LayoutFile {
     /// # Errors
     /// [`SaveError`]; its file is unchanged then.
     pub fn save_as(&mut self, text: &str, path: &Path) -> Result<(), SaveError> {
-        save_text(text, path)?;
+        platform::save(text, path)?;
         self.drop_draft();
         (self.path, self.base, self.is_new) = (Some(path.into()), text.into(), false);
         Ok(())

@@ -6,6 +6,7 @@ use super::document::Document;
 use super::room::{has_room, is_inside};
 use super::snap::round_step_m;
 use underfoot::floor::Rect;
+use underfoot::layout::Layout;
 
 /// Gap between controls, in metres: half a shoe and a little more (rule U102).
 const GAP_M: f32 = 0.06;
@@ -14,8 +15,8 @@ const GAP_M: f32 = 0.06;
 const STRIDE: f32 = 5.0;
 
 /// Places for `count` new controls of this `size`, in metres, on the page with index `page`: from west to east in as few
-/// rows as possible, before the first stance zone, nearest to it; each keeps all rules of room and reach. `None` if the
-/// first region has no such places.
+/// rows as possible, at an end of a row of controls, otherwise before the first stance zone, nearest to it; each keeps all
+/// rules of room and reach. `None` if the first region has no such places.
 #[must_use]
 pub fn free_row(document: &Document, page: usize, size: Vec2, count: usize) -> Option<Vec<Rect>> {
     let (layout, floor) = (document.layout(), document.floor());
@@ -48,20 +49,35 @@ pub fn free_row(document: &Document, page: usize, size: Vec2, count: usize) -> O
         let Vec2 { x: west, y: south } =
             up(Vec2::new(middle - 0.5 * block.x, region.min.y)) + Vec2::new(0.0, 2.0 * step.y);
         // The casts from float saturate at the range of the integer.
-        let found = (0..=tries(room).y as u16).find_map(|north| {
-            let beside = (0..=2 * tries(region.size()).x as u16).map(|turn| {
-                // To and fro about the middle.
-                let far = f32::from(turn.div_ceil(2)) * STRIDE * step.x;
-                if turn % 2 == 0 { west - far } else { west + far }
-            });
-            let y = south + f32::from(north) * STRIDE * step.y;
-            beside.map(|x| Vec2::new(x, y)).find(&is_free)
+        let at_end = ends_of_rows(layout, page, gap, block, middle).into_iter().find(&is_free);
+        let found = at_end.or_else(|| {
+            (0..=tries(room).y as u16).find_map(|north| {
+                let beside = (0..=2 * tries(region.size()).x as u16).map(|turn| {
+                    // To and fro about the middle.
+                    let far = f32::from(turn.div_ceil(2)) * STRIDE * step.x;
+                    if turn % 2 == 0 { west - far } else { west + far }
+                });
+                let y = south + f32::from(north) * STRIDE * step.y;
+                beside.map(|x| Vec2::new(x, y)).find(&is_free)
+            })
         });
         if let Some(at) = found {
             return Some((0..count).map(|index| cell(at, index)).collect());
         }
     }
     None
+}
+
+/// The places beside the controls of a page, level with them, at which a block of this size continues their row; the
+/// nearest to `middle` first.
+fn ends_of_rows(layout: &Layout, page: usize, gap: Vec2, block: Vec2, middle: f32) -> Vec<Vec2> {
+    let there = layout.widgets.iter().filter(|widget| widget.is_on(page)).map(|widget| widget.area);
+    let ends =
+        |area: Rect| [area.max.x + gap.x, area.min.x - gap.x - block.x].map(|x| Vec2::new(x, area.min.y));
+    let mut all: Vec<Vec2> = there.flat_map(ends).collect();
+    let far = |at: &Vec2| (at.x + 0.5 * block.x - middle).abs();
+    all.sort_by(|one, other| far(one).total_cmp(&far(other)));
+    all
 }
 
 #[cfg(test)]
@@ -91,6 +107,8 @@ mod tests {
             // Those that follow find places beside them.
             let next = free_row(&document, 0, size, 1).unwrap()[0];
             assert!(places.iter().all(|place| !place.overlaps(next)));
+            let is_level = places.iter().any(|place| (place.min.y - next.min.y).abs() < 1e-4);
+            assert!(is_level || count > 1, "{next:?} continues the row");
         }
         let full = open("new", &text);
         assert_eq!(free_row(&full, 0, Vec2::splat(0.3), 400), None);

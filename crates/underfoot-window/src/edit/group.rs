@@ -8,7 +8,7 @@ use super::document::Document;
 use super::item::Item;
 use super::place::{RELATIVE, pair};
 use super::refusal::EditRefusal;
-use super::splice::{RecordText, TextLines, comments, spliced};
+use super::splice::{LayoutLines, RecordText, comments, spliced};
 use underfoot_format::outline::Outline;
 
 /// The edits that make one group of `items`, and its address: it replaces the first of them, and its place is
@@ -76,7 +76,7 @@ pub fn ungrouping(
 /// The comments of a group that do not belong to any of `pieces`, line by line.
 fn comments_beside(document: &Document, group: &Address, pieces: &[RecordText]) -> Vec<String> {
     let piece = group.split().and_then(|(parent, list, index)| {
-        TextLines(document.text()).piece(list_of(parent.find(document.root())?, list)?, index)
+        LayoutLines(document.text()).piece(list_of(parent.find(document.root())?, list)?, index)
     });
     let Some(whole) = piece.map(|piece| piece.listed("")) else { return Vec::new() };
     let mut all: Vec<&str> = comments(&whole);
@@ -108,11 +108,11 @@ pub(super) fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Resul
     let missing = || EditRefusal::Missing(item.record.clone());
     let (parent, list, index) = item.record.split().ok_or_else(missing)?;
     let list = parent.find(document.root()).and_then(|parent| list_of(parent, list)).ok_or_else(missing)?;
-    let mut piece = TextLines(document.text()).piece(list, index).ok_or_else(missing)?;
+    let mut piece = LayoutLines(document.text()).piece(list, index).ok_or_else(missing)?;
     let had_at = document.written(&item.record, "at").is_some();
     for field in RELATIVE.iter().filter(|_| !had_at) {
         let root = Outline::parse(&piece.text).ok_or_else(missing)?;
-        piece.text = spliced(&piece.text, TextLines(&piece.text).unset(&root, &[field]));
+        piece.text = spliced(&piece.text, LayoutLines(&piece.text).unset(&root, &[field]));
     }
     // The cells of a grid have one size.
     let first = item.widgets.clone().next().and_then(|at| document.layout().widgets.get(at));
@@ -121,7 +121,7 @@ pub(super) fn placed_piece(document: &Document, item: &Item, at: DVec2) -> Resul
     let size = needs_size.then(|| ("size", pair(size)));
     for (field, value) in [("at", pair(at))].into_iter().chain(size) {
         let root = Outline::parse(&piece.text).ok_or_else(missing)?;
-        piece.text = spliced(&piece.text, TextLines(&piece.text).set(&root, &[field], &value.inline()));
+        piece.text = spliced(&piece.text, LayoutLines(&piece.text).set(&root, &[field], &value.inline()));
     }
     Ok(piece)
 }

@@ -4,12 +4,12 @@ use super::address::{Address, RecordList};
 use super::document::Document;
 use super::item::Item;
 use underfoot::feel::Feel;
-use underfoot::layout::{Look, Widget};
+use underfoot::layout::{CursorRule, Look, Widget};
 use underfoot::schema::{Diagnostic, Kind, Kinds};
 use underfoot::widget::Behaviour;
 use underfoot_format::describe::{FieldDescription, FieldType};
 use underfoot_format::text::Entry;
-use underfoot_format::{Record, Variants};
+use underfoot_format::{Codec, Name, Record, Variants};
 use underfoot_scene::ergonomics::Finding;
 
 /// The origin of a field's value.
@@ -136,7 +136,8 @@ impl Document {
         let id = ("id", "Its name for apps and addresses.", text("1 to 64 of a-z, 0-9 and _"));
         let at = ("at", "Its south-west corner.", place());
         let size = ("size", "Its width and depth.", place());
-        let cursor = FieldType::Names(vec!["Largest", "Working", "Each"]);
+        let cursor = Codec::<CursorRule>::shape(&Name);
+        let usual_cursor = Codec::<CursorRule>::write(&Name, &CursorRule::default()).inline();
         let own: Vec<(&str, &str, FieldType)> = match record.list() {
             None => vec![("title", "Its title, as people read it.", text("at most 200 characters"))],
             Some(RecordList::Regions) => {
@@ -160,7 +161,8 @@ impl Document {
             ],
         };
         let own = own.into_iter().map(|(name, about, shape)| {
-            let field = FieldDescription { name, about: about.into(), shape, default: None };
+            let default = (name == "cursor").then(|| usual_cursor.clone());
+            let field = FieldDescription { name, about: about.into(), shape, default };
             self.property(record, name.to_owned(), &field, None)
         });
         let mut sections =

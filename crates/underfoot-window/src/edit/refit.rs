@@ -1,6 +1,6 @@
 //! Updates the values in a hand-written text from a generated one; the text between the values stays.
 
-use super::splice::{Splice, TextLines, spliced};
+use super::splice::{LayoutLines, Splice, spliced};
 use underfoot_format::outline::{Element, Outline, OutlineShape};
 
 /// Maximum number of values to update one by one; a file with more differences is a different file.
@@ -15,7 +15,7 @@ pub fn refit(old: &str, new: &str) -> String {
     let mut text = old.to_owned();
     for _ in 0..MOST {
         let Some(root) = Outline::parse(&text) else { break };
-        match (Fit { lines: TextLines(&text), new }).next(&root, &wanted) {
+        match (Fit { lines: LayoutLines(&text), new }).next(&root, &wanted) {
             Some(splices) => text = spliced(&text, splices),
             None => return text,
         }
@@ -24,7 +24,7 @@ pub fn refit(old: &str, new: &str) -> String {
 }
 
 struct Fit<'t> {
-    lines: TextLines<'t>,
+    lines: LayoutLines<'t>,
     new: &'t str,
 }
 

@@ -62,7 +62,7 @@ impl RecordText {
         let list = format!("[\n{}\n]", text.trim());
         let root = Outline::parse(&list)?;
         let [element] = &root.elements[..] else { return None };
-        let mut piece = TextLines(&list).piece(&root, 0)?;
+        let mut piece = LayoutLines(&list).piece(&root, 0)?;
         let before = list.get(2..element.start())?;
         let rest = list.get(element.end()..list.len() - 2)?;
         // All comments, including those with an empty line between them.
@@ -120,9 +120,9 @@ fn closed(comment: &str) -> String {
 
 /// A text, split into lines.
 #[derive(Clone, Copy)]
-pub(super) struct TextLines<'t>(pub(super) &'t str);
+pub(super) struct LayoutLines<'t>(pub(super) &'t str);
 
-impl<'t> TextLines<'t> {
+impl<'t> LayoutLines<'t> {
     fn start(self, at: usize) -> usize {
         self.0[..at].rfind('\n').map_or(0, |line_break| line_break + 1)
     }
@@ -312,7 +312,7 @@ impl<'t> TextLines<'t> {
         vec![Splice::new(start..element.end(), "")]
     }
 
-    /// Removes the element number `index` of `parent` as [`TextLines::cut`] does, together with the comments above it,
+    /// Removes the element number `index` of `parent` as [`LayoutLines::cut`] does, together with the comments above it,
     /// which move with it.
     pub(super) fn take(self, parent: &Outline, index: usize) -> Vec<Splice> {
         let mut splices = self.cut(parent, index);
@@ -400,9 +400,9 @@ fn nested(path: &[&str], value: &str) -> String {
 mod tests {
     use super::*;
 
-    fn changed(text: &str, change: impl Fn(TextLines<'_>, &Outline) -> Vec<Splice>) -> String {
+    fn changed(text: &str, change: impl Fn(LayoutLines<'_>, &Outline) -> Vec<Splice>) -> String {
         let root = Outline::parse(text).unwrap();
-        spliced(text, change(TextLines(text), &root))
+        spliced(text, change(LayoutLines(text), &root))
     }
 
     fn set(text: &str, path: &str, value: &str) -> String {

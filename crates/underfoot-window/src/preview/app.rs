@@ -9,7 +9,7 @@ use super::closing::{Closing, Title, handle_quit_key};
 use super::design::Designer;
 use super::feed::PreviewInput;
 use super::floor_check::FloorCheck;
-use super::floor_view::{FloorFeet, FloorView, OnFloor};
+use super::floor_view::{FloorFeet, FloorPane, OnFloor};
 use super::focus::FocusRing;
 use super::messages::{Happened, WindowMessages};
 use super::mode::WindowMode;
@@ -21,6 +21,7 @@ use super::projection::Projection;
 use super::rehearsal::Rehearsal;
 use super::scopes::ActuatorScopes;
 use super::selection::Selection;
+use super::share::Share;
 use super::shown::ShownFloor;
 use super::stage::{PanelWidths, StageOfWindow};
 use super::status::StatusBar;
@@ -28,13 +29,13 @@ use super::time_line::TimeLine;
 use super::turns::Turns;
 use super::visit::VisitBar;
 use super::walks::Walks;
-use super::watch::FloorWatch;
+use super::watch::LinkNotices;
 use underfoot_scene::scene::{self, Theme};
 
 /// The window's contents and their state from one frame to the next.
 pub(super) struct App {
     pub(super) shown: ShownFloor,
-    pub(super) view: FloorView,
+    pub(super) view: FloorPane,
     pub(super) feet: FloorFeet,
     pub(super) selection: Selection,
     pub(super) presses: PressLog,
@@ -56,6 +57,8 @@ pub(super) struct App {
     pub(super) floor_check: Option<FloorCheck>,
     /// `None` where the layout cannot be edited.
     pub(super) designer: Option<Designer>,
+    /// `None` where the layout cannot be shared.
+    pub(super) share: Option<Share>,
     pub(super) projection: Projection,
     pub(super) appearance: Appearance,
     pub(super) window: WindowState,
@@ -84,7 +87,7 @@ impl App {
         wrong.into_iter().chain(unread).for_each(|wrong| messages.note(wrong));
         let floor = input.floor;
         Self {
-            view: FloorView::new(options.layers),
+            view: FloorPane::new(options.layers),
             feet: FloorFeet::new(input.feet, input.shoes),
             selection: Selection::new(&floor.geometry),
             presses: if input.playback.is_some() { PressLog::recorded() } else { PressLog::default() },
@@ -99,6 +102,7 @@ impl App {
             tuner: Tuner::new(input.effects),
             floor_check: input.packets.map(FloorCheck::new),
             designer: input.design.and_then(|design| Designer::new(design, &floor)),
+            share: input.share.map(Share::new),
             projection,
             appearance,
             window: WindowState {
@@ -118,7 +122,7 @@ impl App {
                 server: None,
                 snapshots: input.snapshots,
                 messages,
-                watch: FloorWatch::default(),
+                watch: LinkNotices::default(),
                 commands: channels.commands,
                 now_s: 0.0,
             },
@@ -181,6 +185,9 @@ impl App {
         }
         self.window.widths = stage.widths;
         self.show_messages(ui, &theme, stage.canvas);
+        if let Some(share) = &mut self.share {
+            share.show(ui, &theme);
+        }
         self.window.focus.show(ui, &theme);
         self.request_next_frame(ui);
     }
@@ -318,6 +325,13 @@ impl App {
             (None, None) => None,
         };
         self.window.title.show(ctx, subject.as_deref());
+    }
+
+    /// Shows the button that shares the layout, if it can be shared.
+    pub(super) fn share_button(&mut self, ui: &mut Ui, is_compact: bool) {
+        if let (Some(share), Some(designer)) = (&mut self.share, &self.designer) {
+            share.button(ui, is_compact, || (designer.name(), designer.file_text()));
+        }
     }
 
     /// Shows the button that records, if anything can be recorded.

@@ -11,8 +11,7 @@ use super::icons::{self, Icon};
 use super::messages::WindowMessages;
 use super::style;
 use super::style::quiet;
-use underfoot::schema::save_text;
-use underfoot_format::file::read_bounded;
+use crate::platform;
 use underfoot_scene::scene::Theme;
 
 /// The file's first line.
@@ -55,7 +54,7 @@ impl Appearance {
     /// the file cannot be used.
     pub(super) fn new(theme: Theme, file: Option<PathBuf>) -> (Self, Option<String>) {
         let usual = Choice { window: theme, projected: Theme::DARK, text: USUAL, has_steps: true };
-        let read = file.as_deref().map_or(Ok(None), |file| match read_bounded(file, LONGEST) {
+        let read = file.as_deref().map_or(Ok(None), |file| match platform::read(file, LONGEST) {
             Ok(text) => usual.read(&text).map(Some).map_err(str::to_owned),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error.to_string()),
@@ -209,8 +208,8 @@ impl Appearance {
         style::apply(ctx, &choice.window);
         ctx.request_repaint();
         let kept = self.file.as_deref().map(|file| {
-            file.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(|error| error.to_string())?;
-            save_text(&choice.text(), file).map(drop).map_err(|error| error.to_string())
+            file.parent().map_or(Ok(()), platform::make_folder).map_err(|error| error.to_string())?;
+            platform::save(&choice.text(), file).map(drop).map_err(|error| error.to_string())
         });
         if let Some(Err(wrong)) = kept {
             messages.note(format!("How the window looks is not remembered: {wrong}"));

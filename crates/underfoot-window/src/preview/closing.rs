@@ -96,7 +96,7 @@ impl Closing {
         if *self == Self::Asks {
             *self = ask(ctx, &designer.name());
             match *self {
-                Self::Saves => designer.save_or_ask(),
+                Self::Saves => designer.save(),
                 Self::Granted => designer.discard(),
                 _ => {}
             }

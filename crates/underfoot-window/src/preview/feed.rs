@@ -8,15 +8,16 @@ use glam::Vec2;
 use super::channels::WindowChannels;
 use super::design::DesignInput;
 use super::playback::Playback;
+use super::share::ShareDesk;
 use super::visit::VisitDesk;
 use underfoot::engine::Snapshot;
 use underfoot::feel::{Effect, Gesture};
 use underfoot::floor::{Floor, TileId};
 use underfoot::layout::Layout;
 use underfoot::messages::MessageNews;
-use underfoot::recording::TappedPackets;
 use underfoot::schema::{Diagnostics, NamedEffect};
 use underfoot::sink::{AreaNews, LatencyStages};
+use underfoot::source::TappedPackets;
 use underfoot::widget::{Value, WidgetEvent, WidgetId};
 use underfoot_scene::scene::Shoe;
 use underfoot_sim::{ArrivalHandle, FaultSwitch};
@@ -68,6 +69,8 @@ pub struct PreviewInput {
     pub packets: Option<TappedPackets>,
     /// The layout as text for Design mode; `None` where it cannot be edited.
     pub design: Option<DesignInput>,
+    /// Makes links of the layout of Design mode; `None` where no page could open them.
+    pub share: Option<Box<dyn ShareDesk>>,
 }
 
 impl PreviewInput {
@@ -100,6 +103,7 @@ impl PreviewInput {
             choices: Vec::new(),
             effects: Vec::new(),
             design: None,
+            share: None,
         }
     }
 }

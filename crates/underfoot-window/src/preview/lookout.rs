@@ -1,13 +1,14 @@
 //! Watches the floor for the window, so that the window draws only after a visible change.
 
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use eframe::egui;
 use triple_buffer::triple_buffer;
+use web_time::Instant;
 
 use super::feed::PreviewInput;
+use crate::platform;
 use underfoot::engine::{Snapshot, TileState, WidgetState};
 use underfoot::sense::Contact;
 use underfoot::wire::LinkState;
@@ -34,8 +35,8 @@ const UNSEEN_SHARE: f32 = 0.01;
 const UNSEEN_M: f32 = 0.001;
 const UNSEEN_PRESS: f32 = 0.01;
 
-/// Puts a thread between the floor and the window that passes on all messages and wakes the window when there is
-/// something to draw. The thread ends with the window.
+/// Puts a relay between the floor and the window that passes on all messages and wakes the window when there is
+/// something to draw. It ends with the window.
 pub(super) fn start(mut input: PreviewInput, ctx: &egui::Context) -> PreviewInput {
     let (mut passed, shown) = triple_buffer(input.snapshots.read());
     let mut snapshots = std::mem::replace(&mut input.snapshots, shown);
@@ -44,35 +45,30 @@ pub(super) fn start(mut input: PreviewInput, ctx: &egui::Context) -> PreviewInpu
     let mut notices = Relay::before(&mut input.channels.notices);
     let ctx = ctx.clone();
     let mut pace = Pace::new(snapshots.read().clone(), Instant::now());
-    let mut due = Instant::now();
+    let first = Instant::now() + EVERY;
+    let mut due = first;
     let look = move || {
-        loop {
-            let now = Instant::now();
-            due = pace.next(due, now);
-            thread::sleep(due - now);
-            let now = Instant::now();
-            let is_fresh = snapshots.update();
-            let snapshot = snapshots.output_buffer();
-            if is_fresh {
-                passed.input_buffer_mut().clone_from(snapshot);
-                passed.publish();
-            }
-            let mut news = false;
-            for relayed in [events.pass_on(), layouts.pass_on(), notices.pass_on()] {
-                let Some(some) = relayed else { return };
-                news |= some;
-            }
-            if pace.is_due(snapshot, is_fresh, news, now) {
-                // A delay of zero would request two frames.
-                ctx.request_repaint_after(Duration::from_micros(100));
-            }
+        let now = Instant::now();
+        let is_fresh = snapshots.update();
+        let snapshot = snapshots.output_buffer();
+        if is_fresh {
+            passed.input_buffer_mut().clone_from(snapshot);
+            passed.publish();
         }
+        let mut news = false;
+        for relayed in [events.pass_on(), layouts.pass_on(), notices.pass_on()] {
+            news |= relayed?;
+        }
+        if pace.is_due(snapshot, is_fresh, news, now) {
+            // A delay of zero would request two frames.
+            ctx.request_repaint_after(Duration::from_micros(100));
+        }
+        due = pace.next(due, Instant::now());
+        Some(due)
     };
-    // Without this thread the window would not update; it is as essential as the window itself.
-    thread::Builder::new()
-        .name("lookout".into())
-        .spawn(look)
-        .map_or_else(|error| tracing::error!("the window can't look at the floor: {error}"), drop);
+    // Without these looks the window would not update; they are as essential as the window itself.
+    platform::repeat("lookout", first, look)
+        .unwrap_or_else(|error| tracing::error!("the window can't look at the floor: {error}"));
     input
 }
 

@@ -1,8 +1,9 @@
 //! The times at which the window draws without news from the floor and without input.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use eframe::egui::Context;
+use web_time::Instant;
 
 /// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);

@@ -1,34 +1,33 @@
 //! A report of what the window shows, for scripts that work it with real mouse and keys.
 //!
-//! Off unless the variable [`VARIABLE`] names a folder. After each frame, each window of the program then writes a file
-//! there: the names, roles, states and places of its widgets, as screen readers get them, and how much input it has
+//! Off unless the variable `UNDERFOOT_SCREEN_REPORT` names a folder, or the address of a page ends in `?screen_report`.
+//! After each frame, each window of the program then puts a report there: the names, roles, states and places of its widgets, as screen readers get them, and how much input it has
 //! taken in. A script thus finds widgets by name and waits for what it has sent, however slow the machine is.
 
 use std::collections::HashMap;
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use eframe::egui::accesskit::{Node, Toggled};
-use eframe::egui::{self, Event, Key, Rect, ViewportId};
+use eframe::egui::{self, Event, Key, Rect, ViewportCommand, ViewportId};
 use serde_json::{Value, json};
 
-/// The environment variable with the folder of the reports.
-const VARIABLE: &str = "UNDERFOOT_SCREEN_REPORT";
+use crate::platform;
 
 /// Begins the reports if the user asks for them.
 pub(super) fn report_screen(ctx: &egui::Context) {
-    if let Some(folder) = std::env::var_os(VARIABLE) {
-        ctx.add_plugin(ScreenReport::into_folder(folder.into()));
+    if let Some(place) = platform::report_place() {
+        ctx.add_plugin(ScreenReport::into_place(place));
     }
 }
 
 /// Writes the reports.
 struct ScreenReport {
-    folder: PathBuf,
+    place: PathBuf,
     /// The windows whose frames have begun and not yet ended, the innermost last.
     drawn: Vec<ViewportId>,
     taken: HashMap<ViewportId, TakenInput>,
+    /// The titles of the windows; the system does not report them everywhere.
+    titles: HashMap<ViewportId, String>,
     /// Whether the last report could not be written.
     has_failed: bool,
 }
@@ -79,18 +78,27 @@ const fn is_modifier(key: Key) -> bool {
 }
 
 impl ScreenReport {
-    fn into_folder(folder: PathBuf) -> Self {
-        Self { folder, drawn: Vec::new(), taken: HashMap::new(), has_failed: false }
+    fn into_place(place: PathBuf) -> Self {
+        Self { place, drawn: Vec::new(), taken: HashMap::new(), titles: HashMap::new(), has_failed: false }
+    }
+
+    /// Notes the title that the program gives a window.
+    fn note_title(&mut self, of: ViewportId, output: &egui::ViewportOutput) {
+        let given = output.commands.iter().rev().find_map(|command| match command {
+            ViewportCommand::Title(title) => Some(title),
+            _ => None,
+        });
+        if let Some(title) = given.or(output.builder.title.as_ref()) {
+            self.titles.insert(of, title.clone());
+        }
     }
 
     /// The report of a frame of the window `of`.
     fn report(&self, ctx: &egui::Context, of: ViewportId, output: &egui::FullOutput) -> Option<Value> {
         let tree = output.platform_output.accesskit_update.as_ref()?;
         let taken = self.taken.get(&of)?;
-        let (scale, title, held, size) = ctx.input_for(of, |i| {
-            let title = i.viewport().title.clone().unwrap_or_default();
-            (i.pixels_per_point(), title, i.keys_down.len(), i.content_rect().size())
-        });
+        let (scale, held, size) =
+            ctx.input_for(of, |i| (i.pixels_per_point(), i.keys_down.len(), i.content_rect().size()));
         // The parts of widgets that scrolling and other clipping leave.
         let seen: HashMap<u64, Rect> = ctx.viewport_for(of, |state| {
             let all = state.prev_pass.widgets.layers().flat_map(|(_, widgets)| widgets.iter());
@@ -109,7 +117,7 @@ impl ScreenReport {
         Some(json!({
             "frame": taken.frames,
             "next_s": next_s,
-            "title": title,
+            "title": self.titles.get(&of),
             "size": size,
             "keys": taken.keys,
             "keys_down": held,
@@ -159,29 +167,16 @@ impl egui::Plugin for ScreenReport {
 
     fn output_hook(&mut self, ctx: &egui::Context, output: &mut egui::FullOutput) {
         let Some(of) = self.drawn.pop() else { return };
+        output.viewport_output.iter().for_each(|(of, shown)| self.note_title(*of, shown));
         let Some(report) = self.report(ctx, of, output) else { return };
-        let written = write_whole(&report, &file_of(&self.folder, of));
+        let window = (of != ViewportId::ROOT).then(|| of.0.value());
+        let written = platform::put_report(&report.to_string(), &self.place, window);
         // Once: the next frame fails alike.
         if let (Err(error), false) = (&written, self.has_failed) {
-            tracing::warn!("no report of the screen in {}: {error}", self.folder.display());
+            tracing::warn!("no report of the screen in {}: {error}", self.place.display());
         }
         self.has_failed = written.is_err();
     }
-}
-
-/// The file of a window: the number of its process, and for all but its main window a number of the window.
-fn file_of(folder: &Path, window: ViewportId) -> PathBuf {
-    let process = std::process::id();
-    let number =
-        if window == ViewportId::ROOT { String::new() } else { format!("-{:016x}", window.0.value()) };
-    folder.join(format!("{process}{number}.json"))
-}
-
-/// Replaces the file at once: a script never reads half of it.
-fn write_whole(report: &Value, path: &Path) -> io::Result<()> {
-    let new = path.with_extension("new");
-    fs::write(&new, report.to_string())?;
-    fs::rename(&new, path)
 }
 
 #[cfg(test)]
@@ -198,16 +193,17 @@ mod tests {
     fn a_script_reads_where_the_controls_are_and_that_its_input_has_come() {
         let folder = tempfile::tempdir().unwrap();
         let ctx = egui::Context::default();
-        ctx.add_plugin(ScreenReport::into_folder(folder.path().into()));
+        ctx.add_plugin(ScreenReport::into_place(folder.path().into()));
         let mut text = String::new();
         let read = || -> Value {
-            let file = file_of(folder.path(), ViewportId::ROOT);
-            serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
+            let file = folder.path().join(format!("{}.json", std::process::id()));
+            serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
         };
         let mut frame = |events: Vec<Event>| {
             let screen = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 300.0));
             let input = egui::RawInput { screen_rect: Some(screen), events, ..Default::default() };
             let mut drawn = ctx.run_ui(input, |ui| {
+                ui.ctx().send_viewport_cmd(ViewportCommand::Title("A floor".into()));
                 let _ = ui.button("Stand here");
                 ui.text_edit_singleline(&mut text).request_focus();
                 egui::ScrollArea::vertical().max_height(50.0).show(ui, |ui| {
@@ -240,6 +236,6 @@ mod tests {
         let counts = ["keys", "letters", "buttons", "keys_down"].map(|name| after[name].as_u64());
         assert_eq!(counts, [1, 2, 2, 1].map(Some), "{after}");
         assert!(after["frame"].as_u64() >= before["frame"].as_u64().map(|frame| frame + 2), "{after}");
-        assert_eq!(after["pointer"], json!([5.0, 6.0]));
+        assert_eq!((&after["pointer"], &after["title"]), (&json!([5.0, 6.0]), &json!("A floor")));
     }
 }

@@ -6,7 +6,7 @@ use std::sync::mpsc::SyncSender;
 use super::feed::{PreviewCommand, ServerFeed, ServerState};
 use super::messages::WindowMessages;
 use super::scopes::ActuatorScopes;
-use super::watch::{Banner, FloorWatch};
+use super::watch::{Banner, LinkNotices};
 use underfoot::engine::Snapshot;
 use underfoot::floor::{Floor, TileId};
 use underfoot::layout::Layout;
@@ -23,7 +23,7 @@ pub(super) struct ShownFloor {
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
     pub(super) messages: WindowMessages,
     pub(super) scopes: ActuatorScopes,
-    pub(super) watch: FloorWatch,
+    pub(super) watch: LinkNotices,
     pub(super) commands: SyncSender<PreviewCommand>,
     /// The window's clock, in seconds.
     pub(super) now_s: f64,

@@ -14,6 +14,9 @@ pub(super) const BESIDE: f32 = 669.0;
 /// Margin around the floor, in points.
 const MARGIN: f32 = 6.0;
 
+/// Width of the inspector in a wide window, in points.
+pub(super) const INSPECTOR_PX: f32 = 340.0;
+
 /// Widths, in points, that the panels of all modes need at each side of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PanelWidths {
@@ -25,7 +28,7 @@ pub(super) struct PanelWidths {
 
 impl Default for PanelWidths {
     fn default() -> Self {
-        Self { left: 204.0, right: 330.0 }
+        Self { left: 204.0, right: INSPECTOR_PX }
     }
 }
 
@@ -118,7 +121,9 @@ mod tests {
     fn the_floor_has_the_same_place_whatever_panels_are_open() {
         for width in [640.0, 900.0, 1280.0, 2560.0] {
             let alone = seen(width, area(0.0, width));
-            for canvas in [area(204.0, width - 330.0), area(0.0, 0.5 * width), area(0.5 * width, width)] {
+            for canvas in
+                [area(204.0, width - INSPECTOR_PX), area(0.0, 0.5 * width), area(0.5 * width, width)]
+            {
                 assert_eq!(seen(width, canvas).stage, alone.stage, "{width}");
             }
             assert!(alone.stage.width() >= 0.5 * width - 2.0 * MARGIN, "{width}: {}", alone.stage.width());
@@ -127,8 +132,8 @@ mod tests {
 
     #[test]
     fn a_wide_window_leaves_room_for_all_panels_and_a_narrow_one_shows_them_over_the_floor() {
-        let wide = seen(1280.0, area(204.0, 950.0));
-        assert_eq!((wide.stage, wide.free), (area(204.0, 950.0).shrink(MARGIN), wide.stage));
+        let wide = seen(1280.0, area(204.0, 1280.0 - INSPECTOR_PX));
+        assert_eq!((wide.stage, wide.free), (area(204.0, 1280.0 - INSPECTOR_PX).shrink(MARGIN), wide.stage));
         let narrow = seen(640.0, area(0.0, 320.0));
         assert_eq!(narrow.stage, area(0.0, 640.0).shrink(MARGIN));
         assert_eq!(narrow.free, area(0.0, 320.0).shrink(MARGIN));

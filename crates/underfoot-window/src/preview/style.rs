@@ -2,7 +2,8 @@
 
 use eframe::egui;
 use eframe::egui::epaint::FontColorTransferFunction;
-use eframe::egui::text::{LayoutJob, TextWrapping};
+use eframe::egui::text::{CCursor, LayoutJob, TextWrapping};
+use eframe::egui::text_selection::CCursorRange;
 use eframe::egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2,
 };
@@ -178,6 +179,17 @@ pub(super) fn pill(ui: &mut Ui, colour: Colour, theme: &Theme, text: &str) -> eg
 /// focus.
 pub(super) fn is_entered(ui: &Ui, field: &egui::Response) -> bool {
     field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter))
+}
+
+/// Selects all of `text` when its field gets the keyboard: as in a table, typing replaces it.
+pub(super) fn replace_by_typing(ui: &Ui, field: &egui::Response, text: &str) {
+    if field.gained_focus()
+        && let Some(mut state) = egui::TextEdit::load_state(ui.ctx(), field.id)
+    {
+        let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
+        state.cursor.set_char_range(Some(all));
+        state.store(ui.ctx(), field.id);
+    }
 }
 
 /// Writes one line that begins at `at`, centred vertically there; text wider than `width` points ends with dots.

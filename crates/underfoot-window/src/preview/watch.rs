@@ -10,7 +10,7 @@ const STOPPED_S: f64 = 0.5;
 
 /// Times of the last packet and the last snapshot, on the window's clock.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct FloorWatch {
+pub(super) struct LinkNotices {
     packets: u64,
     packets_at_s: f64,
     snapshot_at_s: Option<f64>,
@@ -38,7 +38,7 @@ pub(super) enum Weight {
     Fault,
 }
 
-impl FloorWatch {
+impl LinkNotices {
     /// Observes a frame's state at `now_s`; `fresh` if the sensing thread wrote it since the last frame.
     pub(super) fn observe(&mut self, now_s: f64, snapshot: &Snapshot, fresh: bool) {
         if snapshot.counters.packets != self.packets {
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn silence_is_counted_from_the_last_packet() {
-        let mut watch = FloorWatch::default();
+        let mut watch = LinkNotices::default();
         watch.observe(5.0, &at(600), true);
         watch.observe(5.4, &at(600), true);
         let banner = watch.banner(5.4, LinkState::Lost, "", None).unwrap();
@@ -168,7 +168,7 @@ mod tests {
 
     #[test]
     fn a_server_that_is_gone_is_named_with_the_reason() {
-        let mut watch = FloorWatch::default();
+        let mut watch = LinkNotices::default();
         watch.observe(5.0, &at(600), true);
         watch.observe(5.4, &at(600), true);
         let mut server = ServerState {
@@ -202,7 +202,7 @@ mod tests {
             left_out: 0,
             areas: vec![area("west", AreaState::Live, ""), area("east", AreaState::Live, "")],
         };
-        let said = |server: &ServerState, link| FloorWatch::default().banner(0.0, link, "", Some(server));
+        let said = |server: &ServerState, link| LinkNotices::default().banner(0.0, link, "", Some(server));
         assert_eq!(said(&server, LinkState::Live), None);
         server.areas[1] = area("east", AreaState::Lost, "nothing new from its node for 100 ms");
         let one = said(&server, LinkState::Partial).unwrap();
@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn a_sensing_thread_that_stops_writing_is_noticed() {
-        let mut watch = FloorWatch::default();
+        let mut watch = LinkNotices::default();
         watch.observe(1.0, &at(1), true);
         assert_eq!(watch.banner(1.4, LinkState::Live, "", None), None);
         watch.observe(1.6, &at(1), false);
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn before_the_first_packet_the_window_says_what_it_waits_for() {
-        let watch = FloorWatch::default();
+        let watch = LinkNotices::default();
         let banner = watch.banner(9.0, LinkState::Waiting, "port 9000", None).unwrap();
         assert_eq!(banner.detail, "Listening: port 9000");
         assert_eq!(banner.weight, Weight::Pause);

@@ -1,6 +1,6 @@
 //! The bytes of MIDI messages (MIDI 1.0).
 
-use underfoot::messages::{ControllerSettings, Holdable, MidiMessage, MidiNote};
+use underfoot::messages::{Holdable, MidiMessage, MidiNote};
 
 /// One message of two or three bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,7 +101,7 @@ pub(super) fn pressed(what: &Holdable, velocity: u8) -> Vec<MidiBytes> {
             vec![MidiBytes::three(NOTE_ON, *channel, *key, velocity.clamp(1, 127))]
         }
         Holdable::Controller(settings) => said(settings.with(settings.top())),
-        Holdable::Key(_) | Holdable::Button(_) | Holdable::Osc(_) | Holdable::Notes(_) => Vec::new(),
+        _ => Vec::new(),
     }
 }
 
@@ -112,7 +112,7 @@ pub(super) fn released(what: &Holdable) -> Vec<MidiBytes> {
             vec![MidiBytes::three(NOTE_OFF, *channel, *key, RELEASE)]
         }
         Holdable::Controller(settings) => said(settings.with(settings.from)),
-        Holdable::Key(_) | Holdable::Button(_) | Holdable::Osc(_) | Holdable::Notes(_) => Vec::new(),
+        _ => Vec::new(),
     }
 }
 
@@ -122,16 +122,14 @@ pub(super) fn silenced(what: &Holdable) -> Vec<MidiBytes> {
         Holdable::Note(MidiNote { channel, .. }) | Holdable::Notes(channel) => {
             vec![MidiBytes::three(CONTROLLER, *channel, ALL_NOTES_OFF, 0)]
         }
-        Holdable::Controller(ControllerSettings { .. })
-        | Holdable::Key(_)
-        | Holdable::Button(_)
-        | Holdable::Osc(_) => Vec::new(),
+        _ => Vec::new(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use underfoot::messages::ControllerSettings;
 
     fn hex(messages: &[MidiBytes]) -> Vec<String> {
         let text =

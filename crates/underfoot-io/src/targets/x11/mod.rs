@@ -176,7 +176,7 @@ impl Outlet for X11Outlet {
                 // Detail 0: a place of the screen.
                 self.fake(MOTION_NOTIFY_EVENT, 0, [x, y]).map_err(|error| lost(&error))?;
             }
-            Act::Osc(..) | Act::Midi(_) => return Err(no_key()),
+            _ => return Err(no_key()),
         }
         self.settle()
     }
@@ -195,7 +195,7 @@ fn lost(error: &dyn std::fmt::Display) -> OutletError {
 }
 
 fn no_key() -> OutletError {
-    OutletError::Refused("a keyboard receives neither OSC nor MIDI".into())
+    OutletError::Refused("a keyboard receives keys, clicks and motion only".into())
 }
 
 const fn number(button: MouseButton) -> u8 {

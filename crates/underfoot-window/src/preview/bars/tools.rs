@@ -20,6 +20,7 @@ impl App {
         }
         self.feet.stance_button(ui, &self.shown, is_compact);
         self.show_visit_button(ui, is_compact);
+        self.share_button(ui, is_compact);
         if self.shown.scopes.is_fed() {
             let muted = self.shown.snapshot().muted.all;
             let hint = "Let nothing be felt or heard; M does the same";

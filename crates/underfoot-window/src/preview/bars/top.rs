@@ -121,6 +121,7 @@ impl App {
         match &mut self.designer {
             Some(designer) if designer.is_open => {
                 designer.tools(ui, theme, &self.top_bar.choices);
+                self.share_button(ui, true);
                 self.panel.button(ui, true, true);
             }
             _ => {

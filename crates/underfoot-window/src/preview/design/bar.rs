@@ -9,6 +9,7 @@ use eframe::egui::{Key, Ui, WidgetInfo};
 use super::edited::EditedLayout;
 use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
+use crate::platform;
 use crate::preview::bars::{MessageStack, message_frame};
 use crate::preview::icons::{self, Icon, icon_button};
 use crate::preview::style::{is_entered, quiet, toggle};
@@ -95,9 +96,18 @@ impl Designer {
                 [(Ask::Open, "Open file", "Ctrl+O"), (Ask::SaveAs, "Save as", "Ctrl+Shift+S")]
             {
                 if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
-                    self.ask_for(to);
+                    match to {
+                        Ask::Open => self.ask_to_open(ui.ctx()),
+                        Ask::SaveAs => self.ask_for(Ask::SaveAs),
+                    }
                     ui.close();
                 }
+            }
+            if platform::GIVES && ui.button("Download").clicked() {
+                if let Err(wrong) = platform::give(&self.name(), &self.file_text()) {
+                    self.edited.complain(format!("the browser takes no file: {wrong}"));
+                }
+                ui.close();
             }
         });
         let can_save = !self.is_saved() || self.storage.file.path().is_none() || self.storage.file.is_new();

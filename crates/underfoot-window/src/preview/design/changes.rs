@@ -101,7 +101,7 @@ impl EditedLayout {
         let Some((model, others)) = items.split_first() else { return };
         match alike_edits(&self.document, model, others) {
             Ok(edits) => {
-                let said = format!("as {} is: size, thresholds, appearance, feel", model.name);
+                let said = format!("made like {}: size, thresholds, appearance, feel", model.name);
                 if self.edit(&edits) {
                     self.say(said);
                 }

@@ -4,8 +4,11 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
+use eframe::egui::Context;
+
 use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Document, LayoutFile, Saving, Template};
+use crate::platform::{self, FileInbox};
 use underfoot::floor::Floor;
 
 /// The mark before the name of an unsaved layout.
@@ -15,7 +18,8 @@ const UNSAVED: &str = "•";
 const DRAFT_S: f64 = 2.0;
 
 impl Designer {
-    pub(super) fn save(&mut self) {
+    /// Saves, or asks for a path.
+    pub(in crate::preview) fn save(&mut self) {
         let Some(path) = self.storage.file.path().map(Path::to_path_buf) else {
             return self.ask_for(Ask::SaveAs);
         };
@@ -179,6 +183,11 @@ impl Designer {
         }
     }
 
+    /// Lets the user choose a file to open: in the dialogue of a browser, or by its path.
+    pub(super) fn ask_to_open(&mut self, ctx: &Context) {
+        if FileInbox::CHOOSES { self.storage.inbox.choose(ctx) } else { self.ask_for(Ask::Open) }
+    }
+
     pub(super) fn ask_for(&mut self, to: Ask) {
         let path = self.storage.file.path().map(|path| path.display().to_string());
         self.storage.asking = Some(Asking { to, path: path.unwrap_or_else(|| self.storage.file.name()) });
@@ -188,11 +197,6 @@ impl Designer {
     pub(in crate::preview) fn title(&self) -> String {
         let name = self.name();
         if self.is_saved() { name } else { format!("{UNSAVED} {name}") }
-    }
-
-    /// Saves, or asks for a path.
-    pub(in crate::preview) fn save_or_ask(&mut self) {
-        if self.storage.file.path().is_some() { self.save() } else { self.ask_for(Ask::SaveAs) }
     }
 
     /// Whether a question to the user blocks saving.
@@ -211,7 +215,7 @@ impl Designer {
 /// A layout without a file and the slot for its draft; with `left_over`, a slot with the draft of an earlier window.
 pub(super) fn untitled(state: &Path, text: &str, left_over: bool) -> (LayoutFile, Option<shelf::Slot>) {
     let file = |slot: &shelf::Slot| LayoutFile::untitled(&slot.folder, text);
-    let has_draft = |slot: &shelf::Slot| file(slot).draft_path().exists();
+    let has_draft = |slot: &shelf::Slot| platform::is_file(&file(slot).draft_path());
     let older = left_over.then(|| shelf::left_slots(state)).into_iter().flatten();
     // Collect all of them: this removes the empty ones.
     let mut older: Vec<shelf::Slot> = older.filter(has_draft).collect();

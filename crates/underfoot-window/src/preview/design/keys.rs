@@ -65,7 +65,7 @@ impl Designer {
             self.edited.undo();
         }
         if command(Key::O) {
-            self.ask_for(Ask::Open);
+            self.ask_to_open(ui.ctx());
         }
         if command(Key::N) {
             let text = Template::Empty.text(&self.edited.document.floor().geometry);

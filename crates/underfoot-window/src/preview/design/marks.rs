@@ -94,12 +94,14 @@ fn badges(edited: &EditedLayout, ui: &Ui, map: ScreenFromFloor, theme: &Theme, l
         let is_error = findings.iter().any(|finding| finding.severity == Severity::Error);
         let colour = if is_error { theme.fault } else { theme.warning };
         let control = map.rect(widget.area);
-        let badge = control.right_top() + vec2(-2.0, 2.0);
+        let is_selected = record(first).is_some_and(|record| edited.selected.contains(&record));
+        // Beside the corner, clear of the texts of the control and of the handle of one that is selected.
+        let aside = if is_selected { 10.0 } else { 4.0 };
+        let badge = control.right_top() + vec2(aside, -aside);
         painter.circle(badge, BADGE, color(colour), Stroke::new(1.5, color(theme.plate)));
         let mark = if findings.len() == 1 { "!".to_owned() } else { findings.len().to_string() };
         painter.text(badge, Align2::CENTER_CENTER, mark, FontId::proportional(12.0), color(theme.plate));
         let is_hovered = pointer.is_some_and(|at| control.contains(at) || at.distance(badge) < BADGE);
-        let is_selected = record(first).is_some_and(|record| edited.selected.contains(&record));
         let lines: Vec<String> = findings
             .iter()
             .map(|finding| format!("{} {}: {}", finding.rule.code, finding.message, finding.expected))

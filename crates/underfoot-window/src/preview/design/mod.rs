@@ -38,13 +38,14 @@ use canvas::Canvas;
 use edited::{EditMessage, EditedLayout};
 
 use crate::edit::{Document, LayoutFile};
+use crate::platform::FileInbox;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostics, Kinds};
 use underfoot::widget::WidgetId;
 
+pub use crate::platform::usual_state;
 pub(super) use threshold::{Threshold, set_threshold, undo_design};
-pub use underfoot::schema::usual_state;
 
 /// The initial state of Design mode.
 pub struct DesignInput {
@@ -96,6 +97,8 @@ struct Storage {
     slot: Option<shelf::Slot>,
     /// The file that the program watches for changes.
     watched: Option<PathBuf>,
+    /// Files that the user drops on the window or chooses.
+    inbox: FileInbox,
 }
 
 /// The panes that F6 reaches.
@@ -185,6 +188,7 @@ impl Designer {
                 state,
                 slot,
                 watched: path,
+                inbox: FileInbox::new(),
             },
             canvas: Canvas::default(),
             text: text::Editor::default(),
@@ -208,6 +212,11 @@ impl Designer {
     /// Whether the file holds all edits.
     pub(super) fn is_saved(&self) -> bool {
         self.edited.document.is_written_as(self.storage.file.known())
+    }
+
+    /// The text for its file.
+    pub(super) fn file_text(&self) -> String {
+        self.edited.document.file_text()
     }
 
     /// The name of the layout: its file name, or the name that it began with.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Key, Ui};
 
 use super::{Designer, Pane};
+use crate::platform;
 use crate::preview::feed::{LayoutCause, PreviewCommand, Warnings};
 use crate::preview::floor_view::FloorFeet;
 use crate::preview::messages::FileNote;
@@ -61,13 +62,18 @@ impl Designer {
         if ui.input(|i| i.key_pressed(Key::F2)) {
             self.turn_mode(ui.ctx(), feet);
         }
-        let dropped = ui.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped {
-            if self.open(&path) {
-                self.try_layout(shown, LayoutCause::Opened);
-            } else if let Some(message) = &self.edited.message {
-                shown.messages.note(message.text.clone());
+        if let Some(dropped) = ui.input(|i| i.raw.dropped_files.first().cloned()) {
+            self.storage.inbox.take_dropped(&dropped, ui.ctx());
+        }
+        match self.storage.inbox.next() {
+            Some(Ok(path)) if self.open(&path) => self.try_layout(shown, LayoutCause::Opened),
+            Some(Ok(_)) => {
+                if let Some(message) = &self.edited.message {
+                    shown.messages.note(message.text.clone());
+                }
             }
+            Some(Err(wrong)) => shown.messages.note(wrong),
+            None => {}
         }
         if std::mem::take(&mut shown.messages.files_changed) {
             self.take_in_files(shown);
@@ -104,7 +110,7 @@ impl Designer {
 
     /// Opens the layout called `name`, which the user has put on the floor: a built-in one, or a file.
     pub(in crate::preview) fn open_choice(&mut self, name: &str) {
-        match schema::builtin_layout(name).filter(|_| !Path::new(name).exists()) {
+        match schema::builtin_layout(name).filter(|_| !platform::is_file(Path::new(name))) {
             Some(text) => drop(self.begin_untitled(name, text)),
             None => drop(self.open(Path::new(name))),
         }

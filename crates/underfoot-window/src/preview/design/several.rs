@@ -6,14 +6,11 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{self, Ui, WidgetInfo};
 
 use super::edited::EditedLayout;
-use super::inspector::unit_name;
+use super::inspector::{EDITOR_PX, capital, unit_name, unmarked_name};
 use crate::edit::{EditRefusal, PlaceNumber, SharedNumber, TypedChange, changing, shared_number};
 use crate::preview::style::{is_entered, quiet};
 use underfoot_format::text::Text;
 use underfoot_scene::scene::Theme;
-
-/// Width of a field, in points.
-const FIELD_PX: f32 = 110.0;
 
 /// Shows place and size of the selection; `typed` holds the text of the field in which the user is typing.
 pub(super) fn shared_place(
@@ -29,7 +26,7 @@ pub(super) fn shared_place(
         let Some(shared) = shared_number(&edited.document, &items, number) else { continue };
         let name = format!("all {}", number.name());
         ui.horizontal(|ui| {
-            ui.label(format!("{} ({})", number.name(), unit_name(&edited.document)));
+            unmarked_name(ui, &format!("{} ({})", capital(number.name()), unit_name(&edited.document)));
             let plain = |value: f64| Text::rounded(value).inline();
             let value = match shared {
                 SharedNumber::Same(value) => plain(value),
@@ -40,7 +37,7 @@ pub(super) fn shared_place(
                 SharedNumber::Same(_) => String::new(),
                 SharedNumber::Mixed(least, most) => format!("{} to {}", plain(least), plain(most)),
             };
-            let edit = egui::TextEdit::singleline(&mut text).hint_text(hint).desired_width(FIELD_PX);
+            let edit = egui::TextEdit::singleline(&mut text).hint_text(hint).desired_width(EDITOR_PX);
             let field = ui.add(edit);
             field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &name));
             if field.has_focus() {

@@ -1,12 +1,14 @@
 //! Files that remain after a window closes: drafts of layouts without a file, and the list of recent files.
 
-use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use underfoot::schema::write_over;
+use crate::platform::{self, FolderLock};
 
 /// Maximum number of files in the list.
 const RECENT: usize = 8;
+
+/// Maximum length of the list, in bytes.
+const LONGEST: u64 = 1 << 20;
 
 /// Maximum number of drafts of layouts without a file that are kept side by side.
 const SLOTS: usize = 32;
@@ -16,8 +18,7 @@ const SLOTS: usize = 32;
 #[derive(Debug)]
 pub(super) struct Slot {
     pub(super) folder: PathBuf,
-    /// A locked file; the lock ends with the process, even after a crash.
-    _lock: File,
+    _lock: FolderLock,
 }
 
 impl Slot {
@@ -27,37 +28,8 @@ impl Slot {
 
     /// Locks the slot in an existing folder; `None` while another window uses it.
     fn take(folder: PathBuf) -> Option<Self> {
-        let path = folder.join(LOCK);
-        let lock = File::options().create(true).append(true).open(&path).ok()?;
-        lock.try_lock().ok()?;
-        // Another window may have removed the file since it was opened; such a lock protects nothing.
-        is_at(&lock, &path).then_some(Self { folder, _lock: lock })
-    }
-}
-
-impl Drop for Slot {
-    fn drop(&mut self) {
-        // A folder with a draft is not empty, so it stays.
-        let _ = fs::remove_file(self.folder.join(LOCK));
-        let _ = fs::remove_dir(&self.folder);
-    }
-}
-
-const LOCK: &str = "lock";
-
-/// Whether the open file is the one at `path`.
-fn is_at(file: &File, path: &Path) -> bool {
-    let (Ok(open), Ok(there)) = (file.metadata(), fs::metadata(path)) else { return false };
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        (open.dev(), open.ino()) == (there.dev(), there.ino())
-    }
-    // Other systems do not remove an open file.
-    #[cfg(not(unix))]
-    {
-        let _ = (open, there);
-        true
+        let lock = FolderLock::take(&folder)?;
+        Some(Self { folder, _lock: lock })
     }
 }
 
@@ -65,14 +37,16 @@ fn is_at(file: &File, path: &Path) -> bool {
 pub(super) fn slots(state: &Path) -> impl Iterator<Item = Slot> {
     (1..=SLOTS).filter_map(move |number| {
         let folder = Slot::folder(state, number);
-        fs::create_dir_all(&folder).ok()?;
+        platform::make_folder(&folder).ok()?;
         Slot::take(folder)
     })
 }
 
 /// The existing slots of earlier windows; dropping a slot removes its folder unless it holds a draft.
 pub(super) fn left_slots(state: &Path) -> impl Iterator<Item = Slot> {
-    let there = (1..=SLOTS).map(move |number| Slot::folder(state, number)).filter(|folder| folder.is_dir());
+    let there = (1..=SLOTS)
+        .map(move |number| Slot::folder(state, number))
+        .filter(|folder| platform::is_folder(folder));
     there.filter_map(Slot::take)
 }
 
@@ -82,21 +56,21 @@ fn list(state: &Path) -> PathBuf {
 
 /// The files that were opened last, the latest first, without those that no longer exist.
 pub(super) fn recent(state: &Path) -> Vec<PathBuf> {
-    let text = fs::read_to_string(list(state)).unwrap_or_default();
-    text.lines().take(RECENT).map(PathBuf::from).filter(|path| path.is_file()).collect()
+    let text = platform::read(&list(state), LONGEST).unwrap_or_default();
+    text.lines().take(RECENT).map(PathBuf::from).filter(|path| platform::is_file(path)).collect()
 }
 
 /// Puts a file first in the list. A failure to save the list only makes it shorter next time, so it is merely logged.
 pub(super) fn note_recent(state: &Path, path: &Path) {
-    let Ok(path) = fs::canonicalize(path) else { return };
+    let Ok(path) = platform::canonical(path) else { return };
     let mut all = recent(state);
     all.retain(|other| *other != path);
     all.insert(0, path);
     all.truncate(RECENT);
     let text: String = all.iter().filter_map(|path| Some(format!("{}\n", path.to_str()?))).collect();
-    if let Err(error) = fs::create_dir_all(state)
+    if let Err(error) = platform::make_folder(state)
         .map_err(|error| error.to_string())
-        .and_then(|()| write_over(&text, &list(state)).map_err(|error| error.to_string()))
+        .and_then(|()| platform::write_over(&text, &list(state)).map_err(|error| error.to_string()))
     {
         tracing::debug!("the list of recent files is not kept: {error}");
     }
@@ -104,6 +78,8 @@ pub(super) fn note_recent(state: &Path, path: &Path) {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
@@ -135,18 +111,6 @@ mod tests {
         }
         assert_eq!(left_slots(state.path()).count(), SLOTS);
         assert_eq!(fs::read_dir(state.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn a_lock_that_another_window_has_removed_locks_nothing() {
-        let state = tempfile::tempdir().unwrap();
-        let path = state.path().join(LOCK);
-        let lock = File::create(&path).unwrap();
-        assert!(is_at(&lock, &path));
-        fs::remove_file(&path).unwrap();
-        assert!(!is_at(&lock, &path));
-        File::create(&path).unwrap();
-        assert!(!is_at(&lock, &path) || cfg!(not(unix)));
     }
 
     #[test]

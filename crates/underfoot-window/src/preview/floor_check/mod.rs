@@ -13,8 +13,8 @@ use eframe::egui::{Key, Ui};
 use super::feed::PreviewCommand;
 use super::shown::ShownFloor;
 use underfoot::floor::{Floor, TileId};
-use underfoot::recording::TappedPackets;
 use underfoot::serve::{FeltLoad, SensorVerdict, WalkTest, Wiring, WiringTask, WiringWalk};
+use underfoot::source::TappedPackets;
 
 /// Checks a floor while the window shows it.
 pub(super) struct FloorCheck {

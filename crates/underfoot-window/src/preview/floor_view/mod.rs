@@ -30,7 +30,7 @@ use underfoot_scene::egui_painter::{self, Palette, ScreenFromFloor, color};
 use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
 
 /// The view of the floor.
-pub(super) struct FloorView {
+pub(super) struct FloorPane {
     pub(super) zoom: Zoom,
     /// The controls on the screen, in their order for the keyboard.
     controls: Vec<Id>,
@@ -55,7 +55,7 @@ pub(super) struct OnFloor<'a> {
     pub(super) has_steps: bool,
 }
 
-impl FloorView {
+impl FloorPane {
     /// A view with these layers.
     pub(super) fn new(show: Show) -> Self {
         Self {

@@ -8,7 +8,7 @@ use eframe::egui::{ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 use super::super::messages::{Happened, WindowMessages};
 use super::super::near_misses::NearMiss;
 use super::super::style::{TextRow, quiet, section};
-use underfoot::engine::IgnoredPress;
+use underfoot::engine::{Ignored, IgnoredPress};
 use underfoot::messages::MessageNews;
 use underfoot::outgoing::json::{event_line, ignored_line, sent_line};
 use underfoot::units::Instant;
@@ -119,9 +119,29 @@ fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
     let line = TextRow { ui, rect, size: 12.5 };
     line.right(0.19, &format!("{:.3}", press.at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, press.id.as_str(), color(theme.ink));
-    line.left(0.58, 0.86, &press.why.to_string(), color(theme.warning));
+    line.left(0.58, 0.86, &in_short(press.why), color(theme.warning));
     line.right(1.0, &format!("{:.0} N", press.force.0), color(theme.ink));
     response.on_hover_text(spoken);
+}
+
+/// The reason for which a press was ignored, in a word or two that fit their column.
+fn in_short(why: Ignored) -> String {
+    let words = match why {
+        Ignored::Off(_) => "it is off",
+        Ignored::Step => "a step, a rest",
+        Ignored::Object => "an object",
+        Ignored::Stance => "stands there",
+        Ignored::OutsideRegion => "from outside",
+        Ignored::OtherFoot => "other foot",
+        Ignored::SlidOn => "slid onto it",
+        Ignored::NotSeenUnloaded => "was loaded",
+        Ignored::Unbelieved => "bad forces",
+        Ignored::Guard => "not settled",
+        Ignored::TooLight => "too light",
+        Ignored::TooShort => "too short",
+        other => return other.to_string(),
+    };
+    words.to_owned()
 }
 
 /// Shows a message to another program: its target on the right, all of it on hover.
@@ -202,7 +222,6 @@ fn value(kind: EventKind) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use underfoot::engine::Ignored;
     use underfoot::sense::ContactId;
     use underfoot::units::Newtons;
     use underfoot::widget::WidgetId;

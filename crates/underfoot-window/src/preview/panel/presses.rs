@@ -38,7 +38,12 @@ const SHOWN: &str = "Each press a dot: green was answered, orange too light or t
 /// A request of the user in this part.
 #[derive(Clone, Copy)]
 enum Wish {
-    Use(Newtons),
+    /// Set the threshold, and save the layout if `saves`.
+    Use {
+        press: Newtons,
+        saves: bool,
+    },
+    Save,
     Forget,
     Count(usize, bool),
     Undo,
@@ -59,8 +64,15 @@ pub(super) fn presses_part(
     let (id, thresholds) = (widget.id.clone(), widget.behaviour.thresholds());
     let title = if widget.label.is_empty() { id.to_string() } else { in_drawn_order(&widget.label).into() };
     let mut is_plotted = false;
+    let mut wish = None;
+    let has_presses = presses.of(&id).next().is_some();
     section(ui, theme, &format!("Control {title}"), |ui| {
         is_plotted = plot_button(ui, id.as_str());
+        let forget = ui.add_enabled(has_presses, Button::new("Forget").small());
+        forget.widget_info(|| WidgetInfo::labeled(Role::Button, has_presses, "Forget presses"));
+        if forget.on_hover_text("Forget the presses of this control").clicked() {
+            wish = Some(Wish::Forget);
+        }
     });
     if is_plotted {
         plots.add_control(layout, &id);
@@ -72,30 +84,11 @@ pub(super) fn presses_part(
     for line in lines(spread.as_ref(), people) {
         ui.add(Label::new(quiet(theme, line).size(12.5)).truncate()).on_hover_text(PEOPLE);
     }
-    let can_set = designer.is_some();
     let proposal = propose_press(&forces);
-    let mut wish = None;
-    ui.horizontal(|ui| {
-        let force = proposal.map(|proposal| proposal.press);
-        let text = force.map_or("Use this press".into(), |force| format!("Use this press: {:.0} N", force.0));
-        let button = ui.add_enabled(can_set && force.is_some(), Button::new(text));
-        button.widget_info(|| WidgetInfo::labeled(Role::Button, force.is_some(), "Use this press"));
-        let hint = "Half of the lightest press that counts, no less than the 35 N of a foot at rest";
-        if button.on_hover_text(hint).clicked() {
-            wish = force.map(Wish::Use);
-        }
-        let forget = ui.add_enabled(!all.is_empty(), Button::new("Forget"));
-        forget.widget_info(|| WidgetInfo::labeled(Role::Button, !all.is_empty(), "Forget presses"));
-        if forget.on_hover_text("Forget the presses of this control").clicked() {
-            wish = Some(Wish::Forget);
-        }
-        if presses.told.as_ref().is_some_and(|(told, _)| *told == id)
-            && ui.button("Undo").on_hover_text("Take the threshold back; Ctrl+Z does the same").clicked()
-        {
-            wish = Some(Wish::Undo);
-        }
-    });
     let told = presses.told.as_ref().filter(|(told, _)| *told == id);
+    let force = proposal.map(|proposal| proposal.press);
+    let chosen = ui.horizontal(|ui| threshold_buttons(ui, force, told.is_some(), designer.as_deref()));
+    wish = chosen.inner.or(wish);
     let words = match (told, proposal) {
         (Some((_, told)), _) => told.clone(),
         (None, None) => {
@@ -127,17 +120,56 @@ pub(super) fn presses_part(
     }
 }
 
+/// The buttons that set the threshold to `force`, and once it is set, take it back or save it.
+fn threshold_buttons(
+    ui: &mut Ui,
+    force: Option<Newtons>,
+    is_set: bool,
+    designer: Option<&Designer>,
+) -> Option<Wish> {
+    let mut wish = None;
+    let can_set = designer.is_some() && force.is_some();
+    let text = force.map_or("Use this press".into(), |force| format!("Use this press: {:.0} N", force.0));
+    let button = ui.add_enabled(can_set, Button::new(text));
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, can_set, "Use this press"));
+    let hint = "Half of the lightest press that counts, no less than the 35 N of a foot at rest";
+    if button.on_hover_text(hint).clicked() {
+        wish = force.map(|press| Wish::Use { press, saves: false });
+    }
+    if !is_set {
+        let hint = "The same, and saves the layout, as Ctrl+S does";
+        let button = ui.add_enabled(can_set, Button::new("Use and save")).on_hover_text(hint);
+        return if button.clicked() { force.map(|press| Wish::Use { press, saves: true }) } else { wish };
+    }
+    if ui.button("Undo").on_hover_text("Take the threshold back; Ctrl+Z does the same").clicked() {
+        wish = Some(Wish::Undo);
+    }
+    let is_unsaved = designer.is_some_and(|designer| !designer.is_saved());
+    if is_unsaved && ui.button("Save").on_hover_text("Ctrl+S does the same").clicked() {
+        wish = Some(Wish::Save);
+    }
+    wish
+}
+
 fn grant(
     id: &WidgetId,
     wish: Wish,
     shown: &ShownFloor,
     presses: &mut PressLog,
-    designer: Option<&mut Designer>,
+    mut designer: Option<&mut Designer>,
 ) {
     match wish {
-        Wish::Use(force) => {
-            let told = set_threshold(designer, shown, id, Threshold::Press, force);
+        Wish::Use { press, saves } => {
+            let told = set_threshold(designer.as_deref_mut(), shown, id, Threshold::Press, press);
             presses.told = Some((id.clone(), told));
+            if let Some(designer) = designer.filter(|_| saves) {
+                designer.save();
+            }
+        }
+        Wish::Save => {
+            if let Some(designer) = designer {
+                designer.save();
+            }
         }
         Wish::Forget => presses.forget(id),
         Wish::Count(number, counts) => presses.let_count(id, number, counts),

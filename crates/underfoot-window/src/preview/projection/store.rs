@@ -8,8 +8,7 @@ use glam::Vec2;
 use super::brightness::Brightness;
 use super::pair::{ProjectorPair, ProjectorSetup};
 use super::placement::Placement;
-use underfoot::schema::save_text;
-use underfoot_format::file::read_bounded;
+use crate::platform;
 
 /// The file's first line.
 const HEAD: &str = "underfoot projection 2";
@@ -122,7 +121,7 @@ fn read(text: &str) -> Result<ProjectorPair, String> {
 /// # Errors
 /// Returns a sentence that describes the problem.
 pub(super) fn load(path: &Path) -> Result<Option<ProjectorPair>, String> {
-    match read_bounded(path, LONGEST) {
+    match platform::read(path, LONGEST) {
         Ok(text) => read(&text).map(Some).map_err(|wrong| format!("{}: {wrong}", path.display())),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(format!("{}: {error}", path.display())),
@@ -135,9 +134,9 @@ pub(super) fn load(path: &Path) -> Result<Option<ProjectorPair>, String> {
 /// Returns a sentence that describes the problem.
 pub(super) fn save(pair: &ProjectorPair, path: &Path) -> Result<(), String> {
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        platform::make_folder(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
-    save_text(&write(pair), path).map(drop).map_err(|error| error.to_string())
+    platform::save(&write(pair), path).map(drop).map_err(|error| error.to_string())
 }
 
 /// The default file of the setups: in the folder in which egui stores the data of apps; `None` if the system names no

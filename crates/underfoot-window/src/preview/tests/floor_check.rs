@@ -6,8 +6,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::*;
 use crate::preview::floor_check::FloorCheck;
-use underfoot::recording::TappedPackets;
-use underfoot::source::{FloorInput, SensorSource, SourceError};
+use underfoot::source::{FloorInput, SensorSource, SourceError, TappedPackets};
 use underfoot::wire::{LinkCounters, SensorPacket};
 use underfoot_sim::{SensorFault, SimConfig, SimFloor};
 
@@ -65,7 +64,7 @@ impl Site {
         let feet = Arc::<Mutex<Vec<underfoot_sim::Foot>>>::default();
         let (waiting, ms) = (std::collections::VecDeque::new(), 0);
         let boards = Boards { sim, feet: Arc::clone(&feet), swapped, waiting, ms };
-        let input = tap.wrap(boards, floor.geometry);
+        let input = tap.wrap(boards);
         let mut room = Room::of(false, 1280.0, 800.0);
         room.window.state_mut().floor_check = Some(FloorCheck::new(packets));
         room.run(2);

@@ -11,6 +11,7 @@ mod plots;
 mod presses;
 mod projection;
 mod server;
+mod share;
 mod stage;
 mod status;
 mod texts;
@@ -253,6 +254,6 @@ fn everything_that_can_be_worked_has_a_name_and_room_at_every_size() {
 #[test]
 fn why_there_is_no_window_is_said_without_source_lines() {
     let winit = "winit EventLoopError: os error at /somewhere/linux/mod.rs:765: neither WAYLAND_DISPLAY nor DISPLAY is set.";
-    assert_eq!(super::reason(winit), "neither WAYLAND_DISPLAY nor DISPLAY is set");
-    assert_eq!(super::reason("no matching configs"), "no matching configs");
+    assert_eq!(super::desktop::reason(winit), "neither WAYLAND_DISPLAY nor DISPLAY is set");
+    assert_eq!(super::desktop::reason("no matching configs"), "no matching configs");
 }

@@ -97,6 +97,22 @@ fn this_press_becomes_the_threshold_as_one_step_that_is_taken_back() {
 }
 
 #[test]
+fn this_press_is_used_and_saved_at_once_or_saved_later() {
+    let mut room = map_room();
+    room.write(pressed_home());
+    room.window.get_by_label("Use and save").click();
+    room.run(3);
+    assert_eq!(tried(&room), Some((Newtons(35.0), Newtons(23.0))));
+    assert!(room.says("Save as"), "a layout without a file asks for its path");
+    room.window.key_press(Key::Escape);
+    room.run(3);
+    assert!(!room.says("Use and save") && room.says("Undo"), "it is used");
+    room.window.get_by_role_and_label(Role::Button, "Save").click();
+    room.run(3);
+    assert!(room.says("Save as"));
+}
+
+#[test]
 fn the_key_takes_a_threshold_back_and_stepping_on_the_floor_never_sets_one() {
     let mut room = map_room();
     let before = text(&room);

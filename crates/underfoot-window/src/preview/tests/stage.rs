@@ -96,7 +96,7 @@ fn the_floor_keeps_at_least_half_of_a_narrow_window_whatever_is_open() {
 }
 
 #[test]
-#[ignore = "the fit beside open plots is not finished"]
+#[ignore = "not finished: the fit keeps the size of a floor that is covered at its side only"]
 fn what_a_panel_covers_can_be_fitted_into_view_and_back() {
     let mut room = room(1280.0, 800.0);
     let before = home(&room);

@@ -3,15 +3,12 @@
 use eframe::egui::accesskit::Role;
 use eframe::egui::{ComboBox, Response, Ui, WidgetInfo};
 
-use super::field::{FieldAnswer, FieldEdits, ShownField};
+use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, ShownField};
 use super::number::{NumberField, number, written};
 use super::words::{choice, label, start};
 use crate::edit::quoted;
 use underfoot_format::describe::{Description, FieldType};
 use underfoot_format::outline::Outline;
-
-/// Width of a drop-down, in points.
-const CHOICE_PX: f32 = 126.0;
 
 /// The choices for a field, as the file writes them; `None` for a field that is no choice.
 pub(super) fn choices(field: &ShownField<'_>) -> Option<Vec<String>> {
@@ -42,7 +39,7 @@ pub(super) fn choices(field: &ShownField<'_>) -> Option<Vec<String>> {
 pub(super) fn drop_down(ui: &mut Ui, name: &str, shown: &str, all: &[String]) -> (Option<String>, Response) {
     let mut chosen = None;
     let name = label(name);
-    let menu = ComboBox::from_id_salt(("choice", &name)).selected_text(shown).width(CHOICE_PX).height(360.0);
+    let menu = ComboBox::from_id_salt(("choice", &name)).selected_text(shown).width(EDITOR_PX).height(360.0);
     let menu = menu.truncate().show_ui(ui, |ui| {
         for one in all {
             let plain = choice(one);

@@ -7,8 +7,8 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::color_picker::{Alpha, color_picker_color32};
 use eframe::egui::{Popup, PopupCloseBehavior, RichText, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
-use super::field::{FieldAnswer, FieldEdits, ShownField, TypedTexts};
-use super::text::{TYPED_PX, typed};
+use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, ShownField, TypedTexts};
+use super::text::typed;
 use super::words::label;
 use crate::edit::quoted;
 use underfoot::layout::{Colour, Layout};
@@ -55,7 +55,7 @@ pub(super) fn colour(
         offered.or(mixed)
     });
     let picked = picked.and_then(|picked| picked.inner);
-    let width = TYPED_PX - SWATCH.x - ui.spacing().item_spacing.x;
+    let width = EDITOR_PX - SWATCH.x - ui.spacing().item_spacing.x;
     let (entered, text) = typed(ui, field, texts, true, width);
     (picked.or(entered), text)
 }

@@ -13,14 +13,20 @@ use underfoot::layout::Widget;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
 
-/// Width of a field's name, in points.
-const NAME_PX: f32 = 104.0;
+/// Maximum width of a field's name, in points: that of the longest one. A row that has less room wraps it.
+const NAME_PX: f32 = 118.0;
+
+/// Minimum width of a field's name, in points: that of the longest word.
+const WORD_PX: f32 = 72.0;
+
+/// Distance between the parts of a row, in points.
+pub(super) const GAP_PX: f32 = 6.0;
+
+/// Width of the editor of a text or a choice, in points.
+pub(in crate::preview::design) const EDITOR_PX: f32 = 126.0;
 
 /// Width of the mark before it, in points.
 const MARK_PX: f32 = 8.0;
-
-/// Width of a row in a window with room for all panels, in points.
-const FULL_PX: f32 = 302.0;
 
 /// Width of the button that resets a field, in points.
 pub(super) const RESET_PX: f32 = 22.0;
@@ -100,19 +106,31 @@ pub(super) fn name(ui: &mut Ui, field: &ShownField<'_>) {
     let is_written = property.origin == FieldOrigin::Written;
     let ink = color(if is_written { theme.ink } else { theme.quiet });
     let text = if is_written { RichText::new(text).strong() } else { RichText::new(text) };
-    // In a narrow window the names give up the width that the row lacks.
-    let width = NAME_PX - (FULL_PX - ui.max_rect().width()).clamp(0.0, 0.4 * NAME_PX);
+    name_cell(ui, text.color(ink)).on_hover_ui(|ui| {
+        ui.label(RichText::new(&property.name).monospace());
+        ui.label(&property.about);
+        ui.label(RichText::new(format!("{}; {}", property.told, origin(&property.origin))).weak());
+    });
+}
+
+/// A name in the column before the editors, with a line break where the row has no room for it.
+pub(super) fn name_cell(ui: &mut Ui, text: RichText) -> Response {
+    let rest = MARK_PX + EDITOR_PX + RESET_PX + 3.0 * ui.spacing().item_spacing.x;
+    let width = (ui.max_rect().width() - rest).clamp(WORD_PX, NAME_PX);
     let size = vec2(width, ROW_PX);
-    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+    let cell = ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);
         ui.set_max_width(width);
-        let shown = ui.add(egui::Label::new(text.color(ink)).truncate());
-        shown.on_hover_ui(|ui| {
-            ui.label(RichText::new(&property.name).monospace());
-            ui.label(&property.about);
-            ui.label(RichText::new(format!("{}; {}", property.told, origin(&property.origin))).weak());
-        });
+        ui.add(egui::Label::new(text).wrap())
     });
+    cell.inner
+}
+
+/// The beginning of a row without a mark.
+pub(in crate::preview::design) fn unmarked_name(ui: &mut Ui, text: &str) {
+    ui.spacing_mut().item_spacing.x = GAP_PX;
+    ui.allocate_exact_size(vec2(MARK_PX, ROW_PX), Sense::hover());
+    name_cell(ui, RichText::new(text));
 }
 
 /// The origin of a value, in words.
@@ -149,11 +167,13 @@ pub(super) fn value_ink(field: &ShownField<'_>) -> Option<Color32> {
     (field.property.origin != FieldOrigin::Written).then(|| color(field.theme.quiet))
 }
 
-/// The end of a row: a button that resets a written field, or a word for values that differ.
+/// The end of a row: a button that resets a written field, or a sign for values that differ.
 pub(super) fn reset(ui: &mut Ui, field: &ShownField<'_>) -> Option<Edit> {
     let property = field.property;
     if property.origin == FieldOrigin::Several {
-        ui.label(RichText::new("differs").size(11.5).color(color(field.theme.quiet)));
+        let differs = ui.label(RichText::new("≠").color(color(field.theme.quiet)));
+        differs.widget_info(|| WidgetInfo::labeled(Role::Label, true, "differs"));
+        differs.on_hover_text(origin(&property.origin));
         return None;
     }
     if property.origin != FieldOrigin::Written || KEPT.contains(&property.name.as_str()) {

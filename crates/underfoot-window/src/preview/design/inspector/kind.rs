@@ -5,6 +5,7 @@ use eframe::egui::{CollapsingHeader, RichText, Sense, Ui, WidgetInfo, vec2};
 
 use super::super::edited::EditedLayout;
 use super::super::palette::{PaletteThing, draw_thing, is_shipped};
+use super::field::name_cell;
 use super::words::{capital, choice, label};
 use crate::edit::{Address, Document, FieldOrigin, Property};
 use crate::preview::style::{quiet, section};
@@ -47,11 +48,14 @@ pub(super) fn show(
     ui.label(quiet(theme, home));
     for part in Document::fields_of_kind(kind) {
         let title = RichText::new(capital(&part.title)).strong().color(color(theme.ink));
-        CollapsingHeader::new(title).id_salt(("kind", &part.title)).default_open(true).show(ui, |ui| {
-            for property in part.properties.iter().filter(|property| !property.value.is_empty()) {
-                value(ui, theme, property);
-            }
-        });
+        CollapsingHeader::new(title).id_salt(("kind", &part.title)).default_open(true).show_unindented(
+            ui,
+            |ui| {
+                for property in part.properties.iter().filter(|property| !property.value.is_empty()) {
+                    value(ui, theme, property);
+                }
+            },
+        );
     }
     let made = edited.items.iter().filter(|item| {
         let widget = edited.layout().widgets.get(item.widgets.start);
@@ -74,15 +78,10 @@ fn value(ui: &mut Ui, theme: &Theme, property: &Property) {
     let is_set = property.origin == FieldOrigin::Written;
     let ink = if is_set { theme.ink } else { theme.quiet };
     ui.horizontal(|ui| {
-        ui.add_sized([110.0, 16.0], |ui: &mut Ui| {
-            ui.with_layout(eframe::egui::Layout::left_to_right(eframe::egui::Align::Center), |ui| {
-                ui.label(RichText::new(label(&property.name)).color(color(theme.quiet)))
-            })
-            .inner
-            .on_hover_text(format!("{}\n{}", property.name, property.about))
-        });
+        name_cell(ui, RichText::new(label(&property.name)).color(color(theme.quiet)))
+            .on_hover_text(format!("{}\n{}", property.name, property.about));
         let text = RichText::new(told(property)).color(color(ink));
-        ui.add(eframe::egui::Label::new(text).truncate());
+        ui.add(eframe::egui::Label::new(text).wrap());
     });
 }
 

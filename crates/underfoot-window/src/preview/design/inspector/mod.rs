@@ -11,6 +11,7 @@ mod place;
 mod problems;
 mod sections;
 mod send_choices;
+mod send_devices;
 mod sends;
 mod text;
 mod value;
@@ -24,6 +25,7 @@ use super::several::shared_place;
 use super::{Pane, Panes};
 use crate::edit::{Address, Edit, FieldSection, RecordList};
 use crate::preview::PreviewCommand;
+use crate::preview::stage::INSPECTOR_PX;
 use crate::preview::style::{panel_frame, quiet, section};
 use effect::Waveforms;
 use field::{FieldEdits, TypedTexts};
@@ -32,7 +34,8 @@ use problems::{FieldProblem, problems_of};
 use underfoot_scene::egui_painter::Palette;
 use underfoot_scene::scene::{Theme, in_drawn_order};
 
-pub(super) use field::unit_name;
+pub(super) use field::{EDITOR_PX, unit_name, unmarked_name};
+pub(super) use words::capital;
 #[cfg(test)]
 pub(super) use words::label;
 
@@ -75,9 +78,6 @@ struct RefusedEdit {
 
 /// The edits of one frame, and the field from which they come.
 type FrameEdits = Option<(String, FieldEdits)>;
-
-/// Width of the inspector, in points.
-const INSPECTOR_PX: f32 = 330.0;
 
 impl Inspector {
     /// Shows the inspector, at most `widest` points wide.

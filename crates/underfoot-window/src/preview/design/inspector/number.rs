@@ -3,7 +3,7 @@
 use eframe::egui::accesskit::Role;
 use eframe::egui::{DragValue, Response, Slider, SliderClamping, Ui, WidgetInfo};
 
-use super::field::{FieldAnswer, FieldEdits, RESET_PX, ShownField};
+use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, RESET_PX, ShownField};
 use super::words::{label, start, usual_range};
 use crate::edit::{Edit, pressing};
 use underfoot::units::Newtons;
@@ -127,6 +127,17 @@ pub(super) fn optional(ui: &mut Ui, field: &ShownField<'_>, of: NumberField<'_>)
     }
 }
 
+/// A number that is absent and would follow from another field, which is absent too.
+pub(super) fn following(ui: &mut Ui, field: &ShownField<'_>) -> FieldAnswer {
+    (None, ui.label("off").on_hover_text(plain_names(&field.property.value)))
+}
+
+/// `text` with the plain names of the fields that stand in it by their names in files, between backquotes.
+fn plain_names(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    parts.map(|(at, part)| if at % 2 == 1 { format!("“{}”", label(part)) } else { part.to_owned() }).collect()
+}
+
 fn is_absent(value: &str) -> bool {
     value.is_empty() || value == "None"
 }
@@ -145,7 +156,8 @@ pub(super) fn pair(
             .speed(((of.range.1 - of.range.0) * 2e-3).min(0.1))
             .max_decimals(4)
             .update_while_editing(false);
-        let drag = ui.add_sized([66.0, ui.spacing().interact_size.y], drag);
+        let width = 0.5 * (EDITOR_PX - ui.spacing().item_spacing.x);
+        let drag = ui.add_sized([width, ui.spacing().interact_size.y], drag);
         let spoken = format!("{name}: {}", ["first", "second"][side]);
         drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &spoken));
         drag
@@ -174,6 +186,12 @@ mod tests {
         assert_eq!(step(0.0, 400.0, false), 5.0);
         assert!((step(0.0, 1.0, false) - 0.01).abs() < 1e-9);
         assert_eq!(step(0.0, 9.0, true), 1.0);
+    }
+
+    #[test]
+    fn fields_in_a_default_are_called_by_their_plain_names() {
+        assert_eq!(plain_names("0.67 of `press_share`"), "0.67 of “Takes of weight”");
+        assert_eq!(plain_names("3"), "3");
     }
 
     #[test]

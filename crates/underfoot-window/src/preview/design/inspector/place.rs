@@ -4,9 +4,8 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{DragValue, Ui, WidgetInfo};
 use glam::Vec2;
 
-use super::field::{FieldAnswer, FieldEdits, ROW_PX, ShownField, unit_name};
+use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, ROW_PX, ShownField, unit_name};
 use super::number::two_numbers;
-use super::text::TYPED_PX;
 use super::words::label;
 use crate::edit::{Edit, FieldOrigin};
 use underfoot::floor::Rect;
@@ -26,7 +25,7 @@ pub(super) fn place(ui: &mut Ui, field: &ShownField<'_>, before: [f64; 2]) -> Fi
             .custom_parser(move |text| length(text, unit[side]))
             .update_while_editing(false);
         // Both numbers are as wide as one text.
-        let width = 0.5 * (TYPED_PX - ui.spacing().item_spacing.x);
+        let width = 0.5 * (EDITOR_PX - ui.spacing().item_spacing.x);
         let drag = ui.add_sized([width, ROW_PX], drag);
         let name = format!("{spoken}: {}", names[side]);
         drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &name));

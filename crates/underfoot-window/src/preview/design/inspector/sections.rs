@@ -6,7 +6,7 @@ use eframe::egui::{RichText, Sense, Ui, WidgetInfo, vec2};
 
 use super::super::edited::EditedLayout;
 use super::super::palette::draw_widget;
-use super::field::{self, FieldEdits, ShownField};
+use super::field::{self, FieldEdits, GAP_PX, ShownField};
 use super::problems::FieldProblem;
 use super::words::{self, capital};
 use super::{FrameEdits, Inspector, choice, colour, effect, value};
@@ -47,8 +47,9 @@ impl Inspector {
             }
             let heading = RichText::new(title).strong().color(color(ink));
             let id = ("part", number, is_shared);
-            egui::CollapsingHeader::new(heading).id_salt(id).default_open(number < 2).show(ui, |ui| {
-                ui.spacing_mut().item_spacing.x = 6.0;
+            let part_of = egui::CollapsingHeader::new(heading).id_salt(id).default_open(number < 2);
+            part_of.show_unindented(ui, |ui| {
+                ui.spacing_mut().item_spacing.x = GAP_PX;
                 self.source(ui, theme, edited, part);
                 for property in &part.properties {
                     let is_led = std::mem::take(&mut self.is_led);

@@ -1,8 +1,8 @@
 //! The choices for a message of a control: its times, and its contents for each sort of target.
 
 use underfoot::messages::{
-    BendSettings, ControllerSettings, KeyStroke, MouseButton, NoteSettings, OscSettings, Payload,
-    PressureSettings, ProgramSettings, Sending, TargetSort, Trigger, When,
+    BendSettings, ControllerSettings, DmxSettings, KeyStroke, MouseButton, MqttSettings, NoteSettings,
+    OscSettings, Payload, PressureSettings, ProgramSettings, Sending, TargetSort, Trigger, When,
 };
 use underfoot::widget::{Behaviour, Guard};
 use underfoot_format::Named;
@@ -45,6 +45,9 @@ pub(super) fn contents(sort: TargetSort, when: When) -> Vec<Payload> {
         Some(Payload::Program(0, ProgramSettings { channel: 1 })),
         Some(Payload::Bend(BendSettings { channel: 1, from: -8192, to: 8191 })),
         Some(Payload::Pressure(PressureSettings { channel: 1, key: None, from: 0, to: 127 })),
+        Some(Payload::Dmx(DmxSettings::of(1))),
+        Some(Payload::Mqtt("floor/control".into(), MqttSettings::PLAIN)),
+        Some(Payload::Run(Vec::new())),
     ];
     all.into_iter().flatten().filter(|payload| payload.sort() == sort && payload.suits(when)).collect()
 }
@@ -62,6 +65,9 @@ pub(super) const fn content_name(payload: &Payload) -> &'static str {
         Payload::Program(..) => "program",
         Payload::Bend(_) => "pitch bend",
         Payload::Pressure(_) => "pressure",
+        Payload::Dmx(_) => "DMX channel",
+        Payload::Mqtt(..) => "MQTT message",
+        Payload::Run(_) => "start",
     }
 }
 
@@ -95,10 +101,12 @@ mod tests {
     #[test]
     fn every_kind_of_control_can_send_something_to_every_sort_of_target() {
         for kind in Kinds::builtin().iter() {
-            for sort in [TargetSort::Keyboard, TargetSort::Osc, TargetSort::Midi] {
+            for sort in TargetSort::ALL {
                 let sending = first(&kind.behaviour, "there", sort);
                 assert!(sending.is_some(), "{} to {}", kind.name, sort.noun());
-                for when in times(&kind.behaviour) {
+                // A program starts at events only.
+                let suits = |when: &When| !contents(sort, *when).is_empty();
+                for when in times(&kind.behaviour).into_iter().filter(suits) {
                     let moved = refitted(&Sending { when, ..sending.clone().unwrap() }, sort);
                     assert!(moved.is_some_and(|it| it.payload.suits(when)), "{} {when}", kind.name);
                 }

@@ -13,7 +13,7 @@ use underfoot::layout::Widget;
 use underfoot::messages::{
     KeyStroke, MAX_MESSAGES, MidiNote, MouseButton, Payload, SendTarget, Sending, TargetSort,
 };
-use underfoot::schema::{FORMAT_VERSION, written_messages};
+use underfoot::schema::{version_with, written_messages};
 use underfoot_format::Named;
 use underfoot_scene::scene::Theme;
 
@@ -24,8 +24,14 @@ const PART_PX: f32 = 126.0;
 const FIELD: &str = "send";
 
 /// Targets that a layout without one can begin with.
-const BEGINNINGS: [(&str, TargetSort); 3] =
-    [("keys", TargetSort::Keyboard), ("desk", TargetSort::Osc), ("synth", TargetSort::Midi)];
+const BEGINNINGS: [(&str, TargetSort); 6] = [
+    ("keys", TargetSort::Keyboard),
+    ("desk", TargetSort::Osc),
+    ("synth", TargetSort::Midi),
+    ("lights", TargetSort::Dmx),
+    ("home", TargetSort::Mqtt),
+    ("program", TargetSort::Program),
+];
 
 impl Inspector {
     /// Shows the messages of `widget` for editing; returns the edits of one, if any.
@@ -63,7 +69,7 @@ impl Inspector {
                         }
                         _ => format!("[{target}]"),
                     };
-                    let mut edits = raised(edited);
+                    let mut edits = raised(edited, version_with(sort));
                     edits.push(Edit::set(&Address::LAYOUT, "targets", all));
                     edits
                 }
@@ -76,16 +82,17 @@ impl Inspector {
 
 /// The edits that write `sendings`.
 fn set(edited: &EditedLayout, record: &Address, sendings: &[Sending]) -> Vec<Edit> {
-    let mut edits = raised(edited);
+    let first = edited.layout().targets.iter().map(|target| version_with(target.to.sort())).max();
+    let mut edits = first.map(|first| raised(edited, first)).unwrap_or_default();
     edits.push(Edit::set(record, FIELD, written_messages(sendings)));
     edits
 }
 
-/// The edit that raises the version of an older file, which has no messages.
-fn raised(edited: &EditedLayout) -> Vec<Edit> {
+/// The edit that raises the version of a file older than the `first` one with such messages.
+fn raised(edited: &EditedLayout, first: u32) -> Vec<Edit> {
     let version = edited.document.written(&Address::LAYOUT, "version").and_then(|text| text.parse().ok());
-    let is_old = version.is_some_and(|version: u32| version < FORMAT_VERSION);
-    is_old.then(|| Edit::set(&Address::LAYOUT, "version", FORMAT_VERSION.to_string())).into_iter().collect()
+    let is_old = version.is_some_and(|version: u32| version < first);
+    is_old.then(|| Edit::set(&Address::LAYOUT, "version", first.to_string())).into_iter().collect()
 }
 
 /// An edit of the list.
@@ -98,8 +105,8 @@ enum ListEdit {
 }
 
 /// The list of messages of one control.
-struct MessageList<'a> {
-    theme: &'a Theme,
+pub(super) struct MessageList<'a> {
+    pub(super) theme: &'a Theme,
     widget: &'a Widget,
     targets: &'a [SendTarget],
     texts: &'a mut TypedTexts,
@@ -224,6 +231,7 @@ impl MessageList<'_> {
                 settings.channel = channel;
                 Some(Payload::Bend(settings))
             }
+            Payload::Dmx(_) | Payload::Mqtt(..) | Payload::Run(_) => self.device(ui, index, now),
             Payload::Pressure(settings) => {
                 let channel = channel(ui, &name("Channel"), settings.channel)?;
                 let mut settings = *settings;
@@ -234,7 +242,7 @@ impl MessageList<'_> {
     }
 
     /// A text field; returns its text once the user has finished.
-    fn typed(&mut self, ui: &mut Ui, name: &str, now: &str) -> Option<String> {
+    pub(super) fn typed(&mut self, ui: &mut Ui, name: &str, now: &str) -> Option<String> {
         let text = self.texts.entry(name.to_owned()).or_insert_with(|| now.to_owned());
         let field = ui.add(TextEdit::singleline(text).desired_width(PART_PX));
         field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, name));
@@ -266,7 +274,10 @@ impl MessageList<'_> {
             });
         });
         if self.targets.is_empty() {
-            ui.label(quiet(self.theme, "A message needs a target: keys and pointer, OSC, or MIDI."));
+            ui.label(quiet(
+                self.theme,
+                "A message needs a target: keys, OSC, MIDI, lights, MQTT, or a program.",
+            ));
         } else {
             ui.label(quiet(self.theme, "Only underfoot run sends; here they are listed among the events."));
         }
@@ -290,7 +301,7 @@ fn pick(ui: &mut Ui, name: &str, shown: &str, all: &[String]) -> Option<usize> {
 }
 
 /// A whole number; returns another one.
-fn whole(ui: &mut Ui, name: &str, now: i64, range: std::ops::RangeInclusive<i64>) -> Option<i64> {
+pub(super) fn whole(ui: &mut Ui, name: &str, now: i64, range: std::ops::RangeInclusive<i64>) -> Option<i64> {
     let (short, _) = name.split_once(" of ").unwrap_or((name, ""));
     ui.label(short);
     let mut number = now;

@@ -1,16 +1,12 @@
 //! Fields that are typed.
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::text::CCursor;
-use eframe::egui::text_selection::CCursorRange;
 use eframe::egui::{Key, TextEdit, Ui, WidgetInfo};
 
 use super::field::{FieldAnswer, ShownField, TypedTexts};
 use super::words::label;
 use crate::edit::{FieldOrigin, quoted};
-
-/// Width of a text field, in points.
-pub(super) const TYPED_PX: f32 = 126.0;
+use crate::preview::style::replace_by_typing;
 
 /// A text field of this width; asks for its text once the user has finished. Text in quotes is shown without them if
 /// `is_text`.
@@ -30,14 +26,7 @@ pub(super) fn typed(
     let edit = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(width));
     let name = label(&property.name);
     edit.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &name));
-    if edit.gained_focus()
-        && let Some(mut state) = TextEdit::load_state(ui.ctx(), edit.id)
-    {
-        // As in a table, typing replaces the whole value.
-        let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
-        state.cursor.set_char_range(Some(all));
-        state.store(ui.ctx(), edit.id);
-    }
+    replace_by_typing(ui, &edit, text);
     if !edit.lost_focus() || text == shown {
         return (None, edit);
     }

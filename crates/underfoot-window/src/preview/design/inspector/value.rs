@@ -7,10 +7,10 @@ use eframe::egui::accesskit::Role;
 use super::choice::{choices, chosen, variants};
 use super::colour::{colour, colour_of};
 use super::effect::effect_name;
-use super::field::{FieldAnswer, ShownField, TypedTexts};
-use super::number::{NumberField, optional, pair, required, two_numbers};
+use super::field::{EDITOR_PX, FieldAnswer, ShownField, TypedTexts};
+use super::number::{NumberField, following, optional, pair, required, two_numbers};
 use super::place::{place, place_of};
-use super::text::{TYPED_PX, typed};
+use super::text::typed;
 use super::words::{choice, label};
 use crate::edit::FieldOrigin;
 use underfoot_format::describe::FieldType;
@@ -49,20 +49,21 @@ pub(super) fn value(ui: &mut Ui, field: &ShownField<'_>, texts: &mut TypedTexts)
         FieldType::Optional(each) if property.origin != FieldOrigin::Several => {
             match NumberField::of(&property.name, each) {
                 Some(of) => optional(ui, field, of),
-                None => typed(ui, field, texts, false, TYPED_PX),
+                None => typed(ui, field, texts, false, EDITOR_PX),
             }
         }
         FieldType::Pair(_, each) => {
             match NumberField::of(&property.name, each).zip(two_numbers(&property.value)) {
                 Some((of, before)) => pair(ui, field, of, before),
-                None => typed(ui, field, texts, false, TYPED_PX),
+                None => typed(ui, field, texts, false, EDITOR_PX),
             }
         }
-        shape => match NumberField::of(&property.name, shape).zip(property.value.parse().ok()) {
-            Some((of, now)) => required(ui, field, of, now),
-            None => {
+        shape => match (NumberField::of(&property.name, shape), property.value.parse()) {
+            (Some(of), Ok(now)) => required(ui, field, of, now),
+            (Some(_), Err(_)) if property.origin == FieldOrigin::Default => following(ui, field),
+            _ => {
                 let is_text = matches!(shape, FieldType::Text(_)) && property.value != "None";
-                typed(ui, field, texts, is_text, TYPED_PX)
+                typed(ui, field, texts, is_text, EDITOR_PX)
             }
         },
     }

@@ -136,7 +136,7 @@ const CHOICES: [(&str, &str); 20] = [
     ("Press", "the press"),
     ("Release", "the release"),
     ("Largest", "the heaviest foot"),
-    ("Working", "the heaviest on a control"),
+    ("Working", "the working foot"),
     ("Each", "every foot"),
     ("East", "east"),
     ("North", "north"),
@@ -160,7 +160,7 @@ pub(super) fn choice(name: &str) -> String {
 }
 
 /// `text` with a capital letter.
-pub(super) fn capital(text: &str) -> String {
+pub(in crate::preview::design) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(char::to_uppercase);
     first.into_iter().flatten().chain(letters).collect()

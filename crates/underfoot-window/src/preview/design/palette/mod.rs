@@ -16,7 +16,7 @@ use super::edited::EditedLayout;
 use super::list::list;
 use super::list_keys::go_on;
 use super::{Pane, Panes};
-use crate::preview::style::{panel_frame, quiet, section, write_within};
+use crate::preview::style::{panel_frame, quiet, replace_by_typing, section, write_within};
 use in_hand::PutOrder;
 use thing::PaletteSection;
 use underfoot_scene::egui_painter::{Palette, color};
@@ -37,6 +37,8 @@ const RECENT: usize = 3;
 pub(super) struct ThingList {
     /// The words of the search.
     words: String,
+    /// Whether the search was used since the pointer came to it.
+    is_searched: bool,
     /// The things that were taken last, the latest first.
     recent: Vec<PaletteThing>,
 }
@@ -128,8 +130,18 @@ impl ThingList {
         if is_led {
             field.request_focus();
         }
+        replace_by_typing(ui, &field, &self.words);
         if field.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
             self.words.clear();
+        }
+        if field.has_focus() || !self.words.is_empty() {
+            self.is_searched = true;
+        } else if !field.hovered() {
+            self.is_searched = false;
+        }
+        if self.is_searched {
+            // The hint would cover the list of what is found.
+            return field;
         }
         field.on_hover_text(
             "Enter puts the first one where there is room; several at once, with labels: 3 button: Map, Help, Home; switch",

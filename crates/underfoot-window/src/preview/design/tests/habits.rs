@@ -308,7 +308,7 @@ fn several_become_as_the_first_one_is_by_a_key_or_from_the_menu() {
     desk.hold(Modifiers::NONE);
     desk.command(Modifiers::COMMAND, Key::E);
     assert!((desk.area("pan_west").size() - desk.area("home").size()).length() < 1e-4, "{}", desk.text());
-    assert!(desk.says("as home is"));
+    assert!(desk.says("made like home"));
     desk.undo();
     assert_eq!(desk.text(), first);
     desk.open_menu(home);

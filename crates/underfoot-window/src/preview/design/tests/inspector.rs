@@ -166,6 +166,27 @@ fn the_kind_of_inherited_values_is_shown_on_request() {
 }
 
 #[test]
+fn a_rule_that_a_region_leaves_out_is_the_usual_one() {
+    let mut desk = Desk::on(map(), None);
+    desk.click("Region map");
+    let shown = desk.window.get_by_role_and_label(Role::ComboBox, "Worked by").accesskit_node().value();
+    assert_eq!(shown.as_deref(), Some("the heaviest foot"));
+    desk.choose("Worked by", "every foot");
+    assert!(desk.text().contains("cursor: Each"), "{}", desk.text());
+}
+
+#[test]
+fn a_threshold_that_follows_from_another_can_be_set_once_that_is_there() {
+    let mut desk = Desk::at_home(map());
+    assert!(!desk.says("press_share"), "no name in files");
+    desk.click_in_view("Takes of weight: on");
+    desk.field("release_share").focus();
+    desk.window.run_steps(2);
+    keyboard::fill(&mut desk, "0.12");
+    assert!(desk.text().contains("release_share: 0.12"), "{}", desk.text());
+}
+
+#[test]
 fn the_name_in_files_is_told_at_the_plain_name() {
     let mut desk = Desk::at_home(map());
     let name = desk.window.get_by_role_and_label(Role::Label, "Takes").rect().center();

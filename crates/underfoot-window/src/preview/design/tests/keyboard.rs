@@ -70,7 +70,7 @@ fn the_shipped_map_is_built_from_an_empty_file_by_keyboard() {
         desk.window.run_steps(1);
         desk.key(Key::Enter);
         let values = [("id", id), ("label", label), ("size width", width), ("size depth", depth)];
-        for (name, text) in values.into_iter().chain([("at east", east), ("at north", north)]) {
+        for (name, text) in values.into_iter().chain([("at north", north), ("at east", east)]) {
             field(&mut desk, name, text);
         }
     }

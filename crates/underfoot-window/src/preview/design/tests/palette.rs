@@ -36,6 +36,24 @@ fn a_thing_is_found_by_its_name_and_put_down_by_keyboard() {
 }
 
 #[test]
+fn the_hint_of_the_search_does_not_cover_what_is_found() {
+    let mut desk = Desk::on(&empty(), None);
+    let search = desk.row("Search things").center();
+    desk.window.event(Event::PointerMoved(search));
+    desk.window.run_steps(60);
+    assert!(desk.says("several at once"), "while nothing is typed");
+    desk.button(search, true);
+    desk.button(search, false);
+    desk.window.event(Event::Text("slider".into()));
+    desk.window.event(Event::PointerMoved(search + vec2(2.0, 0.0)));
+    desk.window.run_steps(60);
+    assert!(!desk.says("several at once"));
+    desk.key(Key::Enter);
+    desk.window.run_steps(60);
+    assert!(!desk.says("several at once"), "{}", desk.text());
+}
+
+#[test]
 fn a_section_is_found_by_what_feet_do_there() {
     let mut desk = Desk::on(&empty(), None);
     assert!(desk.says("Slide") && desk.says("Walk on"));

@@ -17,6 +17,8 @@ pub(super) struct ScreenText {
     clip: Rect,
     colour: Color32,
     is_mono: bool,
+    /// Whether dots stand for a part of it.
+    is_shortened: bool,
     /// Colour under its middle; `None` over a picture.
     ground: Option<Color32>,
 }
@@ -75,7 +77,9 @@ fn of_galley(layer: LayerId, clip: Rect, shape: &TextShape, ground: Option<Color
     let is_mono = format.font_id.family == FontFamily::Monospace;
     let area = shape.visual_bounding_rect();
     let is_seen = colour.a() > 0 && area.is_positive() && !job.text.trim().is_empty();
-    is_seen.then(|| ScreenText { layer, text: job.text.clone(), area, clip, colour, is_mono, ground })
+    let is_shortened = shape.galley.elided;
+    let text = job.text.clone();
+    is_seen.then_some(ScreenText { layer, text, area, clip, colour, is_mono, is_shortened, ground })
 }
 
 /// The colour at `point` after these shapes; `None` where a picture lies there.
@@ -117,6 +121,9 @@ impl ScreenText {
     /// The reason why the text is cut in a window of this size, if it is; not if it is a text of the floor, whose
     /// visible part is `covered`, under a panel.
     fn cut(&self, window: Rect, covered: Option<Rect>) -> Option<&'static str> {
+        if self.is_shortened && self.seen().is_positive() {
+            return Some("shortened");
+        }
         let (area, clip) = (self.area, self.clip);
         let is_floor =
             |floor: Rect| floor.expand(1.0).contains_rect(clip) && clip.expand(1.0).contains_rect(floor);
@@ -184,6 +191,8 @@ mod tests {
     use super::*;
     use eframe::egui::{Align2, FontId, pos2, vec2};
 
+    use crate::preview::style::write_within;
+
     fn found(draw: impl Fn(&egui::Painter)) -> Vec<String> {
         let window = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0));
         let input = egui::RawInput { screen_rect: Some(window), ..Default::default() };
@@ -212,6 +221,10 @@ mod tests {
         let clip = Rect::from_min_size(at, vec2(30.0, 100.0));
         let cut = found(|painter| write(&painter.with_clip_rect(clip), at, Color32::WHITE));
         assert!(cut.len() == 1 && cut[0].contains("cut at its side"), "{cut:?}");
+        let short = found(|painter| {
+            write_within(painter, at, 40.0, "a word", FontId::proportional(20.0), Color32::WHITE);
+        });
+        assert!(short.len() == 1 && short[0].contains("shortened"), "{short:?}");
         let faint = found(|painter| write(painter, at, Color32::from_gray(90)));
         assert!(faint.len() == 1 && faint[0].contains("hard to read"), "{faint:?}");
         let bright = found(|painter| {

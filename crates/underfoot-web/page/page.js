@@ -1,0 +1,62 @@
+// Starts the window and its sound, and keeps the page for visits without a network.
+import init, { start } from "./underfoot.js";
+
+const cover = document.getElementById("cover");
+const state = document.getElementById("state");
+
+// A link that is opened in this page has another layout behind `#`. What is not saved stays as a draft.
+addEventListener("hashchange", () => location.reload());
+
+// Over plain HTTP from another computer, browsers have no service worker: the page then needs its server.
+if ("serviceWorker" in navigator) {
+  navigator.serviceWorker.register("offline.js").catch((error) => console.warn("no visits offline:", error));
+}
+
+// What the actuators do, as sound; from the first gesture on, as browsers ask.
+const RATE = 48000;
+let speaker = null;
+
+async function beginSound() {
+  const context = new AudioContext({ sampleRate: RATE, latencyHint: "interactive" });
+  await context.audioWorklet.addModule("sound.js");
+  const node = new AudioWorkletNode(context, "actuators", { numberOfInputs: 0, outputChannelCount: [2] });
+  node.connect(context.destination);
+  await context.resume();
+  speaker = node.port;
+}
+
+const hasSound = "AudioContext" in window && "audioWorklet" in AudioContext.prototype;
+const gestures = ["pointerdown", "pointerup", "keydown", "touchend"];
+function atGesture() {
+  gestures.forEach((name) => removeEventListener(name, atGesture, true));
+  beginSound().catch((error) => console.warn("no sound:", error));
+}
+if (hasSound) gestures.forEach((name) => addEventListener(name, atGesture, true));
+
+// A fault of the program ends its frames; the draft of the layout is in the storage.
+addEventListener("error", ({ error }) => {
+  if (!(error instanceof WebAssembly.RuntimeError)) return;
+  state.textContent = "The window has failed, which it should not. Your layout is kept as a draft: load the page again.";
+  cover.hidden = false;
+});
+
+// What the window asks of the page.
+const hooks = {
+  sound: hasSound
+    ? "Sound: all tiles in stereo, from the first click on."
+    : "No sound: this browser gives it to pages over https and on this computer alone.",
+  play: (samples) => speaker?.postMessage(samples, [samples.buffer]),
+  click: () => navigator.vibrate?.(12),
+};
+
+try {
+  await init({ module_or_path: "underfoot.wasm" });
+  await start(document.getElementById("window"), hooks.sound, hooks.play, hooks.click);
+  performance.mark("underfoot started");
+  cover.hidden = true;
+} catch (error) {
+  console.error(error);
+  state.textContent = typeof WebAssembly === "undefined"
+    ? "This browser has no WebAssembly, which the floor needs."
+    : `The window cannot open: ${error?.message ?? error}`;
+}

@@ -1,0 +1,19 @@
+//! The window of underfoot in a browser: Try and Design on a floor that is simulated in the page.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`floor`] | the simulated floor, advanced in the frames of the page |
+//! | [`clock`] | the time of that floor |
+//! | [`desk`] | layouts put on the floor, and the commands of the window |
+//! | [`kinds`] | kinds and effects: those that come with underfoot, and those of a link |
+//! | `page` | the start in a page (WebAssembly only) |
+//!
+//! All but `page` compiles for every system, and its tests run on the desktop.
+
+mod clicks;
+pub mod clock;
+pub mod desk;
+pub mod floor;
+pub mod kinds;
+#[cfg(target_arch = "wasm32")]
+pub mod page;

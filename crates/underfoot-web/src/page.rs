@@ -1,0 +1,129 @@
+//! The start in a page: the layout of the address, the floor in the frames of the page, and the window in a canvas.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::time::Duration;
+
+use js_sys::{Float32Array, Function};
+use underfoot::floor::Geometry;
+use underfoot_window::link::SharedLayout;
+use underfoot_window::preview::{
+    PreviewError, PreviewInput, PreviewOptions, ProjectionOptions, ShareDesk, run, usual_state,
+};
+use wasm_bindgen::closure::Closure;
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{JsCast, JsValue};
+use web_sys::{HtmlCanvasElement, Window};
+
+use super::floor::{FIRST, PageFloor, shipped};
+use super::kinds::OwnTexts;
+
+/// Shows the window in `canvas`, on a floor with the layout behind `#` in the address of the page. `sound` describes
+/// the sound, `play` gets its samples as a `Float32Array`, and `click` is called when a control clicks.
+///
+/// # Errors
+/// A sentence for the user if there is no window: no WebGL, for example.
+#[wasm_bindgen]
+#[allow(clippy::needless_pass_by_value, reason = "JavaScript passes values")]
+pub async fn start(
+    canvas: HtmlCanvasElement,
+    sound: String,
+    play: Function,
+    click: Function,
+) -> Result<(), JsValue> {
+    let window = web_sys::window().ok_or("there is no page")?;
+    let fragment = window.location().hash()?;
+    let (floor, mut input) = opened(&fragment, &play)?;
+    floor.tell_sound(sound);
+    let links =
+        PageLinks { address: address(&window)?, geometry: input.floor.geometry, own: floor.own_texts() };
+    input.share = Some(Box::new(links));
+    let options = PreviewOptions {
+        settings: Some(usual_state().join("window")),
+        projection: ProjectionOptions {
+            corners: Some(usual_state().join("projection.txt")),
+            ..ProjectionOptions::default()
+        },
+        ..PreviewOptions::default()
+    };
+    run_in_frames(&window, floor, click);
+    run(input, options, canvas).await.map_err(|PreviewError::NoWindow(reason)| {
+        JsValue::from(format!("this browser gives the page no WebGL ({reason})"))
+    })
+}
+
+/// The floor with the layout in `fragment`; for a link that cannot be read, the floor with the first layout, and a
+/// message that says why.
+fn opened(fragment: &str, play: &Function) -> Result<(PageFloor, PreviewInput), String> {
+    let floor = |shared: &SharedLayout| {
+        PageFloor::new(shared, player(play.clone())).map_err(|error| error.to_string())
+    };
+    let first = || floor(&shipped(FIRST));
+    if fragment.len() < 2 {
+        return first();
+    }
+    let read = SharedLayout::of_link(fragment).map_err(|error| error.to_string());
+    match read.and_then(|shared| floor(&shared)) {
+        Ok(opened) => Ok(opened),
+        Err(wrong) => {
+            let (floor, input) = first()?;
+            floor.tell(format!("The layout of the link cannot be shown; {wrong}"));
+            Ok((floor, input))
+        }
+    }
+}
+
+/// Passes samples on to the page.
+fn player(play: Function) -> impl FnMut(&[f32]) {
+    move |samples| {
+        // A page that cannot play has said so.
+        let _ = play.call1(&JsValue::NULL, &Float32Array::from(samples));
+    }
+}
+
+/// The address of this page, up to `#`.
+fn address(window: &Window) -> Result<String, JsValue> {
+    let whole = window.location().href()?;
+    Ok(whole.split('#').next().unwrap_or_default().to_owned())
+}
+
+/// Links to this page.
+struct PageLinks {
+    address: String,
+    geometry: Geometry,
+    own: OwnTexts,
+}
+
+impl ShareDesk for PageLinks {
+    fn link(&self, name: &str, text: &str) -> Result<String, String> {
+        let (kinds, effects) = self.own.all();
+        let grid =
+            (self.geometry != Geometry::default()).then(|| (self.geometry.columns(), self.geometry.rows()));
+        let shared = SharedLayout { name: name.into(), text: text.into(), grid, kinds, effects };
+        let used = shared.with_used_only(&self.geometry).map_err(|problems| problems.to_string())?;
+        let fragment = used.fragment().map_err(|error| error.to_string())?;
+        Ok(format!("{}{fragment}", self.address))
+    }
+}
+
+/// Advances the floor in each frame of the page from now on.
+fn run_in_frames(window: &Window, mut floor: PageFloor, click: Function) {
+    let frame: Rc<RefCell<Option<Closure<dyn FnMut(f64)>>>> = Rc::default();
+    let (own, page) = (Rc::clone(&frame), window.clone());
+    *frame.borrow_mut() = Some(Closure::new(move |now_ms: f64| {
+        floor.run_until(Duration::from_secs_f64((now_ms / 1e3).max(0.0)));
+        if floor.has_clicked() {
+            let _ = click.call0(&JsValue::NULL);
+        }
+        request(&page, &own);
+    }));
+    request(window, &frame);
+}
+
+/// Requests a call in the next frame of the page; a hidden page has none, and its floor stands still.
+fn request(window: &Window, frame: &RefCell<Option<Closure<dyn FnMut(f64)>>>) {
+    if let Some(frame) = frame.borrow().as_ref() {
+        // It fails only while the page is being left.
+        let _ = window.request_animation_frame(frame.as_ref().unchecked_ref());
+    }
+}

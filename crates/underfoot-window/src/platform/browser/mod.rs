@@ -1,0 +1,11 @@
+//! A page in a browser: local storage in place of files, frames in place of threads.
+
+pub(super) mod files;
+#[cfg(feature = "window")]
+pub(super) mod inbox;
+#[cfg(feature = "window")]
+pub(super) mod lock;
+#[cfg(feature = "window")]
+pub(super) mod repeat;
+#[cfg(feature = "window")]
+pub(super) mod screen;

@@ -1,0 +1,48 @@
+# The web edition: the window as WebAssembly, in a folder of static files. Read by `dev`.
+
+# The proposals that the compiler uses; every browser since 2022 has them.
+wasm_features=(bulk-memory mutable-globals multivalue nontrapping-float-to-int reference-types sign-ext)
+
+# The version of wasm-bindgen in Cargo.lock; its program must be of the very same one.
+bindgen_version() { sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p}' Cargo.lock; }
+
+# Needs of the web edition's build beyond the program's.
+install_web_tools() {
+    local version; version=$(bindgen_version)
+    rustup target add wasm32-unknown-unknown 2>/dev/null \
+        || die "the target wasm32-unknown-unknown is needed: rustup target add wasm32-unknown-unknown"
+    bindgen=$tools/wasm-bindgen-$version/bin/wasm-bindgen
+    [ -x "$bindgen" ] || CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off \
+        CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 install_step cargo install --quiet --root "$tools/wasm-bindgen-$version" \
+        --version "=$version" wasm-bindgen-cli --bin wasm-bindgen
+    [ -x "$bindgen" ] || die "wasm-bindgen $version could not be installed: cargo install wasm-bindgen-cli --version $version"
+    local wanted=crates/underfoot-web/package.json
+    if command -v npm >/dev/null && ! cmp -s "$wanted" crates/underfoot-web/node_modules/made_from.json; then
+        install_step npm install --silent --no-audit --no-fund --no-package-lock --prefix crates/underfoot-web
+        cp "$wanted" crates/underfoot-web/node_modules/made_from.json || true
+    fi
+}
+
+# Makes the folder target/web.
+build_web() {
+    local target=${CARGO_TARGET_DIR:-target}
+    local made=$target/web bindgen built optimiser=crates/underfoot-web/node_modules/.bin/wasm-opt
+    install_web_tools
+    step cargo rustc --locked --profile web --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
+    built=$target/wasm32-unknown-unknown/web/underfoot_web.wasm
+    rm -rf "$made"
+    step "$bindgen" --target web --no-typescript --out-name underfoot --out-dir "$made" "$built"
+    if [ -x "$optimiser" ]; then
+        step "$optimiser" -Os "${wasm_features[@]/#/--enable-}" "$made/underfoot_bg.wasm" -o "$made/underfoot.wasm"
+        rm "$made/underfoot_bg.wasm"
+    else
+        lacks "npm is missing, so wasm-opt does not make the page smaller"
+        mv "$made/underfoot_bg.wasm" "$made/underfoot.wasm"
+    fi
+    cp crates/underfoot-web/page/* "$made"
+    # Browsers that have an older version stored take this one when the text of offline.js differs.
+    sed -i.old "s/VERSION/$(cat "$made"/* | sha256sum | cut -c 1-16)/" "$made/offline.js"
+    rm "$made/offline.js.old"
+    say "$made: $(wc -c <"$made/underfoot.wasm") bytes of WebAssembly, $(gzip -9c "$made/underfoot.wasm" | wc -c) with gzip"
+    say "try it: python3 -m http.server --bind 127.0.0.1 --directory $made 8000, then http://127.0.0.1:8000"
+}
