@@ -89,7 +89,7 @@ pub enum StandTask {
 pub enum StandNews {
     /// A stand is measured.
     Kept(StandingMark),
-    /// A stand is measured in vain, because a sensor is at the end of its converter's range.
+    /// A stand is measured with a sensor at the end of its converter's range: it tells less.
     Saturated(StandingMark),
     /// The person moved before the end of a stand.
     Moved(StandingMark),
@@ -240,7 +240,7 @@ impl StandWalk {
         let mean = |sensor: usize| Some((sums.get(sensor)? / f64::from(moments)) as f32);
         let loaded = self.motion.loaded().filter_map(|(sensor, _)| Some((sensor, mean(sensor)?)));
         let stand = MeasuredStand { mark, loaded: loaded.collect() };
-        let is_saturated = stand.is_saturated();
+        let is_saturated = stand.saturated() > 0;
         self.data.crossings.extend(way);
         self.data.stands.push(stand);
         self.number += 1;

@@ -22,10 +22,11 @@ use crate::stop::stop_flag;
 
 /// Options of `underfoot calibrate stand`.
 ///
-/// A person of known weight stands still on five marks of each tile, both feet together with the middle between them
-/// on the mark, for three seconds each, and walks from mark to mark without leaving the floor. No load cell is
-/// needed, but the boards must send counts. One least-squares problem finds the law of every sensor: the forces add
-/// up to the weight, and the centroid lies at the mark. It reports which sensors need more stands; --tiles and
+/// A person of known weight stands still on the marks of each tile, its middle and one towards each sensor, both feet
+/// together with the middle between them on the mark, for three seconds each, and walks from mark to mark without
+/// leaving the floor. No load cell is needed, but the boards must send counts. One least-squares problem finds the law
+/// of every sensor: the forces add up to the weight, and the centroid lies at the mark. It reports which sensors need
+/// more stands; --tiles and
 /// --rounds repeat them. Ctrl-C ends the walk early and uses the stands so far.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
@@ -171,13 +172,15 @@ fn follow(
 /// Describes a mark: tile, place and direction.
 fn place(mark: &StandingMark, floor: &Floor) -> String {
     let off = 100.0 * (mark.at - floor.geometry.centre(mark.tile));
-    let along = |way: f32, less: &str, more: &str| {
-        format!("{:.1} cm {}", way.abs(), if way < 0.0 { less } else { more })
+    let along = |(way, less, more): (f32, &str, &str)| {
+        (way.abs() >= 0.05).then(|| format!("{:.1} cm {}", way.abs(), if way < 0.0 { less } else { more }))
     };
-    let place = if off.length() < 0.05 {
+    let ways: Vec<String> =
+        [(off.x, "west", "east"), (off.y, "south", "north")].into_iter().filter_map(along).collect();
+    let place = if ways.is_empty() {
         "in the middle".to_owned()
     } else {
-        format!("{} and {} of the middle", along(off.x, "west", "east"), along(off.y, "south", "north"))
+        format!("{} of the middle", ways.join(" and "))
     };
     let facing = if mark.facing == 0.0 { "north" } else { "south" };
     format!("tile {}, {place}, facing {facing}", mark.tile)
@@ -189,7 +192,7 @@ fn tell(news: StandNews) {
     match news {
         StandNews::Kept(_) => outln!("  measured{bell}"),
         StandNews::Saturated(_) => {
-            outln!("  a sensor is at the end of its range there; the stand does not count{bell}");
+            outln!("  measured, but a sensor is at the end of its range there: this stand tells less{bell}");
         }
         StandNews::Moved(_) => outln!("  moved: stand still for three seconds"),
         StandNews::Elsewhere { mark, felt } => {
@@ -253,7 +256,8 @@ fn print(fit: &StandFit, walk: &StandWalk, floor: &Floor) {
         100.0 * fit.lean_m.x
     );
     if !fit.saturated.is_empty() {
-        outln!("{} with a sensor at the end of its range left out.", count(fit.saturated.len(), "stand"));
+        let stands = count(fit.saturated.len(), "stand");
+        outln!("{stands} had a sensor at the end of its range, and told less: a lighter person tells more.");
     }
     if !fit.astray.is_empty() {
         let numbers: Vec<String> = fit.astray.iter().map(|number| (number + 1).to_string()).collect();

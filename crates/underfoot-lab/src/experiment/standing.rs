@@ -33,6 +33,9 @@ const NOISE: f32 = 0.02;
 /// Deviations of the parts from their laws: none, and the paper's 5 % of full scale.
 const DEVIATIONS: [f32; 2] = [0.0, 0.05];
 
+/// Number of marks on each tile in one round.
+const ROUND: usize = 5;
+
 /// Numbers of marks on each tile for which the laws are fitted; the last ones need a second round.
 const MARKS: [usize; 4] = [1, 3, 5, 10];
 
@@ -256,7 +259,7 @@ fn first_marks(data: &StandData, marks: usize) -> StandData {
             kept.stands.push(stand.clone());
         }
     }
-    if marks >= StandingMark::PER_TILE {
+    if marks >= ROUND {
         let share = kept.stands.len() * data.crossings.len() / data.stands.len().max(1);
         kept.crossings.extend(data.crossings.iter().take(share).cloned());
     }

@@ -1,6 +1,6 @@
 //! The measurements of a calibration by standing.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::marks::StandingMark;
 use crate::floor::{Calibration, SensorId, TileId};
@@ -77,10 +77,10 @@ impl Crossing {
 }
 
 impl MeasuredStand {
-    /// Whether a sensor is at the end of its converter's range, where its output is a lower bound.
+    /// Returns the number of sensors at the end of their converter's range, where the output is a lower bound.
     #[must_use]
-    pub fn is_saturated(&self) -> bool {
-        self.loaded.iter().any(|(_, volts)| is_saturated(*volts))
+    pub fn saturated(&self) -> usize {
+        self.loaded.iter().filter(|(_, volts)| is_saturated(*volts)).count()
     }
 }
 
@@ -127,6 +127,21 @@ impl StandData {
             stands: self.stands.iter().map(stand).collect(),
             crossings: self.crossings.iter().map(crossing).collect(),
         }
+    }
+}
+
+impl StandData {
+    /// For each sensor, whether it carried a load in none of the stands on its tile: it is broken, or the plate does
+    /// not touch it, and its force is unknown.
+    pub(super) fn silent(&self) -> Vec<bool> {
+        let stood: BTreeSet<TileId> = self.stands.iter().map(|stand| stand.mark.tile).collect();
+        let mut silent: Vec<bool> = self.empty.iter().map(|rest| stood.contains(&rest.sensor.tile)).collect();
+        for (sensor, _) in self.stands.iter().flat_map(|stand| &stand.loaded) {
+            if let Some(silent) = silent.get_mut(*sensor) {
+                *silent = false;
+            }
+        }
+        silent
     }
 }
 

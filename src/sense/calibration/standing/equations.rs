@@ -1,10 +1,11 @@
 //! The equations that a person on the floor gives, and their errors for assumed laws.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3, Vec3Swizzles};
 use nalgebra::{DMatrix, DVector};
 
 use super::curve::{ForceSlope, LawCurve};
-use super::data::{Crossing, MeasuredStand, StandData};
+use super::data::{Crossing, MeasuredStand, StandData, is_saturated};
+use crate::floor::TileId;
 
 /// Standard error of the sum of all forces under a person who stands or walks, as a share of the weight: real parts
 /// follow their laws within a few per cent of full scale, scales and clothes are half a kilogram off (our choice).
@@ -29,13 +30,15 @@ pub(super) const Q_SPREAD: f64 = 0.06;
 /// equations regular without any stand.
 const START_SPREAD: f64 = 1.0;
 
-/// EquationKind of an equation.
+/// The origin of an equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EquationKind {
     /// The sum of all forces of a stand, by its position.
     Sum(usize),
     /// A coordinate of a stand's centroid.
     Place(usize),
+    /// A moment of a stand about its sensors of unknown force.
+    Moment(usize),
     /// The mean force of a crossing, by its position.
     Crossing(usize),
     /// Knowledge from before the measurements.
@@ -43,9 +46,10 @@ pub(super) enum EquationKind {
 }
 
 /// The stands and crossings that count.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Used {
-    pub(super) stands: Vec<bool>,
+    /// Weight of each stand; 0 if it does not count.
+    pub(super) stands: Vec<f64>,
     pub(super) crossings: Vec<bool>,
 }
 
@@ -58,12 +62,17 @@ pub(super) struct Equations<'a> {
     pub(super) data: &'a StandData,
     /// Place of each sensor, in floor metres.
     pub(super) places: &'a [DVec2],
+    /// As [`StandData::silent`].
+    pub(super) silent: &'a [bool],
     /// Weight of the person (N).
     pub(super) weight_n: f64,
     pub(super) used: &'a Used,
     /// Start of the common law.
     pub(super) start: [f64; 2],
 }
+
+/// An equation of a stand: its weighted error and derivatives.
+type StandEquation = (f64, Vec<(usize, f64)>);
 
 /// Half the gradient and half the Hessian (by Gauss) of the sum of squares.
 pub(super) struct NormalEquations {
@@ -137,8 +146,9 @@ impl Equations<'_> {
         let lean = 2 * self.places.len();
         let leaning = DVec2::new(unknowns[lean], unknowns[lean + 1]);
         let stands = self.data.stands.iter().zip(&self.used.stands).enumerate();
-        for (number, (stand, _)) in stands.filter(|(_, (_, used))| **used) {
-            self.see_stand((number, stand), (unknowns, &empty), leaning, &mut see);
+        for (number, (stand, &weight)) in stands.filter(|(_, (_, weight))| **weight > 0.0) {
+            let mut see = |kind: EquationKind, (error, slopes): StandEquation| see(kind, error, &slopes);
+            self.see_stand((number, stand, weight), (unknowns, &empty), leaning, &mut see);
         }
         let crossings = self.data.crossings.iter().zip(&self.used.crossings).enumerate();
         for (number, (crossing, _)) in crossings.filter(|(_, (_, used))| **used) {
@@ -161,43 +171,46 @@ impl Equations<'_> {
         }
     }
 
-    /// The sum of a stand's forces is the weight; its centroid lies at the mark, displaced by the lean. The moment of
-    /// the weight about that place is zero, which is linear in the forces.
+    /// The sum of a stand's forces is the weight; their moments about the mark are those of the weight, displaced by
+    /// the lean. The forces of saturated and of silent sensors are unknown, so only combinations of these three
+    /// equations count that do not contain them: the moments about such a sensor, or about the line through two.
     fn see_stand(
         &self,
-        (number, stand): (usize, &MeasuredStand),
+        (number, stand, weight): (usize, &MeasuredStand, f64),
         (unknowns, empty): (&DVector<f64>, &[ForceSlope]),
         leaning: DVec2,
-        see: &mut impl FnMut(EquationKind, f64, &[(usize, f64)]),
+        see: &mut impl FnMut(EquationKind, StandEquation),
     ) {
-        let turn = DVec2::from_angle(stand.mark.facing.into());
-        let at = stand.mark.at.as_dvec2() + turn.rotate(leaning);
-        let lean = 2 * self.places.len();
-        let sum_unit = (self.weight_n * WEIGHT_ERROR).recip();
         let place_unit = (self.weight_n * PLACE_ERROR_M).recip();
-        let mut sum = (0.0, Vec::with_capacity(2 * stand.loaded.len()));
-        let mut moments = [(0.0, Vec::with_capacity(2 * stand.loaded.len() + 2)), (0.0, Vec::new())];
+        let units = DVec3::new((self.weight_n * WEIGHT_ERROR).recip(), place_unit, place_unit);
+        let effect = |place: DVec2| units * (place - stand.mark.at.as_dvec2()).extend(1.0).zxy();
+        let body = self.weight_n * units;
+        let turn = DVec2::from_angle(stand.mark.facing.into());
+        let lean = 2 * self.places.len();
+        let mut error = -body * turn.rotate(leaning).extend(1.0).zxy();
+        let mut slopes =
+            vec![(lean, -body * turn.extend(0.0).zxy()), (lean + 1, -body * turn.perp().extend(0.0).zxy())];
+        let silent = self.data.empty.iter().zip(self.silent).zip(self.places);
+        let mut unknown: Vec<DVec3> = silent
+            .filter(|((rest, silent), _)| **silent && rest.sensor.tile == stand.mark.tile)
+            .map(|(_, place)| effect(*place))
+            .collect();
         for &(sensor, volts) in &stand.loaded {
             let (Some(rest), Some(place)) = (empty.get(sensor), self.places.get(sensor)) else { continue };
+            let effect = effect(*place);
+            if is_saturated(volts) {
+                unknown.push(effect);
+                continue;
+            }
             let force = self.curve.slope(volts.into(), Self::parameters(unknowns, sensor)) - *rest;
-            let put = |equation: &mut (f64, Vec<(usize, f64)>), unit: f64| {
-                equation.0 += unit * force.force;
-                equation.1.push((2 * sensor, unit * force.by_p));
-                equation.1.push((2 * sensor + 1, unit * force.by_q));
-            };
-            put(&mut sum, sum_unit);
-            let arm = (*place - at) * place_unit;
-            put(&mut moments[0], arm.x);
-            put(&mut moments[1], arm.y);
+            error += force.force * effect;
+            slopes.push((2 * sensor, force.by_p * effect));
+            slopes.push((2 * sensor + 1, force.by_q * effect));
         }
-        let felt = sum.0 / sum_unit;
-        see(EquationKind::Sum(number), sum.0 - self.weight_n * sum_unit, &sum.1);
-        // The lean to the right is along `turn`, forwards along its perpendicular.
-        let axes = [DVec2::new(turn.x, turn.perp().x), DVec2::new(turn.y, turn.perp().y)];
-        for (equation, axis) in moments.iter_mut().zip(axes) {
-            equation.1.push((lean, -felt * place_unit * axis.x));
-            equation.1.push((lean + 1, -felt * place_unit * axis.y));
-            see(EquationKind::Place(number), equation.0, &equation.1);
+        for (kind, direction) in free_directions(&unknown, number) {
+            let direction = weight.sqrt() * direction;
+            let slopes = slopes.iter().map(|(unknown, slope)| (*unknown, direction.dot(*slope))).collect();
+            see(kind, (direction.dot(error), slopes));
         }
     }
 
@@ -224,21 +237,48 @@ impl Equations<'_> {
     }
 }
 
+/// The combinations of a stand's sum and two moments without the effects of sensors of `unknown` force.
+fn free_directions(unknown: &[DVec3], number: usize) -> Vec<(EquationKind, DVec3)> {
+    let moment = |direction: DVec3| (EquationKind::Moment(number), direction);
+    match *unknown {
+        [] => vec![
+            (EquationKind::Sum(number), DVec3::X),
+            (EquationKind::Place(number), DVec3::Y),
+            (EquationKind::Place(number), DVec3::Z),
+        ],
+        [one] => {
+            let (first, second) = one.normalize().any_orthonormal_pair();
+            vec![moment(first), moment(second)]
+        }
+        [one, other] => one.cross(other).try_normalize().map(moment).into_iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
 impl Used {
-    /// Everything that is not saturated.
-    pub(super) fn of(data: &StandData) -> Self {
+    /// The stands that leave an equation, and the crossings without a saturated sensor. Each sensor of unknown force
+    /// takes one of a stand's three equations.
+    pub(super) fn of(data: &StandData, silent: &[bool]) -> Self {
+        let silent = |tile: TileId| {
+            let sensors = data.empty.iter().zip(silent);
+            sensors.filter(|(rest, silent)| **silent && rest.sensor.tile == tile).count()
+        };
         let free = |crossing: &Crossing| {
             let mut outputs = crossing.loaded.values().flat_map(|moments| moments.outputs());
-            !outputs.any(|(volts, _)| super::data::is_saturated(volts as f32))
+            !outputs.any(|(volts, _)| is_saturated(volts as f32))
         };
         Self {
-            stands: data.stands.iter().map(|stand| !stand.is_saturated()).collect(),
+            stands: data
+                .stands
+                .iter()
+                .map(|stand| if stand.saturated() + silent(stand.mark.tile) < 3 { 1.0 } else { 0.0 })
+                .collect(),
             crossings: data.crossings.iter().map(free).collect(),
         }
     }
 
     /// Number of stands that count.
     pub(super) fn stands(&self) -> usize {
-        self.stands.iter().filter(|used| **used).count()
+        self.stands.iter().filter(|weight| **weight > 0.0).count()
     }
 }

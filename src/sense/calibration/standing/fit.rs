@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::data::StandData;
 use super::equations::Used;
-use super::search::StandSearch;
+use super::search::{RobustFit, StandSearch};
 use crate::floor::{Calibration, Geometry, LawKind, SensorId};
 use crate::units::Newtons;
 
@@ -31,7 +31,8 @@ pub struct StandFit {
     pub stands: usize,
     /// Positions of the stands that disagree with all others and do not count: the person was elsewhere.
     pub astray: Vec<usize>,
-    /// Positions of the stands that do not count because a sensor was at the end of its range.
+    /// Positions of the stands with a sensor at the end of its range: its force is unknown there, so the stand tells
+    /// less; with three such sensors, nothing.
     pub saturated: Vec<usize>,
     /// Number of crossings that count.
     pub crossings: usize,
@@ -42,7 +43,9 @@ pub struct StandFit {
 pub struct StandLaws {
     /// The kind.
     pub kind: LawKind,
-    /// Sum of the squares of all errors, each in units of its standard error; infinite if no such laws fit.
+    /// Sum of the squares of all errors in units of their standard errors, those of each stand no greater than chance
+    /// allows, and the logarithm of the determinant of the normal equations: the less, the better (less by 2 is about
+    /// e times as probable). Infinite if no such laws fit.
     pub misfit: f64,
 }
 
@@ -114,10 +117,6 @@ pub enum StandError {
 /// Maximum share of the stands that may be astray (our choice).
 const MOST_ASTRAY: f64 = 0.25;
 
-/// Factor of the least misfit up to which a simpler law is preferred. The plates' own errors give all kinds of
-/// curves some misfit; a law of another kind than the parts' has several times as much (our choice).
-const SIMPLER: f64 = 1.15;
-
 impl StandFit {
     /// Minimum number of stands: as many as the unknowns of one sensor and a person's lean, less one.
     pub const MIN_STANDS: usize = 3;
@@ -138,7 +137,7 @@ impl StandFit {
     /// their centroid is at the mark, displaced by a lean that is the same for all stands; the mean force of each
     /// crossing is the weight. The parts of a floor resemble each other: each sensor's numbers are near common ones,
     /// which are unknown, and a sensor that carried little keeps those. Stands that disagree with the others by more
-    /// than four standard errors are left out.
+    /// than chance allows are left out.
     ///
     /// # Errors
     /// [`StandError`]
@@ -152,8 +151,17 @@ impl StandFit {
         geometry: &Geometry,
         kind: Option<LawKind>,
     ) -> Result<Self, StandError> {
-        let mut used = validated(data, weight)?;
+        validate(data, weight)?;
         let data = &data.compact();
+        let silent = data.silent();
+        let mut used = Used::of(data, &silent);
+        let all = used.stands();
+        let is_felt = data.stands.iter().any(|stand| !stand.loaded.is_empty());
+        match data.stands.len() {
+            Self::MIN_STANDS.. if !is_felt => return Err(StandError::NoLaw),
+            _ if all < Self::MIN_STANDS => return Err(StandError::TooFew { stands: all }),
+            _ => {}
+        }
         let sensors = data.empty.len();
         if sensors > Self::MOST_SENSORS {
             return Err(StandError::TooMany { sensors });
@@ -163,29 +171,25 @@ impl StandFit {
             .iter()
             .map(|rest| geometry.sensor(rest.sensor.tile, rest.sensor.corner).as_dvec2())
             .collect();
-        let search = StandSearch { data, places: &places, weight_n: weight.0.into() };
-        let kinds = LawKind::ALL.into_iter().filter(|one| kind.is_none_or(|kind| kind == *one));
-        let laws: Vec<StandLaws> = kinds
-            .map(|kind| {
-                let found = search.solve(kind, &used, None);
-                StandLaws { kind, misfit: found.map_or(f64::INFINITY, |(_, found)| found.squares) }
-            })
-            .collect();
-        let chosen = choose(&laws).ok_or(StandError::NoLaw)?;
-        let all = used.stands();
-        let (mut curve, mut found) = search.solve(chosen, &used, None).ok_or(StandError::NoLaw)?;
-        let mut astray = Vec::new();
-        while let Some(worst) = search.worst(&curve, &used, &found) {
-            astray.push(worst);
-            if let Some(used) = used.stands.get_mut(worst) {
-                *used = false;
-            }
-            if astray.len() as f64 > MOST_ASTRAY * all as f64 {
-                return Err(StandError::Astray { astray: astray.len(), stands: all });
-            }
-            (curve, found) = search.solve(chosen, &used, Some(&found)).ok_or(StandError::NoLaw)?;
+        let search = StandSearch { data, places: &places, weight_n: weight.0.into(), silent };
+        let kinds = || LawKind::ALL.into_iter().filter(|one| kind.is_none_or(|kind| kind == *one));
+        let fits: Vec<RobustFit> = kinds().filter_map(|kind| search.robust(kind, &used)).collect();
+        let laws = kinds().map(|kind| {
+            let fit = fits.iter().find(|fit| fit.kind == kind);
+            StandLaws { kind, misfit: fit.map_or(f64::INFINITY, |fit| fit.misfit) }
+        });
+        let laws: Vec<StandLaws> = laws.collect();
+        let best = fits.into_iter().min_by(|one, other| one.misfit.total_cmp(&other.misfit));
+        let RobustFit { kind, found, astray, .. } = best.ok_or(StandError::NoLaw)?;
+        if astray.len() as f64 > MOST_ASTRAY * all as f64 {
+            return Err(StandError::Astray { astray: astray.len(), stands: all });
         }
-        astray.sort_unstable();
+        for stand in &astray {
+            if let Some(weight) = used.stands.get_mut(*stand) {
+                *weight = 0.0;
+            }
+        }
+        let (curve, found) = search.solve(kind, &used, Some(&found)).ok_or(StandError::NoLaw)?;
         Ok(search.conclude(&curve, &used, &found, (laws, astray)))
     }
 
@@ -203,8 +207,8 @@ impl SensorFit {
     }
 }
 
-/// Checks the measurements; returns those that can count.
-fn validated(data: &StandData, weight: Newtons) -> Result<Used, StandError> {
+/// Checks the weight and the outputs.
+fn validate(data: &StandData, weight: Newtons) -> Result<(), StandError> {
     let [least, most] = StandFit::WEIGHTS_N;
     if !(least..=most).contains(&weight.0) {
         return Err(StandError::Weight { weight_n: weight.0 });
@@ -216,22 +220,5 @@ fn validated(data: &StandData, weight: Newtons) -> Result<Used, StandError> {
         .stands
         .iter()
         .position(|stand| !is_whole || !stand.mark.at.is_finite() || !stand.loaded.iter().all(is_known));
-    if let Some(number) = broken {
-        return Err(StandError::NotFinite { number });
-    }
-    let used = Used::of(data);
-    match used.stands() {
-        stands if stands < StandFit::MIN_STANDS => Err(StandError::TooFew { stands }),
-        _ => Ok(used),
-    }
-}
-
-/// The simplest kind among those that fit about as well as the best: the straight line, then the paper's.
-fn choose(laws: &[StandLaws]) -> Option<LawKind> {
-    let best = laws.iter().min_by(|one, other| one.misfit.total_cmp(&other.misfit))?;
-    let near = |kind: LawKind| {
-        laws.iter().any(|laws| laws.kind == kind && laws.misfit <= SIMPLER * best.misfit).then_some(kind)
-    };
-    let chosen = near(LawKind::Linear).or_else(|| near(LawKind::Exponential)).unwrap_or(best.kind);
-    best.misfit.is_finite().then_some(chosen)
+    broken.map_or(Ok(()), |number| Err(StandError::NotFinite { number }))
 }

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::Vec2;
 
-use crate::floor::{Corner, Geometry, TileId};
+use crate::floor::{Geometry, TileId};
 
 /// A place to stand: both feet together, the middle between them on the place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,28 +17,28 @@ pub struct StandingMark {
     pub facing: f32,
 }
 
-/// Distance of the outer marks from the middle of a tile, as a share of the way to the sensors: far enough to change
-/// each sensor's share, near enough that the feet stay on the plate and no sensor carries more than half of the
-/// person.
+/// Distance of the outer marks from the middle, as a share of the way to the sensor: far enough to change each
+/// sensor's share, near enough that the feet stay on the plate. Of four sensors the nearest carries 45 % of the person
+/// and the farthest 5 %, of three 60 % and 20 %.
 const OUT: f32 = 0.4;
 
 impl StandingMark {
-    /// Number of marks on each tile: the middle, and one towards each corner.
-    pub const PER_TILE: usize = 5;
-
-    /// The marks of `tiles` in the order of a walk, `rounds` times: each tile's middle, then around it. The person
-    /// faces north on one tile and south on the next, and the other way in the next round, so that a lean of the body
-    /// is not taken for a difference between sensors; on a single tile, north first and south later.
+    /// The marks of `tiles` in the order of a walk, `rounds` times: the middle of each tile's sensors, then a mark
+    /// towards each of them, once around. The person faces north on one tile and south on the next, and the other way
+    /// in the next round, so that a lean of the body is not taken for a difference between sensors; on a single tile,
+    /// north first and south later.
     #[must_use]
     pub fn of_tiles(geometry: &Geometry, tiles: &[TileId], rounds: usize) -> Vec<Self> {
         let alone = tiles.len() == 1;
         let known = tiles.iter().filter(|tile| geometry.has(**tile));
-        let mut marks = Vec::with_capacity(Self::PER_TILE * tiles.len() * rounds);
+        let mut marks = Vec::new();
         for (round, (number, &tile)) in
             (0..rounds).flat_map(|round| known.clone().enumerate().map(move |tile| (round, tile)))
         {
-            for (step, away) in Self::away(geometry, tile).into_iter().enumerate() {
-                let is_later = alone && step > Self::PER_TILE / 2;
+            let places = Self::away(geometry, tile);
+            let half = places.len() / 2;
+            for (step, away) in places.into_iter().enumerate() {
+                let is_later = alone && step > half;
                 let is_turned = (number + round + usize::from(is_later)) % 2 == 1;
                 let facing = if is_turned { PI } else { 0.0 };
                 marks.push(Self { tile, at: geometry.centre(tile) + away, facing });
@@ -48,18 +48,14 @@ impl StandingMark {
     }
 
     /// Places of a tile's marks, in metres from its centre.
-    fn away(geometry: &Geometry, tile: TileId) -> [Vec2; Self::PER_TILE] {
+    fn away(geometry: &Geometry, tile: TileId) -> Vec<Vec2> {
         let places = geometry.sensor_places(tile);
-        let sensors = geometry.sensors(tile).iter();
-        let reach = sensors.map(|&sensor| places.place(sensor).abs()).fold(Vec2::ZERO, Vec2::max);
-        let corner = |corner: Corner| corner.direction() * reach * OUT;
-        [
-            Vec2::ZERO,
-            corner(Corner::SouthWest),
-            corner(Corner::SouthEast),
-            corner(Corner::NorthEast),
-            corner(Corner::NorthWest),
-        ]
+        let mut sensors: Vec<Vec2> =
+            geometry.sensors(tile).iter().map(|sensor| places.place(*sensor)).collect();
+        let middle = sensors.iter().sum::<Vec2>() / sensors.len().max(1) as f32;
+        sensors.sort_by(|one, other| (*one - middle).to_angle().total_cmp(&(*other - middle).to_angle()));
+        let towards = sensors.into_iter().map(|sensor| middle.lerp(sensor, OUT));
+        [middle].into_iter().chain(towards).collect()
     }
 
     /// The tiles of `geometry` in the order of a walk: row by row, each row back from where the last one ended.
@@ -73,18 +69,5 @@ impl StandingMark {
             (tile.row, along)
         });
         tiles
-    }
-
-    /// Returns the place on the tile in words: `middle`, `south-west` and so on.
-    #[must_use]
-    pub fn place_name(&self, geometry: &Geometry) -> &'static str {
-        let off = self.at - geometry.centre(self.tile);
-        match (off.x, off.y) {
-            (x, y) if x == 0.0 && y == 0.0 => "middle",
-            (x, y) if x < 0.0 && y < 0.0 => "south-west",
-            (x, y) if x > 0.0 && y < 0.0 => "south-east",
-            (x, _) if x > 0.0 => "north-east",
-            _ => "north-west",
-        }
     }
 }

@@ -1,21 +1,30 @@
 //! Search for the laws of all sensors, and what the measurements tell about them.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, Vec2};
 use nalgebra::DMatrix;
 
 use super::curve::LawCurve;
-use super::data::StandData;
+use super::data::{StandData, is_saturated};
 use super::equations::{EquationKind, Equations, P_SPREAD, PLACE_ERROR_M, Q_SPREAD, Used, WEIGHT_ERROR};
 use super::fit::{SensorFit, StandFit, StandLaws};
-use super::solve::{Minimum, covariance, minimise};
+use super::solve::{Minimum, covariance, log_determinant, minimise};
 use crate::floor::{LawKind, SensorId};
 use crate::units::Newtons;
 
-/// Median of the absolute value of a normal error, inverted.
-const PER_MEDIAN: f64 = 1.4826;
+/// Sums of one, two and three squares of normal errors (chi-square): the median, and what chance exceeds in one of
+/// 16,000 cases, as four standard errors of a single one (our choice).
+const USUAL: [f64; 3] = [0.455, 1.386, 2.366];
+const RARE: [f64; 3] = [16.0, 19.4, 22.1];
 
-/// Distance of an error, in standard errors, above which a stand is astray: one of 16,000 normal errors (our choice).
-const ASTRAY: f64 = 4.0;
+/// How much greater the errors of most stands are than expected, at least 1: parts that do not follow a law exactly
+/// have greater ones in all stands.
+fn scale(errors: &[StandErrors]) -> f64 {
+    let mut sizes: Vec<f64> = errors.iter().map(|stand| stand.squares / USUAL[stand.last]).collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.get(sizes.len() / 2).copied().unwrap_or(1.0).max(1.0)
+}
 
 /// A person of known weight on a floor.
 pub(super) struct StandSearch<'a> {
@@ -23,12 +32,37 @@ pub(super) struct StandSearch<'a> {
     /// Place of each sensor, in floor metres.
     pub(super) places: &'a [DVec2],
     pub(super) weight_n: f64,
+    /// As [`StandData::silent`].
+    pub(super) silent: Vec<bool>,
+}
+
+/// Maximum number of steps towards weights of stands; usual ones need five.
+const STEPS: usize = 12;
+
+/// Change of a weight below which the steps end.
+const SETTLED: f64 = 0.05;
+
+/// The laws of one kind with which most stands agree.
+pub(super) struct RobustFit {
+    pub(super) kind: LawKind,
+    pub(super) found: Minimum,
+    /// As [`StandLaws::misfit`].
+    pub(super) misfit: f64,
+    /// Positions of the stands that disagree.
+    pub(super) astray: Vec<usize>,
+}
+
+/// The errors of one stand: its position, its number of equations less 1, and the sum of their squares.
+struct StandErrors {
+    number: usize,
+    last: usize,
+    squares: f64,
 }
 
 impl StandSearch<'_> {
     fn equations<'a>(&'a self, curve: &LawCurve, used: &'a Used, start: [f64; 2]) -> Equations<'a> {
         let (data, places, weight_n) = (self.data, self.places, self.weight_n);
-        Equations { curve: *curve, data, places, weight_n, used, start }
+        Equations { curve: *curve, data, places, silent: &self.silent, weight_n, used, start }
     }
 
     /// The laws of this kind with the least squares, from earlier ones or from the best common law.
@@ -47,10 +81,9 @@ impl StandSearch<'_> {
 
     /// The curve over all outputs under load. It stays the same if stands are left out.
     fn curve(&self, kind: LawKind, used: &Used) -> Option<LawCurve> {
-        let stands = self.data.stands.iter().filter(|stand| !stand.is_saturated());
-        let mut outputs: Vec<f64> =
-            stands.flat_map(|stand| stand.loaded.iter().map(|(_, volts)| f64::from(*volts))).collect();
-        outputs.retain(|volts| *volts > 0.0);
+        let loads = self.data.stands.iter().flat_map(|stand| &stand.loaded);
+        let loads = loads.filter(|(_, volts)| *volts > 0.0 && !is_saturated(*volts));
+        let mut outputs: Vec<f64> = loads.map(|(_, volts)| f64::from(*volts)).collect();
         outputs.sort_by(f64::total_cmp);
         let at_v = *outputs.get(outputs.len() / 2)?;
         let crossings = self.data.crossings.iter().zip(&used.crossings).filter(|(_, used)| **used);
@@ -60,9 +93,12 @@ impl StandSearch<'_> {
         Some(LawCurve { kind, at_v, most_v })
     }
 
-    /// The one law for all sensors with the least squares of the stands' sums.
+    /// The one law for all sensors with the least squares of the stands' sums. If all stands are saturated, their sums
+    /// are only lower bounds, but good enough to start from.
     fn common(&self, curve: &LawCurve, used: &Used) -> Option<[f64; 2]> {
-        let stands = || self.data.stands.iter().zip(&used.stands).filter(|(_, used)| **used);
+        let stands = || self.data.stands.iter().zip(&used.stands).filter(|(_, used)| **used > 0.0);
+        let is_whole = stands().any(|(stand, _)| stand.saturated() == 0);
+        let stands = || stands().filter(move |(stand, _)| !is_whole || stand.saturated() == 0);
         let tried = curve.starts().into_iter().filter(|q| curve.holds(*q)).filter_map(|q| {
             let force = |volts: f32| curve.slope(volts.into(), [0.0, q]).force;
             let rest: Vec<f64> = self.data.empty.iter().map(|rest| force(rest.volts)).collect();
@@ -93,19 +129,61 @@ impl StandSearch<'_> {
         errors
     }
 
-    /// The stand with the greatest error, if that is far beyond the usual one. One at a time: a stand that is astray
-    /// distorts the laws for its neighbours.
-    pub(super) fn worst(&self, curve: &LawCurve, used: &Used, found: &Minimum) -> Option<usize> {
-        let errors = self.errors(curve, used, found);
-        let mut sizes: Vec<f64> = errors.iter().map(|(_, error)| error.abs()).collect();
-        sizes.sort_by(f64::total_cmp);
-        let usual = (PER_MEDIAN * sizes.get(sizes.len() / 2)?).max(1.0);
-        let stands = errors.iter().filter_map(|(kind, error)| match kind {
-            EquationKind::Sum(number) | EquationKind::Place(number) => Some((*number, error.abs())),
-            EquationKind::Crossing(_) | EquationKind::Prior => None,
+    /// The laws of this kind with which most stands agree. A stand that disagrees would distort the laws for all
+    /// others, so its weight falls with its error.
+    ///
+    /// # Source
+    /// Cauchy's weights, iterated (Holland and Welsch, Robust regression using iteratively reweighted least squares,
+    /// 1977); Laplace's approximation of the evidence for each kind (Bishop, Pattern Recognition and Machine Learning,
+    /// section 4.4).
+    pub(super) fn robust(&self, kind: LawKind, used: &Used) -> Option<RobustFit> {
+        let (curve, mut found) = self.solve(kind, used, None)?;
+        let mut weighted = used.clone();
+        let mut errors = self.stand_errors(&curve, used, &found);
+        for _ in 0..STEPS {
+            let (scale, mut change) = (scale(&errors), 0.0_f64);
+            for stand in &errors {
+                let usual = 2.0 * (stand.last + 1) as f64 * scale;
+                let weight = (1.0 + stand.squares / usual).recip();
+                if let Some(own) = weighted.stands.get_mut(stand.number) {
+                    change = change.max((weight - *own).abs());
+                    *own = weight;
+                }
+            }
+            (_, found) = self.solve(kind, &weighted, Some(&found))?;
+            errors = self.stand_errors(&curve, used, &found);
+            if change < SETTLED {
+                break;
+            }
+        }
+        let equations = self.equations(&curve, &weighted, self.common(&curve, used)?);
+        let mut misfit = log_determinant(&equations, &found)?;
+        equations.visit(&found.unknowns, |kind, error, _| {
+            if matches!(kind, EquationKind::Crossing(_) | EquationKind::Prior) {
+                misfit += error * error;
+            }
         });
-        let (worst, error) = stands.max_by(|one, other| one.1.total_cmp(&other.1))?;
-        (error > ASTRAY * usual).then_some(worst)
+        misfit += errors.iter().map(|stand| stand.squares.min(RARE[stand.last])).sum::<f64>();
+        let rare = scale(&errors);
+        let astray = errors.iter().filter(|stand| stand.squares > rare * RARE[stand.last]);
+        let astray = astray.map(|stand| stand.number).collect();
+        misfit.is_finite().then_some(RobustFit { kind, found, misfit, astray })
+    }
+
+    /// The errors of all stands that count, without their weights.
+    fn stand_errors(&self, curve: &LawCurve, used: &Used, found: &Minimum) -> Vec<StandErrors> {
+        let mut all: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
+        for (kind, error) in self.errors(curve, used, found) {
+            if let EquationKind::Sum(stand) | EquationKind::Place(stand) | EquationKind::Moment(stand) = kind
+            {
+                let (count, squares) = all.entry(stand).or_default();
+                *count += 1;
+                *squares += error * error;
+            }
+        }
+        all.into_iter()
+            .map(|(number, (count, squares))| StandErrors { number, last: (count - 1).min(2), squares })
+            .collect()
     }
 
     pub(super) fn conclude(
@@ -136,7 +214,7 @@ impl StandSearch<'_> {
             all / free.max(1.0)
         });
         let ids = self.data.empty.iter().map(|rest| rest.sensor).enumerate();
-        let saturated = self.data.stands.iter().enumerate().filter(|(_, stand)| stand.is_saturated());
+        let saturated = self.data.stands.iter().enumerate().filter(|(_, stand)| stand.saturated() > 0);
         StandFit {
             kind: curve.kind,
             laws,
@@ -168,7 +246,7 @@ impl StandSearch<'_> {
         let empty_v = self.data.empty.get(index).map_or(0.0, |rest| f64::from(rest.volts));
         let law = curve.law(at, empty_v);
         let tared = |volts: f64| curve.slope(volts, at) - curve.slope(empty_v, at);
-        let stands = self.data.stands.iter().zip(&used.stands).filter(|(_, used)| **used);
+        let stands = self.data.stands.iter().zip(&used.stands).filter(|(_, used)| **used > 0.0);
         let loads = stands.flat_map(|(stand, _)| stand.loaded.iter().filter(|(sensor, _)| *sensor == index));
         let most = loads.map(|(_, volts)| tared(f64::from(*volts)).force).fold(0.0, f64::max);
         let tare = law.force_at(empty_v as f32);

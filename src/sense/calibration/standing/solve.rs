@@ -17,8 +17,6 @@ const GAIN: f64 = 1e-7;
 #[derive(Clone, Debug)]
 pub(super) struct Minimum {
     pub(super) unknowns: DVector<f64>,
-    /// Sum of the squares of all weighted errors.
-    pub(super) squares: f64,
 }
 
 /// Minimises the sum of squares from `unknowns`; `None` if they are not in the range of the curves.
@@ -55,7 +53,14 @@ pub(super) fn minimise(equations: &Equations<'_>, mut unknowns: DVector<f64>) ->
             break;
         }
     }
-    Some(Minimum { unknowns, squares })
+    Some(Minimum { unknowns })
+}
+
+/// The logarithm of the determinant of the normal matrix at a minimum; `None` if the equations do not determine all
+/// unknowns.
+pub(super) fn log_determinant(equations: &Equations<'_>, minimum: &Minimum) -> Option<f64> {
+    let factors = equations.normal(&minimum.unknowns).matrix.cholesky()?;
+    Some(factors.l_dirty().diagonal().iter().map(|entry| 2.0 * entry.ln()).sum())
 }
 
 fn damped(matrix: &DMatrix<f64>, damping: f64) -> Option<Cholesky<f64, Dyn>> {
