@@ -1,7 +1,8 @@
 //! Boards that send to this machine, before any floor file describes them.
 
-use rosc::{OscMessage, OscPacket, OscType};
+use rosc::{OscPacket, OscType};
 
+use crate::floor::PortName;
 use crate::units::Instant;
 use crate::wire::{DatagramLimits, check};
 
@@ -24,19 +25,25 @@ pub enum SentNumbers {
     Blob,
     /// Newtons.
     Newtons,
+    /// Numbers in lines of text.
+    Text,
 }
 
 /// A board that sends to this machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundBoard {
-    /// Its OSC address.
+    /// Its OSC address; empty for lines of text.
     pub address: String,
+    /// The serial port that it is behind; `None` on the network.
+    pub port: Option<PortName>,
     /// Its numbers, by the last packet.
     pub numbers: SentNumbers,
     /// Numbers of its last packet, with the number of the packet if there is one.
     values: Vec<f64>,
     /// Greatest number of each argument.
     greatest: Vec<f64>,
+    /// Columns of words before the first number of a line.
+    words: usize,
     /// Number of packets, and those of them whose first number is the last one plus 1 or more.
     packets: u64,
     counted: u64,
@@ -45,37 +52,66 @@ pub struct FoundBoard {
 }
 
 impl BoardSurvey {
-    /// Adds a datagram that arrived at `received`.
-    pub fn take(&mut self, datagram: &[u8], received: Instant) {
+    /// Adds a datagram, or a frame from a serial port, that arrived at `received`.
+    pub fn take(&mut self, datagram: &[u8], port: Option<&PortName>, received: Instant) {
         let packet = check(datagram, &DatagramLimits::SENSORS).ok();
         match packet.and_then(|()| rosc::decoder::decode_udp(datagram).ok()) {
-            Some((_, packet)) => self.take_packet(packet, received),
+            Some((_, packet)) => self.take_packet(packet, port, received),
             None => self.unread += 1,
         }
     }
 
-    fn take_packet(&mut self, packet: OscPacket, received: Instant) {
-        match packet {
-            OscPacket::Bundle(bundle) => {
-                bundle.content.into_iter().for_each(|packet| self.take_packet(packet, received));
+    /// Adds a line of text from a serial port: numbers between spaces and commas, also after words.
+    pub fn take_line(&mut self, line: &str, port: &PortName, received: Instant) {
+        let mut columns = line.split([' ', '\t', ',']).filter(|column| !column.is_empty()).peekable();
+        let number = |column: &str| column.parse::<f64>().ok().filter(|number| number.is_finite());
+        let mut words = 0;
+        while columns.next_if(|column| number(column).is_none()).is_some() {
+            words += 1;
+        }
+        let values: Option<Vec<f64>> = columns.map(number).collect();
+        match values.filter(|values| !values.is_empty()) {
+            Some(values) => {
+                self.add((String::new(), Some(port)), (SentNumbers::Text, values), words, received);
             }
-            OscPacket::Message(message) => self.take_message(&message, received),
+            None => self.unread += 1,
         }
     }
 
-    fn take_message(&mut self, message: &OscMessage, received: Instant) {
-        let Some((numbers, values)) = numbers(&message.args) else {
-            self.unread += 1;
-            return;
-        };
+    fn take_packet(&mut self, packet: OscPacket, port: Option<&PortName>, received: Instant) {
+        match packet {
+            OscPacket::Bundle(bundle) => {
+                bundle.content.into_iter().for_each(|packet| self.take_packet(packet, port, received));
+            }
+            OscPacket::Message(message) => match numbers(&message.args) {
+                Some(sent) => self.add((message.addr, port), sent, 0, received),
+                None => self.unread += 1,
+            },
+        }
+    }
+
+    fn add(
+        &mut self,
+        (address, port): (String, Option<&PortName>),
+        (numbers, values): (SentNumbers, Vec<f64>),
+        words: usize,
+        received: Instant,
+    ) {
         let has_room = self.boards.len() < MOST;
-        match self.boards.iter_mut().find(|board| board.address == message.addr) {
-            Some(board) => board.add(numbers, values, received),
+        let known =
+            self.boards.iter_mut().find(|board| board.address == address && board.port.as_ref() == port);
+        match known {
+            Some(board) => {
+                board.words = words;
+                board.add(numbers, values, received);
+            }
             None if has_room => self.boards.push(FoundBoard {
-                address: message.addr.clone(),
+                address,
+                port: port.cloned(),
                 numbers,
                 greatest: values.clone(),
                 values,
+                words,
                 packets: 1,
                 counted: 0,
                 span: (received, received),
@@ -84,7 +120,7 @@ impl BoardSurvey {
         }
     }
 
-    /// Returns the boards by their addresses, as people count: 2 before 10.
+    /// Returns the boards by their addresses, as people count: 2 before 10; lines of text come first.
     #[must_use]
     pub fn boards(&self) -> Vec<&FoundBoard> {
         let mut boards: Vec<&FoundBoard> = self.boards.iter().collect();
@@ -119,6 +155,11 @@ impl FoundBoard {
     #[must_use]
     pub const fn is_numbered(&self) -> bool {
         self.packets > 8 && self.counted + 2 >= self.packets
+    }
+
+    /// Returns the columns of its channels in a line of text, from 1.
+    pub fn columns(&self) -> impl Iterator<Item = usize> {
+        (1 + self.words + usize::from(self.is_numbered())..).take(self.channels())
     }
 
     /// Returns the number of its channels.
@@ -195,7 +236,7 @@ mod tests {
             for board in [1, 0] {
                 let readings = Readings::Counts((0..12).map(|_| Some(reading(sequence))).collect());
                 let packet = SensorPacket { board, sequence, received, readings };
-                survey.take(encoder.encode(&packet).unwrap(), received);
+                survey.take(encoder.encode(&packet).unwrap(), None, received);
             }
         }
         survey
@@ -222,9 +263,28 @@ mod tests {
     fn what_no_board_sends_is_counted_and_changes_nothing() {
         let mut survey = surveyed(SensorFormat::Counts, 1000, |_| 40_000);
         let before = survey.boards.clone();
-        survey.take(b"GET / HTTP/1.1", Instant::START);
-        survey.take(b"/underfoot/get\0\0,\0\0\0", Instant::START);
+        survey.take(b"GET / HTTP/1.1", None, Instant::START);
+        survey.take(b"/underfoot/get\0\0,\0\0\0", None, Instant::START);
         assert_eq!((survey.unread(), &survey.boards), (2, &before));
         assert_eq!(survey.boards()[0].full_scale(), Some((65_535, 16)));
+    }
+
+    #[test]
+    fn lines_of_text_are_found_with_the_columns_of_their_channels() {
+        let port: PortName = "/dev/ttyACM0".parse().unwrap();
+        for (line, columns) in [("{} 507,498,512,530", 2..=5), ("v 507 498 {0} 530 {1}", 2..=6)] {
+            let mut survey = BoardSurvey::default();
+            for number in 0..50_u64 {
+                let line = line.replace("{}", &(71_000 + 10 * number).to_string());
+                let line = line.replace("{0}", &(500 + number % 3).to_string()).replace("{1}", "499");
+                survey.take_line(&line, &port, Instant::from_millis(10 * number));
+            }
+            survey.take_line("ready", &port, Instant::from_millis(501));
+            let [board] = survey.boards()[..] else { panic!("{survey:?}") };
+            assert_eq!((&board.port, board.numbers), (&Some(port.clone()), SentNumbers::Text));
+            assert_eq!(board.columns().collect::<Vec<_>>(), columns.collect::<Vec<_>>());
+            assert_eq!((board.full_scale(), survey.unread()), (Some((1023, 10)), 1));
+            assert!((board.rate_hz().unwrap() - 100.0).abs() < 1.0);
+        }
     }
 }

@@ -9,14 +9,14 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use underfoot::floor::read_address;
-use underfoot::serve::BoardSurvey;
+use underfoot::floor::{PortName, read_address};
 
 use super::failure::Failure;
 use super::floor_args::{load_floor, save_floor};
 use super::number::patience;
 use ask::{Left, ask, choice, number};
-use steps::Steps;
+use boards::HeardBoards;
+use steps::FloorCommands;
 
 /// Options of `underfoot setup`.
 ///
@@ -30,6 +30,9 @@ pub(crate) struct Args {
     /// Where the boards' packets arrive.
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
     listen: SocketAddr,
+    /// Also look for boards on this serial port; USB ports are found without it. Several may be given.
+    #[arg(long, value_name = "PORT")]
+    serial: Vec<PortName>,
     /// How long to look for boards.
     #[arg(long, value_name = "S", default_value = "4", value_parser = patience)]
     seconds: Duration,
@@ -52,9 +55,9 @@ const STEPS: [&str; 8] = [
 
 /// Guides through the steps.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let steps = Steps::new(args.listen.to_string())?;
+    let steps = FloorCommands::new(args.listen.to_string())?;
     outln!("Set-up of the floor in {}. Ctrl-C ends a step; Ctrl-D leaves.", args.floor.display());
-    let mut survey = BoardSurvey::default();
+    let mut found = HeardBoards::default();
     let mut next = 0;
     loop {
         outln!();
@@ -63,7 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         if step + 1 == STEPS.len() {
             break;
         }
-        match take(step, args, &steps, &mut survey)? {
+        match take(step, args, &steps, &mut found)? {
             Ok(true) => next = (step + 1).min(STEPS.len() - 1),
             Ok(false) => next = step,
             Err(Left) => break,
@@ -79,8 +82,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 fn take(
     step: usize,
     args: &Args,
-    steps: &Steps,
-    survey: &mut BoardSurvey,
+    steps: &FloorCommands,
+    found: &mut HeardBoards,
 ) -> Result<Result<bool, Left>, Failure> {
     let floor = args.floor.as_path();
     let file = floor.to_string_lossy();
@@ -91,17 +94,17 @@ fn take(
     Ok(match step {
         0 => {
             outln!("Listening on {} for {} s.", args.listen, args.seconds.as_secs_f64());
-            match boards::listen(args.listen, args.seconds) {
-                Ok(found) => *survey = found,
+            match boards::listen(args.listen, &args.serial, args.seconds) {
+                Ok(heard) => *found = heard,
                 Err(failure) => {
                     outln!("{failure}");
                     return Ok(Ok(false));
                 }
             }
-            boards::describe(survey, args.listen);
-            Ok(!survey.boards().is_empty())
+            boards::describe(&found.survey, args.listen);
+            Ok(!found.survey.boards().is_empty())
         }
-        1 => match shape::ask_floor(survey) {
+        1 => match shape::ask_floor(found) {
             Ok(made) => {
                 save_floor(&made, floor)?;
                 Ok(true)
@@ -112,7 +115,7 @@ fn take(
         3 => Ok(steps.run(&["measure"], floor, &["--seconds", "5"])),
         4 => {
             outln!(
-                "A person stands on five marks of each tile: `underfoot calibrate stand --marks --floor {file}`"
+                "A person stands on the marks of each tile: `underfoot calibrate stand --marks --floor {file}`"
             );
             outln!("prints them. With a load cell, `underfoot calibrate curves` reads a table instead.");
             let question = "Weight of the person in kg, with clothes and shoes";
@@ -126,7 +129,7 @@ fn take(
 }
 
 /// Opens a layout in the window, or serves it where there is no display.
-fn open(args: &Args, steps: &Steps) -> Result<bool, Failure> {
+fn open(args: &Args, steps: &FloorCommands) -> Result<bool, Failure> {
     let layout = match &args.layout {
         Some(layout) => layout.clone(),
         None => first_layout(&args.floor)?,

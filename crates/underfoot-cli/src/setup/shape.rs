@@ -1,10 +1,13 @@
 //! The shape of the floor, by questions.
 
-use underfoot::floor::{Board, CountRange, CountSign, Floor, Geometry, SensorId};
+use underfoot::floor::{
+    Board, CountRange, CountSign, Floor, Geometry, PortName, SensorId, SerialWire, TextLines, TextNumbers,
+};
 use underfoot::schema;
-use underfoot::serve::{BoardSurvey, FoundBoard};
+use underfoot::serve::{FoundBoard, SentNumbers};
 
 use super::ask::{Left, ask, choice, number};
+use super::boards::HeardBoards;
 use crate::floor_args::grid;
 
 /// The floors to choose from, with the shipped floor file of each; the last two are asked for.
@@ -17,7 +20,7 @@ const SHAPES: [(&str, Option<&str>); 5] = [
 ];
 
 /// Asks for the shape, and assigns the boards that were found to its sensors.
-pub(super) fn ask_floor(survey: &BoardSurvey) -> Result<Floor, Left> {
+pub(super) fn ask_floor(found: &HeardBoards) -> Result<Floor, Left> {
     for (position, (shape, _)) in SHAPES.iter().enumerate() {
         outln!("  {}  {shape}", position + 1);
     }
@@ -38,7 +41,7 @@ pub(super) fn ask_floor(survey: &BoardSurvey) -> Result<Floor, Left> {
                 }
             },
         };
-        assign(&mut floor, survey);
+        assign(&mut floor, found);
         return Ok(floor);
     }
 }
@@ -59,8 +62,8 @@ fn tiles() -> Result<Result<Geometry, String>, Left> {
 
 /// Gives the sensors, tile by tile, to the channels of the boards in the order of their addresses. Without boards, the
 /// floor keeps its usual ones.
-fn assign(floor: &mut Floor, survey: &BoardSurvey) {
-    let found: Vec<&FoundBoard> = survey.boards();
+fn assign(floor: &mut Floor, all: &HeardBoards) {
+    let found: Vec<&FoundBoard> = all.survey.boards();
     let geometry = floor.geometry;
     let mut sensors = geometry
         .tiles()
@@ -71,14 +74,12 @@ fn assign(floor: &mut Floor, survey: &BoardSurvey) {
         );
         return;
     }
-    let boards = found.iter().map(|found| {
-        let channels = (0..found.channels()).map(|_| sensors.next()).collect();
-        let usual = CountRange::WHOLE.full_scale;
-        let full_scale = found.full_scale().map_or(usual, |(full, _)| full);
-        let sign = CountSign::Unsigned;
-        Board { range: CountRange { full_scale, sign }, ..Board::new(found.address.clone(), channels) }
+    let boards = found.iter().enumerate().map(|(number, board)| {
+        let channels = (0..board.channels()).map(|_| sensors.next()).collect();
+        Board { range: range(board), ..Board::new(address(board, number, &found), channels) }
     });
     floor.boards = boards.collect();
+    floor.serial = wires(&found, |port| all.baud(port));
     let left = sensors.count();
     let channels: usize = found.iter().map(|board| board.channels()).sum();
     if left > 0 {
@@ -94,6 +95,50 @@ fn assign(floor: &mut Floor, survey: &BoardSurvey) {
     outln!(
         "Channels go tile by tile from the south-west, sw se nw ne each; step 3 finds boards that are swapped."
     );
+}
+
+/// The counts of a board, as far as its readings tell.
+fn range(board: &FoundBoard) -> CountRange {
+    let full_scale = board.full_scale().map_or(CountRange::WHOLE.full_scale, |(full, _)| full);
+    CountRange { full_scale, sign: CountSign::Unsigned }
+}
+
+/// The OSC address of the board with this number; one that no other board has for lines of text.
+fn address(board: &FoundBoard, number: usize, found: &[&FoundBoard]) -> String {
+    if !board.address.is_empty() {
+        return board.address.clone();
+    }
+    let free = |number: &usize| {
+        let address = format!("/underfoot/board/{number}");
+        !found.iter().any(|other| other.address == address)
+    };
+    // Lines come first, so the numbers from here on are free of theirs.
+    let number = (0..).filter(free).nth(number).unwrap_or(number);
+    format!("/underfoot/board/{number}")
+}
+
+/// The serial ports of these boards.
+fn wires(found: &[&FoundBoard], baud: impl Fn(&PortName) -> u32) -> Vec<SerialWire> {
+    let mut wires: Vec<SerialWire> = Vec::new();
+    for (number, board) in (0..).zip(found) {
+        let Some(port) = &board.port else { continue };
+        let is_text = board.numbers == SentNumbers::Text;
+        if !is_text && wires.iter().any(|wire| wire.port.as_ref() == Some(port)) {
+            continue;
+        }
+        let CountRange { full_scale, sign } = range(board);
+        let columns: Vec<u8> = board.columns().filter_map(|column| u8::try_from(column).ok()).collect();
+        let lines = is_text.then(|| TextLines {
+            board: number,
+            request: Vec::new(),
+            separators: " ,".to_owned(),
+            width: columns.last().copied().unwrap_or(1),
+            columns,
+            numbers: TextNumbers::Counts { full_scale: full_scale as f32, sign },
+        });
+        wires.push(SerialWire { port: Some(port.clone()), baud: baud(port), lines });
+    }
+    wires
 }
 
 /// The text of a first layout: a button on each tile.

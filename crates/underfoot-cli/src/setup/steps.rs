@@ -8,12 +8,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::failure::Failure;
 
 /// Runs other commands of this program. Ctrl-C ends the command, and the set-up only at a question.
-pub(super) struct Steps {
+pub(super) struct FloorCommands {
     is_asking: Arc<AtomicBool>,
     listen: String,
 }
 
-impl Steps {
+impl FloorCommands {
     /// Commands that listen on `listen`.
     pub(super) fn new(listen: String) -> Result<Self, Failure> {
         let is_asking = Arc::new(AtomicBool::new(true));
