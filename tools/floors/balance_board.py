@@ -53,8 +53,10 @@ def thinned(times, forces, rate, gap, seed):
     """Readings at irregular instants: intervals of half to one and a half periods, and each hundredth a pause."""
     rng = random.Random(seed)
     kept, due = [], times[0]
+    # The recording's own instants are coarse: the nearest one serves.
+    half_step = 0.5 * (times[1] - times[0])
     for t, force in zip(times, forces):
-        if t >= due:
+        if t >= due - half_step:
             kept.append((t, force))
             due = t + (rng.uniform(2 / rate, gap) if rng.random() < 0.01 else rng.uniform(0.5, 1.5) / rate)
     return kept
