@@ -44,7 +44,7 @@ fn boards_of_the_network_are_found_and_get_the_sensors_of_the_shape_that_is_chos
     assert!(printed.contains("/underfoot/board/1: 12 channels of counts"), "{printed}");
     assert!(printed.contains("expected a number from 1 to 5"), "{printed}");
     assert!(printed.contains("The floor is in floor.ron."), "{printed}");
-    let floor = load_floor(folder.path().join("floor.ron")).unwrap();
+    let floor = load_floor(&folder.path().join("floor.ron")).unwrap();
     let wires = |floor: &Floor| -> Vec<_> {
         floor.boards.iter().map(|board| (board.address.clone(), board.channels.clone())).collect()
     };
@@ -98,7 +98,7 @@ fn a_board_that_sends_lines_of_text_is_found_with_its_columns_and_the_file_reads
     sender.join().unwrap();
     assert!(printed.contains("(lines of text): 4 channels of counts in lines of text"), "{printed}");
     assert!(!printed.contains("That did not succeed"), "{printed}");
-    let floor = load_floor(folder.path().join("floor.ron")).unwrap();
+    let floor = load_floor(&folder.path().join("floor.ron")).unwrap();
     let [SerialWire { port: Some(port), baud, lines: Some(lines) }] = &floor.serial[..] else {
         panic!("{:?}", floor.serial)
     };
