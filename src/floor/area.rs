@@ -106,6 +106,7 @@ impl Floor {
             calibration_records: of(&self.calibration_records, &indices)?,
             map_records: of(&self.map_records, &indices)?,
             noiseless: self.noiseless,
+            off: self.off.iter().filter(|sensor| geometry.index(sensor.tile).is_some()).copied().collect(),
             tared: self.tared,
             allow: self.allow.clone(),
             serial: Vec::new(),

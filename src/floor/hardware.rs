@@ -1,5 +1,6 @@
 //! The hardware of one floor.
 
+use std::collections::BTreeSet;
 use std::net::SocketAddr;
 
 use underfoot_packet::BoardAddress;
@@ -41,6 +42,9 @@ pub struct Floor {
     /// Whether the readings lack noise of their own, as those of an app or of a simulation without noise. Sensors
     /// that repeat their readings are then not detected, and controls with the guard `HoldToRun` work with them.
     pub noiseless: bool,
+    /// The sensors that are switched off: their readings never count. Their tiles continue with the others; a tile
+    /// with two or more of them off senses nothing.
+    pub off: BTreeSet<SensorId>,
     /// The day on which `tare` was measured; `None` if unknown.
     pub tared: Option<Day>,
     /// The networks that boards may send from; only this machine if it is empty.
@@ -77,6 +81,7 @@ impl Floor {
             calibration_records: vec![[None; 4]; tiles],
             map_records: vec![None; tiles],
             noiseless: false,
+            off: BTreeSet::new(),
             tared: None,
             allow: Vec::new(),
             serial: Vec::new(),
@@ -121,6 +126,15 @@ impl Floor {
             }
         }
         true
+    }
+
+    /// Switches a sensor off, or on again.
+    pub fn switch(&mut self, sensor: SensorId, on: bool) {
+        if on {
+            self.off.remove(&sensor);
+        } else {
+            self.off.insert(sensor);
+        }
     }
 
     /// Returns the law of a sensor; the nominal one for a sensor that the floor does not have.

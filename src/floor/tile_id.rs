@@ -89,7 +89,7 @@ impl fmt::Display for Corner {
 }
 
 /// One force sensor: its tile and corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SensorId {
     /// The tile on the sensor.
     pub tile: TileId,

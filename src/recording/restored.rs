@@ -3,7 +3,9 @@
 use super::entry::LogEntry;
 use super::tap::Entries;
 use crate::engine::Snapshot;
+use crate::floor::SensorChoice;
 use crate::layout::Layout;
+use crate::sense::Trouble;
 use crate::widget::Indicator;
 use crate::wire::ControlMessage;
 
@@ -44,6 +46,13 @@ fn requests(snapshot: &Snapshot, layout: &Layout) -> Vec<ControlMessage> {
     if snapshot.muted.all {
         requests.push(ControlMessage::Mute { on: true });
     }
+    let off = snapshot.health.troubles.iter().filter(|(_, trouble)| *trouble == Trouble::Off);
+    requests.extend(
+        off.map(|(sensor, _)| ControlMessage::UseSensors {
+            choice: SensorChoice::Sensor(*sensor),
+            on: false,
+        }),
+    );
     requests.extend(snapshot.muted.tiles.iter().map(|&tile| ControlMessage::MuteTile { tile, on: true }));
     requests
 }

@@ -8,6 +8,7 @@ use super::fields::Fields;
 use super::floor_areas::{self, AREAS, FloorAreaRecord};
 use super::floor_codecs::ValidTiles;
 use super::floor_measures::Measures;
+use super::floor_off::OffRecord;
 use super::floor_parts::{
     ActuatorRecord, BoardRecord, LoudspeakerRecord, MapEntry, ResponseRecord, SensorRecord, all_actuators,
 };
@@ -18,7 +19,8 @@ use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version::{
-    self, FIRST_VERSION, FORMAT_VERSION, VERSION, WITH_BOARD_RATES, WITH_PLATES, WITH_SERIAL_PORTS,
+    self, FIRST_VERSION, FORMAT_VERSION, VERSION, WITH_BOARD_RATES, WITH_PLATES, WITH_SENSORS_OFF,
+    WITH_SERIAL_PORTS,
 };
 use crate::floor::{
     ADDRESS, Corner, CountRange, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
@@ -89,6 +91,7 @@ fn floor(node: Node<'_>, absent: &dyn Fn(&PortName) -> Option<String>) -> Option
         ("sensors_m", "sensors at given places", WITH_PLATES),
         ("missing", "missing tiles", WITH_PLATES),
         ("plates", "plates that differ", WITH_PLATES),
+        ("off", "sensors that are off", WITH_SENSORS_OFF),
     ];
     let sides = sides.map(|(name, _)| (name, "rectangular tiles", WITH_PLATES));
     let newer: Vec<_> = newer
@@ -110,6 +113,7 @@ fn floor(node: Node<'_>, absent: &dyn Fn(&PortName) -> Option<String>) -> Option
         let boards = record.parts.boards.iter().flatten();
         boards.for_each(|board| board.check_sensors(node.reader, geometry));
         record.parts.sensors.iter().for_each(|sensor| sensor.check_sensor(node.reader, geometry));
+        record.parts.off.iter().for_each(|off| off.check(node.reader, &floor));
         floor_areas::check(node.reader, &floor.geometry, &record.parts.areas);
     }
     good.then_some(floor)
@@ -149,6 +153,8 @@ record! {
     /// Whether the readings lack noise of their own, as those of an app or of a simulation without noise: repeated
     /// readings are then normal, and `HoldToRun` works with them.
     pub(super) noiseless: bool = "noiseless", Flag => false;
+    /// Sensors that are switched off: their tiles continue with the others, and a tile without sensors carries nothing.
+    pub(super) off: Vec<OffRecord> = "off", list("sensor", MOST_OFF, Rec) => Vec::new();
     /// The day on which the floor was tared.
     pub(super) tared: Option<Day> = "tared", Opt(DAY) => None;
     /// Calibration and tare of sensors; those that are not listed are nominal.
@@ -164,6 +170,9 @@ record! {
     /// Loudspeakers beside the floor.
     pub(super) loudspeakers: Vec<LoudspeakerRecord> = "loudspeakers", LOUDSPEAKERS => Vec::new();
 }
+
+/// Maximum number of entries that switch sensors off.
+const MOST_OFF: usize = TILES * Corner::ALL.len();
 
 /// Maximum length of a path, in characters, as on Linux.
 const MAX_PATH: usize = 4096;
@@ -270,6 +279,7 @@ impl FloorFileRecord {
                 *own = parts.response.of(actuator.full_scale);
             }
         }
+        parts.off.iter().for_each(|off| off.apply(&mut floor));
         floor.gateway = parts.gateway;
         floor.key.clone_from(&parts.key);
         floor.noiseless = parts.noiseless;
@@ -299,6 +309,7 @@ impl FloorFileRecord {
             (has_rates, WITH_BOARD_RATES),
             (!floor.geometry.is_square_grid(), WITH_PLATES),
             (!floor.serial.is_empty(), WITH_SERIAL_PORTS),
+            (!floor.off.is_empty(), WITH_SENSORS_OFF),
         ];
         let needed = needed.into_iter().filter_map(|(is_used, version)| is_used.then_some(version));
         let version = needed.max().unwrap_or(FIRST_VERSION);
@@ -311,6 +322,7 @@ impl FloorFileRecord {
             allow: floor.allow.clone(),
             serial: floor.serial.iter().map(|wire| SerialRecord::of(wire, &floor.boards)).collect(),
             noiseless: floor.noiseless,
+            off: OffRecord::all(floor),
             tared: floor.tared,
             sensors: SensorRecord::all(floor),
             maps: MapEntry::all(floor),

@@ -5,7 +5,7 @@ use crate::floor::{Floor, LawKind};
 use underfoot_format::text::RonText;
 
 /// Comments above each field, and the comment in place of a field that is not written.
-const COMMENTS: [(&str, &[&str], Option<&str>); 16] = [
+const COMMENTS: [(&str, &[&str], Option<&str>); 17] = [
     ("sensors_m", &["Where the sensors are under each plate, from its centre: (east, north)."], None),
     ("missing", &["Cells of the grid without a tile."], None),
     ("plates", &["Plates that differ from the others."], None),
@@ -19,6 +19,7 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 16] = [
     ("allow", &["Where the boards' packets come from."], None),
     ("serial", &["The serial ports of boards, and the columns of those that send lines of text."], None),
     ("noiseless", &["The readings have no noise of their own: that they repeat says nothing."], None),
+    ("off", &["Sensors that are switched off."], None),
     ("tared", &[], None),
     (
         "sensors",

@@ -36,6 +36,7 @@ mod floor;
 mod floor_areas;
 mod floor_codecs;
 mod floor_measures;
+mod floor_off;
 mod floor_parts;
 mod floor_plates;
 mod floor_serial;

@@ -9,8 +9,8 @@ use crate::messages::TargetSort;
 use underfoot_format::{Num, num};
 
 /// The newest version of the formats that this program reads and writes: version 2 added targets, messages and
-/// serial ports, version 3 rates and ranges of boards, and plates other than squares with sensors at their corners,
-/// version 4 targets of DMX and MQTT and programs.
+/// serial ports, version 3 rates and ranges of boards, plates other than squares with sensors at their corners, and
+/// sensors that are switched off, version 4 targets of DMX and MQTT and programs.
 pub const FORMAT_VERSION: u32 = 4;
 
 /// The version that is written to files without anything that a later version added, so that older programs read them.
@@ -39,6 +39,9 @@ pub(super) const WITH_BOARD_RATES: u32 = 3;
 
 /// The first version with rectangular tiles, sensors at given places, missing tiles and plates that differ.
 pub(super) const WITH_PLATES: u32 = 3;
+
+/// The first version with sensors that are switched off.
+pub(super) const WITH_SENSORS_OFF: u32 = 3;
 
 /// The version field of a file.
 pub(super) const VERSION: Num = num(1.0..=FORMAT_VERSION as f64).explicit();

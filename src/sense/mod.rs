@@ -12,7 +12,8 @@
 //! among them, one picker per region.
 //!
 //! Calibration comes before all that: `LoadTable` and `Comparison` give each sensor
-//! its law, `PressTable` and `MapFit` each tile its position map.
+//! its law from a load cell, `StandFit` from a person who stands there; `PressTable` and `MapFit` give each
+//! tile its position map.
 //!
 //! | folder | content |
 //! |---|---|
@@ -41,8 +42,9 @@ pub use assembler::{
     Assembler, BoardCounts, BoardStatus, BoardTiming, Tare, TareOutcome, TareRules, TimeBase,
 };
 pub use calibration::{
-    Candidate, Comparison, Errors, Fit, FitError, Judgement, LoadPoint, LoadTable, MapError, MapFit,
-    PressTable, PressedPoint, SensorLoads, Sighting, TilePoints, Verdict,
+    Candidate, Comparison, Crossing, Errors, Fit, FitError, Judgement, LoadPoint, LoadTable, MapError,
+    MapFit, MeasuredStand, PressTable, PressedPoint, SensorFit, SensorLoads, SensorMoments, SensorVolts,
+    Sighting, StandData, StandError, StandFit, StandLaws, StandingMark, TilePoints, Verdict,
 };
 pub use centroid::{LoadedTile, SensorUncertainty, TileReading, Wrench, known_corners};
 pub use contact::{Contact, ContactId, Covariance, Cursor, CursorPicker, Stickiness, TileLoad};

@@ -4,6 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::floor::NoSuchSensor;
 use crate::layout::Layout;
 use crate::widget::{SetError, WidgetId};
 use underfoot_format::suggest::{listed, nearest};
@@ -37,6 +38,9 @@ pub enum Refusal {
         /// The pages of the layout.
         pages: Vec<WidgetId>,
     },
+    /// The floor has no such sensor.
+    #[error(transparent)]
+    NoSensor(#[from] NoSuchSensor),
     /// The session is over.
     #[error("the session is over")]
     Ended,

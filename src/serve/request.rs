@@ -45,6 +45,7 @@ fn set(engine: &mut Engine, message: &ControlMessage) -> Result<(), SetError> {
         | ControlMessage::Label { .. }
         | ControlMessage::Mute { .. }
         | ControlMessage::MuteTile { .. }
+        | ControlMessage::UseSensors { .. }
         | ControlMessage::GetMute => Ok(()),
     }
 }

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use rosc::OscType;
 
-use crate::floor::TileId;
+use crate::floor::{Corner, SensorChoice, SensorId, TileId};
 use crate::widget::{Indicator, Value};
 
 pub use underfoot_format::label::MAX_LABEL;
@@ -29,6 +29,11 @@ pub enum ArgumentKind {
     Switch,
     /// Two whole numbers, column and row of a tile, and then 0 or 1, or OSC true or false.
     TileFlag,
+    /// Column and row of a tile, a sensor as `sw`, `se`, `nw`, `ne` or its number from 0, and then 0 or 1, or OSC true
+    /// or false.
+    SensorFlag,
+    /// Two whole numbers, a board and its channel from 0, and then 0 or 1, or OSC true or false.
+    ChannelFlag,
 }
 
 /// An argument as read.
@@ -40,6 +45,7 @@ pub(super) enum DecodedArgument {
     Range(f32, f32),
     Flag(bool),
     TileFlag(TileId, bool),
+    SensorsFlag(SensorChoice, bool),
 }
 
 impl ArgumentKind {
@@ -69,6 +75,15 @@ impl ArgumentKind {
                 let tile = TileId::new(index(column)?, index(row)?);
                 flag(on).map(|on| DecodedArgument::TileFlag(tile, on))
             }
+            (Self::SensorFlag, [column, row, sensor, on]) => {
+                let tile = TileId::new(index(column)?, index(row)?);
+                let sensor = SensorId { tile, corner: corner(sensor)? };
+                flag(on).map(|on| DecodedArgument::SensorsFlag(SensorChoice::Sensor(sensor), on))
+            }
+            (Self::ChannelFlag, [board, channel, on]) => {
+                let choice = SensorChoice::Channel { board: index(board)?, channel: index(channel)? };
+                flag(on).map(|on| DecodedArgument::SensorsFlag(choice, on))
+            }
             (Self::Indicator, [OscType::String(text)]) => {
                 let found = Indicator::ALL.into_iter().find(|indicator| indicator.name() == text);
                 found.map(DecodedArgument::Indicator)
@@ -93,6 +108,10 @@ impl ArgumentKind {
             Self::Flag => "0 or 1, or true or false",
             Self::Switch => "no argument, 0 or 1, or true or false",
             Self::TileFlag => "three numbers: column and row of a tile, and 0 or 1",
+            Self::SensorFlag => {
+                "column and row of a tile, a sensor (sw, se, nw, ne, or its number), and 0 or 1"
+            }
+            Self::ChannelFlag => "three numbers: a board, its channel, and 0 or 1",
         }
     }
 }
@@ -113,6 +132,14 @@ fn index(argument: &OscType) -> Option<u16> {
             Some(number as u16)
         }
         _ => None,
+    }
+}
+
+/// Reads a sensor of a tile, by name or number.
+fn corner(argument: &OscType) -> Option<Corner> {
+    match argument {
+        OscType::String(name) => Corner::ALL.into_iter().find(|corner| corner.name() == name),
+        number => Corner::ALL.get(usize::from(index(number)?)).copied(),
     }
 }
 

@@ -6,6 +6,7 @@ use super::argument::{ArgumentKind, DecodedArgument};
 use super::message::ControlMessage;
 use super::pattern::{is_pattern, matches};
 use super::prefix::Prefix;
+use crate::floor::SensorChoice;
 use crate::widget::WidgetId;
 
 /// One request that apps can make.
@@ -21,7 +22,7 @@ pub struct Command {
 }
 
 /// All requests that apps can make.
-pub const COMMANDS: [Command; 16] = [
+pub const COMMANDS: [Command; 19] = [
     Command {
         path: "get",
         argument: ArgumentKind::Nothing,
@@ -155,7 +156,37 @@ pub const COMMANDS: [Command; 16] = [
         says: "Answer with what is muted.",
         make: |_, _| Some(ControlMessage::GetMute),
     },
+    Command {
+        path: "sensor/tile",
+        argument: ArgumentKind::TileFlag,
+        says: "Ignore all sensors of a tile (0), or use them again (1), until the program ends.",
+        make: |_, argument| match argument {
+            DecodedArgument::TileFlag(tile, on) => {
+                Some(ControlMessage::UseSensors { choice: SensorChoice::Tile(tile), on })
+            }
+            _ => None,
+        },
+    },
+    Command {
+        path: "sensor/set",
+        argument: ArgumentKind::SensorFlag,
+        says: "Ignore a sensor (0), or use it again (1), until the program ends; its tile goes on with the others.",
+        make: |_, argument| use_sensors(&argument),
+    },
+    Command {
+        path: "sensor/channel",
+        argument: ArgumentKind::ChannelFlag,
+        says: "The same for the sensor on a channel of a board.",
+        make: |_, argument| use_sensors(&argument),
+    },
 ];
+
+fn use_sensors(argument: &DecodedArgument) -> Option<ControlMessage> {
+    match *argument {
+        DecodedArgument::SensorsFlag(choice, on) => Some(ControlMessage::UseSensors { choice, on }),
+        _ => None,
+    }
+}
 
 /// Reason for which a message is not a command.
 pub(super) enum NoCommand {

@@ -82,6 +82,17 @@ mod tests {
             ControlMessage::Disable { id },
             ControlMessage::ShowPage { page: WidgetId::new("more") },
             ControlMessage::MuteTile { tile: crate::floor::TileId::new(3, 4), on: true },
+            ControlMessage::UseSensors {
+                choice: crate::floor::SensorChoice::Channel { board: 2, channel: 31 },
+                on: true,
+            },
+            ControlMessage::UseSensors {
+                choice: crate::floor::SensorChoice::Sensor(crate::floor::SensorId {
+                    tile: crate::floor::TileId::new(5, 1),
+                    corner: crate::floor::Corner::NorthWest,
+                }),
+                on: false,
+            },
             ControlMessage::GetAll,
         ] {
             let (path, args) = write_json(&message);

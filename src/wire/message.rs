@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use rosc::OscType;
 
-use crate::floor::TileId;
+use crate::floor::{SensorChoice, TileId};
 use crate::widget::{Indicator, Value, WidgetId};
 
 /// A request of an app, about a control or the floor.
@@ -93,6 +93,13 @@ pub enum ControlMessage {
     },
     /// Report the mute state to the sender.
     GetMute,
+    /// Use the readings of some sensors, or ignore them.
+    UseSensors {
+        /// The sensors.
+        choice: SensorChoice,
+        /// Whether to use them.
+        on: bool,
+    },
 }
 
 /// The control that a message concerns, borrowed as the message is.
@@ -114,7 +121,8 @@ macro_rules! id_of {
             | Self::CancelAll
             | Self::Mute { .. }
             | Self::MuteTile { .. }
-            | Self::GetMute => None,
+            | Self::GetMute
+            | Self::UseSensors { .. } => None,
         }
     };
 }
@@ -151,6 +159,9 @@ impl ControlMessage {
             Self::Mute { .. } => return "mute/set".into(),
             Self::MuteTile { .. } => return "mute/tile".into(),
             Self::GetMute => return "mute/get".into(),
+            Self::UseSensors { choice: SensorChoice::Tile(_), .. } => return "sensor/tile".into(),
+            Self::UseSensors { choice: SensorChoice::Sensor(_), .. } => return "sensor/set".into(),
+            Self::UseSensors { choice: SensorChoice::Channel { .. }, .. } => return "sensor/channel".into(),
         };
         format!("widget/{id}/{verb}")
     }
@@ -172,9 +183,15 @@ impl ControlMessage {
             }
             Self::ShowPage { page } => vec![OscType::String(page.to_string())],
             Self::Mute { on } => vec![OscType::Bool(*on)],
-            Self::MuteTile { tile, on } => {
-                vec![OscType::Int(tile.column.into()), OscType::Int(tile.row.into()), OscType::Bool(*on)]
-            }
+            Self::MuteTile { tile, on } => numbers([tile.column, tile.row], *on),
+            Self::UseSensors { choice, on } => match choice {
+                SensorChoice::Tile(tile) => numbers([tile.column, tile.row], *on),
+                SensorChoice::Sensor(sensor) => {
+                    let number = sensor.corner.index() as u16;
+                    numbers([sensor.tile.column, sensor.tile.row, number], *on)
+                }
+                SensorChoice::Channel { board, channel } => numbers([*board, *channel], *on),
+            },
             Self::Enable { .. }
             | Self::Disable { .. }
             | Self::Lock { .. }
@@ -186,6 +203,12 @@ impl ControlMessage {
             | Self::GetMute => Vec::new(),
         }
     }
+}
+
+/// Whole numbers, and on or off behind them.
+fn numbers<const N: usize>(numbers: [u16; N], on: bool) -> Vec<OscType> {
+    let numbers = numbers.map(|number| OscType::Int(number.into()));
+    numbers.into_iter().chain([OscType::Bool(on)]).collect()
 }
 
 /// A request and its sender.

@@ -35,4 +35,6 @@ mod page_files;
 mod regions;
 mod runtime;
 mod sense;
+mod standing;
+mod switched_off;
 mod wire;

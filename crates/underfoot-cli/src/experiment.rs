@@ -9,8 +9,8 @@ use serde::Serialize;
 use underfoot::ground::IceSpec;
 use underfoot_lab::experiment::{
     BesideTable, ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable,
-    PlaceTable, PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SeatedTable, SpotTable, TapTable,
-    TileScan, TwoFeet,
+    PlaceTable, PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SeatedTable, SpotTable, StandTable,
+    TapTable, TileScan, TwoFeet,
 };
 use underfoot_scene::picture;
 use underfoot_sim::{FloorQuality, SceneKind};
@@ -48,6 +48,9 @@ enum What {
     /// Accuracy of all contacts in fourteen scenes that are hard to sense, on floors of one quality or of several:
     /// walking, shifting weight, jumping, kneeling, sticks, wheels.
     Scenes(ScenesArgs),
+    /// Accuracy after calibration by standing, beside that by a load cell, on floors of each law; by the number of
+    /// marks, and with the time that the person needs.
+    Calibration(StandArgs),
     /// Rates of unintended activations and of missed presses: people who cross and use every shipped layout, and rows
     /// of buttons of many sizes and thresholds.
     Intent(IntentArgs),
@@ -78,6 +81,20 @@ struct SpotArgs {
     floors: u64,
     #[command(flatten)]
     quality: QualityArg,
+    /// Seed of the first floor's parts; the next ones follow.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Print one JSON object instead of tables.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The floors of a calibration by standing have parts of their own spread and noise.
+#[derive(clap::Args, Debug)]
+struct StandArgs {
+    /// Number of floors, each of other parts.
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    floors: u64,
     /// Seed of the first floor's parts; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -177,6 +194,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Place(args) => place(args),
         What::Feet(args) => feet(args),
         What::Scenes(args) => scenes(args),
+        What::Calibration(args) => calibration(args),
         What::Intent(args) => intent(args),
         What::Controls(args) => controls(args),
         What::Pond(args) => pond(args),
@@ -371,6 +389,24 @@ fn place(args: &SpotArgs) -> Result<(), Failure> {
     for number in 0..args.floors {
         table.add_floor(args.seed.wrapping_add(number))?;
         progress.advance();
+    }
+    if args.json {
+        return print_json(&table.lines().collect::<Vec<_>>());
+    }
+    progress.print(&table);
+    Ok(())
+}
+
+fn calibration(args: &StandArgs) -> Result<(), Failure> {
+    let mut table = StandTable::default();
+    let progress = ProgressLine::of("floor", args.floors);
+    // In the order of floors, not of completion: the same seed gives the same table.
+    for floor in in_parallel(&progress, args.floors, |number| {
+        let mut table = StandTable::default();
+        table.add_floor(args.seed.wrapping_add(number))?;
+        Ok(table)
+    })? {
+        table.append(floor);
     }
     if args.json {
         return print_json(&table.lines().collect::<Vec<_>>());

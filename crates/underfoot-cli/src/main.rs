@@ -50,6 +50,7 @@ mod send_args;
 mod senders;
 mod sense;
 mod session;
+mod setup;
 mod share;
 mod simulate;
 mod stop;
@@ -109,11 +110,13 @@ enum Command {
     Render(render::Args),
     /// Check the actuators and their sound device: a walk from tile to tile, the devices, the channel map.
     Rack(rack::Args),
+    /// Set up a new floor, step by step: boards, shape, wiring, calibration, a first layout.
+    Setup(setup::Args),
     /// Find which board reads which tiles, by stepping from board to board; or draw the wiring.
     Wiring(wiring::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
     Sense(sense::SenseArgs),
-    /// Calibrate a floor: sensor curves, tare, position maps.
+    /// Calibrate a floor: sensor curves, by load cell or by standing on it; tare, position maps.
     Calibrate(calibrate::Args),
     /// Least, median and greatest force of each tile and sensor, for choosing thresholds.
     Measure(measure::Args),
@@ -180,6 +183,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Share(args)) => share::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Rack(args)) => rack::run(&args),
+        Some(Command::Setup(args)) => setup::run(&args),
         Some(Command::Wiring(args)) => wiring::run(&args),
         Some(Command::Sense(args)) => sense::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),

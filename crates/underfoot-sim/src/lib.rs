@@ -63,6 +63,7 @@ mod sensor;
 mod session;
 mod simulated;
 mod slide;
+mod standing;
 mod sway;
 mod track;
 mod visit;
@@ -98,6 +99,7 @@ pub use sensor::{PartConfig, SensorFault};
 pub use session::{SimulationError, session, session_from_files, session_with};
 pub use simulated::{Pace, SimulatedSource};
 pub use slide::Slide;
+pub use standing::{StandingHabit, standing_on};
 pub use visit::{Visit, visit};
 pub use watched::{WatchedFeet, watched};
 

@@ -42,7 +42,7 @@ pub struct CalibrationError {
 /// Returns `floor` with calibration and tare measured on its simulation `sim`.
 ///
 /// The bench loads each sensor in 40 steps up to 97 % of its range, against a load cell with an error of 0.5 %, and
-/// fits the law; then it reads the empty floor for the tare. The same `seed` gives the same calibration. Faults of
+/// fits the law, of the parts' kind; then it reads the empty floor for the tare. The same `seed` gives the same calibration. Faults of
 /// the floor do not affect the bench. A floor with boards that send newtons needs no calibration and gets a tare of
 /// zero. A floor without noise is marked as [`Floor::noiseless`].
 ///
@@ -79,7 +79,8 @@ fn on_the_bench(
     corner: Corner,
     rng: &mut Pcg64Mcg,
 ) -> Result<Calibration, FitError> {
-    Fit::of(&loaded(sim, tile, corner, rng)).map(|fit| fit.calibration)
+    let kind = sim.bench(tile, corner).0.law.kind();
+    Fit::of_kind(&loaded(sim, tile, corner, rng), kind).map(|fit| fit.calibration)
 }
 
 /// Output of a sensor and reading of the load cell at each load.

@@ -5,24 +5,26 @@ use std::f32::consts::TAU;
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg64Mcg;
 
-use underfoot::floor::{Calibration, Exponential};
+use underfoot::floor::{Calibration, Divider, LawKind};
 use underfoot::units::Newtons;
 
 /// Tolerances of the sensors of a simulated floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartConfig {
     /// The law of an average part.
-    pub nominal: Exponential,
-    /// Largest deviation of a part's factor a from nominal, as a share (0 to 0.9).
+    pub nominal: Calibration,
+    /// Largest deviation of the first number of a part's law from nominal, as a share (0 to 0.9).
     pub a_spread: f32,
-    /// Largest deviation of a part's exponent b from nominal, as a share (0 to 0.5).
+    /// Largest deviation of its second number from nominal, as a share (0 to 0.5).
     pub b_spread: f32,
-    /// Mean deviation of the parts from an exponential law: root mean square of the force error after the best fit,
+    /// Mean deviation of the parts from their law: root mean square of the force error after the best fit,
     /// averaged over the parts, as a share of full scale (0 to 0.08).
     pub deviation: f32,
     /// Standard deviation of the noise, in volts; counts have noise of at least half a count, as with real
     /// converters.
     pub noise_v: f32,
+    /// Standard deviation of further noise in counts, as a share of the force (0 to 0.2).
+    pub noise_share: f32,
     /// Width of the hysteresis loop: relative difference between the readings of a falling and a rising force.
     pub hysteresis: f32,
     /// Growth of the reading under a steady force per decade of time from 0.1 to 1000 s, as a share.
@@ -37,11 +39,12 @@ impl Default for PartConfig {
     /// hysteresis, no creep.
     fn default() -> Self {
         Self {
-            nominal: Exponential::NOMINAL,
+            nominal: Calibration::NOMINAL,
             a_spread: 0.25,
             b_spread: 0.05,
             deviation: 0.05,
             noise_v: 0.002,
+            noise_share: 0.0,
             hysteresis: 0.0,
             creep: 0.0,
             saturation_n: f32::INFINITY,
@@ -54,11 +57,12 @@ impl PartConfig {
     #[must_use]
     pub const fn exact() -> Self {
         Self {
-            nominal: Exponential::NOMINAL,
+            nominal: Calibration::NOMINAL,
             a_spread: 0.0,
             b_spread: 0.0,
             deviation: 0.0,
             noise_v: 0.0,
+            noise_share: 0.0,
             hysteresis: 0.0,
             creep: 0.0,
             saturation_n: f32::INFINITY,
@@ -94,7 +98,7 @@ pub enum SensorFault {
 /// One part with its tolerances.
 #[derive(Clone, Debug)]
 pub(super) struct SensorPart {
-    pub(super) law: Exponential,
+    pub(super) law: Calibration,
     deviation: Deviation,
     /// As [`PartConfig::saturation_n`].
     saturation_n: f32,
@@ -104,10 +108,9 @@ impl SensorPart {
     /// Draws the next part.
     pub(super) fn draw(config: &PartConfig, rng: &mut Pcg64Mcg) -> Self {
         let mut spread = |share: f32| 1.0 + rng.random_range(-1.0f32..=1.0) * share;
-        let law = Exponential {
-            a_n: config.nominal.a_n * spread(config.a_spread.clamp(0.0, 0.9)),
-            b_per_volt: config.nominal.b_per_volt * spread(config.b_spread.clamp(0.0, 0.5)),
-        };
+        let [a, b] = config.nominal.numbers();
+        let a = a * spread(config.a_spread.clamp(0.0, 0.9));
+        let law = Calibration::of(config.nominal.kind(), [a, b * spread(config.b_spread.clamp(0.0, 0.5))]);
         let saturation_n =
             if config.saturation_n.is_nan() { f32::INFINITY } else { config.saturation_n.max(LEAST_FORCE) };
         Self { law, deviation: Deviation::draw(law, config.deviation.clamp(0.0, 0.08), rng), saturation_n }
@@ -118,7 +121,14 @@ impl SensorPart {
     pub(super) fn volts(&self, force: f32) -> f32 {
         let force = self.bounded(force);
         let apparent = force * self.deviation.at(force);
-        if apparent > self.law.a_n { (apparent / self.law.a_n).ln() / self.law.b_per_volt } else { 0.0 }
+        // Below the threshold of its law the voltage is negative or not a number, and `max` returns zero.
+        self.law.volts_at(Newtons(apparent)).max(0.0)
+    }
+
+    /// The output `volts` with an error of its force, as a share of that force; an output of zero has none.
+    pub(super) fn with_force_error(&self, volts: f32, error: f32) -> f32 {
+        let noisy = self.law.volts_at(self.law.force_at(volts) * (1.0 + error));
+        if volts > 0.0 && noisy.is_finite() { noisy } else { volts }
     }
 
     /// Effective force with soft saturation: `f / (1 + (f / limit)^6)^(1/6)`.
@@ -132,12 +142,27 @@ impl SensorPart {
     /// Force at which the converter reaches full scale, or at which the part itself saturates.
     pub(super) fn capacity(&self) -> f32 {
         // The apparent force grows with the force, so bisection finds the crossing.
-        let (mut low, mut high) = (0.0, 4.0 * self.law.newtons(Calibration::volts(u16::MAX)));
+        let end = end_of_range(&self.law);
+        let (mut low, mut high) = (0.0, 4.0 * self.law.force_at(end).0);
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
-            if self.volts(middle) < Calibration::FULL_SCALE_VOLTS { low = middle } else { high = middle }
+            if self.volts(middle) < end { low = middle } else { high = middle }
         }
         high.min(self.saturation_n)
+    }
+}
+
+/// Share of a divider's supply at which its range ends: beyond it a newton changes the voltage by less than a
+/// thousandth of what it does at the light end.
+const DIVIDER_END: f32 = 0.95;
+
+/// Voltage at the end of a part's range: the converter's full scale, less for a divider.
+fn end_of_range(law: &Calibration) -> f32 {
+    match law {
+        Calibration::Divider(Divider { supply_v, .. }) => {
+            (DIVIDER_END * supply_v).min(Calibration::FULL_SCALE_VOLTS)
+        }
+        _ => Calibration::volts(u16::MAX),
     }
 }
 
@@ -147,7 +172,7 @@ pub(super) fn counts(volts: f32) -> u16 {
     (volts * (f32::from(u16::MAX) / Calibration::FULL_SCALE_VOLTS)).round() as u16
 }
 
-/// Smooth deviation of one part from its exponential law: a factor `exp(A cos(w s^(3/4) + phase))` at the share `s`
+/// Smooth deviation of one part from its law: a factor `exp(A cos(w s^(3/4) + phase))` at the share `s`
 /// of the full range.
 ///
 /// About two waves over the range, a little denser at the light end. With this shape the error after the best fit is
@@ -166,8 +191,8 @@ struct Deviation {
 impl Deviation {
     /// Draws a curve that leaves an error of about `residual` after the best fit, varying by a fifth from part to
     /// part.
-    fn draw(law: Exponential, residual: f32, rng: &mut Pcg64Mcg) -> Self {
-        let full = law.newtons(Calibration::volts(u16::MAX));
+    fn draw(law: Calibration, residual: f32, rng: &mut Pcg64Mcg) -> Self {
+        let full = law.force_at(end_of_range(&law)).0;
         let mut deviation = Self { per_full: 1.0 / full, amplitude: 0.0, wave: 0.0, phase: 0.0 };
         if residual <= 0.0 {
             return deviation;
@@ -206,21 +231,35 @@ impl Deviation {
             .fold(1.0, f32::max)
     }
 
-    /// Root mean square of the deviation after the best change of the law's a and b (to first order), as a share of
+    /// Root mean square of the deviation after the best change of the law's two numbers (to first order), as a share of
     /// full scale, evenly over force.
-    fn left_after_fit(&self, law: Exponential, full: f32) -> f32 {
+    fn left_after_fit(&self, law: Calibration, full: f32) -> f32 {
         const STEPS: usize = 64;
-        // For each force: effect of a change of ln a, effect of a change of b, and the deviation.
+        // For each force: effect of a change of ln a, effect of a change of the second number, and the deviation.
         let rows: [[f64; 3]; STEPS] = std::array::from_fn(|step| {
             let share = (step as f64 + 0.5) / STEPS as f64;
             let force = full * share as f32;
-            let volts = (force / law.a_n).ln().max(0.0) / law.b_per_volt;
-            [share, share * f64::from(volts), share * f64::from(self.at(force) - 1.0)]
+            let volts = law.volts_at(Newtons(force)).max(0.0);
+            [
+                share,
+                share * f64::from(second_effect(&law, volts, force)),
+                share * f64::from(self.at(force) - 1.0),
+            ]
         });
         let dot = |i: usize, j: usize| rows.iter().map(|row| row[i] * row[j]).sum::<f64>();
         let (aa, ab, bb, ad, bd, dd) = (dot(0, 0), dot(0, 1), dot(1, 1), dot(0, 2), dot(1, 2), dot(2, 2));
         let followed = (ad * ad * bb - 2.0 * ad * bd * ab + bd * bd * aa) / (aa * bb - ab * ab);
         ((dd - followed).max(0.0) / STEPS as f64).sqrt() as f32
+    }
+}
+
+/// Relative change of the force per change of the law's second number, to a constant factor.
+fn second_effect(law: &Calibration, volts: f32, force: f32) -> f32 {
+    match (law.kind(), law.numbers()) {
+        (LawKind::Exponential, _) => volts,
+        (LawKind::Power, _) => volts.max(f32::MIN_POSITIVE).ln(),
+        (LawKind::Divider, [_, supply]) => 1.0 / (supply - volts).max(f32::MIN_POSITIVE),
+        (LawKind::Linear, _) => 1.0 / force,
     }
 }
 
@@ -291,8 +330,10 @@ mod tests {
     #[test]
     fn parts_spread_by_a_quarter_in_a_and_a_twentieth_in_b() {
         let config = PartConfig::default();
-        let (mut a, mut b): (Vec<f32>, Vec<f32>) =
-            parts(&config).iter().map(|part| (part.law.a_n / 0.5, part.law.b_per_volt / 1.34)).unzip();
+        let (mut a, mut b): (Vec<f32>, Vec<f32>) = parts(&config)
+            .iter()
+            .map(|part| (part.law.numbers()[0] / 0.5, part.law.numbers()[1] / 1.34))
+            .unzip();
         for (values, spread) in [(&mut a, 0.25), (&mut b, 0.05)] {
             values.sort_by(f32::total_cmp);
             let mean = values.iter().sum::<f32>() / 400.0;
@@ -335,7 +376,7 @@ mod tests {
     fn an_exact_part_reads_back_what_pressed_it_until_it_saturates() {
         let part = &parts(&PartConfig::exact())[0];
         for force in [1.0, 20.0, 175.0, 400.0] {
-            let read = part.law.newtons(Calibration::volts(counts(part.volts(force))));
+            let read = part.law.force(counts(part.volts(force))).0;
             assert!((read - force).abs() < 1e-4 * force + 1e-3, "{read} for {force}");
         }
         assert_eq!(counts(part.volts(407.0)), u16::MAX);
@@ -346,9 +387,39 @@ mod tests {
     }
 
     #[test]
+    fn parts_of_every_law_read_back_what_pressed_them_and_end_within_their_range() {
+        for (kind, numbers) in [
+            (LawKind::Exponential, [0.5, 1.34]),
+            (LawKind::Power, [2.2, 3.1]),
+            (LawKind::Divider, [45.0, 5.0]),
+            (LawKind::Linear, [82.0, 0.4]),
+        ] {
+            let nominal = Calibration::of(kind, numbers);
+            let config = PartConfig { nominal, a_spread: 0.25, b_spread: 0.05, ..PartConfig::exact() };
+            for part in parts(&config) {
+                for share in [0.1, 0.5, 0.97] {
+                    let force = share * part.capacity();
+                    let read = part.law.force(counts(part.volts(force))).0;
+                    assert!((read / force - 1.0).abs() < 2e-3, "{:?}: {read} for {force}", part.law);
+                    let heavier = part.law.force_at(part.with_force_error(part.volts(force), 0.02)).0;
+                    assert!((heavier / force - 1.02).abs() < 1e-3, "{:?}: {heavier} for {force}", part.law);
+                }
+            }
+            let (mut left, deviating) = (0.0, PartConfig { deviation: 0.03, ..config });
+            for part in parts(&deviating) {
+                let forces = (1..=50).map(|step| part.capacity() * step as f32 / 50.0);
+                let points: Vec<_> =
+                    forces.map(|force| LoadPoint::new(part.volts(force), Newtons(force))).collect();
+                left += Fit::of_kind(&points, kind).unwrap().residual / 400.0;
+            }
+            assert!((0.02..0.04).contains(&left), "{kind:?}: {left}");
+        }
+    }
+
+    #[test]
     fn a_soft_part_reads_ever_less_of_a_force_near_its_limit() {
         let part = &parts(&PartConfig { saturation_n: 300.0, ..PartConfig::exact() })[0];
-        let read = |force: f32| Calibration::Exponential(part.law).force(counts(part.volts(force))).0;
+        let read = |force: f32| part.law.force(counts(part.volts(force))).0;
         for (force, expected) in [(100.0, 99.98), (240.0, 230.5), (300.0, 267.3), (600.0, 299.2)] {
             assert!((read(force) - expected).abs() < 0.5, "{} for {force}", read(force));
         }

@@ -148,6 +148,12 @@ impl BoardTrack {
         is_awaited && self.is_taring()
     }
 
+    /// The sensor on a channel.
+    pub(super) fn sensor(&self, channel: usize) -> Option<SensorId> {
+        let Channel { tile, corner, .. } = *self.channels.get(channel)?.as_ref()?;
+        Some(SensorId { tile: self.geometry.tile_at_index(tile as usize), corner })
+    }
+
     pub(super) fn channel_count(&self) -> usize {
         self.channels.len()
     }

@@ -6,7 +6,7 @@ use super::board::BoardTrack;
 use super::numbering::TimeBase;
 use super::presence::Presence;
 use super::{Assembler, TareOutcome};
-use crate::floor::{SensorId, TileId};
+use crate::floor::{NoSuchSensor, SensorChoice, SensorId, TileId};
 use crate::sense::{Quality, SensorHealth, Trouble};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, LinkState};
@@ -183,6 +183,20 @@ impl Assembler {
     /// The sensors with faults, as of the last frame.
     pub fn troubles(&self) -> impl Iterator<Item = (SensorId, Trouble)> + '_ {
         self.health.troubles()
+    }
+
+    /// Switches sensors off, or on again, from the next frame on: the readings of an off sensor never count, and it is
+    /// [`Quality::Faulty`] with [`Trouble::Off`].
+    ///
+    /// # Errors
+    /// [`NoSuchSensor`] if the floor has none of them.
+    pub fn switch(&mut self, choice: SensorChoice, on: bool) -> Result<(), NoSuchSensor> {
+        let boards = &self.boards;
+        let wired = |board: u16, channel: u16| boards.get(usize::from(board))?.sensor(channel.into());
+        for sensor in choice.wired(self.health.geometry(), wired)? {
+            self.health.switch(sensor, on);
+        }
+        Ok(())
     }
 
     /// Number of times that a sensor fault began or ended; constant as long as [`Assembler::troubles`] is.

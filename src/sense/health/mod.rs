@@ -119,7 +119,7 @@ pub(super) struct Health {
 impl Health {
     pub(super) fn new(floor: &Floor) -> Self {
         let tiles = floor.geometry.tile_count();
-        Self {
+        let mut health = Self {
             geometry: floor.geometry,
             number: 0,
             intake: Intake::new(tiles),
@@ -150,6 +150,18 @@ impl Health {
             repeats: Repeats::new(tiles, floor.noiseless),
             changes: 0,
             found: 0,
+        };
+        floor.off.iter().for_each(|sensor| health.switch(*sensor, false));
+        health
+    }
+
+    /// Switches a sensor off, or on again: an off one never counts.
+    pub(super) fn switch(&mut self, sensor: SensorId, on: bool) {
+        let Some(tile) = self.geometry.index(sensor.tile) else { return };
+        let Some(sensors) = self.sensors.get_mut(tile) else { return };
+        if sensors[sensor.corner.index()].switch(on) {
+            self.changes += 1;
+            self.queue.watch(tile);
         }
     }
 
@@ -220,6 +232,11 @@ impl Health {
     /// Sets the time between two samples of these tiles' boards, in milliseconds; it is 1 for all others.
     pub(super) fn set_intervals(&mut self, intervals: impl Iterator<Item = (usize, f32)>) {
         self.intervals.set(self.sensors.len(), intervals);
+    }
+
+    /// The floor's geometry.
+    pub(super) const fn geometry(&self) -> &Geometry {
+        &self.geometry
     }
 
     /// Whether readings have no noise of their own.

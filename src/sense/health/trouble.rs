@@ -23,6 +23,9 @@ pub enum Trouble {
     /// Its readings scatter by several newtons on an empty, quiet tile.
     #[error("noisy")]
     Noisy,
+    /// It is switched off, in the floor file or by a request.
+    #[error("switched off")]
+    Off,
 }
 
 impl Trouble {
@@ -36,6 +39,7 @@ impl Trouble {
             Self::Offset => "offset",
             Self::Drifted => "drifted",
             Self::Noisy => "noisy",
+            Self::Off => "off",
         }
     }
 }
@@ -73,7 +77,7 @@ impl Sensor {
     pub(super) fn quality(&self) -> Quality {
         match self.trouble {
             None => Quality::Live,
-            Some(Trouble::Open | Trouble::Short | Trouble::Stuck) => Quality::Faulty,
+            Some(Trouble::Open | Trouble::Short | Trouble::Stuck | Trouble::Off) => Quality::Faulty,
             Some(Trouble::Offset) if self.bad_for >= DOUBT_S => Quality::Faulty,
             Some(Trouble::Offset | Trouble::Drifted | Trouble::Noisy) => Quality::Degraded,
         }
@@ -96,12 +100,22 @@ impl Sensor {
             Some(Trouble::Drifted | Trouble::Noisy) => 1,
             Some(Trouble::Offset) => 2,
             Some(Trouble::Open | Trouble::Short | Trouble::Stuck) => 3,
+            Some(Trouble::Off) => 4,
         };
         let is_news = !self.is_out() && rank(Some(trouble)) > rank(self.trouble);
         if is_news {
             *self = Self { trouble: Some(trouble), found_at: force, ..Self::default() };
         }
         is_news
+    }
+
+    /// Switches it off, or on again as a healthy one; returns false if it was so already.
+    pub(super) fn switch(&mut self, on: bool) -> bool {
+        let is_on = self.trouble != Some(Trouble::Off);
+        if is_on != on {
+            *self = Self { trouble: (!on).then_some(Trouble::Off), ..Self::default() };
+        }
+        is_on != on
     }
 
     /// Whether its fault would show at a plate requirement known to within `slack` newtons: under a heavy foot a load
@@ -127,7 +141,7 @@ impl Sensor {
     /// wrong while it may be the edge of a foot on the next tile, beside a sensor that is dead and not yet known to
     /// be.
     pub(super) fn review(&mut self, mean: f32, is_good: bool, alone: bool, seconds: f32) {
-        if self.trouble.is_none() {
+        if matches!(self.trouble, None | Some(Trouble::Off)) {
             return;
         }
         self.moved |= (mean - self.found_at).abs() > LOOSE_N;
@@ -167,6 +181,18 @@ mod tests {
             sensor.review(0.0, true, true, 0.064);
         }
         assert_eq!(sensor.trouble(), None);
+    }
+
+    #[test]
+    fn only_a_switch_brings_back_a_sensor_that_is_off() {
+        let mut sensor = Sensor::default();
+        assert!(sensor.switch(false) && !sensor.switch(false));
+        for _ in 0..100 {
+            sensor.review(40.0, true, true, 0.064);
+            assert!(!sensor.find(Trouble::Short, 400.0));
+        }
+        assert!(sensor.is_out() && sensor.trouble() == Some(Trouble::Off));
+        assert!(sensor.switch(true) && sensor.trouble().is_none());
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Argument;
 use super::limits::DescribedLimits;
-use crate::floor::Geometry;
+use crate::floor::{Floor, Geometry};
 use crate::layout::{Layout, Widget};
 use crate::widget::{Behaviour, Control, Value};
 use crate::wire::sent::{Field, arguments_of_value};
@@ -21,7 +21,7 @@ pub(super) fn taken(
     command: &Command,
     widget: Option<&Widget>,
     layout: &Layout,
-    geometry: &Geometry,
+    floor: &Floor,
 ) -> Vec<Argument> {
     match command.argument {
         ArgumentKind::Nothing => Vec::new(),
@@ -44,15 +44,22 @@ pub(super) fn taken(
         }
         ArgumentKind::Flag => vec![argument("on", "i|f|T|F", DescribedLimits::flag())],
         ArgumentKind::TileFlag => {
-            let block = geometry.block();
-            let numbers = |range: Range<u16>| {
-                DescribedLimits::numbers(range.start.into(), range.end.saturating_sub(1).into())
+            let [column, row] = tile(&floor.geometry);
+            vec![column, row, argument("on", "i|f|T|F", DescribedLimits::flag())]
+        }
+        ArgumentKind::SensorFlag => {
+            let [column, row] = tile(&floor.geometry);
+            let sensor = DescribedLimits::text("sw, se, nw or ne, or the sensor's number from 0");
+            let on = argument("on", "i|f|T|F", DescribedLimits::flag());
+            vec![column, row, argument("sensor", "s|i", sensor), on]
+        }
+        ArgumentKind::ChannelFlag => {
+            let number = |name: &str, count: usize| {
+                argument(name, "i", DescribedLimits::numbers(0.0, count.saturating_sub(1) as f64))
             };
-            vec![
-                argument("column", "i", numbers(block.column_range())),
-                argument("row", "i", numbers(block.row_range())),
-                argument("on", "i|f|T|F", DescribedLimits::flag()),
-            ]
+            let channels = floor.boards.iter().map(|board| board.channels.len()).max().unwrap_or_default();
+            let on = argument("on", "i|f|T|F", DescribedLimits::flag());
+            vec![number("board", floor.boards.len()), number("channel", channels), on]
         }
         ArgumentKind::Value => {
             let Some(widget) = widget else { return Vec::new() };
@@ -67,6 +74,14 @@ pub(super) fn taken(
             arguments
         }
     }
+}
+
+/// Returns column and row of a tile.
+fn tile(geometry: &Geometry) -> [Argument; 2] {
+    let block = geometry.block();
+    let numbers =
+        |range: Range<u16>| DescribedLimits::numbers(range.start.into(), range.end.saturating_sub(1).into());
+    [argument("column", "i", numbers(block.column_range())), argument("row", "i", numbers(block.row_range()))]
 }
 
 /// Returns the arguments of the value of a control with this behaviour.

@@ -158,7 +158,7 @@ impl Maker<'_> {
         for command in COMMANDS.iter().filter(|command| !command.is_of_a_control()) {
             // A layout without pages has none to show.
             if command.argument != ArgumentKind::Page || !layout.pages.is_empty() {
-                let arguments = taken(command, None, layout, &floor.geometry);
+                let arguments = taken(command, None, layout, floor);
                 self.add(MessageDirection::In, command.path, arguments, command.says);
             }
         }
@@ -208,7 +208,7 @@ impl Maker<'_> {
                 _ => true,
             };
             if suits {
-                let arguments = taken(command, Some(widget), layout, &floor.geometry);
+                let arguments = taken(command, Some(widget), layout, floor);
                 self.add(MessageDirection::In, &command.path_of(id), arguments, command.says);
             }
         }

@@ -105,6 +105,7 @@ impl Server {
     fn apply(&mut self, message: &ControlMessage) -> Result<(), Refusal> {
         match message {
             ControlMessage::CancelAll => self.cancel_all(),
+            ControlMessage::UseSensors { choice, on } => self.assembler.switch(*choice, *on)?,
             ControlMessage::Label { id, text } => {
                 return self
                     .apply_label(id, text)
@@ -177,7 +178,8 @@ impl Server {
             ControlMessage::ShowPage { .. }
             | ControlMessage::CancelAll
             | ControlMessage::Mute { .. }
-            | ControlMessage::MuteTile { .. } => {}
+            | ControlMessage::MuteTile { .. }
+            | ControlMessage::UseSensors { .. } => {}
         }
     }
 

@@ -5,7 +5,7 @@
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
-use underfoot::floor::{Corner, Exponential, Floor, Geometry, SensorId};
+use underfoot::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use underfoot::sense::{Assembler, Quality, Tare, TareOutcome, TareRules, Trouble};
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
@@ -37,7 +37,7 @@ pub fn newtons(seed: u64) -> Rig {
 
 /// Parts that end at 123 N: each step saturates some.
 pub fn weak(seed: u64) -> Rig {
-    let nominal = Exponential { a_n: 0.5, b_per_volt: 1.1 };
+    let nominal = Calibration::exponential(0.5, 1.1);
     parts(SimulatedSensors::Counts(PartConfig { nominal, ..PartConfig::default() }), seed)
 }
 

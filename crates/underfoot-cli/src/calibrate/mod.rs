@@ -1,8 +1,9 @@
-//! `underfoot calibrate`: sensor curves, tare and position maps, stored in the floor file.
+//! `underfoot calibrate`: laws of sensors, tare and position maps, stored in the floor file.
 
 mod curves;
 mod map;
 mod plot;
+mod stand;
 mod tare;
 
 use std::path::Path;
@@ -25,6 +26,8 @@ pub(crate) struct Args {
 enum What {
     /// Find each sensor's law, exponential or another, from load-cell measurements.
     Curves(curves::Args),
+    /// Find each sensor's law from a person of known weight who stands on marks; no load cell is needed.
+    Stand(stand::Args),
     /// Measure the sensors' readings on the empty floor.
     Tare(tare::Args),
     /// Learn each tile's distortion of positions from presses at known points.
@@ -35,6 +38,7 @@ enum What {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.what {
         What::Curves(args) => curves::run(args),
+        What::Stand(args) => stand::run(args),
         What::Tare(args) => tare::run(args),
         What::Map(args) => map::run(args),
     }

@@ -44,6 +44,7 @@ mod senders;
 #[cfg(unix)]
 mod serial;
 mod service;
+mod setup;
 mod simulated;
 mod soak;
 mod storage;

@@ -56,6 +56,7 @@ impl Gateway {
             (ControlMessage::MuteTile { tile, .. }, _) => {
                 self.shared.mover(*tile).map(Some).map_err(str::to_owned)
             }
+            (ControlMessage::UseSensors { choice, .. }, _) => self.shared.reader(*choice).map(Some),
             (ControlMessage::GetPage | ControlMessage::GetMute, _) => {
                 self.tell_of_all(&message, sender, now);
                 return;

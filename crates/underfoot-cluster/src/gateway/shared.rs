@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use underfoot::feel::Muted;
-use underfoot::floor::{Area, Floor, Geometry, TileId};
+use underfoot::floor::{Area, Floor, Geometry, NoSuchSensor, SensorChoice, TileId};
 use underfoot::layout::Layout;
 use underfoot::wire::ControlMessage;
 
@@ -82,6 +82,20 @@ impl SharedState {
         let area = self.areas.iter().position(|area| area.tiles.contains(tile));
         let is_moved = self.moved.get(index).copied().unwrap_or(false);
         area.filter(|_| is_moved).ok_or("nothing moves that tile")
+    }
+
+    /// The area whose computer uses these sensors, or the reason why none does. Boards have their numbers on the
+    /// areas' own computers.
+    pub(super) fn reader(&self, choice: SensorChoice) -> Result<usize, String> {
+        let tile = match choice {
+            SensorChoice::Tile(tile) => tile,
+            SensorChoice::Sensor(sensor) => sensor.tile,
+            SensorChoice::Channel { .. } => {
+                return Err("on a floor of several computers, name a tile or a sensor".to_owned());
+            }
+        };
+        let area = self.areas.iter().position(|area| area.tiles.contains(tile));
+        area.filter(|_| self.geometry.has(tile)).ok_or_else(|| NoSuchSensor(choice).to_string())
     }
 
     /// Stores a setting of an app, for nodes that join later; returns whether the muted set has changed.

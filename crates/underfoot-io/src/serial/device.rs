@@ -59,6 +59,11 @@ impl Device {
         }
     }
 
+    /// Changes the bits a second; false if the port does not take them.
+    pub(super) fn set_baud(&mut self, baud: u32) -> bool {
+        self.0.set_baud_rate(baud).is_ok()
+    }
+
     /// Sends a request; false if the port does not take it. A port that is gone is noticed by reading.
     pub(super) fn send(&mut self, request: &[u8]) -> bool {
         self.0.write_all(request).is_ok()

@@ -39,6 +39,23 @@ fn listed() -> Vec<Listed> {
     ports
 }
 
+/// Returns the USB serial ports of this machine, by the serial numbers of their devices where these differ; none if the
+/// system does not list them. Machines list sockets on the board that nothing is behind; only USB ports were plugged in.
+#[must_use]
+pub fn plugged_ports() -> Vec<PortName> {
+    plugged_in(&listed())
+}
+
+fn plugged_in(listed: &[Listed]) -> Vec<PortName> {
+    let usb: Vec<&Listed> = listed.iter().filter(|one| one.usb.is_some()).collect();
+    let is_alone = |one: &Listed| usb.iter().filter(|other| other.usb == one.usb).count() == 1;
+    let name = |one: &&Listed| match &one.usb {
+        Some(number) if is_alone(one) => format!("usb:{number}").parse().ok(),
+        _ => one.system.parse().ok(),
+    };
+    usb.iter().filter_map(name).collect()
+}
+
 /// Returns the system's name of `port`; `None` if this machine does not have it.
 pub(super) fn find(port: &PortName) -> Option<String> {
     match port {
@@ -64,7 +81,6 @@ pub fn absent(port: &PortName) -> Option<String> {
 }
 
 fn remedy(listed: &[Listed]) -> String {
-    // Machines list sockets on the board that nothing is behind; only USB ports were plugged in.
     let plugged: Vec<String> = listed
         .iter()
         .filter_map(|one| one.usb.as_ref().map(|number| format!("{} (usb:{number})", one.system)))
@@ -91,6 +107,14 @@ mod tests {
         assert_eq!(find("usb:E6614").as_deref(), Some("/dev/ttyACM0"));
         assert_eq!(find("/dev/ttyS0").as_deref(), Some("/dev/ttyS0"));
         assert_eq!((find("usb:E66"), find("/dev/ttyACM7")), (None, None));
+    }
+
+    #[test]
+    fn plugged_ports_have_the_numbers_of_their_devices_if_these_differ() {
+        let names =
+            |listed: &[Listed]| plugged_in(listed).iter().map(ToString::to_string).collect::<Vec<_>>();
+        assert_eq!(names(&desk()), ["/dev/ttyACM0", "/dev/ttyACM1"]);
+        assert_eq!(names(&desk()[1..]), ["usb:E6614"]);
     }
 
     #[test]

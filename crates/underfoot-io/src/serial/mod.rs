@@ -22,6 +22,7 @@ mod beside;
 mod decode;
 mod device;
 mod find;
+mod probe;
 mod sequence;
 mod thread;
 
@@ -36,7 +37,8 @@ use underfoot::source::FloorInput;
 use underfoot::units::HostClock;
 use underfoot::wire::{LinkCause, LinkCounters, SensorPacket};
 
-pub use self::find::absent;
+pub use self::find::{absent, plugged_ports};
+pub use self::probe::{PortPart, PortProbe};
 use self::thread::PortThread;
 
 /// Maximum number of waiting news: one second of 16 boards. Packets beyond are counted as overflowed.

@@ -16,6 +16,7 @@
 //! | [`TapTable`] | influence of a heavy foot beside a region on the foot that works in it | |
 //! | [`SeatedTable`] | sliders under seated people: first answer, and changes of a value at rest | |
 //! | [`BesideTable`] | buttons tapped beside a standing foot, by the region's cursor rule | |
+//! | [`StandTable`] | accuracy of a calibration by standing, beside that by a load cell | |
 //! | [`EffectSheet`] | waveform, spectrum and figures of an effect | |
 //! | [`IntentTable`], [`IntentSweep`] | rates of false activations and of missed presses | |
 //! | [`PondLaws`] | onsets, energies, fronts and turns of the frozen pond, against its model | paper, section 4.1 |
@@ -51,6 +52,7 @@ mod scenes;
 mod seam_object;
 mod seated;
 mod spot;
+mod standing;
 mod taps;
 mod two_feet;
 mod wilson;
@@ -74,6 +76,7 @@ pub use scenes::{SceneLine, SceneRows, SceneTable};
 pub use seam_object::{SeamObject, SeamObjectRow};
 pub use seated::{SeatedLine, SeatedTable};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
+pub use standing::{StandLine, StandTable};
 pub use taps::{HeavyFoot, TapLine, TapScene, TapScore, TapTable};
 pub use two_feet::TwoFeet;
 pub use wilson::Counted;

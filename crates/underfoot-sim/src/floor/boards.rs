@@ -56,6 +56,7 @@ impl Boards {
     /// Reads the `outputs` of these `parts`.
     pub(super) fn read(&mut self, outputs: &[[f32; 4]], parts: &[[SensorPart; 4]]) {
         let noise_v = self.sensing.noise_v();
+        let noise_share = self.sensing.noise_share();
         let converter_v = noise_v.max(LEAST_NOISE_V);
         let full_scale = Calibration::FULL_SCALE_VOLTS;
         for (channels, readings) in self.channels.iter().zip(&mut self.readings) {
@@ -66,7 +67,11 @@ impl Boards {
                 Readings::Counts(read) => {
                     read.clear();
                     read.extend(outputs.map(|sensor| {
-                        sensor.map_or(Some(0), |(_, _, volts)| {
+                        sensor.map_or(Some(0), |(tile, corner, mut volts)| {
+                            if noise_share > 0.0 {
+                                let error = noise_share * normal(&mut self.noise);
+                                volts = parts[tile][corner].with_force_error(volts, error);
+                            }
                             Some(counts(volts + converter_v * normal(&mut self.noise)))
                         })
                     }));
@@ -91,5 +96,5 @@ impl Boards {
 
 /// Force that a board computes from `volts` with the part's law.
 fn newtons(part: &SensorPart, volts: f32) -> f32 {
-    part.law.newtons(volts)
+    part.law.force_at(volts).0
 }

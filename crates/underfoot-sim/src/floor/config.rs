@@ -32,7 +32,7 @@ impl SimConfig {
 pub enum SimulatedSensors {
     /// Raw counts of parts with these tolerances.
     Counts(PartConfig),
-    /// Newtons from boards that know the exponential law of each part and have tared themselves on the empty floor.
+    /// Newtons from boards that know the law of each part and have tared themselves on the empty floor.
     /// The parts' deviation from the law, noise and saturation remain.
     Newtons(PartConfig),
     /// Newtons without error: the force on each sensor minus its force on the empty floor.
@@ -68,6 +68,14 @@ impl SimulatedSensors {
         match self.parts() {
             Some(config) => config.noise_v,
             None => 0.0,
+        }
+    }
+
+    /// Standard deviation of the noise of counts in proportion to the force, as a share of it.
+    pub(super) const fn noise_share(&self) -> f32 {
+        match self {
+            Self::Counts(config) => config.noise_share,
+            Self::Newtons(_) | Self::Exact => 0.0,
         }
     }
 }

@@ -281,9 +281,7 @@ impl SimFloor {
             None => sound(force),
             Some(Faulty { fault: SensorFault::Stuck, output, .. }) => *output,
             Some(Faulty { fault: SensorFault::Open, .. }) => 0.0,
-            Some(Faulty { fault: SensorFault::Short, .. }) if exact => {
-                sound(part.law.newtons(Calibration::volts(u16::MAX)))
-            }
+            Some(Faulty { fault: SensorFault::Short, .. }) if exact => sound(part.law.force(u16::MAX).0),
             Some(Faulty { fault: SensorFault::Short, .. }) => 2.0 * Calibration::FULL_SCALE_VOLTS,
             Some(Faulty { fault: SensorFault::Offset(offset), .. }) => sound(force + offset.0),
         }

@@ -92,7 +92,15 @@ impl Fit {
     /// `f = a exp(b v)` by least squares (paper, section 2.2), here by
     /// Levenberg-Marquardt from the straight line through `ln f`; the others alike, the linear one directly.
     pub fn of(points: &[LoadPoint]) -> Result<Self, FitError> {
-        MeasuredLoads::of(points)?.fit(LawKind::Exponential)
+        Self::of_kind(points, LawKind::Exponential)
+    }
+
+    /// As [`Fit::of`], for parts that are known to follow a law of this kind.
+    ///
+    /// # Errors
+    /// As [`Fit::of`].
+    pub fn of_kind(points: &[LoadPoint], kind: LawKind) -> Result<Self, FitError> {
+        MeasuredLoads::of(points)?.fit(kind)
     }
 }
 

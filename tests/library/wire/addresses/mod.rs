@@ -11,6 +11,7 @@ use std::time::Duration;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rosc::{OscMessage, OscPacket, OscType};
+use underfoot::engine::Snapshot;
 use underfoot::feel::{RendererConfig, renderer};
 use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
@@ -135,10 +136,11 @@ fn examples(argument: &Argument) -> [OscType; 2] {
             let [least, "to", most, ..] = words[..] else { panic!("{}", argument.range) };
             [OscType::Float(least.parse().unwrap()), OscType::Float(most.parse().unwrap())]
         }
-        ("i", "column" | "row") => {
+        ("i", "column" | "row" | "board" | "channel") => {
             let (least, most) = argument.range.split_once(" to ").unwrap();
             [OscType::Int(least.parse().unwrap()), OscType::Int(most.parse().unwrap())]
         }
+        ("s|i", "sensor") => [OscType::String("ne".into()), OscType::Int(0)],
         ("s|i", "indicator") => [OscType::String("busy".into()), OscType::Int(1)],
         ("s", "label") => [OscType::String("Größe".into()), OscType::String("L".repeat(64))],
         ("s", "page") => {
@@ -183,6 +185,7 @@ fn every_address_in_is_understood_and_does_what_it_says() {
     // 16 controls, of which the 6 buttons and those that only a foot holds cannot be set; each twice.
     let expected = [
         ("cancel", 2),
+        ("channel", 2),
         ("disable", 32),
         ("enable", 32),
         ("get", 38),
@@ -190,8 +193,8 @@ fn every_address_in_is_understood_and_does_what_it_says() {
         ("label", 32),
         ("lock", 32),
         ("range", 6),
-        ("set", 16),
-        ("tile", 2),
+        ("set", 18),
+        ("tile", 4),
         ("unlock", 32),
     ];
     assert_eq!(tried, expected.map(|(verb, count)| (verb.to_owned(), count)).into());
@@ -208,6 +211,24 @@ fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscTy
             "set" => assert_eq!(muted[0], number(&args[0]), "{address}"),
             "tile" => assert_eq!(muted.ends_with(&[5.0, 5.0]), number(&args[2]) == 1.0, "{address}"),
             _ => {}
+        }
+        return;
+    }
+    if path.starts_with("sensor/") {
+        assert!(desk.is_silent(), "{address}");
+        let mut snapshot = Snapshot::default();
+        desk.server.snapshot(&mut snapshot);
+        let is_on = args.last().map(number) == Some(1.0);
+        let expected = match verb {
+            _ if is_on => 0,
+            "tile" => 4,
+            _ => 1,
+        };
+        assert_eq!(snapshot.health.troubles.len(), expected, "{address} {args:?}");
+        // The last value of the range is another sensor: the first one comes back as well.
+        if !is_on {
+            let on = args.iter().take(args.len() - 1).cloned().chain([OscType::Int(1)]);
+            desk.send(address, on.collect());
         }
         return;
     }

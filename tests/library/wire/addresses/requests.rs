@@ -8,7 +8,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
     let mut desk = Desk::new(layout(EVERYTHING), &Prefix::default());
     let string = |text: &str| vec![OscType::String(text.into())];
     let range = |least, greatest| vec![OscType::Float(least), OscType::Float(greatest)];
-    let cases: [(&str, Vec<OscType>, &str); 19] = [
+    let cases: [(&str, Vec<OscType>, &str); 22] = [
         // Wrong types: refused by the decoder.
         ("widget/slider/set", string("full"), "takes one finite number"),
         ("widget/slider/set", vec![OscType::Float(f32::NAN)], "takes one finite number"),
@@ -19,6 +19,12 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("widget/slider/range/set", range(0.0, f32::NAN), "takes two numbers"),
         ("mute/set", vec![OscType::Int(2)], "takes 0 or 1"),
         ("mute/tile", vec![OscType::Int(1), OscType::Int(1)], "takes three numbers"),
+        (
+            "sensor/set",
+            vec![OscType::Int(1), OscType::Int(1), OscType::Int(4), OscType::Int(0)],
+            "column and row",
+        ),
+        ("sensor/channel", vec![OscType::Int(1), OscType::Int(1)], "takes three numbers"),
         // Valid but impossible: refused by the engine.
         ("widget/nowhere/enable", vec![], r#"there is no control "nowhere""#),
         ("widget/slidr/get", vec![], r#"there is no control "slidr"; did you mean "slider"?"#),
@@ -30,6 +36,11 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("widget/selector/set", vec![OscType::Int(7)], "no such option"),
         ("page/set", string("nowhere"), r#"there is no page "nowhere": the layout has "first" and "second""#),
         ("mute/tile", vec![OscType::Int(0), OscType::Int(6), OscType::Int(1)], "the floor has no such tile"),
+        (
+            "sensor/channel",
+            [7, 0, 0].map(OscType::Int).into(),
+            "the floor has no sensor on channel 0 of board 7",
+        ),
     ];
     for (path, args, reason) in cases {
         let address = format!("/underfoot/{path}");
@@ -42,7 +53,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         assert!(why.contains(reason), "{address}: {why}");
     }
     let counters = desk.server.counters();
-    assert_eq!((counters.wrong_shape, counters.denied), (9, 10));
+    assert_eq!((counters.wrong_shape, counters.denied), (11, 11));
 
     for address in ["/underfoot/widget/slider/explode", "/underfoot/page/hide", "/underfoot/widget/no*"] {
         desk.send(address, vec![]);

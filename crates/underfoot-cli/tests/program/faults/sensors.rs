@@ -1,6 +1,6 @@
 //! S1 to S12: sensors that break, drift or disagree, under feet.
 
-use underfoot::floor::{Corner, Exponential};
+use underfoot::floor::{Calibration, Corner};
 use underfoot::glam::Vec2;
 use underfoot::units::Newtons;
 use underfoot::wire::{Readings, SensorPacket};
@@ -55,7 +55,7 @@ fn s2_a_stamp_beyond_the_range_presses_nothing_while_it_lasts_or_lightens() {
 
 /// Parts that end at 123 N.
 fn weak() -> SimulatedSensors {
-    let nominal = Exponential { a_n: 0.5, b_per_volt: 1.1 };
+    let nominal = Calibration::exponential(0.5, 1.1);
     SimulatedSensors::Counts(PartConfig { nominal, ..PartConfig::default() })
 }
 

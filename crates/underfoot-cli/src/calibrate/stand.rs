@@ -1,0 +1,333 @@
+//! `underfoot calibrate stand`: the laws of all sensors from a person who stands on marks.
+
+use std::io::IsTerminal;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use underfoot::floor::{CalibrationRecord, Floor, LawKind, TileId, read_address};
+use underfoot::sense::{SensorFit, StandFit, StandingMark};
+use underfoot::serve::{StandNews, StandTask, StandWalk};
+use underfoot::source::SensorSource;
+use underfoot::units::Newtons;
+
+use super::{Out, count, rounded, say_if_unsaved, today};
+use crate::failure::Failure;
+use crate::floor_args::FloorArgs;
+use crate::number::{number, patience};
+use crate::senders::BoardArgs;
+use crate::stop::stop_flag;
+
+/// Options of `underfoot calibrate stand`.
+///
+/// A person of known weight stands still on the marks of each tile, its middle and one towards each sensor, both feet
+/// together with the middle between them on the mark, for three seconds each, and walks from mark to mark without
+/// leaving the floor. No load cell is needed, but the boards must send counts. One least-squares problem finds the law
+/// of every sensor: the forces add up to the weight, and the centroid lies at the mark. It reports which sensors need
+/// more stands; --tiles and
+/// --rounds repeat them. Ctrl-C ends the walk early and uses the stands so far.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// Weight of the person in kilograms, in the clothes and shoes of the walk.
+    #[arg(long, value_name = "KG", required_unless_present = "marks", value_parser = kilograms)]
+    weight_kg: Option<f64>,
+    #[command(flatten)]
+    floor: FloorArgs,
+    /// Where the boards' packets arrive.
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
+    listen: SocketAddr,
+    #[command(flatten)]
+    boards: BoardArgs,
+    /// The tiles to stand on, as column,row with blanks between them; all without it.
+    #[arg(long, value_name = "C,R", num_args = 1.., value_parser = tile)]
+    tiles: Vec<TileId>,
+    /// How many times to go over all marks; the second time, the person faces the other way.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=20))]
+    rounds: u8,
+    /// The kind of law of all sensors; without it, the one that fits best.
+    #[arg(long, value_name = "LAW", value_parser = law)]
+    law: Option<LawKind>,
+    /// Only print the marks, to put them on the floor with tape.
+    #[arg(long)]
+    marks: bool,
+    /// How long to wait for a stand on each mark; then the mark is left out.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = patience)]
+    wait: Duration,
+    /// Output file for the calibrated floor; without it, the file given with --floor.
+    #[arg(long, value_name = "FLOOR.ron")]
+    out: Option<PathBuf>,
+    /// Print the result as JSON on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+fn kilograms(text: &str) -> Result<f64, String> {
+    number(text, &(15.0..=300.0), "kilograms")
+}
+
+fn tile(text: &str) -> Result<TileId, String> {
+    let (column, row) = text.split_once(',').ok_or("write a tile as column,row, such as 2,0")?;
+    let whole = |digits: &str| digits.trim().parse().map_err(|error| format!("{digits:?}: {error}"));
+    Ok(TileId::new(whole(column)?, whole(row)?))
+}
+
+fn law(text: &str) -> Result<LawKind, String> {
+    let names = LawKind::ALL.map(LawKind::name);
+    let kind = LawKind::ALL.into_iter().find(|kind| kind.name() == text);
+    kind.ok_or_else(|| format!("expected {}", names.join(", ")))
+}
+
+/// Acceleration of gravity (m/s²), the standard value.
+const GRAVITY: f64 = 9.806_65;
+
+/// Walks over the marks, fits the laws, reports them, and saves the floor.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let out = Out::new(args.out.as_deref(), &args.floor);
+    let mut floor = if args.marks { args.floor.load()? } else { args.boards.load(&args.floor)? };
+    let marks = marks(args, &floor)?;
+    let Some(weight_kg) = args.weight_kg.filter(|_| !args.marks) else {
+        print_marks(&marks, &floor, args.json);
+        return Ok(());
+    };
+    let walk = walk_over(args, &floor, marks)?;
+    let weight = Newtons((weight_kg * GRAVITY) as f32);
+    let fit = StandFit::of(walk.data(), weight, &floor.geometry, args.law)
+        .map_err(|error| Failure::Other(error.to_string()))?;
+    keep(&mut floor, &fit);
+    let saved = out.save(&floor)?;
+    if args.json {
+        outln!("{}", as_json(&fit, &floor, saved.as_ref()));
+    } else {
+        print(&fit, &walk, &floor);
+        say_if_unsaved(saved.as_ref());
+    }
+    match more(&fit, &walk, &floor) {
+        Some(more) => Err(Failure::Other(more)),
+        None => Ok(()),
+    }
+}
+
+/// The marks of the chosen tiles.
+fn marks(args: &Args, floor: &Floor) -> Result<Vec<StandingMark>, Failure> {
+    let geometry = &floor.geometry;
+    if let Some(tile) = args.tiles.iter().find(|tile| !geometry.has(**tile)) {
+        return Err(Failure::Other(format!("this floor has no tile {tile}")));
+    }
+    let mut tiles = StandingMark::walk(geometry);
+    if !args.tiles.is_empty() {
+        tiles.retain(|tile| args.tiles.contains(tile));
+    }
+    Ok(StandingMark::of_tiles(geometry, &tiles, args.rounds.into()))
+}
+
+/// Follows a person from mark to mark.
+fn walk_over(args: &Args, floor: &Floor, marks: Vec<StandingMark>) -> Result<StandWalk, Failure> {
+    let source = args.boards.bind(args.listen, floor)?;
+    let clock = source.clock();
+    let mut source = args.boards.beside(source, floor, clock)?.source;
+    let stop = stop_flag()?;
+    errln!("Listening on {}; keep off the floor for two seconds.", args.listen);
+    let mut walk = StandWalk::new(floor, marks);
+    follow(args.wait, &stop, source.as_mut(), &mut walk, floor)?;
+    Ok(walk)
+}
+
+fn follow(
+    wait: Duration,
+    stop: &AtomicBool,
+    source: &mut dyn SensorSource,
+    walk: &mut StandWalk,
+    floor: &Floor,
+) -> Result<(), Failure> {
+    let (mut shown, mut since) = (None, source.now());
+    while walk.task() != StandTask::Nothing && !stop.load(Ordering::Relaxed) {
+        if let StandTask::Go(mark) = walk.task()
+            && shown != Some(walk.done())
+        {
+            (shown, since) = (Some(walk.done()), source.now());
+            outln!("{:>3} of {}: {}", walk.done() + 1, walk.length(), place(&mark, floor));
+        }
+        if source.now().since(since) >= wait {
+            if let Some(reason) = unheard(walk, source) {
+                return Err(Failure::Other(format!("waited {} s: {reason}", wait.as_secs_f64())));
+            }
+            errln!("  left out: nobody stood there for {} s", wait.as_secs_f64());
+            walk.skip();
+            since = source.now();
+        }
+        let Some(packet) = source.next(Duration::from_millis(20))? else { continue };
+        if let Some(news) = walk.take(&packet) {
+            tell(news);
+        }
+        if walk.has_newtons() {
+            let message = "the boards send newtons, so they calibrate themselves: they must send counts";
+            return Err(Failure::Other(message.into()));
+        }
+    }
+    Ok(())
+}
+
+/// Describes a mark: tile, place and direction.
+fn place(mark: &StandingMark, floor: &Floor) -> String {
+    let off = 100.0 * (mark.at - floor.geometry.centre(mark.tile));
+    let along = |(way, less, more): (f32, &str, &str)| {
+        (way.abs() >= 0.05).then(|| format!("{:.1} cm {}", way.abs(), if way < 0.0 { less } else { more }))
+    };
+    let ways: Vec<String> =
+        [(off.x, "west", "east"), (off.y, "south", "north")].into_iter().filter_map(along).collect();
+    let place = if ways.is_empty() {
+        "in the middle".to_owned()
+    } else {
+        format!("{} of the middle", ways.join(" and "))
+    };
+    let facing = if mark.facing == 0.0 { "north" } else { "south" };
+    format!("tile {}, {place}, facing {facing}", mark.tile)
+}
+
+/// Reports a stand, with a sound on a terminal: the person looks at the marks.
+fn tell(news: StandNews) {
+    let bell = if std::io::stdout().is_terminal() { "\u{7}" } else { "" };
+    match news {
+        StandNews::Kept(_) => outln!("  measured{bell}"),
+        StandNews::Saturated(_) => {
+            outln!("  measured, but a sensor is at the end of its range there: this stand tells less{bell}");
+        }
+        StandNews::Moved(_) => outln!("  moved: stand still for three seconds"),
+        StandNews::Elsewhere { mark, felt } => {
+            outln!("  tile {felt} feels it, not {}: stand on the mark{bell}{bell}", mark.tile);
+        }
+    }
+}
+
+/// The reason for which no stand can be measured, if any.
+fn unheard(walk: &StandWalk, source: &dyn SensorSource) -> Option<String> {
+    let silent: Vec<&str> = walk.silent(source.now()).collect();
+    if !silent.is_empty() {
+        return Some(format!("nothing comes from {}", silent.join(", ")));
+    }
+    if let Some(sensor) = walk.unread().next() {
+        return Some(format!("the sensor of {sensor} gives no reading"));
+    }
+    (walk.task() == StandTask::KeepOff).then(|| "the floor is not empty and quiet".to_owned())
+}
+
+/// Stores the new laws and tares in the floor.
+fn keep(floor: &mut Floor, fit: &StandFit) {
+    let day = today();
+    for found in fit.sensors.iter().filter(|found| found.determined > 0) {
+        let record = CalibrationRecord { day, residual: rounded(found.uncertainty) };
+        floor.recalibrate(found.sensor, found.law, Some(record));
+        let tile = floor.geometry.index(found.sensor.tile).and_then(|tile| floor.tare.get_mut(tile));
+        if let Some(tares) = tile {
+            tares[found.sensor.corner.index()] = found.tare;
+        }
+    }
+    if fit.sensors.iter().all(|found| found.determined > 0) {
+        floor.tared = Some(day);
+    }
+}
+
+fn print_marks(marks: &[StandingMark], floor: &Floor, json: bool) {
+    if json {
+        let marks: Vec<_> = marks
+            .iter()
+            .map(|mark| {
+                let (tile, facing) = (mark.tile, if mark.facing == 0.0 { "north" } else { "south" });
+                json!({ "col": tile.column, "row": tile.row, "x_m": mark.at.x, "y_m": mark.at.y, "facing": facing })
+            })
+            .collect();
+        outln!("{}", json!({ "marks": marks }));
+    } else {
+        marks.iter().for_each(|mark| outln!("{}", place(mark, floor)));
+    }
+}
+
+fn print(fit: &StandFit, walk: &StandWalk, floor: &Floor) {
+    let (stands, crossings) = (count(fit.stands, "stand"), count(fit.crossings, "way"));
+    outln!("{stands} and {crossings} between them count. The sensors follow a {} law.", fit.kind.name());
+    outln!(
+        "The sums miss the weight by {:.1} %, the feet their marks by {:.1} cm; the body leans {:.1} cm forwards and \
+         {:.1} cm to the right.",
+        100.0 * fit.weight_residual,
+        100.0 * fit.place_residual_m,
+        100.0 * fit.lean_m.y,
+        100.0 * fit.lean_m.x
+    );
+    if !fit.saturated.is_empty() {
+        let stands = count(fit.saturated.len(), "stand");
+        outln!("{stands} had a sensor at the end of its range, and told less: a lighter person tells more.");
+    }
+    if !fit.astray.is_empty() {
+        let numbers: Vec<String> = fit.astray.iter().map(|number| (number + 1).to_string()).collect();
+        outln!("Left out, because they disagree with all others: stands {}.", numbers.join(", "));
+    }
+    // A neighbour that carried a foot's edge is no part of the walk.
+    let walked = |tile: TileId| walk.marks().iter().any(|mark| mark.tile == tile);
+    let needy: Vec<&SensorFit> = fit.needy().filter(|found| walked(found.sensor.tile)).collect();
+    if needy.is_empty() {
+        return;
+    }
+    outln!("tile      sensor  most, N  uncertain by");
+    for found in needy {
+        let name = floor.geometry.sensor_name(found.sensor.corner);
+        let uncertain = match found.determined {
+            0 => "no law".to_owned(),
+            _ => format!("{:.0} %", 100.0 * found.uncertainty),
+        };
+        outln!("{:<9} {name:<6}  {:>7.0}  {uncertain:>12}", found.sensor.tile.to_string(), found.most.0);
+    }
+}
+
+fn as_json(fit: &StandFit, floor: &Floor, saved: Option<&Value>) -> Value {
+    let sensor = |found: &SensorFit| {
+        json!({
+            "col": found.sensor.tile.column,
+            "row": found.sensor.tile.row,
+            "corner": floor.geometry.sensor_name(found.sensor.corner),
+            "law": found.law.kind().name(),
+            "numbers": found.law.numbers(),
+            "tare_n": found.tare,
+            "most_n": found.most,
+            "uncertainty": found.uncertainty.is_finite().then_some(found.uncertainty),
+            "determined": found.determined,
+            "needs_more": found.needs_more(),
+        })
+    };
+    json!({
+        "law": fit.kind.name(),
+        "laws": fit.laws.iter().map(|laws| json!({
+            "law": laws.kind.name(),
+            "misfit": laws.misfit.is_finite().then_some(laws.misfit),
+        })).collect::<Vec<_>>(),
+        "weight_residual": fit.weight_residual,
+        "place_residual_m": fit.place_residual_m,
+        "lean_m": { "right": fit.lean_m.x, "forwards": fit.lean_m.y },
+        "stands": fit.stands,
+        "crossings": fit.crossings,
+        "astray": fit.astray,
+        "saturated": fit.saturated,
+        "sensors": fit.sensors.iter().map(sensor).collect::<Vec<_>>(),
+        "saved": saved,
+    })
+}
+
+/// The tiles of the walk that need more stands, and how to repeat them.
+fn more(fit: &StandFit, walk: &StandWalk, floor: &Floor) -> Option<String> {
+    let is_good = |tile: TileId| {
+        floor.geometry.sensors(tile).iter().all(|corner| {
+            let own = |found: &&SensorFit| (found.sensor.tile, found.sensor.corner) == (tile, *corner);
+            fit.sensors.iter().find(own).is_some_and(|found| !found.needs_more())
+        })
+    };
+    let mut tiles: Vec<TileId> = walk.marks().iter().map(|mark| mark.tile).collect();
+    tiles.sort_by_key(|tile| floor.geometry.index(*tile));
+    tiles.dedup();
+    tiles.retain(|tile| !is_good(*tile));
+    let list: Vec<String> = tiles.iter().map(|tile| format!("{},{}", tile.column, tile.row)).collect();
+    (!tiles.is_empty()).then(|| {
+        let tiles = count(tiles.len(), "tile");
+        format!("{tiles} need more stands: stand again with --rounds 2, or with --tiles {}", list.join(" "))
+    })
+}
