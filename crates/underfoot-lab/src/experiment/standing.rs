@@ -16,8 +16,8 @@ use underfoot::serve::{StandTask, StandWalk};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Readings, SensorPacket};
 use underfoot_sim::{
-    Foot, PartConfig, Person, Script, SimConfig, SimFloor, SimulatedSensors, StandingHabit, calibrated,
-    standing_on,
+    BuildError, Foot, PartConfig, Person, Script, SimConfig, SimFloor, SimulatedSensors, StandingHabit,
+    calibrated, standing_on,
 };
 
 /// Tiles of each floor, columns by rows.
@@ -165,7 +165,7 @@ impl StandTable {
                 let parts = PartConfig { nominal, deviation, noise_share: NOISE, ..PartConfig::default() };
                 let config = SimConfig { sensing: SimulatedSensors::Counts(parts), ..SimConfig::default() };
                 let mut sim = SimFloor::new(&wired, config, seed);
-                let by_cell = calibrated(&wired, &sim, seed)?;
+                let by_cell = calibrated(&wired, &sim, seed).map_err(BuildError::from)?;
                 let (data, time) = stood(&wired, &mut sim, seed)?;
                 let feet = judging_feet(&wired, &mut sim, seed);
                 for cell in &mut self.cells {
