@@ -1,3 +1,5 @@
+//! Cracks under feet of many weights.
+
 use rand::SeedableRng;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Causes of a floor without packets, and their words.
+
 use std::collections::BTreeSet;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Datagrams of boards and apps, well-formed and damaged.
+
 use rosc::{OscMessage, encoder};
 
 use super::*;

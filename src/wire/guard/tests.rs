@@ -1,3 +1,5 @@
+//! Datagrams that are refused before they are decoded.
+
 use rosc::{OscArray, OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
 
 use super::*;

@@ -78,6 +78,24 @@ fn settled(mut events: Vec<Vec<Value>>) -> Vec<Vec<Value>> {
     events
 }
 
+/// The controls whose number follows a foot. Since a foot beside one that rests need not be steady first, they answer up
+/// to a tenth of a second earlier, and since a foot at rest has a place of its own, with fewer changes.
+fn following(events: &[Vec<Value>]) -> Vec<Value> {
+    let mut ids: Vec<Value> = Vec::new();
+    for event in events {
+        if event[1] == "changed" && event[3].is_number() && !ids.contains(&event[2]) {
+            ids.push(event[2].clone());
+        }
+    }
+    ids
+}
+
+/// Seconds and names of the events of a control but for its changes.
+fn holds<'a>(events: &'a [Vec<Value>], id: &Value) -> Vec<(f64, &'a str)> {
+    let own = events.iter().filter(|event| event[2] == *id && event[1] != "changed" && event[1] != "ticked");
+    own.map(|event| (event[0].as_f64().unwrap(), event[1].as_str().unwrap())).collect()
+}
+
 /// Names, numbers and marks.
 fn words(text: &str) -> Vec<&str> {
     text.split_inclusive([' ', '(', ')', '[', ']', ',', ':'])
@@ -108,10 +126,27 @@ fn a_recording_of_an_earlier_version_gives_the_events_that_it_gave_then() {
             String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect();
         let (then, now) = (settled(events(&recorded)), settled(events(&replayed)));
         assert!(then.iter().any(|event| event[1] == "pressed" && event[2] == "drive"), "{}", name(&file));
-        for (then, now) in then.iter().zip(&now) {
+        let following = following(&then);
+        let exact = |events: &[Vec<Value>]| -> Vec<_> {
+            events.iter().filter(|event| !following.contains(&event[2])).cloned().collect()
+        };
+        let (then_exact, now_exact) = (exact(&then), exact(&now));
+        for (then, now) in then_exact.iter().zip(&now_exact) {
             assert_eq!(then, now, "{}", name(&file));
         }
-        assert_eq!(then.len(), now.len(), "{}: {now:?}", name(&file));
+        assert_eq!(then_exact.len(), now_exact.len(), "{}: {now:?}", name(&file));
+        for id in &following {
+            let (then, now) = (holds(&then, id), holds(&now, id));
+            assert_eq!(then.len(), now.len(), "{}: {id}: {then:?}, now {now:?}", name(&file));
+            for (then, now) in then.iter().zip(&now) {
+                assert_eq!(then.1, now.1, "{}: {id}", name(&file));
+                assert!(
+                    (-0.005..0.12).contains(&(then.0 - now.0)),
+                    "{}: {id}: {then:?}, now {now:?}",
+                    name(&file)
+                );
+            }
+        }
     }
 }
 

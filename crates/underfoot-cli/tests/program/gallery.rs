@@ -33,7 +33,7 @@ A test makes this page, its pictures and its links from the files of [`layouts/`
 |---|---|
 ";
 
-/// What the program prints.
+/// Standard output of the program.
 fn printed(args: &[&str]) -> String {
     let output = underfoot().args(args).output().unwrap();
     assert!(output.status.success(), "{args:?}: {}", said(&output));

@@ -33,7 +33,9 @@ fn counts(ms: u64, unit: f32) -> [i32; 4] {
 fn counts_at(seconds: f32, n: u64, unit: f32) -> [i32; 4] {
     let load = ((seconds - 4.0) / 0.12).min((7.0 - seconds) / 0.12).clamp(0.0, 1.0);
     [3, 5, 7, 11].map(|salt: u64| {
-        let noise = (n.wrapping_mul(2_654_435_761 * salt) >> 16 & 0xFFFF) as f32 / 65_536.0 - 0.5;
+        let mixed = (n << 8 | salt).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let noise = (mixed >> 48) as f32 / 65_536.0 - 0.5;
         (unit * (120.0 + 560.0 * load + noise)) as i32
     })
 }

@@ -215,20 +215,20 @@ mod tests {
     fn a_foot_that_stands_beside_the_region_is_no_longer_its_cursor() {
         let page = |rule: &str, y: &str| {
             format!(
-                "Layout(version: 1, regions: [(id: \"r\", at: (0, 1), size: (6, 5){rule})], \
+                "Layout(version: 1, regions: [(id: \"r\", at: (0, 1.3), size: (6, 4.7){rule})], \
                  stances: [(at: (2, {y}), size: (2, 0.7))], widgets: [\
                  (id: \"a\", kind: \"button\", at: (2.2, 2.2), size: (0.6, 0.6), label: \"A\"),\
                  (id: \"b\", kind: \"button\", at: (3.2, 2.2), size: (0.6, 0.6), label: \"B\")])"
             )
         };
-        let mut near = read(&page("", "0.2"));
+        let mut near = read(&page("", "0.3"));
         assert_eq!(codes(&near), ["U107"], "once for the region");
         mended(&mut near, "U107", "Follow the working foot");
         assert!(near.text().contains("cursor: Working"), "{}", near.text());
-        let mut written = read(&page(", cursor: Largest /* rule */", "0.2"));
+        let mut written = read(&page(", cursor: Largest /* rule */", "0.3"));
         mended(&mut written, "U107", "Follow the working foot");
         assert!(written.text().contains("cursor: Working /* rule */"), "{}", written.text());
-        for (rule, y) in [(", cursor: Each", "0.2"), (", cursor: Working", "0.2"), ("", "-0.2")] {
+        for (rule, y) in [(", cursor: Each", "0.3"), (", cursor: Working", "0.3"), ("", "0")] {
             assert!(codes(&read(&page(rule, y))).is_empty(), "{rule} {y}");
         }
     }

@@ -34,9 +34,10 @@ impl Template {
         let (columns, rows) = (geometry.columns(), geometry.rows());
         // People use a small floor from beside it.
         let has_stance = rows >= 3 && columns >= 2;
-        let south = u16::from(has_stance);
-        // A foot that stands at the edge of its zone reaches into the region.
-        let cursor = if has_stance { ", cursor: Working" } else { "" };
+        // A free row keeps a foot that stands and one that works apart.
+        let south = if has_stance { 1 + u16::from(rows > 3) } else { 0 };
+        // Without one, a foot that stands at the edge of its zone reaches into the region.
+        let cursor = if south == 1 { ", cursor: Working" } else { "" };
         let stance = match has_stance {
             true => format!(
                 "    // Where people stand: a foot here works nothing.\n    \

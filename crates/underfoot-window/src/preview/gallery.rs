@@ -38,7 +38,7 @@ pub(super) struct LayoutGallery {
     cards: Vec<LayoutCard>,
     theme: Option<Theme>,
     is_open: bool,
-    /// Whether the keyboard goes to the first card in the next frame.
+    /// Whether the keyboard goes to the first card.
     takes_keys: bool,
 }
 
@@ -126,12 +126,14 @@ impl LayoutGallery {
         let mut chosen = None;
         ui.spacing_mut().item_spacing = vec2(GAP, GAP);
         let mut all = self.names.iter().zip(&mut self.cards).enumerate();
-        let mut takes_keys = std::mem::take(&mut self.takes_keys);
+        let mut takes_keys = self.takes_keys;
         while all.len() > 0 {
             ui.horizontal(|ui| {
                 for (index, (name, card)) in all.by_ref().take(grid.columns) {
                     let response = card.show(ui, theme, geometry, grid, name);
-                    if std::mem::take(&mut takes_keys) {
+                    // Once is not enough: a new dialogue is first laid out unseen.
+                    if takes_keys && index == 0 {
+                        takes_keys = !response.has_focus();
                         response.request_focus();
                     }
                     if response.clicked() {
@@ -140,6 +142,7 @@ impl LayoutGallery {
                 }
             });
         }
+        self.takes_keys = takes_keys;
         chosen
     }
 }

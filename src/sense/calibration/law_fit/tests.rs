@@ -1,3 +1,5 @@
+//! Laws of sensors from loads of a load cell.
+
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;

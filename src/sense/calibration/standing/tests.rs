@@ -1,3 +1,5 @@
+//! Calibration by people who stand on plates of each law.
+
 use glam::Vec2;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
@@ -153,17 +155,19 @@ fn exact_stands_give_the_laws_for_other_feet_at_other_places() {
     }
 }
 
-/// In the range that a person loads, a power law and an exponential one are much alike.
+/// In the range that a person loads, laws can be so much alike that the stands hardly tell them apart.
 #[test]
 fn the_kind_of_law_is_found_or_one_that_serves_as_well() {
     for kind in LawKind::ALL {
         let mut plates = Plates::strong(kind, 3, 2, 3);
         let data = plates.stand(0.0, Vec2::ZERO);
         let fit = fitted(&plates, &data);
-        let is_alike = kind == LawKind::Power && fit.kind == LawKind::Exponential;
+        let misfit = |kind| fit.laws.iter().find(|laws| laws.kind == kind).unwrap().misfit;
+        let is_alike = fit.kind != kind && misfit(kind) < 1.15 * misfit(fit.kind);
         assert!(fit.kind == kind || is_alike, "{kind:?}: {:?}", fit.laws);
         let [(force, place), _] = plates.errors(&fit);
-        assert!(force < 0.05 && place < 0.01, "{kind:?}: {force} {place}");
+        let most = if is_alike { 0.1 } else { 0.05 };
+        assert!(force < most && place < 0.01, "{kind:?}: {force} {place}");
     }
 }
 
@@ -262,13 +266,15 @@ fn walking_between_marks_adds_the_weight_s_mean() {
     let mut data = plates.stand(0.01, Vec2::ZERO);
     let rest: Vec<f32> = data.empty.iter().map(|rest| rest.volts).collect();
     let before = fitted(&plates, &data);
-    // Steps whose forces vary about the weight, all over both tiles.
+    // Steps whose forces vary about the weight, in the middle of both tiles: nearer to an edge, a rigid plate on springs
+    // alone would lift its far corner.
     for way in 0..20 {
         let mut crossing = Crossing::default();
         for moment in 0..400_u16 {
             let phase = f32::from(moment) / 400.0 * std::f32::consts::TAU;
-            let y = 0.152 + 0.07 * (phase + way as f32).sin();
-            let at = Vec2::new(0.06 + 0.48 * f32::from(moment) / 400.0, y);
+            let y = 0.152 + 0.05 * (phase + way as f32).sin();
+            let along = f32::from(moment % 200) / 200.0;
+            let at = Vec2::new(0.092 + 0.304 * f32::from(moment / 200) + 0.12 * along, y);
             crossing.add(plates.loaded(&rest, at, WEIGHT.0 * (1.0 + 0.2 * (3.0 * phase).sin())));
         }
         data.crossings.push(crossing);

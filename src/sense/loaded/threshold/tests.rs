@@ -1,3 +1,5 @@
+//! Thresholds of tiles with noise, hum and creep.
+
 use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};

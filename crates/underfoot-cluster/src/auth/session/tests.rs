@@ -1,3 +1,5 @@
+//! Messages that are authentic, forged or repeated.
+
 use proptest::prelude::*;
 
 use super::*;

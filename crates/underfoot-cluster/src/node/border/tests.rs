@@ -1,3 +1,5 @@
+//! Cues between the nodes of neighbouring areas.
+
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;
 use std::sync::mpsc::sync_channel;
