@@ -39,7 +39,7 @@ impl<'a> ControlHandle<'a> {
         state.ok_or_else(|| Refusal::unknown_control(self.id.as_str(), &snapshot.layout))
     }
 
-    /// Sets its value. Clamps a number to the range and rounds it to the nearest step; [`Control::state`] has the
+    /// Sets its value. Clamps a number to the range and rounds it to the nearest step; [`ControlHandle::state`] has the
     /// resulting value. For a switch, a number other than 0 means on; for a selector, a number is the index of a
     /// choice, from 0.
     ///
@@ -56,7 +56,7 @@ impl<'a> ControlHandle<'a> {
     /// # Errors
     /// [`crate::widget::SetError::WrongType`] for other controls, [`crate::widget::SetError::NoRange`] for a range
     /// that is empty, not finite, beyond a million or narrower than the control's step; otherwise as for
-    /// [`Control::set`].
+    /// [`ControlHandle::set`].
     pub fn set_range<T: Into<f64>>(&self, range: RangeInclusive<T>) -> Result<(), Refusal> {
         let (least, greatest) = range.into_inner();
         let (least, greatest) = (least.into() as f32, greatest.into() as f32);
@@ -74,7 +74,7 @@ impl<'a> ControlHandle<'a> {
     /// Sets its indicator lamp.
     ///
     /// # Errors
-    /// As for [`Control::set_label`].
+    /// As for [`ControlHandle::set_label`].
     pub fn set_indicator(&self, indicator: Indicator) -> Result<(), Refusal> {
         self.ask(|id| ControlMessage::Indicate { id, indicator })
     }
@@ -82,7 +82,7 @@ impl<'a> ControlHandle<'a> {
     /// Enables or disables it for feet; cancels a press under way.
     ///
     /// # Errors
-    /// As for [`Control::set_label`].
+    /// As for [`ControlHandle::set_label`].
     pub fn set_enabled(&self, enabled: bool) -> Result<(), Refusal> {
         self.ask(|id| if enabled { ControlMessage::Enable { id } } else { ControlMessage::Disable { id } })
     }
@@ -90,7 +90,7 @@ impl<'a> ControlHandle<'a> {
     /// Locks or unlocks its value against feet and apps; cancels a press under way.
     ///
     /// # Errors
-    /// As for [`Control::set_label`].
+    /// As for [`ControlHandle::set_label`].
     pub fn set_locked(&self, locked: bool) -> Result<(), Refusal> {
         self.ask(|id| if locked { ControlMessage::Lock { id } } else { ControlMessage::Unlock { id } })
     }

@@ -231,7 +231,7 @@ impl Session {
         self.0.held.has_ended()
     }
 
-    /// Sends a request that apps may also send over the wire, and waits for the answer as a [`Control`] does. Mute
+    /// Sends a request that apps may also send over the wire, and waits for the answer as a [`ControlHandle`] does. Mute
     /// requests go through [`Session::send`].
     ///
     /// # Errors
