@@ -1,12 +1,11 @@
 //! `underfoot measure`: forces on the floor, for choosing thresholds.
 
 use std::io::IsTerminal;
-use std::net::SocketAddr;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use serde_json::json;
-use underfoot::floor::{Corner, Geometry, read_address};
+use underfoot::floor::{Corner, Geometry};
 use underfoot::layout::{Layout, Widget};
 use underfoot::sense::{Assembler, Quality, Tare, TareOutcome};
 use underfoot::serve::{ForceRange, ForceWatch, TileRange};
@@ -17,7 +16,7 @@ use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
 use super::number::patience;
-use super::senders::BoardArgs;
+use super::senders::ListenArgs;
 use super::stop::stop_flag;
 
 /// Options of `underfoot measure`.
@@ -30,11 +29,8 @@ pub(crate) struct Args {
     layout: LayoutArgs,
     #[command(flatten)]
     floor: FloorArgs,
-    /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
-    listen: SocketAddr,
     #[command(flatten)]
-    boards: BoardArgs,
+    input: ListenArgs,
     /// How long to measure.
     #[arg(long, value_name = "S", default_value = "10", value_parser = patience)]
     seconds: Duration,
@@ -45,16 +41,14 @@ pub(crate) struct Args {
 
 /// Measures the floor and prints the forces.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let floor = args.boards.load(&args.floor)?;
+    let floor = args.input.boards.load(&args.floor)?;
     let layout = match &args.layout.layout {
         Some(_) => Some(args.layout.load(&floor.geometry)?),
         None => None,
     };
-    let source = args.boards.bind(args.listen, &floor)?;
-    let clock = source.clock();
-    let mut source = args.boards.beside(source, &floor, clock)?.source;
+    let mut source = args.input.open(&floor)?.source;
     let tare = Tare::suited_to(&floor);
-    errln!("Listening on {} for {} s; Ctrl-C ends it.", args.listen, args.seconds.as_secs_f64());
+    errln!("Listening on {} for {} s; Ctrl-C ends it.", args.input.listen, args.seconds.as_secs_f64());
     if tare != Tare::FromFloor {
         errln!("The floor has no tare: keep off it for the first second.");
     }
@@ -67,7 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if watch.frames() == 0 {
         return Err(Failure::Other(format!(
             "no packets of this floor came to {} within {} s; is it switched on, and does it send here?",
-            args.listen,
+            args.input.listen,
             args.seconds.as_secs_f64()
         )));
     }

@@ -1,9 +1,11 @@
-//! Parsers for numbers on the command line: finite and within their range, with a message otherwise.
+//! Parsers for numbers and tiles on the command line: finite and within their range, with a message otherwise.
 
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 use std::thread;
 use std::time::Duration;
+
+use underfoot::floor::TileId;
 
 /// Maximum running time of a program: a year.
 const LONGEST_S: f64 = 365.0 * 86_400.0;
@@ -39,6 +41,14 @@ pub(crate) fn gesture(text: &str) -> Result<Duration, String> {
 /// Parses a delay in milliseconds: 0 to a second.
 pub(crate) fn delay_ms(text: &str) -> Result<Duration, String> {
     number(text, &(0.0..=1000.0), "milliseconds").map(|ms| Duration::from_secs_f64(ms * 1e-3))
+}
+
+/// Parses a tile by column and row: `2,3` or `(2, 3)`.
+pub(crate) fn tile(text: &str) -> Result<TileId, String> {
+    let bare = text.trim_matches(['(', ')']);
+    let (column, row) = bare.split_once(',').ok_or("write it like 2,3: column, row")?;
+    let number = |digits: &str| digits.trim().parse::<u16>().map_err(|error| format!("{digits:?}: {error}"));
+    Ok(TileId::new(number(column)?, number(row)?))
 }
 
 /// Maximum number of threads.

@@ -16,7 +16,7 @@ use underfoot::units::{HostClock, Instant, Newtons};
 use super::actuate::{ActuateArgs, Actuation};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
-use super::number::number;
+use super::number::{number, tile};
 use super::stop::stop_flag;
 
 /// Options of `underfoot rack`.
@@ -70,13 +70,6 @@ struct Map {
     /// Print the map as JSON.
     #[arg(long)]
     json: bool,
-}
-
-fn tile(text: &str) -> Result<TileId, String> {
-    let bare = text.trim_matches(['(', ')']);
-    let (column, row) = bare.split_once(',').ok_or("write it like 2,3: column, row")?;
-    let number = |digits: &str| digits.trim().parse::<u16>().map_err(|error| format!("{digits:?}: {error}"));
-    Ok(TileId::new(number(column)?, number(row)?))
 }
 
 fn level(text: &str) -> Result<f32, String> {

@@ -47,6 +47,25 @@ pub(crate) struct CommandArgs {
     allow_commands: Vec<Network>,
 }
 
+/// Options of a command that reads the boards by itself.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct ListenArgs {
+    /// Where the boards' packets arrive.
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
+    pub(crate) listen: SocketAddr,
+    #[command(flatten)]
+    pub(crate) boards: BoardArgs,
+}
+
+impl ListenArgs {
+    /// Listens for the boards of `floor`, by the network and at its serial ports.
+    pub(crate) fn open(&self, floor: &Floor) -> Result<FloorInput, Failure> {
+        let source = self.boards.bind(self.listen, floor)?;
+        let clock = source.clock();
+        self.boards.beside(source, floor, clock)
+    }
+}
+
 impl BoardArgs {
     /// Whether serial ports are given.
     #[cfg(feature = "preview")]

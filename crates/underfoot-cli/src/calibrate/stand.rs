@@ -1,13 +1,12 @@
 //! `underfoot calibrate stand`: the laws of all sensors from a person who stands on marks.
 
 use std::io::IsTerminal;
-use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use underfoot::floor::{CalibrationRecord, Floor, LawKind, TileId, read_address};
+use underfoot::floor::{CalibrationRecord, Floor, LawKind, TileId};
 use underfoot::sense::{SensorFit, StandFit, StandingMark};
 use underfoot::serve::{StandNews, StandTask, StandWalk};
 use underfoot::source::SensorSource;
@@ -16,8 +15,8 @@ use underfoot::units::Newtons;
 use super::{Out, count, rounded, say_if_unsaved, today};
 use crate::failure::Failure;
 use crate::floor_args::FloorArgs;
-use crate::number::{number, patience};
-use crate::senders::BoardArgs;
+use crate::number::{number, patience, tile};
+use crate::senders::ListenArgs;
 use crate::stop::stop_flag;
 
 /// Options of `underfoot calibrate stand`.
@@ -26,8 +25,7 @@ use crate::stop::stop_flag;
 /// together with the middle between them on the mark, for three seconds each, and walks from mark to mark without
 /// leaving the floor. No load cell is needed, but the boards must send counts. One least-squares problem finds the law
 /// of every sensor: the forces add up to the weight, and the centroid lies at the mark. It reports which sensors need
-/// more stands; --tiles and
-/// --rounds repeat them. Ctrl-C ends the walk early and uses the stands so far.
+/// more stands; --tiles and --rounds repeat them. Ctrl-C ends the walk early and uses the stands so far.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// Weight of the person in kilograms, in the clothes and shoes of the walk.
@@ -35,11 +33,8 @@ pub(crate) struct Args {
     weight_kg: Option<f64>,
     #[command(flatten)]
     floor: FloorArgs,
-    /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
-    listen: SocketAddr,
     #[command(flatten)]
-    boards: BoardArgs,
+    input: ListenArgs,
     /// The tiles to stand on, as column,row with blanks between them; all without it.
     #[arg(long, value_name = "C,R", num_args = 1.., value_parser = tile)]
     tiles: Vec<TileId>,
@@ -67,12 +62,6 @@ fn kilograms(text: &str) -> Result<f64, String> {
     number(text, &(15.0..=300.0), "kilograms")
 }
 
-fn tile(text: &str) -> Result<TileId, String> {
-    let (column, row) = text.split_once(',').ok_or("write a tile as column,row, such as 2,0")?;
-    let whole = |digits: &str| digits.trim().parse().map_err(|error| format!("{digits:?}: {error}"));
-    Ok(TileId::new(whole(column)?, whole(row)?))
-}
-
 fn law(text: &str) -> Result<LawKind, String> {
     let names = LawKind::ALL.map(LawKind::name);
     let kind = LawKind::ALL.into_iter().find(|kind| kind.name() == text);
@@ -85,7 +74,7 @@ const GRAVITY: f64 = 9.806_65;
 /// Walks over the marks, fits the laws, reports them, and saves the floor.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = Out::new(args.out.as_deref(), &args.floor);
-    let mut floor = if args.marks { args.floor.load()? } else { args.boards.load(&args.floor)? };
+    let mut floor = if args.marks { args.floor.load()? } else { args.input.boards.load(&args.floor)? };
     let marks = marks(args, &floor)?;
     let Some(weight_kg) = args.weight_kg.filter(|_| !args.marks) else {
         print_marks(&marks, &floor, args.json);
@@ -124,11 +113,9 @@ fn marks(args: &Args, floor: &Floor) -> Result<Vec<StandingMark>, Failure> {
 
 /// Follows a person from mark to mark.
 fn walk_over(args: &Args, floor: &Floor, marks: Vec<StandingMark>) -> Result<StandWalk, Failure> {
-    let source = args.boards.bind(args.listen, floor)?;
-    let clock = source.clock();
-    let mut source = args.boards.beside(source, floor, clock)?.source;
+    let mut source = args.input.open(floor)?.source;
     let stop = stop_flag()?;
-    errln!("Listening on {}; keep off the floor for two seconds.", args.listen);
+    errln!("Listening on {}; keep off the floor for two seconds.", args.input.listen);
     let mut walk = StandWalk::new(floor, marks);
     follow(args.wait, &stop, source.as_mut(), &mut walk, floor)?;
     Ok(walk)

@@ -1,18 +1,16 @@
 //! `underfoot calibrate tare`: the sensors' readings on the empty floor.
 
-use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use serde_json::json;
-use underfoot::floor::read_address;
 use underfoot::serve::{TareFailure, take_tare};
 
 use super::today;
 use crate::failure::Failure;
 use crate::floor_args::{FloorOut, saved_json};
 use crate::number::patience;
-use crate::senders::BoardArgs;
+use crate::senders::ListenArgs;
 
 /// Options of `underfoot calibrate tare`.
 ///
@@ -23,11 +21,8 @@ pub(crate) struct Args {
     /// Floor file to which the tare is written.
     #[arg(long, value_name = "FILE")]
     floor: PathBuf,
-    /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
-    listen: SocketAddr,
     #[command(flatten)]
-    boards: BoardArgs,
+    input: ListenArgs,
     /// How long to wait for the floor to be quiet.
     #[arg(long, value_name = "S", default_value = "5", value_parser = patience)]
     seconds: Duration,
@@ -42,11 +37,9 @@ pub(crate) struct Args {
 /// Takes and saves the tare, or reports why it can't.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = FloorOut::new(&args.floor);
-    let mut floor = args.boards.load_file(&args.floor)?;
-    let source = args.boards.bind(args.listen, &floor)?;
-    let clock = source.clock();
-    let mut input = args.boards.beside(source, &floor, clock)?;
-    errln!("Listening on {}; keep off the floor.", args.listen);
+    let mut floor = args.input.boards.load_file(&args.floor)?;
+    let mut input = args.input.open(&floor)?;
+    errln!("Listening on {}; keep off the floor.", args.input.listen);
     floor.tare =
         take_tare(&mut input.source, &floor, args.seconds, args.accept_change).map_err(|failure| {
             match failure {

@@ -6,19 +6,18 @@ mod plan;
 mod schematic;
 mod sheet;
 
-use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use underfoot::floor::{Floor, read_address};
+use underfoot::floor::Floor;
 use underfoot::serve::{WiringStep, WiringTask, WiringWalk};
 use underfoot::source::SensorSource;
 
 use super::failure::Failure;
 use super::floor_args::{FloorArgs, FloorOut};
 use super::number::patience;
-use super::senders::BoardArgs;
+use super::senders::ListenArgs;
 use super::stop::stop_flag;
 use picture::PictureArgs;
 
@@ -31,11 +30,8 @@ use picture::PictureArgs;
 pub(crate) struct Args {
     #[command(flatten)]
     floor: FloorArgs,
-    /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
-    listen: SocketAddr,
     #[command(flatten)]
-    boards: BoardArgs,
+    input: ListenArgs,
     /// How long to wait for a step on each tile.
     #[arg(long, value_name = "S", default_value = "60", value_parser = patience)]
     wait: Duration,
@@ -53,12 +49,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return args.picture.write(floor, args.out.as_deref());
     }
     let out = args.out.as_deref().map(FloorOut::new);
-    let floor = args.boards.load(&args.floor)?;
-    let source = args.boards.bind(args.listen, &floor)?;
-    let clock = source.clock();
-    let source = args.boards.beside(source, &floor, clock)?.source;
+    let floor = args.input.boards.load(&args.floor)?;
+    let source = args.input.open(&floor)?.source;
     let stop = stop_flag()?;
-    errln!("Listening on {}; keep off the floor for a moment.", args.listen);
+    errln!("Listening on {}; keep off the floor for a moment.", args.input.listen);
     let (mut source, mut walk) = (source, WiringWalk::new(&floor));
     let (mut task, mut since) = (walk.task(), source.now());
     loop {

@@ -1,24 +1,23 @@
 //! Accuracy of a calibration by standing, beside that by a load cell.
 
+mod judges;
+mod visit;
+
 use std::fmt;
 use std::time::Duration;
 
-use glam::Vec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::Serialize;
 
+use self::judges::{JudgedFoot, judging_feet};
+use self::visit::{first_marks, stood};
 use super::errors::PositionErrors;
 use super::rig::ExperimentError;
 use underfoot::floor::{Calibration, Floor, Geometry, LawKind, SensorId};
-use underfoot::sense::{StandData, StandFit, StandingMark};
-use underfoot::serve::{StandTask, StandWalk};
-use underfoot::units::{Instant, Newtons};
-use underfoot::wire::{Readings, SensorPacket};
-use underfoot_sim::{
-    BuildError, Foot, PartConfig, Person, Script, SimConfig, SimFloor, SimulatedSensors, StandingHabit,
-    calibrated, standing_on,
-};
+use underfoot::sense::{StandData, StandFit};
+use underfoot::units::Newtons;
+use underfoot_sim::{BuildError, PartConfig, Person, SimConfig, SimFloor, SimulatedSensors, calibrated};
 
 /// Tiles of each floor, columns by rows.
 const TILES: (u16, u16) = (3, 2);
@@ -33,17 +32,8 @@ const NOISE: f32 = 0.02;
 /// Deviations of the parts from their laws: none, and the paper's 5 % of full scale.
 const DEVIATIONS: [f32; 2] = [0.0, 0.05];
 
-/// Number of marks on each tile in one round.
-const ROUND: usize = 5;
-
 /// Numbers of marks on each tile for which the laws are fitted; the last ones need a second round.
 const MARKS: [usize; 4] = [1, 3, 5, 10];
-
-/// Number of feet that judge each calibration.
-const JUDGES: usize = 300;
-
-/// Number of readings averaged for each of them.
-const READINGS: u32 = 50;
 
 /// Average parts of each law, with about 400 N at the end of their range.
 const PARTS: [Calibration; 4] = [
@@ -123,28 +113,6 @@ impl StandCell {
             self.forces.push((force / foot.force - 1.0).abs());
             self.places.push(at.distance(foot.at));
         }
-    }
-}
-
-/// The readings under a foot, and the load that the sensors bore.
-struct JudgedFoot {
-    /// Sensor, its place and its output in volts.
-    volts: Vec<(SensorId, Vec2, f32)>,
-    force: f32,
-    at: Vec2,
-}
-
-impl JudgedFoot {
-    /// Force and place by these laws and tares.
-    fn felt(&self, laws: &dyn Fn(SensorId) -> (Calibration, Newtons)) -> (f32, Vec2) {
-        let (mut sum, mut moment) = (0.0, Vec2::ZERO);
-        for &(sensor, place, volts) in &self.volts {
-            let (law, tare) = laws(sensor);
-            let force = (law.force_at(volts) - tare).0;
-            sum += force;
-            moment += force * place;
-        }
-        (sum, moment / sum)
     }
 }
 
@@ -248,109 +216,6 @@ impl StandCell {
         };
         self.judge(&laws, feet);
     }
-}
-
-/// The stands on the first `marks` marks of each tile, with the ways between stands that follow each other.
-fn first_marks(data: &StandData, marks: usize) -> StandData {
-    let mut kept = StandData { empty: data.empty.clone(), ..StandData::default() };
-    for (number, stand) in data.stands.iter().enumerate() {
-        let earlier = data.stands[..number].iter().filter(|other| other.mark.tile == stand.mark.tile);
-        if earlier.count() < marks {
-            kept.stands.push(stand.clone());
-        }
-    }
-    if marks >= ROUND {
-        let share = kept.stands.len() * data.crossings.len() / data.stands.len().max(1);
-        kept.crossings.extend(data.crossings.iter().take(share).cloned());
-    }
-    kept
-}
-
-/// The measurements of a person who stands on all marks twice, and the time that it takes.
-fn stood(wired: &Floor, sim: &mut SimFloor, seed: u64) -> Result<(StandData, Duration), ExperimentError> {
-    let tiles = StandingMark::walk(&wired.geometry);
-    let marks = StandingMark::of_tiles(&wired.geometry, &tiles, 2);
-    let person = Person { mass_kg: MASS_KG, stand_width_m: 0.12, ..Person::default() };
-    let performance = standing_on(&marks, person, StandingHabit::default(), seed)?;
-    let script = Script::new(vec![performance], wired.geometry.bounds());
-    let mut walk = StandWalk::new(wired, marks);
-    let (mut sequence, mut loads) = (0_u32, Vec::new());
-    let end = script.duration();
-    while walk.task() != StandTask::Nothing && Duration::from_millis(sequence.into()) < end {
-        let received = Instant::from_millis(sequence.into());
-        loads.clear();
-        script.loads_at(received, &mut loads);
-        for (board, readings) in (0..).zip(sim.step_under(loads.iter().copied())) {
-            walk.take(&SensorPacket { board, sequence, received, readings: readings.clone() });
-        }
-        sequence += 1;
-    }
-    Ok((walk.data().clone(), Duration::from_millis(sequence.into())))
-}
-
-/// Feet all over the floor, none of which saturates a sensor.
-fn judging_feet(wired: &Floor, sim: &mut SimFloor, seed: u64) -> Vec<JudgedFoot> {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x6a75_d6e5);
-    let bounds = wired.geometry.bounds();
-    let (low, high) = (bounds.min, bounds.max);
-    let mut feet = Vec::with_capacity(JUDGES);
-    for _ in 0..JUDGES {
-        let foot = Foot {
-            position: Vec2::new(
-                rng.random_range(low.x + 0.1..high.x - 0.1),
-                rng.random_range(low.y + 0.1..high.y - 0.1),
-            ),
-            heading: rng.random_range(0.0..std::f32::consts::TAU),
-            length_m: rng.random_range(0.22..0.30),
-            force: Newtons(rng.random_range(120.0..980.0)),
-            roll: rng.random_range(0.2..0.8),
-            left: false,
-        };
-        feet.extend(judged(wired, sim, &foot));
-    }
-    feet
-}
-
-/// The readings under a foot; `None` if a sensor is at the end of its range, or little of the foot is on the floor.
-fn judged(wired: &Floor, sim: &mut SimFloor, foot: &Foot) -> Option<JudgedFoot> {
-    let loads = |sim: &SimFloor| -> Vec<[f32; 4]> {
-        let tiles = 0..wired.geometry.tile_count();
-        tiles.map(|tile| sim.support_forces(tile).map_or([0.0; 4], |all| all.map(|one| one.0))).collect()
-    };
-    sim.step(&[]);
-    let rest = loads(sim);
-    sim.step(std::slice::from_ref(foot));
-    let bore = loads(sim);
-    let mut volts: Vec<(SensorId, Vec2, f32)> = Vec::new();
-    for round in 0..READINGS {
-        let boards = wired.boards.iter().zip(sim.step(std::slice::from_ref(foot)));
-        let mut number = 0;
-        for (board, readings) in boards {
-            let Readings::Counts(counts) = readings else { return None };
-            for (sensor, count) in board.channels.iter().flatten().zip(counts) {
-                let output = Calibration::volts((*count)?);
-                if round == 0 {
-                    volts.push((*sensor, wired.geometry.sensor(sensor.tile, sensor.corner), 0.0));
-                }
-                volts.get_mut(number)?.2 += output / READINGS as f32;
-                number += 1;
-            }
-        }
-    }
-    if volts.iter().any(|(.., volts)| *volts >= 0.97 * Calibration::FULL_SCALE_VOLTS) {
-        return None;
-    }
-    let (mut force, mut moment) = (0.0, Vec2::ZERO);
-    volts.retain(|(sensor, place, _)| {
-        let Some(tile) = wired.geometry.index(sensor.tile) else { return false };
-        let corner = sensor.corner.index();
-        let net = bore[tile][corner] - rest[tile][corner];
-        force += net;
-        moment += net * *place;
-        // As in sensing, tiles without a load do not count.
-        bore[tile] != rest[tile]
-    });
-    (force > 100.0).then(|| JudgedFoot { volts, force, at: moment / force })
 }
 
 impl fmt::Display for StandTable {
