@@ -22,7 +22,7 @@ use underfoot_sim::{BuildError, PartConfig, Person, SimConfig, SimFloor, Simulat
 /// Tiles of each floor, columns by rows.
 const TILES: (u16, u16) = (3, 2);
 
-/// Mass of the person who calibrates (kg), and standard error of the scales (share).
+/// Mass of the calibrating person (kg), and standard error of the scales (share).
 const MASS_KG: f32 = 72.0;
 const SCALES: f32 = 0.005;
 
@@ -77,7 +77,7 @@ pub struct StandLine {
     pub floors: u32,
     /// Floors without a calibration.
     pub failed: u32,
-    /// Floors whose kind of law was found.
+    /// Number of floors with the right kind of law.
     pub found: u32,
     /// Time of the person for each tile (s), with the way between the marks; 0 for the load cell.
     pub tile_s: f64,

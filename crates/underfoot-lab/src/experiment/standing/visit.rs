@@ -1,4 +1,4 @@
-//! A simulated person who stands on all marks.
+//! A simulated person on all marks in turn.
 
 use std::time::Duration;
 
@@ -31,7 +31,7 @@ pub(super) fn first_marks(data: &StandData, marks: usize) -> StandData {
     kept
 }
 
-/// The measurements of a person who stands on all marks twice, and the time that it takes.
+/// The measurements of a person on all marks, twice, and the time that it takes.
 pub(super) fn stood(
     wired: &Floor,
     sim: &mut SimFloor,
