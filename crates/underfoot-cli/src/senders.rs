@@ -73,7 +73,7 @@ impl BoardArgs {
         !self.serial.is_empty()
     }
 
-    /// Loads the chosen floor, whose serial ports must be there.
+    /// Loads the chosen floor; an error if one of its serial ports is not there.
     pub(crate) fn load(&self, floor: &FloorArgs) -> Result<Floor, Failure> {
         match &floor.floor {
             Some(path) => self.load_file(path),
@@ -81,7 +81,7 @@ impl BoardArgs {
         }
     }
 
-    /// Loads the floor file at `path`, whose serial ports must be there.
+    /// Loads the floor file at `path`; an error if one of its serial ports is not there.
     pub(crate) fn load_file(&self, path: &Path) -> Result<Floor, Failure> {
         let absent = |port: &PortName| if self.await_ports { None } else { absent(port) };
         load_floor(path, &absent)
