@@ -38,6 +38,8 @@ tool_packages() {
     # A broker of MQTT, and its client.
     has mosquitto || echo mosquitto
     has mosquitto_sub || echo mosquitto-clients
+    # The cluster's assembler, compiled for other systems.
+    is_left_out other-systems || has clang || echo clang
     has python3 || echo python3
     python3 -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
 }
