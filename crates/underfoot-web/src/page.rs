@@ -111,8 +111,11 @@ struct PageHooks {
     click: Function,
 }
 
-/// A function for frames of the page that holds itself.
-type FrameSlot = Rc<RefCell<Option<Closure<dyn FnMut(f64)>>>>;
+/// A function for frames of the page, which gets their times (ms).
+type FrameCall = Closure<dyn FnMut(f64)>;
+
+/// Holds that function, for the function itself too.
+type FrameSlot = Rc<RefCell<Option<FrameCall>>>;
 
 /// Advances the floor in each frame of the page from now on.
 fn run_in_frames(window: &Window, mut floor: PageFloor, hooks: PageHooks, heard: FrameSound) {
@@ -131,7 +134,7 @@ fn run_in_frames(window: &Window, mut floor: PageFloor, hooks: PageHooks, heard:
 }
 
 /// Requests a call in the next frame of the page; a hidden page has none, and its floor stands still.
-fn request(window: &Window, frame: &RefCell<Option<Closure<dyn FnMut(f64)>>>) {
+fn request(window: &Window, frame: &RefCell<Option<FrameCall>>) {
     if let Some(frame) = frame.borrow().as_ref() {
         // It fails only while the page is being left.
         let _ = window.request_animation_frame(frame.as_ref().unchecked_ref());
