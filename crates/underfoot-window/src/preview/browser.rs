@@ -6,15 +6,15 @@ use wasm_bindgen::JsValue;
 use wasm_bindgen::closure::Closure;
 use web_sys::HtmlCanvasElement;
 
-use super::damage::{Canvas, Damage};
+use super::damage::{Canvas, CanvasState, Damage};
 use super::{PreviewError, PreviewInput, PreviewOptions};
 
 /// The canvas of the page, which keeps its picture by itself ([`keep_picture`]).
 struct PageCanvas;
 
 impl Canvas for PageCanvas {
-    fn begin(&self, _: &Painter, _: [u32; 2]) -> bool {
-        true
+    fn begin(&self, _: &Painter, _: [u32; 2]) -> CanvasState {
+        CanvasState::Kept
     }
 
     fn end(&self, _: &Painter, _: [u32; 2]) {}

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use eframe::egui_glow::Painter;
 use eframe::glow::{self, HasContext as _};
 
-use super::Canvas;
+use super::{Canvas, CanvasState};
 
 /// Whether a graphics card draws: it draws a whole window faster than two pictures are compared.
 pub(in crate::preview) fn has_graphics_card(gl: &glow::Context) -> bool {
@@ -67,7 +67,7 @@ impl Pixels {
 }
 
 impl Canvas for Framebuffer {
-    fn begin(&self, painter: &Painter, size_px: [u32; 2]) -> bool {
+    fn begin(&self, painter: &Painter, size_px: [u32; 2]) -> CanvasState {
         let (gl, size_px) = (painter.gl(), size_px.map(|side| side as i32));
         let mut pixels = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let has_picture = pixels.is_some_and(|pixels| pixels.size_px == size_px);
@@ -80,7 +80,11 @@ impl Canvas for Framebuffer {
         let framebuffer = pixels.map(|pixels| pixels.framebuffer);
         // SAFETY: the painter's context is current while it draws. Without memory, the window is drawn on itself.
         unsafe { gl.bind_framebuffer(glow::FRAMEBUFFER, framebuffer) };
-        has_picture
+        match framebuffer {
+            Some(_) if has_picture => CanvasState::Kept,
+            Some(_) => CanvasState::New,
+            None => CanvasState::Lost,
+        }
     }
 
     fn end(&self, painter: &Painter, [width, height]: [u32; 2]) {

@@ -23,11 +23,22 @@ pub(super) use framebuffer::{Framebuffer, has_graphics_card};
 
 /// A canvas that keeps its picture from one frame to the next.
 pub(super) trait Canvas: Send + Sync + 'static {
-    /// Makes the canvas, of `size_px` pixels, the target of what is drawn next. Returns whether it still has its picture.
-    fn begin(&self, painter: &Painter, size_px: [u32; 2]) -> bool;
+    /// Makes the canvas, of `size_px` pixels, the target of what is drawn next.
+    fn begin(&self, painter: &Painter, size_px: [u32; 2]) -> CanvasState;
 
     /// Shows the picture in the window.
     fn end(&self, painter: &Painter, size_px: [u32; 2]);
+}
+
+/// The picture on a canvas when a frame begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum CanvasState {
+    /// It is that of the frame before.
+    Kept,
+    /// It is unknown: the canvas is new.
+    New,
+    /// It is unknown, and that of this frame will be lost: there is no memory for it.
+    Lost,
 }
 
 /// Draws only the differences from the picture on the canvas.
@@ -103,9 +114,10 @@ impl Damage {
         let (canvas, drawn, number) = (Arc::clone(&self.canvas), Arc::clone(&self.drawn), self.number);
         let ctx = ctx.clone();
         called(screen, move |info, painter| {
-            let is_known = canvas.begin(painter, info.screen_size_px) || !needs_picture;
+            let state = canvas.begin(painter, info.screen_size_px);
+            let is_known = state == CanvasState::Kept || state == CanvasState::New && !needs_picture;
             drawn.store(if is_known { number } else { 0 }, Ordering::Relaxed);
-            if !is_known {
+            if needs_picture && !is_known {
                 ctx.request_repaint();
             }
         })
@@ -138,5 +150,62 @@ impl Plugin for Damage {
         if self.begun.pop() == Some(ViewportId::ROOT) {
             self.draw_changes(ctx, output);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::epaint::{CornerRadius, RectShape};
+    use eframe::egui::{Color32, LayerId, StrokeKind, pos2, vec2};
+
+    use super::*;
+
+    /// A canvas that draws nothing; the tests say what was drawn.
+    struct NoCanvas;
+
+    impl Canvas for NoCanvas {
+        fn begin(&self, _: &Painter, _: [u32; 2]) -> CanvasState {
+            CanvasState::Kept
+        }
+
+        fn end(&self, _: &Painter, _: [u32; 2]) {}
+    }
+
+    /// The places of the boxes that a frame draws: of a ground, and of a foot at `x`.
+    fn drawn(ctx: &Context, x: f32) -> Vec<f32> {
+        let screen = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 300.0));
+        let input = RawInput { screen_rect: Some(screen), ..Default::default() };
+        let mut output = ctx.run_ui(input, |ui| {
+            let painter = ui.ctx().layer_painter(LayerId::background());
+            painter.rect_filled(screen, 0, Color32::WHITE);
+            let foot = Rect::from_min_size(pos2(x, 40.0), vec2(10.0, 10.0));
+            painter.rect(foot, CornerRadius::ZERO, Color32::RED, (0.0, Color32::RED), StrokeKind::Inside);
+            let button = foot.translate(vec2(0.0, 200.0));
+            painter.rect_filled(button.translate(vec2(300.0 - x, 0.0)), 0, Color32::BLUE);
+        });
+        output.textures_delta.clear();
+        let calls = output.shapes.iter().filter(|it| matches!(it.shape, Shape::Callback(_))).count();
+        assert_eq!(calls, 2, "the canvas begins and ends");
+        let boxes = output.shapes.iter().filter_map(|it| match &it.shape {
+            Shape::Rect(RectShape { rect, fill, .. }) if *fill != Color32::WHITE => Some(rect.min.x),
+            _ => None,
+        });
+        boxes.collect()
+    }
+
+    #[test]
+    fn only_a_foot_that_moves_is_drawn_and_all_of_a_picture_that_is_lost() {
+        let (ctx, damage) = (Context::default(), Damage::new(NoCanvas));
+        let on_canvas = Arc::clone(&damage.drawn);
+        ctx.add_plugin(damage);
+        assert_eq!(drawn(&ctx, 20.0), [20.0, 300.0], "the first frame has all");
+        on_canvas.store(1, Ordering::Relaxed);
+        assert_eq!(drawn(&ctx, 60.0), [60.0], "the button stays as it is");
+        // This frame is never drawn: the next one replaces both feet.
+        assert_eq!(drawn(&ctx, 90.0), [90.0]);
+        on_canvas.store(3, Ordering::Relaxed);
+        assert_eq!(drawn(&ctx, 90.0), [0.0; 0]);
+        on_canvas.store(0, Ordering::Relaxed);
+        assert_eq!(drawn(&ctx, 90.0), [90.0, 300.0], "the window was resized while it was drawn");
     }
 }
