@@ -212,7 +212,7 @@ impl LayoutCard {
         grid: &CardGrid,
         name: &str,
     ) -> egui::Response {
-        let sense = if self.fits { Sense::CLICK } else { Sense::hover() };
+        let sense = if self.fits { Sense::click() } else { Sense::hover() };
         let (rect, response) = ui.allocate_exact_size(grid.card, sense);
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::Button, self.fits, name);
