@@ -77,7 +77,7 @@ fn simulate(args: &Args, layout: Layout, visit: &LinkedVisit, file: &Path) -> Re
     let source = SimulatedSource::new(sim, driver, Pace::FreeRunning);
     let method = Method::default();
     let Recorded { recorder, input, floor, layout } =
-        Recorder::around(Some(file), source.into(), floor, layout, method, WhenBehind::Wait)?;
+        Recorder::around(Some(file), source, floor, layout, method, WhenBehind::Wait)?;
     let mut server = Server::new(&floor, layout, method, input);
     if let Some(recorder) = &recorder {
         server = server.with_events(Box::new(recorder.events()?.waiting()));
