@@ -246,14 +246,14 @@ struct PageHooks {
     click: Function,
 }
 
-/// A function for frames of the page that holds itself.
-type FrameSlot = Rc<FrameCell>;
-
-/// A function for frames of the page.
-type FrameCell = RefCell<Option<Closure<dyn FnMut(f64)>>>;
-
 /// The event of the page for each event of the floor; its `detail` is a line of JSON.
 const EVENT: &str = "underfoot-event";
+
+/// A function for frames of the page, which gets their times (ms).
+type FrameCall = Closure<dyn FnMut(f64)>;
+
+/// Holds that function, for the function itself too.
+type FrameSlot = Rc<RefCell<Option<FrameCall>>>;
 
 /// Advances the floor in each frame of the page from now on.
 fn run_in_frames(window: &Window, open: OpenPage, hooks: PageHooks, heard: FrameSound) {
@@ -299,7 +299,7 @@ fn report(page: &Window, line: &str) {
 }
 
 /// Requests a call in the next frame of the page; a hidden page has none, and its floor stands still.
-fn request(window: &Window, frame: &FrameCell) {
+fn request(window: &Window, frame: &RefCell<Option<FrameCall>>) {
     if let Some(frame) = frame.borrow().as_ref() {
         // It fails only while the page is being left.
         let _ = window.request_animation_frame(frame.as_ref().unchecked_ref());

@@ -4,6 +4,7 @@ mod curves;
 mod map;
 mod plot;
 mod stand;
+mod stand_report;
 mod tare;
 
 use std::path::Path;

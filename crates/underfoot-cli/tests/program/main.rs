@@ -9,6 +9,8 @@ mod ports;
 mod sender;
 #[path = "../../../../tests/support/units.rs"]
 mod units;
+#[path = "../../../../tests/support/xvfb.rs"]
+mod xvfb;
 
 mod app;
 mod areas;

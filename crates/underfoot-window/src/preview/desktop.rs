@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use eframe::egui;
 
+use super::damage::{Damage, Framebuffer, has_graphics_card};
 use super::{PreviewError, PreviewInput, PreviewOptions};
 use underfoot_scene::letters::Installed;
 
@@ -32,6 +33,9 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         let app = super::app(input, &options, context);
         // Missing letters come from the fonts of this computer, as in pictures.
         context.egui_ctx.add_font_provider(Arc::new(Installed::new()));
+        if context.gl.as_ref().is_some_and(|gl| !has_graphics_card(gl)) {
+            context.egui_ctx.add_plugin(Damage::new(Framebuffer::default()));
+        }
         Ok(app)
     });
     eframe::run_native(&title, native, start)

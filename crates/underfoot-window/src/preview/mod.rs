@@ -11,11 +11,6 @@ mod bars;
 mod browser;
 mod channels;
 mod closing;
-#[cfg(any(test, target_arch = "wasm32"))]
-#[cfg_attr(
-    not(target_arch = "wasm32"),
-    allow(dead_code, reason = "a desktop clears its window before each frame")
-)]
 mod damage;
 mod design;
 #[cfg(not(target_arch = "wasm32"))]
