@@ -1,29 +1,40 @@
 //! The recording of a floor in an MCAP file: all inputs that determine the floor's behaviour, and their replay.
 //!
-//! [`Recorder`] stores the packets, requests and layouts of a floor with their times; [`Recording`] returns them as
+//! `Recorder` stores the packets, requests and layouts of a floor with their times; [`Recording`] returns them as
 //! the input of another. A server asks its input only for these and the time: with the same answers it reports the
-//! same events, bit for bit. `docs/recordings.md` describes the file.
+//! same events, bit for bit. `docs/recordings.md` describes the file. Reading and replay need neither files nor threads
+//! nor a clock, at the maximum speed.
 
 mod bytes;
 mod chunk;
+#[cfg_attr(not(feature = "record"), allow(dead_code, reason = "a replay writes no entries"))]
 mod entry;
+#[cfg(feature = "record")]
 mod events;
+mod kept;
 mod messages;
 mod order;
+#[cfg(feature = "record")]
 mod pack;
 mod parts;
 mod reader;
+#[cfg(feature = "record")]
 mod recorder;
 mod records;
 mod replay;
+#[cfg(feature = "record")]
 mod restored;
+#[cfg(feature = "record")]
 mod switch;
+#[cfg(feature = "record")]
 mod tap;
-#[cfg(test)]
+#[cfg(all(test, feature = "record"))]
 mod tests;
 mod timeline;
 mod transport;
+#[cfg(feature = "record")]
 mod trim;
+#[cfg(feature = "record")]
 mod writer;
 
 use std::io;
@@ -33,16 +44,22 @@ use thiserror::Error;
 
 use crate::schema::Diagnostics;
 
+#[cfg(feature = "record")]
 pub(crate) use entry::{LogEntry, decoder};
+#[cfg(feature = "record")]
+pub(crate) use kept::read_layout;
 pub use reader::Recording;
-pub(crate) use recorder::read_layout;
+#[cfg(feature = "record")]
 pub use recorder::{Recorded, Recorder, WhenBehind};
 pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
+#[cfg(feature = "record")]
 pub use switch::RecordingSwitch;
+#[cfg(feature = "record")]
 pub(crate) use tap::{Entries, EntrySink, tapped};
 pub use timeline::{MarkKind, Timeline, TimelineMark};
 pub use transport::Transport;
+#[cfg(feature = "record")]
 pub use trim::Trimmed;
 
 /// Topics of a recording.

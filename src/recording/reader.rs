@@ -6,10 +6,10 @@ use std::path::Path;
 
 use mcap::records::op;
 
+use super::kept::read_layout;
 use super::messages::{LogPart, MessageReader};
 use super::order::Ordered;
 use super::parts::{Attachment, metadata};
-use super::recorder::read_layout;
 use super::records::{RawRecord, ReadState, RecordingBytes, Records};
 use super::replay::{ReplaySource, Speed};
 use super::{BEGINS, FLOOR, LAYOUT, LEARNT, METADATA, NOISE, READABLE, RecordingError};

@@ -8,11 +8,12 @@ use std::time::Duration;
 
 use super::RecordingError;
 use super::events::{EventLines, JobSink};
+use super::kept::as_kept;
 use super::tap::{Entries, EntrySink, tapped};
 use super::writer::{Job, RecordingFile, RecordingHead};
-use crate::floor::{Floor, Geometry};
+use crate::floor::Floor;
 use crate::layout::Layout;
-use crate::schema::{self, Diagnostics, Kinds};
+use crate::schema;
 use crate::sense::Method;
 use crate::sink::{JsonSink, SinkError, Worker};
 use crate::source::FloorInput;
@@ -147,15 +148,4 @@ impl EntrySink for Recorder {
     fn count_lost(&self, entries: u64) {
         self.note_lost(entries);
     }
-}
-
-/// The text of `layout`, and the layout that results from parsing it.
-pub(super) fn as_kept(layout: &Layout, geometry: &Geometry) -> Result<(String, Layout), Diagnostics> {
-    let text = schema::write_layout(layout);
-    let layout = read_layout(&text, geometry)?;
-    Ok((text, layout))
-}
-
-pub(crate) fn read_layout(text: &str, geometry: &Geometry) -> Result<Layout, Diagnostics> {
-    Ok(schema::parse_layout(text, super::LAYOUT, &Kinds::builtin(), geometry)?.layout)
 }

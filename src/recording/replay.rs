@@ -6,9 +6,9 @@ use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
 use super::entry::LogEntry;
+use super::kept::read_layout;
 use super::messages::LogPart;
 use super::order::Ordered;
-use super::recorder::read_layout;
 use super::transport::Transport;
 use crate::floor::Geometry;
 use crate::source::{FloorInput, Incoming, Replay, SensorSource, Shared, SourceError};

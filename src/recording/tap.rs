@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::entry::LogEntry;
-use super::recorder::as_kept;
+use super::kept::as_kept;
 use crate::floor::Geometry;
 use crate::layout::Layout;
 use crate::source::{FloorInput, Journal, SensorSource, Shared, SourceError};

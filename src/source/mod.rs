@@ -4,7 +4,7 @@ mod fault;
 mod input;
 mod journal;
 mod port;
-#[cfg(feature = "net")]
+#[cfg(any(feature = "net", feature = "replay"))]
 mod shared;
 mod tapped;
 #[cfg(feature = "net")]
@@ -14,7 +14,7 @@ pub use fault::{BadFault, Bursts, FaultInjector, LinkFaults, Outage, Stall};
 pub use input::FloorInput;
 pub use journal::{Incoming, Journal, Replay};
 pub use port::Port;
-#[cfg(feature = "net")]
+#[cfg(any(feature = "net", feature = "replay"))]
 pub(crate) use shared::Shared;
 pub use tapped::{PacketTap, TappedPackets};
 #[cfg(feature = "net")]

@@ -1,5 +1,5 @@
 // Starts the window and its sound, and keeps the page for visits without a network.
-import init, { start } from "./underfoot.js";
+import init, { open_recording, start, takes_layouts } from "./underfoot.js";
 
 const cover = document.getElementById("cover");
 const state = document.getElementById("state");
@@ -23,11 +23,22 @@ async function filesIn(entry, found) {
   }
 }
 
+// A recording larger than this does not fit into the memory of a page, whose answer names the limit.
+const MOST_BYTES = 2 ** 26;
+
+async function play(path, file) {
+  // One byte more is enough for the answer.
+  open_recording(path, new Uint8Array(await file.slice(0, MOST_BYTES + 1).arrayBuffer()));
+}
+
 addEventListener("drop", async (event) => {
   event.preventDefault();
   const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry);
   const found = [];
   for (const entry of entries) await filesIn(entry, found);
+  const recording = found.length === 1 && found.find(([path]) => path.endsWith(".mcap"));
+  if (recording) return play(...recording);
+  if (!takes_layouts()) return;
   // Of a folder, only what the window can open; a single file of another form gets its own message.
   const texts = found.filter(([path]) => path.endsWith(".ron"));
   const detail = entries.every((entry) => entry.isFile) ? found : texts;

@@ -6,6 +6,9 @@
 //! | [`clock`] | the time of that floor |
 //! | [`desk`] | layouts put on the floor, and the commands of the window |
 //! | [`kinds`] | kinds and effects: those that come with underfoot, and those of a link |
+//! | [`played`] | a visit or a recording, steered by the time line |
+//! | [`visit`] | the visit of a link |
+//! | [`recording`] | a recording in memory |
 //! | [`sound`] | the sound of a frame in one piece |
 //! | `page` | the start in a page (WebAssembly only) |
 //!
@@ -16,6 +19,11 @@ pub mod clock;
 pub mod desk;
 pub mod floor;
 pub mod kinds;
+mod lines;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
+pub mod played;
+pub mod recording;
 pub mod sound;
+mod tape;
+pub mod visit;

@@ -19,14 +19,13 @@ use underfoot::serve::FloorCommand;
 use underfoot::source::{PacketTap, TappedPackets};
 use underfoot_window::preview::{
     EventNews, LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink,
-    ServerState, ToWindow,
+    ServerState, ToWindow, announced,
 };
 
 use super::super::failure::Failure;
 use super::super::layout_args::LayoutArgs;
 use super::super::watch::FileWatch;
 use super::LOOK;
-use super::announced::announced;
 use super::commands::keep_floor;
 use super::stop_and_wait;
 

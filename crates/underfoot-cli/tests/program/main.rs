@@ -30,6 +30,7 @@ mod input;
 mod letters;
 #[cfg(unix)]
 mod lights;
+mod linked;
 #[cfg(target_os = "linux")]
 mod midi;
 mod mirror;

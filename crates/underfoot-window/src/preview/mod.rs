@@ -3,6 +3,7 @@
 //! [`run`] shows the content of its [`PreviewInput`]; sensing, sound and outputs run on other threads and never wait
 //! for the window. Only this module and [`underfoot_scene::egui_painter`] depend on egui.
 
+mod announced;
 mod app;
 mod appearance;
 mod bars;
@@ -66,9 +67,10 @@ mod walks;
 mod watch;
 mod zoom;
 
+pub use announced::announced;
 #[cfg(target_arch = "wasm32")]
 pub use browser::run;
-pub use channels::{Notice, ProgramChannels, WindowChannels, channels};
+pub use channels::{NextFloor, Notice, ProgramChannels, WindowChannels, channels};
 pub use design::{DesignInput, KindsOf, texts_beside, usual_state};
 #[cfg(not(target_arch = "wasm32"))]
 pub use desktop::run;
