@@ -6,13 +6,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use underfoot::floor::{CalibrationRecord, Floor, LawKind, TileId};
+use underfoot::floor::{Floor, LawKind, TileId};
 use underfoot::sense::{SensorFit, StandFit, StandingMark};
 use underfoot::serve::{StandNews, StandTask, StandWalk};
 use underfoot::source::SensorSource;
 use underfoot::units::Newtons;
+use underfoot_window::setup::{fit_words, keep_laws, mark_words, needy_tiles};
 
-use super::{Out, count, rounded, say_if_unsaved, today};
+use super::{Out, count, say_if_unsaved, today};
 use crate::failure::Failure;
 use crate::floor_args::FloorArgs;
 use crate::number::{number, patience, tile};
@@ -84,7 +85,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let weight = Newtons((weight_kg * GRAVITY) as f32);
     let fit = StandFit::of(walk.data(), weight, &floor.geometry, args.law)
         .map_err(|error| Failure::Other(error.to_string()))?;
-    keep(&mut floor, &fit);
+    keep_laws(&mut floor, &fit, today());
     let saved = out.save(&floor)?;
     if args.json {
         outln!("{}", as_json(&fit, &floor, saved.as_ref()));
@@ -134,7 +135,7 @@ fn follow(
             && shown != Some(walk.done())
         {
             (shown, since) = (Some(walk.done()), source.now());
-            outln!("{:>3} of {}: {}", walk.done() + 1, walk.length(), place(&mark, floor));
+            outln!("{:>3} of {}: {}", walk.done() + 1, walk.length(), mark_words(&mark, floor));
         }
         if source.now().since(since) >= wait {
             if let Some(reason) = unheard(walk, source) {
@@ -154,23 +155,6 @@ fn follow(
         }
     }
     Ok(())
-}
-
-/// Describes a mark: tile, place and direction.
-fn place(mark: &StandingMark, floor: &Floor) -> String {
-    let off = 100.0 * (mark.at - floor.geometry.centre(mark.tile));
-    let along = |(way, less, more): (f32, &str, &str)| {
-        (way.abs() >= 0.05).then(|| format!("{:.1} cm {}", way.abs(), if way < 0.0 { less } else { more }))
-    };
-    let ways: Vec<String> =
-        [(off.x, "west", "east"), (off.y, "south", "north")].into_iter().filter_map(along).collect();
-    let place = if ways.is_empty() {
-        "in the middle".to_owned()
-    } else {
-        format!("{} of the middle", ways.join(" and "))
-    };
-    let facing = if mark.facing == 0.0 { "north" } else { "south" };
-    format!("tile {}, {place}, facing {facing}", mark.tile)
 }
 
 /// Reports a stand, with a sound on a terminal: the person looks at the marks.
@@ -200,22 +184,6 @@ fn unheard(walk: &StandWalk, source: &dyn SensorSource) -> Option<String> {
     (walk.task() == StandTask::KeepOff).then(|| "the floor is not empty and quiet".to_owned())
 }
 
-/// Stores the new laws and tares in the floor.
-fn keep(floor: &mut Floor, fit: &StandFit) {
-    let day = today();
-    for found in fit.sensors.iter().filter(|found| found.determined > 0) {
-        let record = CalibrationRecord { day, residual: rounded(found.uncertainty) };
-        floor.recalibrate(found.sensor, found.law, Some(record));
-        let tile = floor.geometry.index(found.sensor.tile).and_then(|tile| floor.tare.get_mut(tile));
-        if let Some(tares) = tile {
-            tares[found.sensor.corner.index()] = found.tare;
-        }
-    }
-    if fit.sensors.iter().all(|found| found.determined > 0) {
-        floor.tared = Some(day);
-    }
-}
-
 fn print_marks(marks: &[StandingMark], floor: &Floor, json: bool) {
     if json {
         let marks: Vec<_> = marks
@@ -227,29 +195,12 @@ fn print_marks(marks: &[StandingMark], floor: &Floor, json: bool) {
             .collect();
         outln!("{}", json!({ "marks": marks }));
     } else {
-        marks.iter().for_each(|mark| outln!("{}", place(mark, floor)));
+        marks.iter().for_each(|mark| outln!("{}", mark_words(mark, floor)));
     }
 }
 
 fn print(fit: &StandFit, walk: &StandWalk, floor: &Floor) {
-    let (stands, crossings) = (count(fit.stands, "stand"), count(fit.crossings, "way"));
-    outln!("{stands} and {crossings} between them count. The sensors follow a {} law.", fit.kind.name());
-    outln!(
-        "The sums miss the weight by {:.1} %, the feet their marks by {:.1} cm; the body leans {:.1} cm forwards and \
-         {:.1} cm to the right.",
-        100.0 * fit.weight_residual,
-        100.0 * fit.place_residual_m,
-        100.0 * fit.lean_m.y,
-        100.0 * fit.lean_m.x
-    );
-    if !fit.saturated.is_empty() {
-        let stands = count(fit.saturated.len(), "stand");
-        outln!("{stands} had a sensor at the end of its range, and told less: a lighter person tells more.");
-    }
-    if !fit.astray.is_empty() {
-        let numbers: Vec<String> = fit.astray.iter().map(|number| (number + 1).to_string()).collect();
-        outln!("Left out, because they disagree with all others: stands {}.", numbers.join(", "));
-    }
+    fit_words(fit).iter().for_each(|words| outln!("{words}"));
     // A neighbour that carried a foot's edge is no part of the walk.
     let walked = |tile: TileId| walk.marks().iter().any(|mark| mark.tile == tile);
     let needy: Vec<&SensorFit> = fit.needy().filter(|found| walked(found.sensor.tile)).collect();
@@ -302,16 +253,7 @@ fn as_json(fit: &StandFit, floor: &Floor, saved: Option<&Value>) -> Value {
 
 /// The tiles of the walk that need more stands, and how to repeat them.
 fn more(fit: &StandFit, walk: &StandWalk, floor: &Floor) -> Option<String> {
-    let is_good = |tile: TileId| {
-        floor.geometry.sensors(tile).iter().all(|corner| {
-            let own = |found: &&SensorFit| (found.sensor.tile, found.sensor.corner) == (tile, *corner);
-            fit.sensors.iter().find(own).is_some_and(|found| !found.needs_more())
-        })
-    };
-    let mut tiles: Vec<TileId> = walk.marks().iter().map(|mark| mark.tile).collect();
-    tiles.sort_by_key(|tile| floor.geometry.index(*tile));
-    tiles.dedup();
-    tiles.retain(|tile| !is_good(*tile));
+    let tiles = needy_tiles(fit, walk.marks(), floor);
     let list: Vec<String> = tiles.iter().map(|tile| format!("{},{}", tile.column, tile.row)).collect();
     (!tiles.is_empty()).then(|| {
         let tiles = count(tiles.len(), "tile");

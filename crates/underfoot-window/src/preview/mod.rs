@@ -4,7 +4,7 @@
 //! for the window. Only this module and [`underfoot_scene::egui_painter`] depend on egui.
 
 mod app;
-mod appearance;
+pub(crate) mod appearance;
 mod bars;
 #[cfg(target_arch = "wasm32")]
 mod browser;
@@ -13,7 +13,7 @@ mod closing;
 mod damage;
 mod design;
 #[cfg(not(target_arch = "wasm32"))]
-mod desktop;
+pub(crate) mod desktop;
 #[cfg(test)]
 mod drags;
 mod feed;
@@ -47,13 +47,13 @@ mod rehearsal;
 #[path = "../../../../tests/support/sample.rs"]
 mod sample;
 mod scopes;
-mod screen_report;
+pub(crate) mod screen_report;
 mod selection;
 mod share;
 mod shown;
 mod stage;
 mod status;
-mod style;
+pub(crate) mod style;
 #[cfg(test)]
 mod tests;
 mod time_line;
