@@ -15,8 +15,8 @@ use crate::failure::Failure;
 /// Interval between two lines about the boards, and between two looks for ports that are plugged in.
 const SHOW: Duration = Duration::from_secs(1);
 
-/// Time after which datagrams wait for the serial ports.
-const ROUND: Duration = Duration::from_millis(100);
+/// Time after which further datagrams wait for the serial ports.
+const ROUND: Duration = Duration::from_millis(20);
 
 /// Size of the largest datagram.
 const LARGEST: usize = 65_536;

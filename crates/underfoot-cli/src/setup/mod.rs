@@ -23,8 +23,8 @@ use steps::FloorCommands;
 
 /// Options of `underfoot setup`.
 ///
-/// Asks questions and runs the commands for each step; every step can be repeated, left out and run alone. An existing
-/// floor file is kept as a backup.
+/// Asks questions and runs the commands for each step; every step can be repeated, left out and run alone. With --window,
+/// a window guides instead. An existing floor file is kept as a backup.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct Args {
     /// Guide in a window, with the floor drawn and the tile to step on lit, instead of by questions.

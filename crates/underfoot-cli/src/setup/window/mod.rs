@@ -25,7 +25,7 @@ const ORDERS: usize = 64;
 /// Opens the window, and runs its steps on a thread of their own until it is closed.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if !has_display() {
-        return Err(Failure::NoWindow("there is no display".into()));
+        return Err(no_window("there is no display"));
     }
     let floor = if args.floor.exists() { Some(load_floor(&args.floor, &|_| None)?) } else { None };
     let (views, shown) = triple_buffer(&SetupView::default());
@@ -48,5 +48,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.floor.exists() {
         outln!("The floor is in {}.", args.floor.display());
     }
-    shown.map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
+    shown.map_err(|PreviewError::NoWindow(reason)| no_window(&reason))
+}
+
+fn no_window(reason: &str) -> Failure {
+    Failure::Other(format!(
+        "no window can be opened: {reason}; leave out --window, and the terminal asks instead"
+    ))
 }

@@ -113,7 +113,7 @@ impl SetupBench {
             return self.fail(SetupStep::Standing, NO_FLOOR.to_owned());
         };
         if !WEIGHTS_KG.contains(&weight_kg) {
-            let reason = format!("A person weighs 15 to 300 kg, not {weight_kg}.");
+            let reason = "A person weighs 15 to 300 kg: write the weight as a number.".to_owned();
             return self.fail(SetupStep::Standing, reason);
         }
         let mut walked = StandingMark::walk(&floor.geometry);
