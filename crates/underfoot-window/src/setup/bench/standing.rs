@@ -1,6 +1,7 @@
 //! Calibration by standing at work: the walk, its measurements, the problem to solve.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use underfoot::floor::{Floor, Geometry, TileId};
 use underfoot::sense::{StandData, StandError, StandFit, StandingMark};
@@ -21,6 +22,9 @@ const WEIGHTS_KG: std::ops::RangeInclusive<f64> = 15.0..=300.0;
 
 /// Difference of two weights that count as one (N).
 const SAME_N: f32 = 0.5;
+
+/// Time after which an empty floor has been measured, unless something moves on it.
+const EMPTY: Duration = Duration::from_secs(6);
 
 /// The problem of a calibration by standing.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,15 +61,18 @@ pub(super) struct StandingWork {
     marks: Arc<[StandingMark]>,
     weight: Newtons,
     news: Option<StandNews>,
+    /// Arrival of the first packet.
+    begun: Option<Instant>,
 }
 
 impl StandingWork {
     fn new(floor: &Floor, marks: Vec<StandingMark>, weight: Newtons) -> Self {
         let shown = marks.clone().into();
-        Self { walk: StandWalk::new(floor, marks), marks: shown, weight, news: None }
+        Self { walk: StandWalk::new(floor, marks), marks: shown, weight, news: None, begun: None }
     }
 
     pub(super) fn take(&mut self, packet: &SensorPacket) {
+        self.begun.get_or_insert(packet.received);
         if let Some(news) = self.walk.take(packet) {
             self.news = Some(news);
         }
@@ -86,22 +93,31 @@ impl StandingWork {
         self.walk.has_newtons().then(|| words.to_owned())
     }
 
+    /// The reason for which no stand can be measured now, if any.
+    fn trouble(&self, now: Instant) -> Option<String> {
+        let silent: Vec<&str> = self.walk.silent(now).collect();
+        if !silent.is_empty() {
+            return Some(format!("Nothing comes from {}.", silent.join(", ")));
+        }
+        if self.walk.task() != StandTask::KeepOff {
+            return None;
+        }
+        if let Some(sensor) = self.walk.unread().next() {
+            return Some(format!("The sensor of {sensor} gives no reading."));
+        }
+        let is_late = self.begun.is_some_and(|begun| now.since(begun) > EMPTY);
+        is_late.then(|| "The floor is not empty and quiet: something moves on it.".to_owned())
+    }
+
     /// The state of the walk at `now`.
     pub(super) fn view(&self, now: Instant) -> StandingView {
-        let silent: Vec<&str> = self.walk.silent(now).collect();
-        let trouble = if !silent.is_empty() {
-            Some(format!("Nothing comes from {}.", silent.join(", ")))
-        } else {
-            let unread = self.walk.unread().next().filter(|_| self.walk.task() == StandTask::KeepOff);
-            unread.map(|sensor| format!("The sensor of {sensor} gives no reading."))
-        };
         StandingView {
             task: self.walk.task(),
             marks: Arc::clone(&self.marks),
             done: self.walk.done(),
             share: self.walk.measured_share(),
             news: self.news,
-            trouble,
+            trouble: self.trouble(now),
         }
     }
 }

@@ -123,6 +123,24 @@ fn a_person_who_stands_elsewhere_is_told_and_a_walk_without_stands_gives_no_laws
 }
 
 #[test]
+fn a_floor_on_which_somebody_walks_is_not_measured_as_empty_and_the_reason_is_said() {
+    let mut site = written(1, 1);
+    site.order(&SetupOrder::Stand { weight_kg: 50.0, tiles: Vec::new() });
+    for _ in 0..20 {
+        site.hold(200, Some(site.middle(TileId::new(0, 0))));
+        site.hold(200, None);
+    }
+    let view = site.bench.view();
+    let WorkView::Standing(walk) = &view.work else { panic!("{view:?}") };
+    assert_eq!(walk.task, StandTask::KeepOff);
+    assert!(walk.trouble.as_ref().is_some_and(|reason| reason.contains("something moves")), "{walk:?}");
+    assert!(!view.is_rested);
+    site.hold(2500, None);
+    let view = site.bench.view();
+    assert!(matches!(&view.work, WorkView::Standing(walk) if walk.trouble.is_none()) && view.is_rested, "{view:?}");
+}
+
+#[test]
 fn the_boards_are_left_to_the_layout_while_it_is_open() {
     let mut site = written(1, 1);
     site.order(&SetupOrder::OpenLayout);
