@@ -149,7 +149,7 @@ class Guide:
         self.window.type(str(KILOGRAMS))
         self.window.click_on("Start")
         begun, known = time.monotonic(), None
-        while not self.named("^(The floor is calibrated|Calculating the laws)$"):
+        while not self.named("^(The floor is calibrated|.* needs? more stands|Calculating the laws)$"):
             told = self.named("^Stand here: ")
             if told and told != known:
                 # The person takes a moment to get there.
@@ -165,7 +165,7 @@ class Guide:
                 self.shot("failed")
                 sys.exit("the walk over the marks does not end")
             time.sleep(0.02)
-        self.until("^The floor is calibrated$")
+        self.until("^(The floor is calibrated|.* needs? more stands)$")
         self.boards.leave()
         self.shot("5-calibrated")
 

@@ -127,7 +127,7 @@ mod tests {
                 );
                 assert_eq!((board.channels, board.is_numbered, board.greatest), (3, true, 7.0));
             }
-            if ms == 2450 {
+            if ms == 3100 {
                 assert!(boards[0].troubles[0].contains("too few"), "{boards:?}");
             }
         }

@@ -137,7 +137,10 @@ fn a_floor_on_which_somebody_walks_is_not_measured_as_empty_and_the_reason_is_sa
     assert!(!view.is_rested);
     site.hold(2500, None);
     let view = site.bench.view();
-    assert!(matches!(&view.work, WorkView::Standing(walk) if walk.trouble.is_none()) && view.is_rested, "{view:?}");
+    assert!(
+        matches!(&view.work, WorkView::Standing(walk) if walk.trouble.is_none()) && view.is_rested,
+        "{view:?}"
+    );
 }
 
 #[test]

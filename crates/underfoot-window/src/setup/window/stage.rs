@@ -54,9 +54,11 @@ impl SetupApp {
             (SetupStep::Wiring, WorkView::Wiring(walk)) => wiring_banner(theme, walk),
             (SetupStep::Standing, WorkView::Standing(walk)) => standing_banner(theme, walk),
             (SetupStep::Standing, WorkView::Fitting) => plain("Calculating the laws"),
-            (SetupStep::Standing, _) if view.fit.is_some() => {
-                (theme.good, "The floor is calibrated".to_owned())
-            }
+            (SetupStep::Standing, _) if view.fit.is_some() => match view.needy.len() {
+                0 => (theme.good, "The floor is calibrated".to_owned()),
+                1 => (theme.warning, "1 tile needs more stands".to_owned()),
+                count => (theme.warning, format!("{count} tiles need more stands")),
+            },
             (SetupStep::Standing, _) => plain("How heavy are you?"),
             (SetupStep::Readings, WorkView::Taring) => plain("Keep off the floor"),
             (SetupStep::Readings, _) if !view.is_rested => plain("Keep off the floor"),
