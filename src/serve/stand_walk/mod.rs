@@ -260,6 +260,15 @@ impl StandWalk {
         }
     }
 
+    /// Returns the share of the present stand that is measured, 0 to 1; 0 between stands.
+    #[must_use]
+    pub fn measured_share(&self) -> f32 {
+        match self.stage {
+            WalkStage::Stand { moments, .. } => moments as f32 / STAND as f32,
+            WalkStage::Rest | WalkStage::Way { .. } | WalkStage::Done => 0.0,
+        }
+    }
+
     /// Returns the number of marks that are done or left out.
     #[must_use]
     pub const fn done(&self) -> usize {

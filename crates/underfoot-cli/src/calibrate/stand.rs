@@ -5,14 +5,15 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use underfoot::floor::{CalibrationRecord, Floor, LawKind, TileId};
+use underfoot::floor::{Floor, LawKind, TileId};
 use underfoot::sense::{StandFit, StandingMark};
 use underfoot::serve::{StandNews, StandTask, StandWalk};
 use underfoot::source::SensorSource;
 use underfoot::units::Newtons;
+use underfoot_window::setup::{keep_laws, mark_words};
 
 use super::stand_report::{as_json, more, print, print_marks};
-use super::{Out, rounded, say_if_unsaved, today};
+use super::{Out, say_if_unsaved, today};
 use crate::failure::Failure;
 use crate::floor_args::FloorArgs;
 use crate::number::{number, patience, tile};
@@ -84,7 +85,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let weight = Newtons((weight_kg * GRAVITY) as f32);
     let fit = StandFit::of(walk.data(), weight, &floor.geometry, args.law)
         .map_err(|error| Failure::Other(error.to_string()))?;
-    keep(&mut floor, &fit);
+    keep_laws(&mut floor, &fit, today());
     let saved = out.save(&floor)?;
     if args.json {
         outln!("{}", as_json(&fit, &floor, saved.as_ref()));
@@ -134,7 +135,7 @@ fn follow(
             && shown != Some(walk.done())
         {
             (shown, since) = (Some(walk.done()), source.now());
-            outln!("{:>3} of {}: {}", walk.done() + 1, walk.length(), place(&mark, floor));
+            outln!("{:>3} of {}: {}", walk.done() + 1, walk.length(), mark_words(&mark, floor));
         }
         if source.now().since(since) >= wait {
             if let Some(reason) = unheard(walk, source) {
@@ -154,23 +155,6 @@ fn follow(
         }
     }
     Ok(())
-}
-
-/// Describes a mark: tile, place and direction.
-pub(super) fn place(mark: &StandingMark, floor: &Floor) -> String {
-    let off = 100.0 * (mark.at - floor.geometry.centre(mark.tile));
-    let along = |(way, less, more): (f32, &str, &str)| {
-        (way.abs() >= 0.05).then(|| format!("{:.1} cm {}", way.abs(), if way < 0.0 { less } else { more }))
-    };
-    let ways: Vec<String> =
-        [(off.x, "west", "east"), (off.y, "south", "north")].into_iter().filter_map(along).collect();
-    let place = if ways.is_empty() {
-        "in the middle".to_owned()
-    } else {
-        format!("{} of the middle", ways.join(" and "))
-    };
-    let facing = if mark.facing == 0.0 { "north" } else { "south" };
-    format!("tile {}, {place}, facing {facing}", mark.tile)
 }
 
 /// Reports a stand, with a sound on a terminal: the person looks at the marks.
@@ -198,20 +182,4 @@ fn unheard(walk: &StandWalk, source: &dyn SensorSource) -> Option<String> {
         return Some(format!("the sensor of {sensor} gives no reading"));
     }
     (walk.task() == StandTask::KeepOff).then(|| "the floor is not empty and quiet".to_owned())
-}
-
-/// Stores the new laws and tares in the floor.
-fn keep(floor: &mut Floor, fit: &StandFit) {
-    let day = today();
-    for found in fit.sensors.iter().filter(|found| found.determined > 0) {
-        let record = CalibrationRecord { day, residual: rounded(found.uncertainty) };
-        floor.recalibrate(found.sensor, found.law, Some(record));
-        let tile = floor.geometry.index(found.sensor.tile).and_then(|tile| floor.tare.get_mut(tile));
-        if let Some(tares) = tile {
-            tares[found.sensor.corner.index()] = found.tare;
-        }
-    }
-    if fit.sensors.iter().all(|found| found.determined > 0) {
-        floor.tared = Some(day);
-    }
 }

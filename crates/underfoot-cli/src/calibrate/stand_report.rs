@@ -6,7 +6,7 @@ use underfoot::sense::{SensorFit, StandFit, StandingMark};
 use underfoot::serve::StandWalk;
 
 use super::count;
-use super::stand::place;
+use underfoot_window::setup::{fit_words, mark_words, needy_tiles};
 
 pub(super) fn print_marks(marks: &[StandingMark], floor: &Floor, json: bool) {
     if json {
@@ -19,32 +19,12 @@ pub(super) fn print_marks(marks: &[StandingMark], floor: &Floor, json: bool) {
             .collect();
         outln!("{}", json!({ "marks": marks }));
     } else {
-        marks.iter().for_each(|mark| outln!("{}", place(mark, floor)));
+        marks.iter().for_each(|mark| outln!("{}", mark_words(mark, floor)));
     }
 }
 
 pub(super) fn print(fit: &StandFit, walk: &StandWalk, floor: &Floor) {
-    let (stands, crossings) = (count(fit.stands, "stand"), count(fit.crossings, "way"));
-    outln!("{stands} and {crossings} between them count. The sensors follow a {} law.", fit.kind.name());
-    outln!(
-        "The sums miss the weight by {:.1} %, the feet their marks by {:.1} cm; the body leans {:.1} cm forwards and \
-         {:.1} cm to the right.",
-        100.0 * fit.weight_residual,
-        100.0 * fit.place_residual_m,
-        100.0 * fit.lean_m.y,
-        100.0 * fit.lean_m.x
-    );
-    if !fit.saturated.is_empty() {
-        let stands = count(fit.saturated.len(), "stand");
-        outln!("{stands} had a sensor at the end of its range, and told less: a lighter person tells more.");
-    }
-    if !fit.astray.is_empty() {
-        let numbers: Vec<String> = fit.astray.iter().map(|number| (number + 1).to_string()).collect();
-        outln!("Left out, because they disagree with all others: stands {}.", numbers.join(", "));
-    }
-    if let Some(warning) = unsure(fit) {
-        outln!("{warning}");
-    }
+    fit_words(fit).iter().for_each(|words| outln!("{words}"));
     // A neighbour that carried a foot's edge is no part of the walk.
     let walked = |tile: TileId| walk.marks().iter().any(|mark| mark.tile == tile);
     let needy: Vec<&SensorFit> = fit.needy().filter(|found| walked(found.sensor.tile)).collect();
@@ -60,17 +40,6 @@ pub(super) fn print(fit: &StandFit, walk: &StandWalk, floor: &Floor) {
         };
         outln!("{:<9} {name:<6}  {:>7.0}  {uncertain:>12}", found.sensor.tile.to_string(), found.most.0);
     }
-}
-
-/// A sentence on the sensors about which another kind of law says something else.
-fn unsure(fit: &StandFit) -> Option<String> {
-    let loads = fit.sensors.iter().map(|found| found.sure_to.0).filter(|load| load.is_finite());
-    let (sensors, least) = (loads.clone().count(), loads.reduce(f32::min)?);
-    let sensors = count(sensors, "sensor");
-    Some(format!(
-        "Other laws fit {sensors} about as well, and differ by more than 10 % above {least:.0} N: take the kind from the \
-         parts' data sheet with --law, or a heavier person."
-    ))
 }
 
 pub(super) fn as_json(fit: &StandFit, floor: &Floor, saved: Option<&Value>) -> Value {
@@ -109,16 +78,7 @@ pub(super) fn as_json(fit: &StandFit, floor: &Floor, saved: Option<&Value>) -> V
 
 /// The tiles of the walk that need more stands, and how to repeat them.
 pub(super) fn more(fit: &StandFit, walk: &StandWalk, floor: &Floor) -> Option<String> {
-    let is_good = |tile: TileId| {
-        floor.geometry.sensors(tile).iter().all(|corner| {
-            let own = |found: &&SensorFit| (found.sensor.tile, found.sensor.corner) == (tile, *corner);
-            fit.sensors.iter().find(own).is_some_and(|found| !found.needs_more())
-        })
-    };
-    let mut tiles: Vec<TileId> = walk.marks().iter().map(|mark| mark.tile).collect();
-    tiles.sort_by_key(|tile| floor.geometry.index(*tile));
-    tiles.dedup();
-    tiles.retain(|tile| !is_good(*tile));
+    let tiles = needy_tiles(fit, walk.marks(), floor);
     let list: Vec<String> = tiles.iter().map(|tile| format!("{},{}", tile.column, tile.row)).collect();
     (!tiles.is_empty()).then(|| {
         let tiles = count(tiles.len(), "tile");

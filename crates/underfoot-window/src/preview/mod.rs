@@ -5,7 +5,7 @@
 
 mod announced;
 mod app;
-mod appearance;
+pub(crate) mod appearance;
 mod bars;
 #[cfg(target_arch = "wasm32")]
 mod browser;
@@ -14,7 +14,7 @@ mod closing;
 mod damage;
 mod design;
 #[cfg(not(target_arch = "wasm32"))]
-mod desktop;
+pub(crate) mod desktop;
 #[cfg(test)]
 mod drags;
 mod feed;
@@ -48,13 +48,13 @@ mod rehearsal;
 #[path = "../../../../tests/support/sample.rs"]
 mod sample;
 mod scopes;
-mod screen_report;
+pub(crate) mod screen_report;
 mod selection;
 mod share;
 mod shown;
 mod stage;
 mod status;
-mod style;
+pub(crate) mod style;
 #[cfg(test)]
 mod tests;
 mod time_line;
