@@ -6,7 +6,6 @@
 
 mod bytes;
 mod chunk;
-mod entry;
 mod events;
 mod messages;
 mod order;
@@ -32,26 +31,19 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::schema::Diagnostics;
+use crate::source::log::{END, GAPS, LAYOUT, LAYOUTS, PACKETS, REQUESTS, SILENCE};
 
-pub(crate) use entry::{LogEntry, decoder};
 pub use reader::Recording;
-pub(crate) use recorder::read_layout;
 pub use recorder::{Recorded, Recorder, WhenBehind};
 pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
 pub use switch::RecordingSwitch;
-pub(crate) use tap::{Entries, EntrySink, tapped};
+pub(crate) use tap::{EntrySink, tapped};
 pub use timeline::{MarkKind, Timeline, TimelineMark};
 pub use transport::Transport;
 pub use trim::Trimmed;
 
-/// Topics of a recording.
-pub(crate) const PACKETS: &str = "/underfoot/packets";
-pub(crate) const SILENCE: &str = "/underfoot/silence";
-pub(crate) const REQUESTS: &str = "/underfoot/requests";
-pub(crate) const LAYOUTS: &str = "/underfoot/layouts";
-pub(crate) const GAPS: &str = "/underfoot/gaps";
-pub(crate) const END: &str = "/underfoot/end";
+/// Topic of the lines of events, beside those of the entries.
 const EVENTS: &str = "/underfoot/events";
 
 const TOPICS: [&str; 7] = [PACKETS, SILENCE, REQUESTS, LAYOUTS, GAPS, END, EVENTS];
@@ -72,9 +64,8 @@ const LEARNT: &str = "learnt";
 /// all is displayed.
 const BEGINS: &str = "begins_us";
 
-/// Names of the attachments.
+/// Name of the attachment of the floor; that of the layout is [`LAYOUT`].
 const FLOOR: &str = "floor.ron";
-const LAYOUT: &str = "layout.ron";
 
 /// Reasons why a recording can't be made or read.
 #[derive(Debug, Error)]

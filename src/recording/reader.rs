@@ -9,7 +9,6 @@ use mcap::records::op;
 use super::messages::{LogPart, MessageReader};
 use super::order::Ordered;
 use super::parts::{Attachment, metadata};
-use super::recorder::read_layout;
 use super::records::{RawRecord, ReadState, RecordingBytes, Records};
 use super::replay::{ReplaySource, Speed};
 use super::{BEGINS, FLOOR, LAYOUT, LEARNT, METADATA, NOISE, READABLE, RecordingError};
@@ -17,6 +16,7 @@ use crate::floor::{Floor, FloorFile};
 use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
+use crate::source::log::read_layout;
 use crate::units::Instant;
 use underfoot_format::file::open_ordinary;
 

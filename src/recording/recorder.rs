@@ -8,14 +8,15 @@ use std::time::Duration;
 
 use super::RecordingError;
 use super::events::{EventLines, JobSink};
-use super::tap::{Entries, EntrySink, tapped};
+use super::tap::{EntrySink, tapped};
 use super::writer::{Job, RecordingFile, RecordingHead};
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
-use crate::schema::{self, Diagnostics, Kinds};
+use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
 use crate::sink::{JsonSink, SinkError, Worker};
 use crate::source::FloorInput;
+use crate::source::log::{Entries, read_layout};
 
 /// Behaviour when the disk is slower than the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -154,8 +155,4 @@ pub(super) fn as_kept(layout: &Layout, geometry: &Geometry) -> Result<(String, L
     let text = schema::write_layout(layout);
     let layout = read_layout(&text, geometry)?;
     Ok((text, layout))
-}
-
-pub(crate) fn read_layout(text: &str, geometry: &Geometry) -> Result<Layout, Diagnostics> {
-    Ok(schema::parse_layout(text, super::LAYOUT, &Kinds::builtin(), geometry)?.layout)
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::events::{EventLines, JobSink};
 use super::recorder::{BATCH, Recorder, WhenBehind, as_kept};
-use super::tap::{Entries, EntrySink, tapped};
+use super::tap::{EntrySink, tapped};
 use super::writer::{Job, RecordingHead};
 use super::{RecordingError, restored};
 use crate::engine::Snapshot;
@@ -16,6 +16,7 @@ use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
 use crate::sink::{JsonSink, SinkError};
+use crate::source::log::Entries;
 use crate::source::{FloorInput, Journal};
 use crate::units::Newtons;
 

@@ -3,8 +3,10 @@
 mod fault;
 mod input;
 mod journal;
+#[cfg(feature = "mirror")]
+pub(crate) mod log;
 mod port;
-#[cfg(feature = "net")]
+#[cfg(any(feature = "mirror", feature = "net"))]
 mod shared;
 mod tapped;
 #[cfg(feature = "net")]
@@ -14,7 +16,7 @@ pub use fault::{BadFault, Bursts, FaultInjector, LinkFaults, Outage, Stall};
 pub use input::FloorInput;
 pub use journal::{Incoming, Journal, Replay};
 pub use port::Port;
-#[cfg(feature = "net")]
+#[cfg(any(feature = "mirror", feature = "net"))]
 pub(crate) use shared::Shared;
 pub use tapped::{PacketTap, TappedPackets};
 #[cfg(feature = "net")]
