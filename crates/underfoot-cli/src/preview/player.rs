@@ -16,12 +16,11 @@ use underfoot::sink::Since;
 use underfoot::units::Instant;
 use underfoot_window::preview::{
     EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState,
-    ProgramChannels, ToWindow,
+    ProgramChannels, ToWindow, announced,
 };
 
 use super::super::failure::Failure;
 use super::LOOK;
-use super::announced::announced;
 use super::stop_and_wait;
 
 /// A recording that is shown; ends when this is dropped.

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, TrySendError};
 
+use super::feed::{LayoutCause, LayoutNews, Warnings};
 use underfoot::layout::Layout;
 use underfoot::source::{FloorInput, Incoming, Replay};
-use underfoot_window::preview::{LayoutCause, LayoutNews, Warnings};
 
 /// The requests and layouts of a recording or of a server; reports the layouts to the window.
 struct AnnouncingReplay {
@@ -18,7 +18,8 @@ struct AnnouncingReplay {
 }
 
 /// The input of a recording or of a server's floor, with later layouts reported to the window.
-pub(super) fn announced(
+#[must_use]
+pub fn announced(
     input: impl Into<FloorInput>,
     layouts: SyncSender<LayoutNews>,
     cause: LayoutCause,

@@ -3,6 +3,7 @@
 //! [`run`] shows the content of its [`PreviewInput`]; sensing, sound and outputs run on other threads and never wait
 //! for the window. Only this module and [`underfoot_scene::egui_painter`] depend on egui.
 
+mod announced;
 mod app;
 mod appearance;
 mod bars;
@@ -54,6 +55,7 @@ mod sample;
 mod scopes;
 mod screen_report;
 mod selection;
+mod served;
 mod share;
 mod shown;
 mod stage;
@@ -71,6 +73,7 @@ mod walks;
 mod watch;
 mod zoom;
 
+pub use announced::announced;
 #[cfg(target_arch = "wasm32")]
 pub use browser::run;
 pub use channels::{Notice, ProgramChannels, WindowChannels, channels};
@@ -84,6 +87,7 @@ pub use feed::{
 pub use feeds::{Mouse, SignalScopes, ToWindow, shoes};
 pub use playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 pub use projection::ProjectionOptions;
+pub use served::ServedDesk;
 pub use share::{LayoutToShare, ShareDesk};
 pub use visit::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
 
